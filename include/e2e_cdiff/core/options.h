@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Options structs describe their fields once (key, unit, range, sentence); loading, checking, overriding and writing
+/// them all go through that description, whatever the values come from (YAML file, `--set`, ROS parameter).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+
+namespace cdiff::core {
+
+/// What a field is called and means.
+struct FieldInfo {
+  const char* key;   ///< snake_case key
+  const char* unit;  ///< unit, or "" for a plain number or text
+  const char* text;  ///< one sentence: meaning
+};
+
+/// Visits the fields of an options struct. A struct offers `void describe(OptionsVisitor& visitor)`.
+class OptionsVisitor {
+ public:
+  virtual ~OptionsVisitor() = default;
+  /// A number in [minimum, maximum].
+  virtual void number(const FieldInfo& info, double& value, double minimum, double maximum) = 0;
+  /// A whole number in [minimum, maximum].
+  virtual void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+                       std::int64_t maximum) = 0;
+  virtual void flag(const FieldInfo& info, bool& value) = 0;
+  /// A text; when `choices` is not empty, one of them.
+  virtual void text(const FieldInfo& info, std::string& value,
+                    const std::vector<std::string>& choices) = 0;
+  /// A list of texts.
+  virtual void list(const FieldInfo& info, std::vector<std::string>& value) = 0;
+  /// A list of points [x, y] or [x, y, z] in the map frame [m].
+  virtual void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) = 0;
+  /// A nested group begins; `leave` ends it. `enter` answers whether the group is to be visited.
+  virtual bool enter(const FieldInfo& info) = 0;
+  virtual void leave() = 0;
+
+  /// Visits a nested options struct under `info.key`.
+  template <class Options>
+  void group(const FieldInfo& info, Options& options) {
+    if (!enter(info)) return;
+    options.describe(*this);
+    leave();
+  }
+};
+
+/// A YAML text with the name it is known by in errors ("file.yaml", "--set", "parameter ~set").
+struct YamlSource {
+  std::string name;
+  std::string text;
+};
+
+namespace detail {
+using Describe = void (*)(void* options, OptionsVisitor& visitor);
+void load(const YamlSource& source, void* options, Describe describe);
+void override_(const std::string& assignment, const std::string& source, void* options, Describe describe);
+std::string dump(void* options, Describe describe, bool with_comments);
+template <class Options>
+void describeAs(void* options, OptionsVisitor& visitor) {
+  static_cast<Options*>(options)->describe(visitor);
+}
+}  // namespace detail
+
+/// Reads a YAML map into `options`; keys not given keep their value. Throws InputError with file, line, key, what was
+/// expected and the nearest known key for: broken YAML, unknown or repeated key, wrong type, value out of range.
+template <class Options>
+void loadOptions(const YamlSource& source, Options& options) {
+  detail::load(source, &options, &detail::describeAs<Options>);
+}
+
+/// Applies one "key=value". A nested key is written "group.key"; a leaf name alone will do where it is unique.
+/// Throws InputError that names `source`, the key and the nearest known key.
+template <class Options>
+void overrideOption(const std::string& assignment, const std::string& source, Options& options) {
+  detail::override_(assignment, source, &options, &detail::describeAs<Options>);
+}
+
+/// The options as YAML that loadOptions reads back to the same values; with a comment above each key if asked.
+template <class Options>
+std::string dumpOptions(Options options, bool with_comments = false) {
+  return detail::dump(&options, &detail::describeAs<Options>, with_comments);
+}
+
+}  // namespace cdiff::core

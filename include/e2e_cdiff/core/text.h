@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Numbers and names as text: shortest round-trip decimals, nearest known name, numbers from text.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cdiff::core {
+
+/// Shortest decimal that reads back to the same double; "nan", "inf" and "-inf" for the rest.
+std::string formatNumber(double value);
+
+/// `value` with a fixed count of decimals, for people.
+std::string formatFixed(double value, int decimals);
+
+/// The whole text as a finite double; nullopt when anything else is in it.
+std::optional<double> parseNumber(std::string_view text);
+
+/// The known name with the smallest edit distance to `name`; empty when `known` is empty.
+std::string nearestName(const std::string& name, const std::vector<std::string>& known);
+
+/// Parts of `text` between separators; runs of separators count as one, no empty parts.
+std::vector<std::string> splitText(std::string_view text, char separator);
+
+/// The parts with a separator between them.
+std::string joinText(const std::vector<std::string>& parts, std::string_view separator);
+
+}  // namespace cdiff::core

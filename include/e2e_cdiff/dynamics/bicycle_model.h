@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Kinematic bicycle with a throttle and brake response: (throttle, steer, brake) -> next state. Map frame, SI units;
+/// one step per simulation step of 0.05 s (coefficients: reference design, PDM-Lite's fit of a mid-size car).
+#pragma once
+
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/traffic/vehicle.h"
+
+namespace cdiff::dynamics {
+
+struct BicycleModelOptions {
+  double steering_gain = 0.36848336;     ///< wheel angle at steer = 1 [rad]
+  double rear_length = 1.4178275;        ///< centre to rear axle l_r [m]
+  double front_length = -0.090769015;    ///< centre to front axle l_f of the fit [m]
+  double max_deceleration = 8.0;         ///< cap of braking [m/s^2]
+  double max_speed = 40.0;               ///< [m/s]
+
+  void describe(core::OptionsVisitor& visitor);
+  void validate() const;
+};
+
+class BicycleModel {
+ public:
+  explicit BicycleModel(const BicycleModelOptions& options = {});
+  /// State after `duration` [s] with the action held; `duration` is a multiple of 0.05 s up to rounding, the polynomials being per 0.05 s.
+  /// Never reverses. Elevation is kept. Throws std::invalid_argument for an invalid action.
+  traffic::VehicleState step(const traffic::VehicleState& state, const traffic::ControlAction& action,
+                             double duration) const;
+  const BicycleModelOptions& options() const { return options_; }
+
+ private:
+  double nextSpeed(double speed, const traffic::ControlAction& action) const;
+  BicycleModelOptions options_;
+};
+
+}  // namespace cdiff::dynamics

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Shortest lane-connected ways: along lanes, through junctions, and (with a small penalty) to neighbouring lanes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "e2e_cdiff/map/route.h"
+
+namespace cdiff::map {
+
+/// A place on a lane.
+struct LanePosition {
+  LaneIndex lane = kNoLane;
+  double arc_length = 0.0;  ///< along the lane's centre line [m]
+};
+
+/// Lanes in driving order; neighbours in the list follow each other or lie side by side (a lane change).
+struct LanePath {
+  std::vector<LaneIndex> lanes;
+  double length = 0.0;  ///< driven length from start to goal [m], lane-change penalty not included
+};
+
+class LaneGraph {
+ public:
+  /// Keeps a reference: the network must outlive the graph.
+  explicit LaneGraph(const RoadNetwork& network) : network_(network) {}
+
+  /// Shortest way between two places over routable lanes (the start's and the goal's lane always count); nullopt when there is none
+  /// no longer than `max_length` [m]. `lane_changes` allows changes to neighbouring lanes.
+  std::optional<LanePath> shortestPath(const LanePosition& start, const LanePosition& goal, double max_length,
+                                       bool lane_changes = true) const;
+
+  /// Driven length from `start` to the start of each lane within `max_length` [m], infinity elsewhere: one search
+  /// for many goals. `arrival(goal)` = value[lane] + goal arc length, or direct on the start's own lane.
+  std::vector<double> distancesFrom(const LanePosition& start, double max_length, bool lane_changes = true) const;
+
+  /// Points about 1 m apart along a way, with blended lane changes, from `start` to `goal_arc_length` on the last lane.
+  Route toRoute(const LanePath& path, double start_arc_length, double goal_arc_length) const;
+
+  /// The route lengthened to at least `length` metres and beyond the junction it would end in, going straight on where it can (ties by
+  /// lane index); shorter where the network ends.
+  Route extended(const Route& route, double length) const;
+
+  const RoadNetwork& network() const { return network_; }
+
+ private:
+  const RoadNetwork& network_;
+};
+
+}  // namespace cdiff::map

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A lane-connected way through the network: points (x, y, z) about 1 m apart in the map frame, each with its lane.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/map/road_network.h"
+
+namespace cdiff::map {
+
+class Route {
+ public:
+  Route() = default;
+  /// `points` (at least two, distinct) and the lane of each. Keeps a copy of what it needs of the network.
+  Route(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points,
+        const std::vector<LaneIndex>& lanes);
+
+  bool empty() const { return path_.empty(); }
+  double length() const { return path_.length(); }
+  const geometry::Polyline& path() const { return path_; }
+  /// Lane of each point of `path()`.
+  const std::vector<LaneIndex>& lanes() const { return lanes_; }
+  /// Lane at an arc length.
+  LaneIndex laneAt(double arc_length) const;
+  /// Speed limit of the lane at an arc length [m/s].
+  double speedLimitAt(double arc_length) const;
+  /// Whether the lane at an arc length lies inside a junction.
+  bool inJunctionAt(double arc_length) const;
+  /// SUMO edges in driving order, without internal ones and without repetition of neighbours.
+  const std::vector<std::string>& edges() const { return edges_; }
+  /// Arc length of the first point on `edges()[i]`, for each edge.
+  const std::vector<double>& edgeBegins() const { return edge_begins_; }
+  /// Arc lengths [begin, end] inside junctions, in order.
+  const std::vector<std::pair<double, double>>& junctionStretches() const { return junctions_; }
+  /// A stop line of a traffic light on the way.
+  struct Signal {
+    double arc_length = 0.0;  ///< where the light's lane ends [m]
+    std::string id;           ///< traffic light
+    int link = -1;            ///< position in its state text
+  };
+  const std::vector<Signal>& signals() const { return signals_; }
+  /// Arc lengths where the route changes to a neighbouring lane [m].
+  const std::vector<double>& laneChanges() const { return lane_changes_; }
+
+ private:
+  std::size_t pointIndex(double arc_length) const;
+  geometry::Polyline path_;
+  std::vector<LaneIndex> lanes_;
+  std::vector<double> speed_limits_;
+  std::vector<bool> in_junction_;
+  std::vector<std::string> edges_;
+  std::vector<double> edge_begins_;
+  std::vector<std::pair<double, double>> junctions_;
+  std::vector<Signal> signals_;
+  std::vector<double> lane_changes_;
+};
+
+/// The lane of each point by dynamic programming over lanes near it (distance and heading), lane-connected from point to
+/// point. Throws InputError naming the first point farther than 1.5 m from every lane, or without a way to the next.
+Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace cdiff::map

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The one interface of everything that drives: at a decision, an action for each of its vehicles.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+
+namespace cdiff::planning {
+
+/// What a planner may keep for the session; all references outlive the planner.
+struct PlanningContext {
+  const map::RoadNetwork& network;
+  const map::DrivableArea& drivable_area;
+  std::uint64_t seed = 1;
+  double simulation_step = 0.05;  ///< [s]
+  double decision_period = 0.1;   ///< [s]
+};
+
+/// One vehicle to drive at this decision.
+struct PlanningTask {
+  int slot = -1;                            ///< slot of a CBV; -1 for the ego
+  const traffic::Vehicle* vehicle = nullptr;
+  const map::Route* route = nullptr;        ///< ego route, or the CBV's conflict-aware route
+  double target_speed = 8.0;                ///< v* before the lane's limit [m/s]
+};
+
+/// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for display.
+struct RolloutPoint {
+  traffic::VehicleState state;
+  traffic::ControlAction action;
+};
+
+struct PlannedAction {
+  int slot = -1;
+  std::string vehicle_id;
+  traffic::ControlAction action;
+  std::vector<RolloutPoint> rollout;        ///< may be empty
+};
+
+class Planner {
+ public:
+  virtual ~Planner() = default;
+  /// Actions for all tasks of a decision, in their order (slot order). Deterministic: same calls, same actions.
+  virtual std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
+                                          const std::vector<PlanningTask>& tasks) = 0;
+};
+
+}  // namespace cdiff::planning

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The decision cycle of a session in one process, without ROS: it defines what the node graph does. At each decision tick: CBV identification,
+/// planners of ego and CBVs on the same snapshot, then the world advances.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "e2e_cdiff/scenario/session_observer.h"
+#include "e2e_cdiff/scenario/world.h"
+
+namespace cdiff::scenario {
+
+/// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot, in slot order.
+std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
+                                             const cbv::CbvSelection& selection, double target_speed);
+/// Task of the ego planner; empty when the ego is gone.
+std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot, const map::Route& route,
+                                             double target_speed);
+/// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields fail-safe actions; the text of the fault goes to
+/// `fault` (empty when none).
+std::vector<planning::PlannedAction> planTimed(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                                               const std::vector<planning::PlanningTask>& tasks,
+                                               double& milliseconds, std::string& fault);
+
+class ClosedLoop {
+ public:
+  /// `setup` must outlive the loop. Throws InputError for unknown planners and for the external ego, which needs the node graph.
+  explicit ClosedLoop(const SessionSetup& setup);
+
+  /// Observers are called in the order added and must outlive the run.
+  void addObserver(SessionObserver& observer) { observers_.push_back(&observer); }
+  /// Runs to the end; `stop` (from a signal handler) ends the session as interrupted.
+  traffic::SessionStatus run(const std::atomic<bool>& stop);
+  const World& world() const { return *world_; }
+
+ private:
+  void decide();
+  const SessionSetup& setup_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<cbv::CbvSelector> selector_;
+  std::unique_ptr<planning::Planner> ego_planner_;
+  std::unique_ptr<planning::Planner> cbv_planner_;
+  std::vector<SessionObserver*> observers_;
+};
+
+}  // namespace cdiff::scenario

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A scenario: everything that decides a session, as one YAML file (schema of `cdiff validate`).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/cbv/cbv_selector.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/map/route_source.h"
+#include "e2e_cdiff/planning/pdm_lite_options.h"
+#include "e2e_cdiff/scenario/protocol.h"
+#include "e2e_cdiff/simulation/demand_generator.h"
+#include "e2e_cdiff/simulation/sumo_simulator.h"
+
+namespace cdiff::scenario {
+
+/// When a session passes.
+struct VerdictOptions {
+  double minimum_route_completion = 0.0;       ///< of the ego [%]
+  double maximum_ego_collisions = 1e9;
+  double maximum_cbv_off_road_percent = 100.0; ///< [%]
+  std::vector<std::string> statuses;           ///< allowed final statuses; empty: all but error and interrupted
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+struct ScenarioOptions {
+  std::int64_t schema_version = 1;
+  std::string name = "unnamed";
+  std::string network;                  ///< shipped name or file (*.net.xml, *.xodr)
+  map::RouteOptions route;              ///< of the ego
+  std::string demand = "generated";     ///< generated | none | a *.rou.xml file
+  simulation::DemandOptions traffic;    ///< of generated demand
+  double begin_time = 0.0;              ///< SUMO's clock at the start, for demand files [s]
+  std::string lights = "green";         ///< green | program
+  std::string mode = "naturalistic";    ///< naturalistic | safety_critical
+  std::string ego_planner = "pdm_lite";
+  std::string cbv_planner = "pdm_lite";
+  std::int64_t max_cbv = 2;
+  cbv::CbvOptions cbv;
+  planning::PdmLiteOptions pdm_lite;
+  dynamics::BicycleModelOptions vehicle;
+  simulation::SumoOptions sumo;
+  ProtocolOptions protocol;
+  VerdictOptions verdict;
+  double target_speed = 8.0;            ///< v* [m/s], capped by the lane's limit
+  double simulation_step = 0.05;        ///< [s]
+  double decision_period = 0.1;         ///< [s], a multiple of simulation_step
+  double real_time_factor = 0.0;        ///< 0: as fast as possible
+  std::int64_t seed = 1;
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError for fields that contradict each other.
+  void validate() const;
+};
+
+/// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside it are resolved against the
+/// file's folder. Throws InputError naming file, line and key, or the nearest shipped scenario.
+ScenarioOptions loadScenario(const std::string& name_or_file);
+
+/// Names of the shipped scenarios, sorted.
+std::vector<std::string> shippedScenarios();
+
+}  // namespace cdiff::scenario

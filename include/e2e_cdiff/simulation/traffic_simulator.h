@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Background traffic as the rest of the system sees it: SI units, map frame, box centres, headings counter-clockwise. SUMO's own
+/// conventions stay inside simulation/.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+
+namespace cdiff::simulation {
+
+/// A vehicle that we move ourselves: where it is after the coming step.
+struct DrivenVehicle {
+  std::string id;
+  traffic::VehicleState state;          ///< at the end of the step
+  const map::Route* route = nullptr;    ///< way it follows, so that its SUMO route reaches beyond the next junction
+};
+
+/// A vehicle as the simulator reports it.
+struct SimulatedVehicle {
+  std::string id;
+  traffic::VehicleState state;          ///< of vehicles that SUMO drives; a driven vehicle's is only SUMO's echo
+  traffic::VehicleDimensions dimensions;
+  double acceleration = 0.0;            ///< [m/s^2]
+  std::string lane_id;                  ///< empty off the road
+};
+
+/// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator died, froze or refused.
+class TrafficSimulator {
+ public:
+  virtual ~TrafficSimulator() = default;
+
+  /// Adds a vehicle that we drive from the beginning (the ego). It exists after the next step.
+  virtual void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
+                         const DrivenVehicle& start) = 0;
+  /// Takes a background vehicle over: from the next step on it must be in `driven`.
+  virtual void takeOver(const std::string& id) = 0;
+  /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed where it is on no lane
+  /// of its direction (answers false).
+  virtual bool release(const DrivenVehicle& vehicle) = 0;
+  /// Takes a vehicle out of the simulation (contact).
+  virtual void remove(const std::string& id) = 0;
+
+  /// Moves the driven vehicles and advances by one simulation step.
+  virtual void step(const std::vector<DrivenVehicle>& driven) = 0;
+
+  /// All vehicles after the last step, by id.
+  virtual const std::vector<SimulatedVehicle>& vehicles() const = 0;
+  /// Traffic lights after the last step, by id.
+  virtual const std::vector<traffic::SignalState>& signals() const = 0;
+  /// Version text of the simulator ("SUMO 1.15.0").
+  virtual std::string version() const = 0;
+};
+
+}  // namespace cdiff::simulation

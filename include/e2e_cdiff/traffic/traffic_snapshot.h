@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Everything that is true of the world at one tick; the one input of CBV identification, planners, metrics and records.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/traffic/vehicle.h"
+
+namespace cdiff::traffic {
+
+/// Colours of one traffic light, one letter per link as SUMO writes them (r y g G ...).
+struct SignalState {
+  std::string id;
+  std::string state;
+};
+
+/// Two boxes that began to overlap at this tick (ids in ascending order). A pair counts again only 5 s after its last overlap.
+struct Contact {
+  std::string first;
+  std::string second;
+};
+
+/// Something that went wrong and was survived or ended the session.
+struct Fault {
+  std::uint64_t tick = 0;
+  std::string source;  ///< node, planner or simulator
+  std::string text;    ///< what happened, with the offending value
+};
+
+/// How a session stands. All but kRunning are final.
+enum class SessionStatus { kRunning, kCompleted, kBlocked, kDeviated, kTimedOut, kCollided, kInterrupted, kError };
+
+/// "running", "completed", "blocked", "deviated", "timed_out", "collided", "interrupted" or "error".
+const char* toText(SessionStatus status);
+
+struct TrafficSnapshot {
+  std::uint64_t tick = 0;
+  double time = 0.0;           ///< tick x simulation step [s]
+  bool decision_tick = false;  ///< whether planners are asked at this tick
+  std::vector<Vehicle> vehicles;       ///< ego first, then CBVs by slot, then background by id
+  std::vector<SignalState> signals;    ///< by id
+  std::vector<Contact> contacts;       ///< that began at this tick
+  std::vector<std::string> removed;    ///< ids that left the simulation since the last tick (contact or end of route)
+  SessionStatus status = SessionStatus::kRunning;
+  std::vector<Fault> faults;           ///< recorded at this tick
+
+  /// The vehicle with this id, or nullptr.
+  const Vehicle* find(const std::string& id) const;
+  /// The ego, or nullptr.
+  const Vehicle* ego() const;
+  /// The CBV of a slot, or nullptr.
+  const Vehicle* cbv(int slot) const;
+};
+
+}  // namespace cdiff::traffic

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What is known of one vehicle at one tick (map frame, SI units; position = centre of its box).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "e2e_cdiff/geometry/oriented_box.h"
+
+namespace cdiff::traffic {
+
+/// Motion state of a vehicle.
+struct VehicleState {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< centre of the box, map frame [m]
+  double elevation = 0.0;                              ///< z of the road below the centre [m]
+  double heading = 0.0;                                ///< counter-clockwise from +x [rad]
+  double speed = 0.0;                                  ///< along the heading, never negative [m/s]
+
+  geometry::Pose2d pose() const { return {position, heading}; }
+  /// Speed along the heading as a vector [m/s].
+  Eigen::Vector2d velocity() const { return speed * geometry::direction(heading); }
+};
+
+/// Size of a vehicle's box [m].
+struct VehicleDimensions {
+  double length = 4.5;
+  double width = 1.8;
+  double height = 1.5;
+};
+
+/// Executable command: throttle in [0, 1], steer in [-1, 1] positive left, brake in [0, 1].
+struct ControlAction {
+  double throttle = 0.0;
+  double steer = 0.0;
+  double brake = 0.0;
+
+  /// Whether all three are finite and in range.
+  bool valid() const;
+  /// Throttle 0, steer 0, brake 1.
+  static ControlAction failSafe() { return {0.0, 0.0, 1.0}; }
+};
+
+bool operator==(const ControlAction& left, const ControlAction& right);
+
+enum class VehicleRole { kEgo, kCbv, kBackground };
+
+/// "ego", "cbv" or "background".
+const char* toText(VehicleRole role);
+
+/// One vehicle of a snapshot.
+struct Vehicle {
+  std::string id;                                ///< stable over the session
+  VehicleRole role = VehicleRole::kBackground;
+  int cbv_slot = -1;                             ///< slot of a CBV, else -1
+  VehicleState state;
+  VehicleDimensions dimensions;
+  double acceleration = 0.0;                     ///< d speed / d t over the last tick [m/s^2]
+  double yaw_rate = 0.0;                         ///< d heading / d t over the last tick [rad/s]
+  std::optional<ControlAction> applied_action;   ///< held during the last tick; absent when SUMO drives it
+  std::string lane_id;                           ///< SUMO lane it is on; empty off the road
+
+  geometry::OrientedBox box() const {
+    return {state.position, state.heading, dimensions.length, dimensions.width};
+  }
+};
+
+/// Whether two vehicles are so far apart in height that their boxes cannot touch (bridges).
+inline bool onDifferentLevels(const Vehicle& first, const Vehicle& second) {
+  constexpr double kLevelHeight = 2.5;  // [m] lower than any bridge, higher than any slope within a vehicle's length
+  return std::abs(first.state.elevation - second.state.elevation) > kLevelHeight;
+}
+
+}  // namespace cdiff::traffic

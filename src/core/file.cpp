@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/core/file.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+EVP_MD_CTX* digestContext(void* context) { return static_cast<EVP_MD_CTX*>(context); }
+
+fs::path libraryFolder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&sha256), &info) == 0 || info.dli_fname == nullptr) return {};
+  return fs::absolute(info.dli_fname).parent_path();
+}
+
+[[noreturn]] void failWriting(const fs::path& path) {
+  throw InputError("cannot write '" + path.string() + "': " + std::strerror(errno) +
+                   "; check that the folder exists and is writable");
+}
+
+void writeAll(int descriptor, std::string_view content, const fs::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      ::close(descriptor);
+      failWriting(path);
+    }
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+fs::path firstEnvironmentFolder() {
+  if (const char* folder = std::getenv("E2E_CDIFF_CACHE")) return folder;
+  if (const char* folder = std::getenv("XDG_CACHE_HOME")) return fs::path(folder) / "e2e_cdiff";
+  if (const char* folder = std::getenv("HOME")) return fs::path(folder) / ".cache" / "e2e_cdiff";
+  return fs::temp_directory_path() / ("e2e_cdiff_" + std::to_string(::getuid()));
+}
+
+}  // namespace
+
+std::string readFile(const fs::path& path, const std::string& what) {
+  if (fs::is_directory(path)) {
+    throw InputError(what + " '" + path.string() + "' is a folder; a file was expected");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw InputError("cannot read " + what + " '" + path.string() + "': " + std::strerror(errno));
+  }
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+void writeFileAtomically(const fs::path& path, std::string_view content) {
+  const fs::path temporary = path.string() + ".tmp." + std::to_string(::getpid());
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) failWriting(path);
+  writeAll(descriptor, content, path);
+  ::fsync(descriptor);
+  ::close(descriptor);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) failWriting(path);
+}
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+  EVP_DigestInit_ex(digestContext(context_), EVP_sha256(), nullptr);
+}
+
+Sha256::~Sha256() { EVP_MD_CTX_free(digestContext(context_)); }
+
+void Sha256::update(std::string_view text) {
+  EVP_DigestUpdate(digestContext(context_), text.data(), text.size());
+}
+
+std::string Sha256::finish() {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  EVP_DigestFinal_ex(digestContext(context_), digest.data(), &size);
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i) {
+    text += kDigits[digest[i] >> 4];
+    text += kDigits[digest[i] & 15];
+  }
+  return text;
+}
+
+std::string sha256(std::string_view content) {
+  Sha256 hash;
+  hash.update(content);
+  return hash.finish();
+}
+
+fs::path shareFolder() {
+  std::vector<fs::path> candidates;
+  if (const char* folder = std::getenv("E2E_CDIFF_SHARE")) candidates.emplace_back(folder);
+  candidates.push_back(libraryFolder().parent_path() / "share" / "e2e_cdiff");
+  candidates.emplace_back(E2E_CDIFF_SOURCE_FOLDER);
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_directory(candidate / "config")) return fs::weakly_canonical(candidate);
+  }
+  throw InputError("the package's config folder was not found; set E2E_CDIFF_SHARE to the folder that holds it");
+}
+
+fs::path cacheFolder() {
+  const fs::path folder = firstEnvironmentFolder();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError("cannot make the cache folder '" + folder.string() + "': " + error.message() +
+                     "; set E2E_CDIFF_CACHE to a writable folder");
+  }
+  return folder;
+}
+
+}  // namespace cdiff::core

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/core/options.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include <yaml-cpp/yaml.h>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::core::detail {
+namespace {
+
+std::string rangeText(const std::string& low, const std::string& high, const char* unit) {
+  return "[" + low + ", " + high + "]" + (*unit ? std::string(" ") + unit : std::string());
+}
+
+/// Takes values out of a YAML map and remembers which keys exist, so that unknown ones can be named.
+class LoadVisitor : public OptionsVisitor {
+ public:
+  LoadVisitor(std::string source, YAML::Node root) : source_(std::move(source)) {
+    push("", std::move(root));
+  }
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    const std::string range = rangeText(formatNumber(minimum), formatNumber(maximum), info.unit);
+    const auto parsed = node.IsScalar() ? parseNumber(node.Scalar()) : std::nullopt;
+    if (!parsed) fail(node, info.key, "a number in " + range);
+    if (*parsed < minimum || *parsed > maximum) fail(node, info.key, "a number in " + range);
+    value = *parsed;
+  }
+
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    const std::string range =
+        rangeText(std::to_string(minimum), std::to_string(maximum), info.unit);
+    try {
+      std::size_t used = 0;
+      const std::string text = node.IsScalar() ? node.Scalar() : "";
+      const std::int64_t parsed = std::stoll(text, &used);
+      if (used != text.size() || parsed < minimum || parsed > maximum) throw std::out_of_range("");
+      value = parsed;
+    } catch (const std::logic_error&) {
+      fail(node, info.key, "a whole number in " + range);
+    }
+  }
+
+  void flag(const FieldInfo& info, bool& value) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) {
+      fail(node, info.key, "true or false");
+    }
+  }
+
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    if (!node.IsScalar()) fail(node, info.key, "a text");
+    const std::string given = node.Scalar();
+    if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
+      fail(node, info.key, "one of {" + joinText(choices, ", ") + "}; did you mean '" +
+                               nearestName(given, choices) + "'?");
+    }
+    value = given;
+  }
+
+  void list(const FieldInfo& info, std::vector<std::string>& value) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    if (!node.IsSequence()) fail(node, info.key, "a list of texts, e.g. [a, b]");
+    value.clear();
+    for (const YAML::Node& item : node) {
+      if (!item.IsScalar()) fail(item, info.key, "a list of texts, e.g. [a, b]");
+      value.push_back(item.Scalar());
+    }
+  }
+
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
+    const YAML::Node node = take(info);
+    if (!node) return;
+    if (!node.IsSequence()) fail(node, info.key, "a list of points, e.g. [[0, 1], [2, 3]]");
+    value.clear();
+    for (const YAML::Node& item : node) value.push_back(point(info, item));
+  }
+
+  bool enter(const FieldInfo& info) override {
+    const YAML::Node node = take(info);
+    if (!node) {
+      push(info.key, YAML::Node(YAML::NodeType::Map));
+      return true;
+    }
+    if (!node.IsMap()) fail(node, info.key, "a group of keys");
+    push(info.key, node);
+    return true;
+  }
+
+  void leave() override {
+    checkUnknownKeys();
+    levels_.pop_back();
+  }
+
+  void checkUnknownKeys() const {
+    for (const auto& item : levels_.back().node) {
+      const std::string key = item.first.Scalar();
+      const auto& known = levels_.back().known;
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      throw InputError(place(item.first) + ": unknown key '" + levels_.back().prefix + key +
+                       "'; the nearest known key is '" + nearestName(key, known) +
+                       "' (known here: " + joinText(known, ", ") + ")");
+    }
+  }
+
+ private:
+  struct Level {
+    std::string prefix;
+    YAML::Node node;
+    std::vector<std::string> known;
+  };
+
+  void push(const std::string& key, YAML::Node node) {
+    const std::string prefix = key.empty() ? "" : levels_.back().prefix + key + ".";
+    std::set<std::string> seen;
+    for (const auto& item : node) {
+      if (!item.first.IsScalar()) {
+        throw InputError(place(item.first) + ": a key must be a plain word");
+      }
+      if (!seen.insert(item.first.Scalar()).second) {
+        throw InputError(place(item.first) + ": key '" + prefix + item.first.Scalar() +
+                         "' is given twice");
+      }
+    }
+    levels_.push_back({prefix, node, {}});
+  }
+
+  YAML::Node take(const FieldInfo& info) {
+    levels_.back().known.emplace_back(info.key);
+    const YAML::Node& level = levels_.back().node;
+    return level[info.key];
+  }
+
+  std::string place(const YAML::Node& node) const {
+    const YAML::Mark mark = node.Mark();
+    return mark.line < 0 ? source_ : source_ + ":" + std::to_string(mark.line + 1);
+  }
+
+  [[noreturn]] void fail(const YAML::Node& node, const std::string& key,
+                         const std::string& expected) const {
+    const std::string given = node.IsScalar() ? "'" + node.Scalar() + "'" : "not such a value";
+    throw InputError(place(node) + ": key '" + levels_.back().prefix + key + "' is " + given +
+                     "; expected " + expected);
+  }
+
+  Eigen::Vector3d point(const FieldInfo& info, const YAML::Node& item) const {
+    const bool sized = item.IsSequence() && (item.size() == 2 || item.size() == 3);
+    if (!sized) fail(item, info.key, "points [x, y] or [x, y, z] in metres");
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < item.size(); ++i) {
+      const auto parsed = item[i].IsScalar() ? parseNumber(item[i].Scalar()) : std::nullopt;
+      if (!parsed) fail(item[i], info.key, "points of finite numbers in metres");
+      result[static_cast<Eigen::Index>(i)] = *parsed;
+    }
+    return result;
+  }
+
+  std::string source_;
+  std::vector<Level> levels_;
+};
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter emitter;
+  YAML::Node parsed;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+/// Writes the fields as indented YAML.
+class DumpVisitor : public OptionsVisitor {
+ public:
+  explicit DumpVisitor(bool with_comments) : with_comments_(with_comments) {}
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    line(info, formatNumber(value),
+         rangeText(formatNumber(minimum), formatNumber(maximum), info.unit));
+  }
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    line(info, std::to_string(value),
+         rangeText(std::to_string(minimum), std::to_string(maximum), info.unit));
+  }
+  void flag(const FieldInfo& info, bool& value) override {
+    line(info, value ? "true" : "false", "true | false");
+  }
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    line(info, quoted(value), joinText(choices, " | "));
+  }
+  void list(const FieldInfo& info, std::vector<std::string>& value) override {
+    std::vector<std::string> items;
+    for (const std::string& item : value) items.push_back(quoted(item));
+    line(info, "[" + joinText(items, ", ") + "]", "");
+  }
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
+    std::vector<std::string> items;
+    for (const Eigen::Vector3d& item : value) {
+      items.push_back("[" + formatNumber(item.x()) + ", " + formatNumber(item.y()) + ", " +
+                      formatNumber(item.z()) + "]");
+    }
+    line(info, "[" + joinText(items, ", ") + "]", info.unit);
+  }
+  bool enter(const FieldInfo& info) override {
+    comment(info, "");
+    text_ += indent_ + info.key + ":\n";
+    indent_ += "  ";
+    return true;
+  }
+  void leave() override { indent_.resize(indent_.size() - 2); }
+
+  const std::string& written() const { return text_; }
+
+ private:
+  void comment(const FieldInfo& info, const std::string& range) {
+    if (!with_comments_) return;
+    text_ += indent_ + "# " + info.text + (range.empty() ? "" : " " + range) + "\n";
+  }
+  void line(const FieldInfo& info, const std::string& value, const std::string& range) {
+    comment(info, range);
+    text_ += indent_ + info.key + ": " + value + "\n";
+  }
+
+  bool with_comments_;
+  std::string indent_;
+  std::string text_;
+};
+
+/// Collects the full path of every leaf and group.
+class PathVisitor : public OptionsVisitor {
+ public:
+  void number(const FieldInfo& info, double&, double, double) override { add(info); }
+  void integer(const FieldInfo& info, std::int64_t&, std::int64_t, std::int64_t) override { add(info); }
+  void flag(const FieldInfo& info, bool&) override { add(info); }
+  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override { add(info); }
+  void list(const FieldInfo& info, std::vector<std::string>&) override { add(info); }
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>&) override { add(info); }
+  bool enter(const FieldInfo& info) override {
+    add(info);
+    prefixes_.push_back(prefix() + info.key + ".");
+    return true;
+  }
+  void leave() override { prefixes_.pop_back(); }
+
+  const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+  std::string prefix() const { return prefixes_.empty() ? "" : prefixes_.back(); }
+  void add(const FieldInfo& info) { paths_.push_back(prefix() + info.key); }
+  std::vector<std::string> prefixes_;
+  std::vector<std::string> paths_;
+};
+
+std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+std::string resolvePath(const std::string& key, const std::vector<std::string>& paths,
+                        const std::string& source) {
+  if (std::find(paths.begin(), paths.end(), key) != paths.end()) return key;
+  std::vector<std::string> matches;
+  for (const std::string& path : paths) {
+    if (lastPart(path) == key) matches.push_back(path);
+  }
+  if (matches.size() == 1) return matches.front();
+  if (matches.size() > 1) {
+    throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
+                     joinText(matches, ", ") + "}");
+  }
+  throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
+                   nearestName(key, paths) + "'");
+}
+
+YAML::Node nested(const std::vector<std::string>& path, std::size_t depth, const YAML::Node& value) {
+  if (depth == path.size()) return value;
+  YAML::Node node(YAML::NodeType::Map);
+  node[path[depth]] = nested(path, depth + 1, value);
+  return node;
+}
+
+YAML::Node parse(const YamlSource& source) {
+  try {
+    return YAML::Load(source.text);
+  } catch (const YAML::ParserException& error) {
+    throw InputError(source.name + ":" + std::to_string(error.mark.line + 1) +
+                     ": not valid YAML: " + error.msg);
+  }
+}
+
+}  // namespace
+
+void load(const YamlSource& source, void* options, Describe describe) {
+  YAML::Node root = parse(source);
+  if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
+  if (!root.IsMap()) throw InputError(source.name + ":1: expected a map of keys");
+  LoadVisitor visitor(source.name, root);
+  describe(options, visitor);
+  visitor.checkUnknownKeys();
+}
+
+void override_(const std::string& assignment, const std::string& source, void* options,
+               Describe describe) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError(source + ": '" + assignment + "' is not of the form key=value");
+  }
+  PathVisitor paths;
+  describe(options, paths);
+  const std::string path = resolvePath(assignment.substr(0, equals), paths.paths(), source);
+  const std::string value_text = assignment.substr(equals + 1);
+  const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
+  LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value));
+  describe(options, visitor);
+}
+
+std::string dump(void* options, Describe describe, bool with_comments) {
+  DumpVisitor visitor(with_comments);
+  describe(options, visitor);
+  return visitor.written();
+}
+
+}  // namespace cdiff::core::detail
