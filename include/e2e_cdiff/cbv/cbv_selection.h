@@ -33,7 +33,7 @@ struct CbvAssignment {
   map::Route conflict_aware_route;       ///< from where it was selected, through the conflict point, and on
 };
 
-/// A candidate that was not taken. Reasons are fixed words: see cbv_selector.h.
+/// A candidate that was not taken. Reasons are fixed words: see rejection_reason.h.
 struct RejectedCandidate {
   std::string vehicle_id;
   std::string reason;
@@ -44,7 +44,7 @@ struct RejectedCandidate {
 struct ReleasedCbv {
   int slot = 0;
   std::string vehicle_id;
-  std::string reason;                    ///< "contact", "route_end", "gone", "conflict_lost"
+  std::string reason;                    ///< see held_cbv.h; or "outranked" (life cycle "reselect")
 };
 
 struct CbvSelection {

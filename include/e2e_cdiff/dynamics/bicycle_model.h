@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Kinematic bicycle with a throttle and brake response: (throttle, steer, brake) -> next state. Map frame, SI units;
-/// one step per simulation step of 0.05 s (coefficients: reference design, PDM-Lite's fit of a mid-size car).
+/// Kinematic bicycle with a throttle and brake response: (throttle, steer, brake) -> next state.
+/// Map frame, SI units; one step per simulation step of 0.05 s (coefficients: reference design,
+/// PDM-Lite's fit of a mid-size car).
 #pragma once
 
 #include "e2e_cdiff/core/options.h"
@@ -10,23 +11,34 @@
 namespace cdiff::dynamics {
 
 struct BicycleModelOptions {
-  double steering_gain = 0.36848336;     ///< wheel angle at steer = 1 [rad]
-  double rear_length = 1.4178275;        ///< centre to rear axle l_r [m]
-  double front_length = -0.090769015;    ///< centre to front axle l_f of the fit [m]
-  double max_deceleration = 8.0;         ///< cap of braking [m/s^2]
-  double max_speed = 40.0;               ///< [m/s]
+  double steering_gain = 0.36848336;   ///< wheel angle at steer = 1 [rad]
+  double rear_length = 1.4178275;      ///< centre to rear axle l_r [m]
+  double front_length = -0.090769015;  ///< centre to front axle l_f of the fit [m]
+  double max_deceleration = 8.0;       ///< cap of braking [m/s^2]
+  double max_speed = 40.0;             ///< [m/s]
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;
 };
 
+/// Steering: slip = atan(l_r / (l_f + l_r) tan(gain steer)); x' = v cos(heading + slip),
+/// y' = v sin(heading + slip), heading' = v / l_r sin(slip); Euler with the speed at the start of
+/// the 0.05 s. Speed per 0.05 s, in km/h:
+///  - throttle u >= 0.3: the fit's polynomial in v and u; u < 0.3: unchanged, as published. So the
+///    car neither coasts down nor starts on less than 0.3, and at speed a throttle just above 0.3
+///    slows it while one just below does not: use the brake to slow down.
+///  - brake 1: the fit's polynomial, the change limited to [-max_deceleration, 0]; below 1 mm/s it
+///    stands.
+///  - between (the fit knows no partial brake): change = (1 - brake) x change of the throttle +
+///    brake x change of full brake.
 class BicycleModel {
  public:
   explicit BicycleModel(const BicycleModelOptions& options = {});
-  /// State after `duration` [s] with the action held; `duration` is a multiple of 0.05 s up to rounding, the polynomials being per 0.05 s.
-  /// Never reverses. Elevation is kept. Throws std::invalid_argument for an invalid action.
-  traffic::VehicleState step(const traffic::VehicleState& state, const traffic::ControlAction& action,
-                             double duration) const;
+  /// State after `duration` [s] with the action held; `duration` is a multiple of 0.05 s up to
+  /// rounding, the polynomials being per 0.05 s. Never reverses. Elevation is kept. Throws
+  /// std::invalid_argument for an invalid action.
+  traffic::VehicleState step(const traffic::VehicleState& state,
+                             const traffic::ControlAction& action, double duration) const;
   const BicycleModelOptions& options() const { return options_; }
 
  private:

@@ -33,7 +33,8 @@ class LaneGraph {
                                        bool lane_changes = true) const;
 
   /// Driven length from `start` to the start of each lane within `max_length` [m], infinity elsewhere: one search
-  /// for many goals. `arrival(goal)` = value[lane] + goal arc length, or direct on the start's own lane.
+  /// for many goals. `arrival(goal)` = value[lane] + goal arc length, or direct on the start's own lane (whose value is that
+  /// of the way round). Beside the start the value is minus the arc length abreast of it: an arrival below 0 lies behind.
   std::vector<double> distancesFrom(const LanePosition& start, double max_length, bool lane_changes = true) const;
 
   /// Points about 1 m apart along a way, with blended lane changes, from `start` to `goal_arc_length` on the last lane.

@@ -46,6 +46,9 @@ class Route {
 
  private:
   std::size_t pointIndex(double arc_length) const;
+  void noteJunctions();
+  void noteEdge(const Lane& lane, double arc_length);
+  void noteStep(const RoadNetwork& network, std::size_t i);
   geometry::Polyline path_;
   std::vector<LaneIndex> lanes_;
   std::vector<double> speed_limits_;
@@ -58,7 +61,9 @@ class Route {
 };
 
 /// The lane of each point by dynamic programming over lanes near it (distance and heading), lane-connected from point to
-/// point. Throws InputError naming the first point farther than 1.5 m from every lane, or without a way to the next.
+/// point. Points may lie a few metres apart; their z chooses the level unless every z is 0 in a network with elevation. Throws
+/// InputError naming the first point (counted from 0) that is more than 1.5 m off every lane's centre line and outside every
+/// lane, or without a way to the next.
 Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace cdiff::map

@@ -31,6 +31,15 @@ struct RouteOptions {
 std::vector<Eigen::Vector3d> readBench2DriveRoute(const std::string& file, const std::string& id,
                                                   const RoadNetwork& network);
 
+/// One route of a Bench2Drive file.
+struct Bench2DriveEntry {
+  std::string id;
+  std::string town;
+};
+
+/// All routes of a file in its order. Throws InputError for a file that is none.
+std::vector<Bench2DriveEntry> listBench2DriveRoutes(const std::string& file);
+
 /// Town of a Bench2Drive route ("Town05"); throws InputError as above.
 std::string bench2DriveTown(const std::string& file, const std::string& id);
 

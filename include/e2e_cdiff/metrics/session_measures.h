@@ -15,7 +15,7 @@ struct Measure {
   std::optional<double> value;   ///< absent when n is too small or the figure is undefined
   std::size_t n = 0;             ///< samples it stands on
   std::string unit;              ///< "m/s", "%", "s", "" ...
-  std::string reason;            ///< why the value is absent; empty otherwise
+  std::string reason;            ///< why the value is absent, or how its samples were thinned out; else empty
 };
 
 /// Mean, standard deviation (n - 1) and minimum of defined samples.

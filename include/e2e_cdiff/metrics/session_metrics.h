@@ -19,6 +19,7 @@ struct SessionMetricsOptions {
   double completion_percent = 99.0;      ///< of the protocol
   double completion_distance = 10.0;     ///< of the protocol [m]
   double ttc_radius = 60.0;              ///< vehicles considered for 2D-TTC [m]
+  double ttc_limit = 3600.0;             ///< a longer 2D-TTC counts as never [s]
 };
 
 /// Figures of one tick, for the live topic.

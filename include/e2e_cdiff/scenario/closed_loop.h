@@ -30,6 +30,7 @@ class ClosedLoop {
  public:
   /// `setup` must outlive the loop. Throws InputError for unknown planners and for the external ego, which needs the node graph.
   explicit ClosedLoop(const SessionSetup& setup);
+  ~ClosedLoop();
 
   /// Observers are called in the order added and must outlive the run.
   void addObserver(SessionObserver& observer) { observers_.push_back(&observer); }
@@ -38,7 +39,8 @@ class ClosedLoop {
   const World& world() const { return *world_; }
 
  private:
-  void decide();
+  struct Decision;
+  Decision decide();
   const SessionSetup& setup_;
   std::unique_ptr<World> world_;
   std::unique_ptr<cbv::CbvSelector> selector_;

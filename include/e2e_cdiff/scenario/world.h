@@ -50,12 +50,17 @@ class World {
   void warmUp();
   void keepDensity(bool warm_up);
   void placeEgo();
-  void applySelection(const cbv::CbvSelection& selection);
+  void applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed);
+  void takeOver(const cbv::CbvAssignment& assignment);
+  void release(const std::string& id);
   void applyActions(const std::vector<planning::PlannedAction>& actions);
   void moveDriven();
   void stepSimulator();
-  void removeContacted();
+  void removeContacted(const std::vector<std::string>& removed);
+  traffic::Vehicle snapshotOf(const Driven& driven) const;
+  void collectVehicles(const std::vector<traffic::Vehicle>& before);
   void takeSnapshot();
+  void checkContact(const traffic::Vehicle& ours, const traffic::Vehicle& other);
   void findContacts();
 
   const SessionSetup& setup_;
@@ -67,7 +72,7 @@ class World {
   std::vector<std::unique_ptr<Driven>> driven_;   ///< ego first, then CBVs by slot
   std::vector<traffic::Fault> pending_faults_;
   std::map<std::pair<std::string, std::string>, std::uint64_t> last_overlap_;  ///< tick of each pair's last overlap
-  std::vector<std::string> to_remove_;
+  std::vector<std::string> to_remove_;  ///< in contact at the present tick
 };
 
 }  // namespace cdiff::scenario

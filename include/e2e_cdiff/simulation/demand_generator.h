@@ -12,6 +12,7 @@
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/map/lane_graph.h"
+#include "e2e_cdiff/simulation/demand_route.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::simulation {
@@ -46,13 +47,30 @@ class DemandGenerator {
                                     const Eigen::Vector2d& ego_position, double ego_elevation, bool warm_up);
 
  private:
-  struct Start;
+  /// Where a vehicle may begin: its front bumper on a lane.
+  struct Start {
+    map::LaneIndex lane = map::kNoLane;
+    double front = 0.0;                                   ///< along the lane [m]
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();   ///< of the front bumper [m]
+    double elevation = 0.0;                               ///< [m]
+  };
+  void collectStarts();
+  void addStartsOf(map::LaneIndex lane);
+  bool allowed(const Start& start, const Eigen::Vector2d& ego_position, double ego_elevation, bool warm_up) const;
+  std::size_t countNear(const std::vector<traffic::Vehicle>& vehicles, const Eigen::Vector2d& ego_position) const;
+  void forgetOldCandidates(const std::vector<traffic::Vehicle>& present);
+  std::optional<DemandVehicle> tryStart(const Start& start, const std::vector<traffic::Vehicle>& vehicles);
+
   DemandOptions options_;
-  const map::LaneGraph& graph_;
   const map::Route& ego_route_;
   core::RandomStream random_;
-  std::uint32_t count_ = 0;
-  std::vector<map::LanePosition> starts_;
+  EdgeGraph edges_;
+  DemandRouter router_;
+  std::vector<Start> starts_;
+  std::uint32_t draws_ = 0;                  ///< attempts so far: the counter of the random stream
+  std::uint32_t count_ = 0;                  ///< vehicles so far
+  std::vector<traffic::Vehicle> announced_;  ///< returned in this step, not yet among the present ones
+  double fingerprint_ = 0.0;                 ///< of the present vehicles at the last call
 };
 
 }  // namespace cdiff::simulation

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Benchmarks of the package: each prints figures as `figure value unit goal` and keeps them for a JSON file.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cdiff::benchmark {
+
+struct Figure {
+  std::string name;
+  double value = 0.0;
+  std::string unit;
+  std::string goal;   ///< "" when none
+};
+
+using Figures = std::vector<Figure>;
+
+/// Seconds that a call takes.
+template <class Call>
+double secondsOf(Call&& call) {
+  const auto begin = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Middle value (upper of the two middle ones for an even count).
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Folder with the real networks and routes; throws InputError saying how to name it.
+std::filesystem::path dataFolder();
+
+void benchmarkLoop(Figures& figures);
+void benchmarkMap(Figures& figures);
+
+}  // namespace cdiff::benchmark

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <optional>
+
+#include "benchmark.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/map/network_import.h"
+#include "e2e_cdiff/map/route_source.h"
+
+namespace cdiff::benchmark {
+namespace {
+
+/// Points up to 10 m beside lane centres of the network, as guidance asks for them.
+std::vector<Eigen::Vector3d> pointsNearRoads(const map::RoadNetwork& network, std::size_t count) {
+  const core::RandomStream random(1, "benchmark");
+  std::vector<Eigen::Vector3d> points;
+  for (std::uint32_t i = 0; points.size() < count; ++i) {
+    const map::Lane& lane = network.lanes()[random.index({0, i, 0}, 0, network.lanes().size())];
+    Eigen::Vector3d point = lane.centerline.pointAt(random.uniform({0, i, 0}, 1, 0.0, lane.centerline.length()));
+    point.x() += random.uniform({0, i, 0}, 2, -10.0, 10.0);
+    point.y() += random.uniform({0, i, 0}, 3, -10.0, 10.0);
+    points.push_back(point);
+  }
+  return points;
+}
+
+double nanosecondsPerQuery(const map::DrivableArea& area, const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> rounds;
+  double sum = 0.0;
+  for (int round = 0; round < 5; ++round) {
+    const double seconds = secondsOf([&] {
+      for (const Eigen::Vector3d& point : points) sum += area.signedDistanceWithGradient(point.head<2>(), point.z()).distance;
+    });
+    rounds.push_back(1e9 * seconds / static_cast<double>(points.size()));
+  }
+  return sum == 0.0 ? 0.0 : median(rounds);
+}
+
+}  // namespace
+
+void benchmarkMap(Figures& figures) {
+  const std::filesystem::path data = dataFolder();
+  for (const std::string town : {"Town01", "Town04", "Town05"}) {
+    const std::string file = (data / "carla_towns" / (town + ".net.xml")).string();
+    map::ImportedNetwork imported = map::importNetwork(file);
+    figures.push_back({town + "_import_cached", 1e3 * secondsOf([&] { imported = map::importNetwork(file); }), "ms", ""});
+    std::optional<map::RoadNetwork> network;
+    figures.push_back({town + "_parse", 1e3 * secondsOf([&] { network.emplace(map::RoadNetwork::fromText(imported.text, town)); }), "ms", ""});
+    std::optional<map::DrivableArea> area;
+    figures.push_back({town + "_drivable_area", 1e3 * secondsOf([&] { area.emplace(*network); }), "ms", ""});
+    figures.push_back({town + "_signed_distance", nanosecondsPerQuery(*area, pointsNearRoads(*network, 100000)), "ns/query", "<=1000"});
+  }
+}
+
+}  // namespace cdiff::benchmark

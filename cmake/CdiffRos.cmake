@@ -1,0 +1,27 @@
+# Messages and the ROS packages that only the layers ros, nodes and cli use; sets where catkin puts
+# programs, so it is included before any target. The devel space is <build>/devel.
+find_package(catkin REQUIRED COMPONENTS
+  diagnostic_msgs diagnostic_updater geometry_msgs message_generation nav_msgs rosbag roscpp
+  rosgraph_msgs std_msgs tf2_msgs visualization_msgs)
+
+file(GLOB CDIFF_MESSAGES RELATIVE ${CMAKE_SOURCE_DIR}/msg CONFIGURE_DEPENDS
+     ${CMAKE_SOURCE_DIR}/msg/*.msg)
+add_message_files(DIRECTORY msg FILES ${CDIFF_MESSAGES})
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+
+catkin_package(CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
+
+# The interface that ros, nodes, cli and their tests link to see ROS and our messages.
+add_library(e2e_cdiff_messages INTERFACE)
+target_include_directories(e2e_cdiff_messages SYSTEM INTERFACE
+  ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
+target_link_libraries(e2e_cdiff_messages INTERFACE ${catkin_LIBRARIES})
+add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
+
+foreach(folder config launch networks rviz)
+  if(EXISTS ${CMAKE_SOURCE_DIR}/${folder})
+    install(DIRECTORY ${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
+  endif()
+endforeach()
+file(GLOB CDIFF_SCRIPTS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/scripts/*)
+install(PROGRAMS ${CDIFF_SCRIPTS} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)

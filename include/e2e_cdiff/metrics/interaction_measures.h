@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The ego against the vehicles around it at one tick: smallest times to collision [s] and distance
+/// between boxes [m].
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+
+namespace cdiff::metrics {
+
+/// Minima over the vehicles on the ego's level where defined.
+struct Interaction {
+  std::optional<double> ttc_2d;            ///< vehicles within the radius
+  std::optional<double> rift_ttc;          ///< the same by RIFT's ray cast; only when asked for
+  std::optional<double> nearest_distance;  ///< any distance
+};
+
+struct InteractionOptions {
+  double radius = 60.0;        ///< of centres, for times to collision [m]
+  double time_limit = 3600.0;  ///< a longer time counts as never [s]
+  bool rift = false;           ///< whether rift_ttc is computed
+};
+
+/// `ego` is one of the snapshot's vehicles. Vehicles with a value that is not finite are passed
+/// over.
+Interaction interactionOf(const traffic::Vehicle& ego, const traffic::TrafficSnapshot& snapshot,
+                          const InteractionOptions& options);
+
+}  // namespace cdiff::metrics

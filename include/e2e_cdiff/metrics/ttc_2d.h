@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Time to collision in the plane [s] of two boxes (map frame) that keep their velocities and
+/// headings: the paper's 2D-TTC, t = min { t >= 0 : A + v_A t touches B + v_B t }, with RIFT's
+/// ray-cast variant and the paper's own wording beside it.
+#pragma once
+
+#include <optional>
+
+#include "e2e_cdiff/geometry/oriented_box.h"
+
+namespace cdiff::metrics {
+
+/// A box with a constant velocity.
+struct MovingBox {
+  geometry::OrientedBox box;
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< map frame [m/s]
+};
+
+/// Time of first contact, exact (swept separating axes). 0 when the boxes overlap now; nullopt when
+/// they never touch or a value is not finite.
+std::optional<double> timeToCollision2d(const MovingBox& first, const MovingBox& second);
+
+/// RIFT's RTTC: nullopt unless the boxes approach (-u . (v_B - v_A) >= 0 with u from A to B); else
+/// the shortest ray from a corner along the relative velocity onto the other's outline, divided by
+/// the relative speed and rounded to 0.01 s. The outline is RIFT's bow-tie FL, FR, RL, RR: the long
+/// sides are never tested, the diagonals are.
+std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second);
+
+/// The paper's wording: minimum of longitudinal and lateral time to collision in the first box's
+/// frame, boxes taken as parallel. T_lon = (|d_lon| - (l_A + l_B) / 2) / closing speed, valid where
+/// |d_lat + v_lat T_lon| <= (w_A + w_B) / 2; T_lat likewise. 0 when both gaps are closed now;
+/// nullopt when neither is valid.
+std::optional<double> longitudinalLateralTimeToCollision(const MovingBox& first,
+                                                         const MovingBox& second);
+
+}  // namespace cdiff::metrics

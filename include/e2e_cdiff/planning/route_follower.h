@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Where a vehicle is on its route: arc length [m] that only grows, found near the one before, so
+/// that a route that crosses itself or comes back is followed in order. Before its start and beyond
+/// its end the route goes straight on.
+#pragma once
+
+#include "e2e_cdiff/map/route.h"
+
+namespace cdiff::planning {
+
+/// Point of the route, of its straight extension where `arc_length` is negative or beyond the
+/// length (map frame).
+Eigen::Vector2d extendedPositionAt(const map::Route& route, double arc_length);
+
+/// Arc length of the point nearest to `position` on the extended route, among those with arc
+/// lengths in [begin, end].
+double extendedProjection(const map::Route& route, const Eigen::Vector2d& position, double begin,
+                          double end);
+
+/// Holds no reference: the route is given at each call and may be another object with the same
+/// content.
+class RouteFollower {
+ public:
+  /// Moves to `position`: at most 15 m ahead of the last arc length. Starts again when the route is
+  /// not the one of the last call: at its first 20 m if they pass within 3 m, else at its nearest
+  /// point.
+  void update(const map::Route& route, const Eigen::Vector2d& position);
+  /// Farthest arc length so far [m]; may exceed the route's length.
+  double arcLength() const { return arc_length_; }
+
+ private:
+  bool knows(const map::Route& route) const;
+  void start(const map::Route& route, const Eigen::Vector2d& position);
+
+  double arc_length_ = 0.0;
+  // The route of the last call, told by its size, length and ends.
+  std::size_t point_count_ = 0;
+  double length_ = 0.0;
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace cdiff::planning

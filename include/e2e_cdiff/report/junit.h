@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Text of junit.xml: one test case for the session and one per verdict rule; a rule not met is a
+/// failure, a session that broke is an error.
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/report/session_result.h"
+
+namespace cdiff::report {
+
+std::string junitXml(const SessionResult& result);
+
+}  // namespace cdiff::report

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Tables of the HTML report, each as one HTML section.
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/report/session_result.h"
+
+namespace cdiff::report {
+
+std::string ruleTable(const SessionResult& result);
+std::string metricTable(const metrics::SessionMeasures& measures);
+std::string selectionTable(const SessionResult& result);
+std::string rejectionTable(const CbvLog& cbv);
+std::string contactTable(const Timeline& timeline);
+std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies);
+std::string faultTable(const std::vector<traffic::Fault>& faults);
+std::string originTable(const SessionResult& result);
+
+}  // namespace cdiff::report

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Everything that the result folder says about one session, in one value: its files are functions
+/// of it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/metrics/session_measures.h"
+#include "e2e_cdiff/report/cbv_log.h"
+#include "e2e_cdiff/report/latency_log.h"
+#include "e2e_cdiff/report/timeline.h"
+#include "e2e_cdiff/report/verdict.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+
+namespace cdiff::report {
+
+/// Facts about the run that are not in the scenario.
+struct RunFacts {
+  std::string deployment;         ///< "cdiff run" or "roslaunch"
+  std::string simulator_version;  ///< "SUMO 1.15.0"
+  bool deterministic = true;      ///< false when wall-clock time replaced an answer
+};
+
+/// References must outlive the value.
+struct SessionResult {
+  const scenario::SessionSetup& setup;
+  const Timeline& timeline;
+  const CbvLog& cbv;
+  RunFacts facts;
+  traffic::SessionStatus status = traffic::SessionStatus::kError;
+  double simulated_seconds = 0.0;
+  double wall_seconds = 0.0;
+  std::string trace_sha256 = {};
+  metrics::SessionMeasures measures = {};
+  std::map<std::string, LatencyFigures> latencies = {};
+  std::vector<traffic::Fault> faults = {};
+  std::vector<Check> checks = {};
+  Verdict verdict = {};
+};
+
+}  // namespace cdiff::report

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Text of summary.json: the session's figures under fixed keys in a fixed order; an absent figure
+/// is null beside a reason.
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/report/session_result.h"
+
+namespace cdiff::report {
+
+std::string summaryJson(const SessionResult& result);
+
+/// Whether a selected conflict lies at or beyond the first junction of the ego route.
+bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route);
+
+}  // namespace cdiff::report

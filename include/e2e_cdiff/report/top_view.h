@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The session from above as one SVG element: drivable area, lanes, ego route, conflicts, trails,
+/// vehicles at the final tick.
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/report/map_canvas.h"
+
+namespace cdiff::report {
+
+std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas);
+
+/// Its legend, as HTML.
+std::string topViewLegend(const MapCanvas& canvas);
+
+/// Factor by which vehicles are drawn larger than they are, so that they can be seen; 1 when the
+/// scale allows.
+double vehicleMagnification(const MapCanvas& canvas);
+
+/// CSS class of a vehicle in pictures and charts: "ego", "bg", or "cbv c0" to "cbv c4" by order of
+/// selection.
+std::string styleOf(traffic::VehicleRole role, const std::string& id, const CbvLog& cbv);
+
+}  // namespace cdiff::report

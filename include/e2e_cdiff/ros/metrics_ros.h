@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Metrics as a node: gathers each tick as one record, measures it live, and writes the result folder when the session ends. Shows the
+/// session in rviz and in /diagnostics on the side.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "diagnostic_updater/diagnostic_updater.h"
+#include "e2e_cdiff/metrics/session_metrics.h"
+#include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/markers.h"
+#include "e2e_cdiff/ros/participant.h"
+#include "e2e_cdiff/ros/tick_answers.h"
+
+namespace cdiff::ros {
+
+class MetricsRos : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending ending) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void listenToAnswers();
+  void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection, const std::vector<Answer>& answers);
+  void publishReport(const traffic::TrafficSnapshot& snapshot, const metrics::TickMeasures& measures);
+  void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  double wallSeconds() const;
+
+  std::unique_ptr<scenario::SessionSetup> setup_;
+  std::unique_ptr<report::ResultWriter> writer_;
+  std::unique_ptr<metrics::SessionMetrics> metrics_;
+  TickAnswers answers_;
+  SessionMarkers markers_;
+  traffic::TrafficSnapshot last_;               ///< last snapshot observed
+  std::optional<Clock::time_point> begin_;      ///< first snapshot
+  double slowest_planner_ms_ = 0.0;
+  std::string slowest_planner_;
+  ::ros::Publisher reports_;
+  ::ros::Publisher marker_output_;
+  ::ros::Publisher map_output_;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What every node but the traffic simulator has in common: it waits for the session, reports when it is connected both ways, handles
+/// snapshots tick by tick in one thread, and leaves in order with the last one, whoever ends the session.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TickAck.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/stop_signal.h"
+#include "e2e_cdiff/ros/topics.h"
+#include "ros/ros.h"
+
+namespace cdiff::ros {
+
+/// How a node's session came to its end.
+enum class Ending { kFinalSnapshot, kSimulatorGone, kStopped };
+
+class Participant {
+ public:
+  explicit Participant(StopSignal& stop);
+  virtual ~Participant() = default;
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// Runs the session to its end and answers the exit code.
+  int run();
+
+ protected:
+  using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
+
+  /// The session is known: make what it needs, advertise and listen.
+  virtual void begin(const ::e2e_cdiff::SessionInfo& info) = 0;
+  /// What is missing besides connections before the first tick; empty when nothing is.
+  virtual std::string waitingFor() const { return {}; }
+  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot is there, nothing more will come.
+  virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
+  /// The session is over; answers the exit code.
+  virtual int conclude(Ending ending) = 0;
+
+  template <class Message>
+  ::ros::Publisher advertise(const std::string& topic, bool latch = false) {
+    return connections_.advertise<Message>(node_, topic, listeners(topic, graph_), latch);
+  }
+  template <class Message, class Callback>
+  void listen(const std::string& topic, Callback callback) {
+    inputs_.push_back(subscribe<Message>(node_, topic, callback));
+  }
+  /// Tells the traffic simulator that a tick is dealt with.
+  void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
+  const SessionGraph& graph() const { return graph_; }
+  ::ros::NodeHandle& node() { return node_; }
+
+ private:
+  bool waitForSession();
+  int runSession();
+  int leave(Ending ending);
+  int fail(const std::string& text);
+  void queue(const Snapshot& snapshot);
+  bool handleQueue();
+  void reportReady();
+  std::string missing() const;
+  bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
+  void tell(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
+  std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
+
+  StopSignal& stop_;
+  Connections connections_;
+  ::ros::NodeHandle node_;
+  std::string name_;
+  SessionGraph graph_;
+  ::ros::Publisher acks_;
+  ::ros::Subscriber session_input_;
+  ::ros::Subscriber traffic_input_;
+  std::vector<::ros::Subscriber> inputs_;
+  ::e2e_cdiff::SessionInfo::ConstPtr session_;
+  std::deque<Snapshot> snapshots_;
+  std::uint64_t next_tick_ = 0;   ///< snapshots before it were seen
+  bool final_handled_ = false;
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last tick acknowledged, finished, in error.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/TickAck.h"
+
+namespace cdiff::ros {
+
+class ParticipantBook {
+ public:
+  /// Nodes that the session counts on, without namespace.
+  explicit ParticipantBook(const std::vector<std::string>& nodes);
+
+  /// Messages of nodes that the session does not count on are ignored.
+  void note(const ::e2e_cdiff::TickAck& message);
+
+  /// "node: what it waits for" for each node that is not ready.
+  std::vector<std::string> notReady() const;
+  /// Observers that have not acknowledged this tick.
+  std::vector<std::string> notAcknowledged(std::uint64_t tick) const;
+  /// Observers that have not said that they are finished.
+  std::vector<std::string> notFinished() const;
+  bool finished(const std::string& node) const;
+  /// The first node that reported an error, and what it said.
+  struct Error {
+    std::string node;
+    std::string text;
+  };
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  struct Entry {
+    bool ready = false;
+    bool finished = false;
+    std::string waiting_for = "it has not started yet";
+    std::optional<std::uint64_t> acknowledged;
+  };
+  std::map<std::string, Entry> entries_;
+  std::optional<Error> error_;
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Planners as nodes: one for the ego, one for all CBVs, each asking its planner exactly as the closed loop in one process does.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "e2e_cdiff/CbvSelection.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/ros/participant.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+#include "nav_msgs/Path.h"
+
+namespace cdiff::ros {
+
+/// The ego's planner: snapshots and route in, ego/control out.
+class EgoPlannerRos : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  std::string waitingFor() const override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending) override { return 0; }
+
+ private:
+  std::unique_ptr<scenario::SessionSetup> setup_;
+  map::Route route_;
+  std::unique_ptr<planning::Planner> planner_;
+  ::ros::Publisher controls_;
+};
+
+/// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in, cbv_K/control and cbv_K/rollout out.
+class CbvPlannerRos : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending) override { return 0; }
+
+ private:
+  void plan(const traffic::TrafficSnapshot& snapshot, const ::e2e_cdiff::CbvSelection& selection);
+  std::unique_ptr<scenario::SessionSetup> setup_;
+  std::unique_ptr<planning::Planner> planner_;
+  std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
+  std::vector<::ros::Publisher> controls_;                                   ///< by slot
+  std::vector<::ros::Publisher> rollouts_;                                   ///< by slot
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Where a session of the node graph puts its files, and the result folder that the traffic simulator writes when the metrics node
+/// cannot: a session always leaves a result that can be read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "e2e_cdiff/report/result_writer.h"
+
+namespace cdiff::ros {
+
+/// "roslaunch", as results name this deployment.
+inline constexpr const char* kDeployment = "roslaunch";
+
+/// Absolute result folder: the one given, else HOME/e2e_cdiff_results/SCENARIO_seedN_TIME. Makes it. Throws InputError when it cannot be made.
+std::filesystem::path makeResultFolder(const std::string& given, const scenario::ScenarioOptions& options);
+
+/// Writes a result folder from the last snapshot alone.
+void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last, const report::RunFacts& facts,
+                 const std::filesystem::path& folder, double wall_seconds);
+
+}  // namespace cdiff::ros

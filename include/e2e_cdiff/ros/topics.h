@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Names of nodes and topics, and who listens to what: the table behind the start barrier.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cdiff::ros {
+
+// Nodes, without namespace.
+inline constexpr const char* kTrafficSimulatorNode = "traffic_simulator_node";
+inline constexpr const char* kCbvIdentificationNode = "cbv_identification_node";
+inline constexpr const char* kEgoPlannerNode = "ego_planner_node";
+inline constexpr const char* kCbvPlannerNode = "cbv_planner_node";
+inline constexpr const char* kMetricsNode = "metrics_node";
+inline constexpr const char* kRecorderNode = "recorder_node";
+
+// Topics, relative to the session's namespace.
+inline constexpr const char* kSessionTopic = "session";            ///< SessionInfo, latched
+inline constexpr const char* kTrafficTopic = "traffic";            ///< TrafficSnapshot, every tick
+inline constexpr const char* kEgoRouteTopic = "ego/route";         ///< nav_msgs/Path, latched
+inline constexpr const char* kEgoOdometryTopic = "ego/odometry";   ///< nav_msgs/Odometry
+inline constexpr const char* kEgoControlTopic = "ego/control";     ///< ControlAction
+inline constexpr const char* kSelectionTopic = "cbv/selection";    ///< CbvSelection
+inline constexpr const char* kMetricsTopic = "metrics";            ///< MetricReport
+inline constexpr const char* kTickAckTopic = "tick_ack";           ///< TickAck
+inline constexpr const char* kMarkersTopic = "markers";            ///< visualization_msgs/MarkerArray
+inline constexpr const char* kMapMarkersTopic = "markers/map";     ///< the same, latched
+/// ControlAction of a slot.
+std::string cbvControlTopic(int slot);
+/// Rollout of a slot.
+std::string cbvRolloutTopic(int slot);
+
+/// Who takes part in a session, besides the traffic simulator.
+struct SessionGraph {
+  std::vector<std::string> participants;  ///< nodes that the session counts on
+  int max_cbv = 0;                        ///< slots
+  bool external_ego = false;              ///< the user's own node drives the ego
+
+  bool has(const std::string& node) const;
+};
+
+/// Nodes that listen to a topic in this session, by name; a publisher waits for them before the first tick.
+std::vector<std::string> listeners(const std::string& topic, const SessionGraph& graph);
+
+/// Who answers on a topic, for messages to people: "cbv_planner_node", or the user's own ego planner.
+std::string answererOf(const std::string& topic, const SessionGraph& graph);
+
+/// Whether a node acknowledges every tick (metrics and recorder do).
+bool isObserver(const std::string& node);
+
+}  // namespace cdiff::ros

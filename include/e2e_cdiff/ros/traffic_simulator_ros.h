@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The traffic simulator as a node: owns the world and the clock, publishes each tick and waits for every answer and acknowledgement
+/// that the tick needs before the world goes on.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/paced_answers.h"
+#include "e2e_cdiff/ros/parameters.h"
+#include "e2e_cdiff/ros/participant_book.h"
+#include "e2e_cdiff/ros/stop_signal.h"
+#include "e2e_cdiff/ros/tick_answers.h"
+#include "e2e_cdiff/ros/topics.h"
+#include "e2e_cdiff/scenario/world.h"
+#include "ros/ros.h"
+
+namespace cdiff::ros {
+
+/// Wall-clock limits [s].
+struct SimulatorLimits {
+  double start = 30.0;    ///< until every node is connected both ways
+  double answer = 30.0;   ///< for the answers to a tick
+};
+
+class TrafficSimulatorRos {
+ public:
+  /// Reads the node's parameters and sets the session up. Throws InputError for bad input.
+  TrafficSimulatorRos(const Parameters& parameters, StopSignal& stop);
+
+  /// Runs the session to its end and answers the exit code.
+  int run();
+
+ private:
+  /// Why a session ends from outside.
+  struct Ending {
+    traffic::SessionStatus status;
+    traffic::Fault fault;
+  };
+  /// What a tick still lacks.
+  struct Missing {
+    std::string node;  ///< who owes it
+    std::string what;
+  };
+  using MissingNow = std::function<std::vector<Missing>()>;
+  using Clock = std::chrono::steady_clock;
+
+  bool startWorld();
+  void advertise();
+  void listen();
+  void publishSession();
+  std::optional<Ending> waitForParticipants();
+  void runTicks();
+  void publishTick();
+  std::optional<Ending> waitForTick();
+  std::optional<Ending> waitUntilDue();
+  std::optional<Ending> waitFor(const MissingNow& missing_now, double seconds);
+  std::optional<Ending> disturbance();
+  Ending ending(traffic::SessionStatus status, const std::string& source, const std::string& text) const;
+  void advance();
+  void advancePaced();
+  void recordFaults(const std::vector<Answer>& answers);
+  void waitForObservers();
+  void writeResultAlone(const traffic::TrafficSnapshot& snapshot);
+  int exitCode() const;
+  std::vector<Missing> missingParticipants() const;
+  std::vector<Missing> missingAtTick() const;
+  void sendAgainForLateListener();
+  bool paced() const { return setup_->options().real_time_factor > 0.0; }
+
+  StopSignal& stop_;
+  SimulatorLimits limits_;
+  std::filesystem::path results_;
+  std::unique_ptr<scenario::SessionSetup> setup_;
+  SessionGraph graph_;
+  ParticipantBook book_;
+  TickAnswers answers_;
+  PacedAnswers paced_answers_;
+  Connections connections_;
+  ::ros::NodeHandle node_;
+  ::ros::Publisher clock_;
+  ::ros::Publisher session_;
+  ::ros::Publisher traffic_;
+  ::ros::Publisher route_;
+  Display display_;
+  std::vector<::ros::Subscriber> inputs_;
+  std::unique_ptr<scenario::World> world_;
+  ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
+  Clock::time_point begin_;
+  Clock::time_point published_at_;
+  Clock::time_point acknowledged_at_;   ///< last time that every observer was up to date
+};
+
+}  // namespace cdiff::ros

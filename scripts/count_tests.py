@@ -1,0 +1,38 @@
+#!/usr/bin/python3
+"""Count the test cases in a folder of JUnit files and print "N passed, N failed, N skipped".
+
+Exits 1 when any failed, a file cannot be read, or none was run.
+"""
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+
+def outcome(case):
+    if case.find("failure") is not None or case.find("error") is not None:
+        return "failed"
+    if case.find("skipped") is not None or case.get("status") == "notrun" or case.get("result") == "skipped":
+        return "skipped"
+    return "passed"
+
+
+def main():
+    counts = {"passed": 0, "failed": 0, "skipped": 0}
+    for path in sorted(Path(sys.argv[1]).rglob("*.xml")):
+        try:
+            root = ElementTree.parse(path).getroot()
+        except ElementTree.ParseError as error:
+            print(f"{path}: not readable: {error}")
+            counts["failed"] += 1
+            continue
+        for case in root.iter("testcase"):
+            result = outcome(case)
+            counts[result] += 1
+            if result == "failed":
+                print(f"failed: {case.get('classname')}.{case.get('name')} ({path.name})")
+    print(f"{counts['passed']} passed, {counts['failed']} failed, {counts['skipped']} skipped")
+    return 1 if counts["failed"] or not counts["passed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

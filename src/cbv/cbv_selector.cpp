@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/cbv/cbv_selector.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/cbv/candidate_gates.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::cbv {
+namespace {
+
+constexpr int kNoSlot = -1;
+
+const CbvOptions& validated(const CbvOptions& options) {
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+CbvSelector::CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
+                         const map::Route& ego_route)
+    : options_(validated(options)),
+      max_cbv_(max_cbv),
+      graph_(graph),
+      ego_route_(ego_route),
+      search_(options_, graph, ego_route) {
+  if (max_cbv < 0)
+    throw core::InputError("max_cbv is " + std::to_string(max_cbv) + "; expected 0 or more");
+}
+
+void CbvSelector::observe(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Contact& contact : snapshot.contacts) {
+    contacted_.insert(contact.first);
+    contacted_.insert(contact.second);
+  }
+}
+
+CbvSelection CbvSelector::update(const traffic::TrafficSnapshot& snapshot) {
+  CbvSelection selection;
+  selection.tick = snapshot.tick;
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego != nullptr) followEgo(*ego);
+  updateHeld(snapshot, selection);
+  if (ego != nullptr && max_cbv_ > 0 && selectionDue(snapshot.time)) select(snapshot, selection);
+  for (const auto& [slot, held] : slots_) selection.assignments.push_back(held.assignment());
+  std::sort(selection.released.begin(), selection.released.end(),
+            [](const auto& left, const auto& right) { return left.slot < right.slot; });
+  std::sort(selection.rejected.begin(), selection.rejected.end(),
+            [](const auto& left, const auto& right) { return left.vehicle_id < right.vehicle_id; });
+  return selection;
+}
+
+void CbvSelector::followEgo(const traffic::Vehicle& ego) {
+  constexpr double kOffRouteAtFirst = 5.0;  // [m] it may start anywhere on its route
+  const geometry::Polyline& path = ego_route_.path();
+  ego_.state = ego.state;
+  ego_.arc_length = seen_ego_ ? advancedArcLength(path, ego_.arc_length, ego.state.position)
+                              : advancedArcLength(path, 0.0, ego.state.position, kOffRouteAtFirst);
+  seen_ego_ = true;
+}
+
+/// Selections fall on the first decision at or after first_time + n period; the tolerance absorbs
+/// rounded times.
+bool CbvSelector::selectionDue(double time) {
+  constexpr double kTolerance = 1e-6;
+  const double index = std::floor((time - options_.first_time) / options_.period + kTolerance);
+  if (index < 0.0 || index <= last_selection_) return false;
+  last_selection_ = index;
+  return true;
+}
+
+bool CbvSelector::holds(const std::string& vehicle_id) const {
+  return std::any_of(slots_.begin(), slots_.end(),
+                     [&](const auto& slot) { return slot.second.vehicleId() == vehicle_id; });
+}
+
+void CbvSelector::updateHeld(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) {
+  for (int slot = 0; slot < max_cbv_; ++slot) {
+    const auto held = slots_.find(slot);
+    if (held == slots_.end()) continue;
+    const traffic::Vehicle* vehicle = snapshot.find(held->second.vehicleId());
+    if (vehicle != nullptr) held->second.update(*vehicle, ego_, options_.minimum_speed);
+    const bool contact = contacted_.count(held->second.vehicleId()) != 0;
+    const char* reason = contact ? kContact : held->second.releaseReason(snapshot);
+    if (reason != nullptr) release(slot, reason, selection);
+  }
+  contacted_.clear();
+}
+
+void CbvSelector::release(int slot, const char* reason, CbvSelection& selection) {
+  const auto held = slots_.find(slot);
+  selection.released.push_back({slot, held->second.vehicleId(), reason});
+  if (!reselects()) never_again_.insert(held->second.vehicleId());
+  slots_.erase(held);
+}
+
+void CbvSelector::releaseLost(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) {
+  constexpr double kTolerance = 1e-6;
+  for (int slot = 0; slot < max_cbv_; ++slot) {
+    const auto found = slots_.find(slot);
+    if (found == slots_.end()) continue;
+    HeldCbv& held = found->second;
+    const traffic::Vehicle& vehicle = *snapshot.find(held.vehicleId());
+    const LanePlacement placement = placeOnLane(graph_.network(), vehicle, options_);
+    std::optional<double> score;
+    if (placement.reason == nullptr) {
+      const ConflictResult result = search_.find(vehicle.state, placement.place, ego_);
+      if (result.conflict) score = result.conflict->score;
+    }
+    held.setPresentScore(score, snapshot.time);
+    const bool lost =
+        !score && held.lostTime(snapshot.time) >= options_.lost_conflict_time - kTolerance;
+    if (lost) release(slot, kConflictLost, selection);
+  }
+}
+
+void CbvSelector::select(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) {
+  if (reselects()) releaseLost(snapshot, selection);
+  for (const Candidate& candidate : rankedCandidates(snapshot, selection)) {
+    const std::string& id = candidate.vehicle->id;
+    const int slot = slotFor(candidate, snapshot.tick);
+    if (slot == kNoSlot) {
+      selection.rejected.push_back({id, kOutranked, candidate.conflict.score});
+      continue;
+    }
+    std::optional<HeldCbv> chosen = makeHeld(slot, candidate, snapshot.tick);
+    if (!chosen) {
+      selection.rejected.push_back({id, kNoWay, candidate.conflict.score});
+      continue;
+    }
+    if (slots_.count(slot) != 0) release(slot, kOutranked, selection);
+    slots_.emplace(slot, std::move(*chosen));
+  }
+}
+
+std::vector<CbvSelector::Candidate> CbvSelector::rankedCandidates(
+    const traffic::TrafficSnapshot& snapshot, CbvSelection& selection) const {
+  std::vector<Candidate> candidates;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role != traffic::VehicleRole::kBackground || holds(vehicle.id)) continue;
+    Candidate candidate;
+    candidate.vehicle = &vehicle;
+    const char* reason = examine(snapshot, candidate);
+    if (reason == nullptr) {
+      candidates.push_back(candidate);
+    } else {
+      selection.rejected.push_back({vehicle.id, reason, 0.0});
+    }
+  }
+  const bool nearest_first = options_.ranking == "nearest";
+  std::sort(
+      candidates.begin(), candidates.end(), [&](const Candidate& left, const Candidate& right) {
+        const double left_key = nearest_first ? left.separation : -left.conflict.score;
+        const double right_key = nearest_first ? right.separation : -right.conflict.score;
+        return left_key != right_key ? left_key < right_key : left.vehicle->id < right.vehicle->id;
+      });
+  return candidates;
+}
+
+/// The first gate that the candidate's vehicle fails, or nullptr with the other fields filled.
+const char* CbvSelector::examine(const traffic::TrafficSnapshot& snapshot,
+                                 Candidate& candidate) const {
+  const traffic::Vehicle& vehicle = *candidate.vehicle;
+  if (never_again_.count(vehicle.id) != 0) return kAlreadyChosen;
+  if (inContact(snapshot, vehicle.id)) return kInContact;
+  const char* failed = failedNearness(vehicle, *snapshot.ego(), options_);
+  if (failed != nullptr) return failed;
+  const LanePlacement placement = placeOnLane(graph_.network(), vehicle, options_);
+  if (placement.reason != nullptr) return placement.reason;
+  const ConflictResult result = search_.find(vehicle.state, placement.place, ego_);
+  if (!result.conflict) return result.reason;
+  candidate.place = placement.place;
+  candidate.conflict = *result.conflict;
+  candidate.separation = (vehicle.state.position - ego_.state.position).norm();
+  return nullptr;
+}
+
+/// The lowest free slot; in the life cycle "reselect" else that of the weakest CBV when the
+/// candidate is better enough.
+int CbvSelector::slotFor(const Candidate& candidate, std::uint64_t tick) const {
+  for (int slot = 0; slot < max_cbv_; ++slot) {
+    if (slots_.count(slot) == 0) return slot;
+  }
+  if (!reselects()) return kNoSlot;
+  int weakest = kNoSlot;
+  for (const auto& [slot, held] : slots_) {
+    if (held.assignment().selected_tick == tick) continue;
+    if (weakest == kNoSlot || held.presentScore() < slots_.at(weakest).presentScore())
+      weakest = slot;
+  }
+  if (weakest == kNoSlot) return kNoSlot;
+  const double needed = slots_.at(weakest).presentScore() + options_.hysteresis;
+  return candidate.conflict.score > needed ? weakest : kNoSlot;
+}
+
+/// The candidate with its conflict-aware route; nullopt when the graph finds no way to the conflict
+/// point.
+std::optional<HeldCbv> CbvSelector::makeHeld(int slot, const Candidate& candidate,
+                                             std::uint64_t tick) const {
+  const Conflict& conflict = candidate.conflict;
+  const double longest = conflict.point.cbv_distance + options_.route_distance_gate;
+  const auto path = graph_.shortestPath(candidate.place, conflict.place, longest);
+  if (!path) return std::nullopt;
+  const map::Route to_conflict =
+      graph_.toRoute(*path, candidate.place.arc_length, conflict.place.arc_length);
+  CbvAssignment assignment;
+  assignment.slot = slot;
+  assignment.vehicle_id = candidate.vehicle->id;
+  assignment.interaction_score = conflict.score;
+  assignment.selected_tick = tick;
+  assignment.conflict_point = conflict.point;
+  assignment.conflict_aware_route = graph_.extended(to_conflict, options_.route_length);
+  return HeldCbv(std::move(assignment), to_conflict.length());
+}
+
+}  // namespace cdiff::cbv

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The subcommands of `cdiff`: each adds itself to the program and sets the exit code when it runs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace cdiff::cli {
+
+enum ExitCode : int { kPassed = 0, kVerdictFailed = 1, kRunTimeError = 2, kBadInput = 3, kInterrupted = 130 };
+
+void addRunCommand(CLI::App& program, int& exit_code);
+void addEvaluateCommand(CLI::App& program, int& exit_code);
+void addValidateCommand(CLI::App& program, int& exit_code);
+void addImportCommand(CLI::App& program, int& exit_code);
+void addMetricCommand(CLI::App& program, int& exit_code);
+void addDoctorCommand(CLI::App& program, int& exit_code);
+
+}  // namespace cdiff::cli

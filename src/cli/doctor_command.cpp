@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <vector>
+
+#include "commands.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/scenario/scenario_options.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Finding {
+  bool good = true;
+  std::string subject;
+  std::string text;  ///< what was found, or how to mend it
+};
+
+bool inPath(const std::string& program) {
+  const std::string path = std::getenv("PATH") ? std::getenv("PATH") : "";
+  std::size_t begin = 0;
+  while (begin <= path.size()) {
+    const std::size_t end = std::min(path.find(':', begin), path.size());
+    if (::access((fs::path(path.substr(begin, end - begin)) / program).c_str(), X_OK) == 0) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+Finding program(const std::string& name, const std::string& package) {
+  const bool found = inPath(name);
+  return {found, name, found ? "found" : "missing: apt-get install " + package};
+}
+
+Finding folder(const std::string& subject, const std::function<fs::path()>& find) {
+  try {
+    const fs::path path = find();
+    const bool writable = subject != "cache folder" || ::access(path.c_str(), W_OK) == 0;
+    return {writable, subject, path.string() + (writable ? "" : " is not writable: set E2E_CDIFF_CACHE")};
+  } catch (const std::exception& error) {
+    return {false, subject, error.what()};
+  }
+}
+
+Finding rosIp() {
+  const char* ip = std::getenv("ROS_IP");
+  const bool good = ip != nullptr && std::string(ip) == "127.0.0.1";
+  return {true, "ROS_IP", good ? "127.0.0.1" : "not 127.0.0.1: ROS nodes can be reached from the network; see scripts/isolated"};
+}
+
+}  // namespace
+
+void addDoctorCommand(CLI::App& program_app, int& exit_code) {
+  CLI::App* command = program_app.add_subcommand("doctor", "Check what a session needs and say how to mend it");
+  command->callback([&exit_code] {
+    const std::vector<Finding> findings = {program("sumo", "sumo"), program("netconvert", "sumo"),
+                                           program("roslaunch", "python3-roslaunch"),
+                                           folder("package share", core::shareFolder),
+                                           folder("cache folder", core::cacheFolder), rosIp()};
+    for (const Finding& finding : findings) {
+      std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text << "\n";
+      if (!finding.good) exit_code = kRunTimeError;
+    }
+    std::cout << "shipped scenarios: " << scenario::shippedScenarios().size() << "\n";
+  });
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <csignal>
+#include <iostream>
+
+#include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  CLI::App program{"cdiff: closed-loop traffic scenarios without a ROS master"};
+  program.require_subcommand(1);
+  int exit_code = cdiff::cli::kPassed;
+  cdiff::cli::addRunCommand(program, exit_code);
+  cdiff::cli::addEvaluateCommand(program, exit_code);
+  cdiff::cli::addValidateCommand(program, exit_code);
+  cdiff::cli::addImportCommand(program, exit_code);
+  cdiff::cli::addMetricCommand(program, exit_code);
+  cdiff::cli::addDoctorCommand(program, exit_code);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? cdiff::cli::kPassed : cdiff::cli::kBadInput;
+  } catch (const cdiff::core::InputError& error) {
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return cdiff::cli::kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return cdiff::cli::kRunTimeError;
+  }
+  return exit_code;
+}

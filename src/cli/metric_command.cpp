@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "e2e_cdiff/report/metric_file.h"
+
+namespace cdiff::cli {
+
+void addMetricCommand(CLI::App& program, int& exit_code) {
+  auto metric = std::make_shared<std::string>();
+  auto file = std::make_shared<std::string>();
+  CLI::App* command = program.add_subcommand("metric", "Compute one metric for the cases of a file, one line each");
+  command->add_option("metric", *metric, "ttc_2d, shapiro_wilk or wasserstein")
+      ->required()
+      ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein"}));
+  command->add_option("file", *file, "Cases as CSV or JSON")->required();
+  command->callback([metric, file, &exit_code] {
+    for (const std::string& line : report::evaluateMetricFile(*metric, *file)) std::cout << line << "\n";
+    exit_code = kPassed;
+  });
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <ctime>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "e2e_cdiff/scenario/session_request.h"
+#include "run_session.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunArguments {
+  scenario::SessionRequest request;
+  std::string results;
+  bool quiet = false;
+};
+
+std::string timeStamp() {
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", std::localtime(&now));
+  return text;
+}
+
+int run(const RunArguments& arguments) {
+  const scenario::ScenarioOptions options = scenario::resolveRequest(arguments.request);
+  const fs::path folder = arguments.results.empty()
+                              ? fs::path("results") / (options.name + "_seed" + std::to_string(options.seed) + "_" + timeStamp())
+                              : fs::path(arguments.results);
+  return runSession(options, folder, arguments.quiet);
+}
+
+}  // namespace
+
+void addRunCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
+  scenario::SessionRequest& request = arguments->request;
+  command->add_option("scenario", request.scenario, "Shipped scenario or scenario file");
+  command->add_option("--bench2drive", request.bench2drive, "Bench2Drive route file, instead of a scenario");
+  command->add_option("--route", request.route, "Id of a route in that file");
+  command->add_option("--network", request.network, "Network: shipped name, *.net.xml or *.xodr");
+  command->add_option("--mode", request.mode, "naturalistic or safety_critical");
+  command->add_option("--ego-planner", request.ego_planner, "Planner of the ego");
+  command->add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
+  command->add_option("--seed", request.seed, "Root seed");
+  command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")->allow_extra_args(false);
+  command->add_option("--results", arguments->results, "Result folder (default: results/SCENARIO_SEED_TIME)");
+  command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace cdiff::cli

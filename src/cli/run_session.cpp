@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "run_session.h"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/scenario/closed_loop.h"
+#include "progress.h"
+
+namespace cdiff::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A signal handler can reach nothing else.
+std::atomic<bool> stop_requested{false};
+
+void requestStop(int) { stop_requested = true; }
+
+void catchSignals() {
+  stop_requested = false;
+  struct sigaction action {};
+  action.sa_handler = requestStop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/// The record of a session that never began.
+void recordFailedStart(report::ResultWriter& writer, const std::string& text) {
+  traffic::TrafficSnapshot snapshot;
+  snapshot.status = traffic::SessionStatus::kError;
+  snapshot.faults.push_back({0, "simulator", text});
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+}
+
+int finish(report::ResultWriter& writer, Clock::time_point begin, bool quiet) {
+  writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
+  if (!quiet) std::cout << writer.table() << std::flush;
+  return writer.exitCode();
+}
+
+}  // namespace
+
+int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder, bool quiet) {
+  catchSignals();
+  const scenario::SessionSetup setup(options);
+  const Clock::time_point begin = Clock::now();
+  std::unique_ptr<scenario::ClosedLoop> loop;
+  try {
+    loop = std::make_unique<scenario::ClosedLoop>(setup);
+  } catch (const core::SimulatorError& error) {
+    report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, folder);
+    recordFailedStart(writer, error.what());
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return finish(writer, begin, quiet);
+  }
+  const bool deterministic = options.real_time_factor == 0.0;
+  report::ResultWriter writer(setup, {"cdiff run", loop->world().simulatorVersion(), deterministic}, folder);
+  Progress progress(options.protocol.time_limit);
+  loop->addObserver(writer);
+  if (!quiet) loop->addObserver(progress);
+  loop->run(stop_requested);
+  return finish(writer, begin, quiet);
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/planning/planner_factory.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+
+namespace cdiff::cli {
+namespace {
+
+void checkPlanner(const std::string& name, const scenario::SessionSetup& setup) {
+  if (name != "external") planning::makePlanner(name, {}, setup.planningContext());
+}
+
+/// Checks one scenario as far as it goes without starting SUMO; answers whether it is good.
+bool validateOne(const std::string& scenario_name, bool print) {
+  try {
+    const scenario::ScenarioOptions options = scenario::loadScenario(scenario_name);
+    const scenario::SessionSetup setup(options);
+    checkPlanner(options.ego_planner, setup);
+    checkPlanner(options.cbv_planner, setup);
+    std::cout << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length()) << " m)\n";
+    for (const std::string& change : setup.import().changes) std::cout << "  network: " << change << "\n";
+    if (print) std::cout << core::dumpOptions(options, true);
+    return true;
+  } catch (const core::InputError& error) {
+    std::cerr << scenario_name << ": " << error.what() << "\n";
+    return false;
+  }
+}
+
+}  // namespace
+
+void addValidateCommand(CLI::App& program, int& exit_code) {
+  auto scenarios = std::make_shared<std::vector<std::string>>();
+  auto print = std::make_shared<bool>(false);
+  CLI::App* command = program.add_subcommand("validate", "Check scenarios without running them");
+  command->add_option("scenarios", *scenarios, "Scenario files or names (default: all shipped ones)");
+  command->add_flag("--print", *print, "Print all keys with their values, meaning and range");
+  command->callback([scenarios, print, &exit_code] {
+    const auto names = scenarios->empty() ? scenario::shippedScenarios() : *scenarios;
+    for (const std::string& name : names) {
+      if (!validateOne(name, *print)) exit_code = kBadInput;
+    }
+  });
+}
+
+}  // namespace cdiff::cli

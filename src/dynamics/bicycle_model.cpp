@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::dynamics {
+namespace {
+
+constexpr double kTick = 0.05;          // [s] the period that the fitted polynomials describe
+constexpr double kKmhPerMps = 3.6;      // [km/h per m/s]
+constexpr double kDriveThrottle = 0.3;  // below it the fit leaves the speed as it is
+constexpr double kStandstill = 1e-3;    // [m/s] a braking car slower than this stands
+
+/// Speed [km/h] one tick later under a throttle of at least kDriveThrottle.
+double drivenSpeed(double v, double u) {
+  return 0.963873001 * v + 4.37535692e-4 * v * v - 0.380192912 * u + 1.74950069 * u * u +
+         0.0916787414 * v * u - 0.0705461530 * v * u * u - 1.05996152e-3 * v * v * u +
+         6.71079346e-4 * v * v * u * u;
+}
+
+/// Speed [km/h] one tick later under full brake, before the cap (Horner's scheme; no constant
+/// term).
+double brakedSpeed(double v) {
+  constexpr double kCoefficients[] = {-4.91381935e-12, 2.44419284e-9, -4.90357228e-7, 5.06587474e-5,
+                                      -2.83832427e-3,  8.20967431e-2, 9.31711370e-3};
+  double value = 0.0;
+  for (const double coefficient : kCoefficients) value = (value + coefficient) * v;
+  return value;
+}
+
+long tickCount(double duration) {
+  const double ticks = duration / kTick;
+  if (!std::isfinite(ticks) || ticks < -1e-6 || std::abs(ticks - std::round(ticks)) > 1e-6) {
+    throw std::invalid_argument("BicycleModel: duration " + core::formatNumber(duration) +
+                                " s is not a multiple of 0.05 s");
+  }
+  return std::lround(ticks);
+}
+
+void requireValid(const traffic::ControlAction& action) {
+  if (action.valid()) return;
+  throw std::invalid_argument("BicycleModel: action (throttle " +
+                              core::formatNumber(action.throttle) + ", steer " +
+                              core::formatNumber(action.steer) + ", brake " +
+                              core::formatNumber(action.brake) + ") is not finite or out of range");
+}
+
+}  // namespace
+
+void BicycleModelOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"steering_gain", "rad", "Wheel angle at steer = 1."}, steering_gain, 0.01, 1.2);
+  visitor.number({"rear_length", "m", "Centre to rear axle of the fitted bicycle."}, rear_length,
+                 0.1, 10.0);
+  visitor.number({"front_length", "m", "Centre to front axle of the fitted bicycle."}, front_length,
+                 -5.0, 10.0);
+  visitor.number({"max_deceleration", "m/s^2", "Cap of the deceleration under full brake."},
+                 max_deceleration, 0.1, 20.0);
+  visitor.number({"max_speed", "m/s", "Speed that is never exceeded."}, max_speed, 1.0, 100.0);
+}
+
+void BicycleModelOptions::validate() const {
+  if (!(rear_length > 0.0) || !(rear_length + front_length > 0.0)) {
+    throw core::InputError("vehicle: rear_length " + core::formatNumber(rear_length) +
+                           " and rear_length + front_length " +
+                           core::formatNumber(rear_length + front_length) + " must be positive");
+  }
+  if (!(max_deceleration > 0.0) || !(max_speed > 0.0)) {
+    throw core::InputError("vehicle: max_deceleration " + core::formatNumber(max_deceleration) +
+                           " and max_speed " + core::formatNumber(max_speed) + " must be positive");
+  }
+}
+
+BicycleModel::BicycleModel(const BicycleModelOptions& options) : options_(options) {
+  options_.validate();
+}
+
+double BicycleModel::nextSpeed(double speed, const traffic::ControlAction& action) const {
+  const double v = speed * kKmhPerMps;
+  const double drive = action.throttle < kDriveThrottle ? 0.0 : drivenSpeed(v, action.throttle) - v;
+  const double strongest = -options_.max_deceleration * kTick * kKmhPerMps;
+  const double brake = std::clamp(brakedSpeed(v) - v, strongest, 0.0);
+  const double change = (1.0 - action.brake) * drive + action.brake * brake;
+  const double next = std::clamp((v + change) / kKmhPerMps, 0.0, options_.max_speed);
+  return action.brake > 0.0 && change <= 0.0 && next < kStandstill ? 0.0 : next;
+}
+
+traffic::VehicleState BicycleModel::step(const traffic::VehicleState& state,
+                                         const traffic::ControlAction& action,
+                                         double duration) const {
+  requireValid(action);
+  const long ticks = tickCount(duration);
+  const double wheel_angle = options_.steering_gain * action.steer;
+  const double wheelbase = options_.rear_length + options_.front_length;
+  const double slip = std::atan(options_.rear_length / wheelbase * std::tan(wheel_angle));
+  traffic::VehicleState next = state;
+  for (long tick = 0; tick < ticks; ++tick) {
+    next.position += next.speed * kTick * geometry::direction(next.heading + slip);
+    next.heading =
+        core::wrapAngle(next.heading + next.speed / options_.rear_length * std::sin(slip) * kTick);
+    next.speed = nextSpeed(next.speed, action);
+  }
+  return next;
+}
+
+}  // namespace cdiff::dynamics

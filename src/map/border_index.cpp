@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/map/border_index.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::map {
+namespace {
+
+constexpr double kMargin = 64.0;    // [m] of indexed ground around the border
+constexpr double kLeastCell = 2.0;  // [m]
+constexpr double kFarCellShare =
+    0.25;  // cells need not be smaller than this share of their distance
+constexpr std::size_t kFewSegments = 4;  // such a list is not worth splitting
+constexpr double kTieTolerance = 1e-10;  // relative, of squared distances
+
+}  // namespace
+
+/// Nearest segment so far. Where the nearest point is a vertex, its segments tie; the one that the
+/// point lies farthest beside is the one that bounds the point's sector around the vertex, so its
+/// side tells inside from outside.
+struct BorderIndex::Nearest {
+  const Segment* segment = nullptr;
+  double squared = std::numeric_limits<double>::infinity();
+  double across = 0.0;  ///< signed distance to the segment's line, positive left
+};
+
+BorderIndex::Square BorderIndex::Square::child(int quadrant) const {
+  const double quarter = 0.5 * half;
+  const Eigen::Vector2d offset((quadrant & 1) ? quarter : -quarter,
+                               (quadrant & 2) ? quarter : -quarter);
+  return {center + offset, quarter};
+}
+
+BorderIndex::BorderIndex(const std::vector<Ring>& rings) {
+  for (const Ring& ring : rings) addSegments(ring);
+  if (segments_.empty()) throw core::InputError("the drivable area has no border: it is empty");
+  Eigen::Vector2d low = segments_.front().begin;
+  Eigen::Vector2d high = low;
+  for (const Segment& segment : segments_) {
+    low = low.cwiseMin(segment.begin);
+    high = high.cwiseMax(segment.begin);
+  }
+  root_.center = 0.5 * (low + high);
+  root_.half = 0.5 * kLeastCell;
+  while (root_.half < 0.5 * (high - low).maxCoeff() + kMargin) root_.half *= 2.0;
+  std::vector<SegmentIndex> all(segments_.size());
+  std::iota(all.begin(), all.end(), SegmentIndex{0});
+  nodes_.emplace_back();
+  build(0, root_, all);
+}
+
+void BorderIndex::addSegments(const Ring& ring) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Eigen::Vector2d& begin = ring[i];
+    const Eigen::Vector2d& end = ring[(i + 1) % ring.size()];
+    const double length = (end - begin).norm();
+    if (length > 0.0) segments_.push_back({begin, end, (end - begin) / length, length});
+  }
+}
+
+double BorderIndex::distance(const Segment& segment, const Eigen::Vector2d& point) {
+  const double along = std::clamp(segment.along.dot(point - segment.begin), 0.0, segment.length);
+  return (segment.begin + along * segment.along - point).norm();
+}
+
+void BorderIndex::build(std::uint32_t node, const Square& square,
+                        const std::vector<SegmentIndex>& from_parent) {
+  std::vector<double> distances(from_parent.size());
+  for (std::size_t i = 0; i < from_parent.size(); ++i) {
+    distances[i] = distance(segments_[from_parent[i]], square.center);
+  }
+  // A segment nearest to a point at most r from the centre is at most least + 2 r from the centre.
+  const double least = *std::min_element(distances.begin(), distances.end());
+  const double limit = least + 2.0 * std::sqrt(2.0) * square.half + 1e-6;
+  std::vector<SegmentIndex> kept;
+  for (std::size_t i = 0; i < from_parent.size(); ++i) {
+    if (distances[i] <= limit) kept.push_back(from_parent[i]);
+  }
+  const double size = 2.0 * square.half;
+  if (kept.size() <= kFewSegments || size <= kLeastCell || size <= kFarCellShare * least) {
+    nodes_[node].begin = static_cast<std::uint32_t>(candidates_.size());
+    candidates_.insert(candidates_.end(), kept.begin(), kept.end());
+    nodes_[node].end = static_cast<std::uint32_t>(candidates_.size());
+    return;
+  }
+  const auto first_child = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[node].first_child = first_child;
+  nodes_.resize(nodes_.size() + 4);
+  for (int quadrant = 0; quadrant < 4; ++quadrant) {
+    build(first_child + static_cast<std::uint32_t>(quadrant), square.child(quadrant), kept);
+  }
+}
+
+void BorderIndex::examine(const Segment& segment, const Eigen::Vector2d& point,
+                          Nearest& nearest) const {
+  const Eigen::Vector2d from_begin = point - segment.begin;
+  const double along = segment.along.dot(from_begin);
+  const double across = geometry::cross(segment.along, from_begin);
+  const double squared = along <= 0.0              ? from_begin.squaredNorm()
+                         : along >= segment.length ? (point - segment.end).squaredNorm()
+                                                   : across * across;
+  if (squared > nearest.squared * (1.0 + kTieTolerance)) return;
+  const bool tie = squared >= nearest.squared * (1.0 - kTieTolerance);
+  if (tie && std::abs(across) <= std::abs(nearest.across)) return;
+  nearest = {&segment, squared, across};
+}
+
+BorderIndex::Nearest BorderIndex::nearest(const Eigen::Vector2d& point) const {
+  Nearest nearest;
+  if (!((point - root_.center).cwiseAbs().maxCoeff() <= root_.half)) {
+    for (const Segment& segment : segments_) examine(segment, point, nearest);
+    return nearest;
+  }
+  const Node* node = &nodes_.front();
+  double x = root_.center.x();
+  double y = root_.center.y();
+  double half = root_.half;
+  while (node->first_child != 0) {
+    const bool right = point.x() >= x;
+    const bool upper = point.y() >= y;
+    half *= 0.5;
+    x += right ? half : -half;
+    y += upper ? half : -half;
+    node = &nodes_[node->first_child + (right ? 1u : 0u) + (upper ? 2u : 0u)];
+  }
+  for (std::uint32_t i = node->begin; i < node->end; ++i) {
+    examine(segments_[candidates_[i]], point, nearest);
+  }
+  return nearest;
+}
+
+SignedDistance BorderIndex::query(const Eigen::Vector2d& point) const {
+  constexpr double kOnBorder = 1e-9;
+  if (!point.allFinite())
+    throw core::InputError("distance to the border asked for a non-finite position");
+  const Nearest found = nearest(point);
+  const Segment& segment = *found.segment;
+  const double length = std::sqrt(found.squared);
+  const double sign = found.across < 0.0 ? -1.0 : 1.0;
+  if (length < kOnBorder) return {sign * length, geometry::leftNormal(segment.along)};
+  const double along = std::clamp(segment.along.dot(point - segment.begin), 0.0, segment.length);
+  const Eigen::Vector2d foot = segment.begin + along * segment.along;
+  return {sign * length, sign * (point - foot).normalized()};
+}
+
+}  // namespace cdiff::map

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/map/drivable_area.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/map/border_index.h"
+
+namespace cdiff::map {
+namespace {
+
+constexpr double kLevelSpacing = 2.0;  // [m]
+constexpr double kLevelReach = 3.0;  // [m] a level holds what is at most this far above or below it
+constexpr double kPieceLength = 10.0;  // [m]
+
+/// Part of a lane, or a whole junction, that belongs to a level or does not.
+struct Piece {
+  int lane = -1;       ///< -1 for a junction
+  int junction = -1;   ///< -1 for a lane
+  double begin = 0.0;  ///< arc length on the lane [m]
+  double end = 0.0;
+  double lowest = 0.0;   ///< elevation [m]
+  double highest = 0.0;  ///< the same as `lowest` for a lane: its mean
+
+  bool inReachOf(double height) const {
+    return lowest <= height + kLevelReach && highest >= height - kLevelReach;
+  }
+};
+
+void addLanePieces(const RoadNetwork& network, int index, std::vector<Piece>& pieces) {
+  const geometry::Polyline& line = network.lane(index).centerline;
+  const int count = std::max(1, static_cast<int>(std::ceil(line.length() / kPieceLength)));
+  const double length = line.length() / count;
+  for (int i = 0; i < count; ++i) {
+    Piece piece;
+    piece.lane = index;
+    piece.begin = i * length;
+    piece.end = i + 1 == count ? line.length() : (i + 1) * length;
+    piece.lowest = 0.5 * (line.pointAt(piece.begin).z() + line.pointAt(piece.end).z());
+    piece.highest = piece.lowest;
+    pieces.push_back(piece);
+  }
+}
+
+std::vector<Piece> cutNetwork(const RoadNetwork& network) {
+  std::vector<Piece> pieces;
+  std::set<std::string> used_junctions;
+  for (int i = 0; i < static_cast<int>(network.lanes().size()); ++i) {
+    if (!network.lane(i).allows_cars) continue;
+    addLanePieces(network, i, pieces);
+    used_junctions.insert(network.lane(i).junction_id);
+  }
+  for (std::size_t i = 0; i < network.junctions().size(); ++i) {
+    const Junction& junction = network.junctions()[i];
+    if (junction.shape.size() < 3 || used_junctions.count(junction.id) == 0) continue;
+    Piece piece;
+    piece.junction = static_cast<int>(i);
+    const auto [low, high] = std::minmax_element(
+        junction.shape.begin(), junction.shape.end(),
+        [](const auto& left, const auto& right) { return left.z() < right.z(); });
+    piece.lowest = low->z();
+    piece.highest = high->z();
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+std::vector<double> levelHeights(const std::vector<Piece>& pieces) {
+  double low = pieces.front().lowest;
+  double high = pieces.front().highest;
+  for (const Piece& piece : pieces) {
+    low = std::min(low, piece.lowest);
+    high = std::max(high, piece.highest);
+  }
+  if (high - low <= kLevelSpacing) return {0.5 * (low + high)};
+  std::vector<double> heights;
+  const double last = std::round(high / kLevelSpacing);
+  for (double step = std::round(low / kLevelSpacing); step <= last; step += 1.0) {
+    heights.push_back(step * kLevelSpacing);
+  }
+  return heights;
+}
+
+Strip lanePart(const Lane& lane, double begin, double end) {
+  Strip strip;
+  strip.width = lane.width;
+  const geometry::Polyline part = lane.centerline.slice(begin, end);
+  for (const Eigen::Vector3d& point : part.points()) strip.line.push_back(point.head<2>());
+  return strip;
+}
+
+/// Union of the chosen pieces; neighbouring pieces of a lane form one strip.
+std::vector<Ring> outlineOf(const RoadNetwork& network, const std::vector<Piece>& pieces,
+                            const std::vector<bool>& chosen) {
+  std::vector<Strip> strips;
+  std::vector<Ring> polygons;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!chosen[i]) continue;
+    if (pieces[i].lane < 0) {
+      Ring ring;
+      const auto& shape = network.junctions()[static_cast<std::size_t>(pieces[i].junction)].shape;
+      for (const Eigen::Vector3d& point : shape) ring.push_back(point.head<2>());
+      polygons.push_back(std::move(ring));
+      continue;
+    }
+    const std::size_t first = i;
+    while (i + 1 < pieces.size() && chosen[i + 1] && pieces[i + 1].lane == pieces[first].lane) ++i;
+    strips.push_back(
+        lanePart(network.lane(pieces[first].lane), pieces[first].begin, pieces[i].end));
+  }
+  return uniteOutlines(strips, polygons);
+}
+
+}  // namespace
+
+/// The area between two heights (equal unless neighbouring heights hold the same pieces).
+struct DrivableArea::Level {
+  Level(double height, std::vector<Ring> outline)
+      : lowest(height), highest(height), rings(std::move(outline)), index(rings) {}
+  double lowest;   ///< [m]
+  double highest;  ///< [m]
+  std::vector<Ring> rings;
+  BorderIndex index;
+};
+
+DrivableArea::DrivableArea(const RoadNetwork& network) {
+  const std::vector<Piece> pieces = cutNetwork(network);
+  if (pieces.empty())
+    throw core::InputError("the network has no lane that allows cars: no drivable area");
+  std::vector<bool> previous;
+  for (const double height : levelHeights(pieces)) {
+    std::vector<bool> chosen;
+    for (const Piece& piece : pieces) chosen.push_back(piece.inReachOf(height));
+    if (std::find(chosen.begin(), chosen.end(), true) == chosen.end()) continue;
+    if (chosen == previous) {
+      levels_.back()->highest = height;
+      continue;
+    }
+    levels_.push_back(std::make_unique<Level>(height, outlineOf(network, pieces, chosen)));
+    previous = std::move(chosen);
+  }
+}
+
+DrivableArea::DrivableArea(DrivableArea&&) noexcept = default;
+DrivableArea& DrivableArea::operator=(DrivableArea&&) noexcept = default;
+DrivableArea::~DrivableArea() = default;
+
+const DrivableArea::Level& DrivableArea::levelAt(double elevation) const {
+  // Levels rise: the first that is not followed by a nearer one.
+  std::size_t best = 0;
+  while (best + 1 < levels_.size() &&
+         levels_[best + 1]->lowest - elevation < elevation - levels_[best]->highest) {
+    ++best;
+  }
+  return *levels_[best];
+}
+
+SignedDistance DrivableArea::signedDistanceWithGradient(const Eigen::Vector2d& position,
+                                                        double elevation) const {
+  return levelAt(elevation).index.query(position);
+}
+
+double DrivableArea::signedDistance(const Eigen::Vector2d& position, double elevation) const {
+  return signedDistanceWithGradient(position, elevation).distance;
+}
+
+bool DrivableArea::contains(const Eigen::Vector2d& position, double elevation) const {
+  return signedDistance(position, elevation) >= 0.0;
+}
+
+std::vector<std::vector<Eigen::Vector2d>> DrivableArea::border(double elevation) const {
+  return levelAt(elevation).rings;
+}
+
+std::size_t DrivableArea::levelCount() const { return levels_.size(); }
+
+}  // namespace cdiff::map

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/map/lane_graph.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "lane_search.h"
+#include "route_builder.h"
+
+namespace cdiff::map {
+namespace {
+
+constexpr double kBeyondJunction = 10.0;  // [m] at least so much of the edge after a junction
+
+SearchLimits limitsOf(double max_length, bool lane_changes) {
+  SearchLimits limits;
+  limits.max_length = max_length;
+  limits.lane_changes = lane_changes;
+  return limits;
+}
+
+double endHeading(const Lane& lane) { return lane.centerline.headingAt(lane.centerline.length()); }
+
+/// Goes straight on along routable lanes.
+class Continuation {
+ public:
+  Continuation(const RoadNetwork& network, LaneIndex lane) : network_(network) {
+    path_.lanes.push_back(lane);
+  }
+
+  /// Adds lanes until `length` metres lie beyond `begin` on the first lane and the last lies outside junctions.
+  void extend(double begin, double length) {
+    double end = network_.lane(path_.lanes.front()).centerline.length() - begin;
+    double goal = length;
+    while (end < goal || network_.lane(path_.lanes.back()).internal) {
+      const bool inside = network_.lane(path_.lanes.back()).internal;
+      if (inside) goal = std::max(goal, end + kBeyondJunction);
+      if (!addNext()) break;
+      const double added = network_.lane(path_.lanes.back()).centerline.length();
+      if (inside && !network_.lane(path_.lanes.back()).internal) {
+        goal = std::max(length, end + std::min(added, kBeyondJunction));
+      }
+      end += added;
+    }
+    surplus_ = std::max(0.0, end - goal);
+  }
+  const LanePath& path() const { return path_; }
+  /// Where the way ends on its last lane [m].
+  double goal() const {
+    return std::max(0.0, network_.lane(path_.lanes.back()).centerline.length() - surplus_);
+  }
+
+ private:
+  bool addNext() {
+    const LaneIndex here = path_.lanes.back();
+    LaneIndex best = straightest(here);
+    if (best == kNoLane) {  // the lane ends: change to a neighbour that goes on
+      const Lane& lane = network_.lane(here);
+      for (const LaneIndex beside : {lane.right, lane.left}) {
+        if (beside == kNoLane || best != kNoLane) continue;
+        best = straightest(beside);
+        if (best != kNoLane) path_.lanes.push_back(beside);
+      }
+    }
+    if (best == kNoLane) return false;
+    path_.lanes.push_back(best);
+    return true;
+  }
+
+  /// The next lane with the smallest change of heading up to the end of its junction, ties by index.
+  LaneIndex straightest(LaneIndex from) const {
+    LaneIndex best = kNoLane;
+    double smallest = 0.0;
+    for (const LaneLink& link : network_.lane(from).next) {
+      const Lane& next = network_.lane(link.to);
+      if (!next.routable) continue;
+      const double heading = next.internal ? endHeading(next) : next.centerline.headingAt(0.0);
+      const double turn =
+          std::abs(core::angleDifference(heading, endHeading(network_.lane(from))));
+      if (best != kNoLane && turn >= smallest) continue;
+      best = link.to;
+      smallest = turn;
+    }
+    return best;
+  }
+
+  const RoadNetwork& network_;
+  LanePath path_;
+  double surplus_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<LanePath> LaneGraph::shortestPath(const LanePosition& start, const LanePosition& goal,
+                                                double max_length, bool lane_changes) const {
+  return LaneSearch(network_, start, limitsOf(max_length, lane_changes)).pathTo(goal);
+}
+
+std::vector<double> LaneGraph::distancesFrom(const LanePosition& start, double max_length,
+                                             bool lane_changes) const {
+  const LaneSearch search(network_, start, limitsOf(max_length, lane_changes));
+  std::vector<double> lengths(network_.lanes().size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    lengths[i] = search.lengthToBegin(static_cast<LaneIndex>(i));
+  }
+  return lengths;
+}
+
+Route LaneGraph::toRoute(const LanePath& path, double start_arc_length,
+                         double goal_arc_length) const {
+  if (path.lanes.empty()) throw core::InputError("a way without lanes cannot become a route");
+  std::vector<LaneStretch> drive;
+  appendPath(network_, path, start_arc_length, goal_arc_length, drive);
+  return buildRoute(network_, drive);
+}
+
+Route LaneGraph::extended(const Route& route, double length) const {
+  const LaneIndex last = route.lanes().back();
+  const geometry::Polyline& line = network_.lane(last).centerline;
+  const double missing = length - route.length();
+  if (missing <= 0.0 && !network_.lane(last).internal) return route;
+  const Eigen::Vector3d end = route.path().points().back();
+  const double begin = line.project(end.head<2>()).arc_length;
+  Continuation continuation(network_, last);
+  continuation.extend(begin, std::max(0.0, missing));
+  const bool stays = continuation.path().lanes.size() == 1;
+  if (stays && continuation.goal() - begin < 0.1) return route;
+  const Route rest = toRoute(continuation.path(), begin, continuation.goal());
+  std::vector<Eigen::Vector3d> points = route.path().points();
+  std::vector<LaneIndex> lanes = route.lanes();
+  // The first metre joins the route's last point, which may lie beside the centre line.
+  for (std::size_t i = 1; i < rest.lanes().size(); ++i) {
+    points.push_back(rest.path().points()[i]);
+    lanes.push_back(rest.lanes()[i]);
+  }
+  return Route(network_, points, lanes);
+}
+
+}  // namespace cdiff::map

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/map/network_import.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "process.h"
+#include "vehicle_classes.h"
+
+namespace cdiff::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Part of the cache key: raise it when the importer makes something else of the same input.
+constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
+
+bool endsWith(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+std::vector<std::string> shippedNames(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!fs::is_directory(folder)) return names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(entry.path() / (name + ".net.xml"))) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The file that the user means: a path, or the name of a shipped network.
+fs::path sourceFile(const std::string& source) {
+  if (source.empty()) throw core::InputError("no network was given; a file or a shipped name was expected");
+  if (fs::exists(source)) return source;
+  const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
+                    endsWith(source, ".xodr");
+  if (path) throw core::InputError("network file '" + source + "' does not exist");
+  const fs::path folder = core::shareFolder() / "networks";
+  const fs::path file = folder / source / (source + ".net.xml");
+  if (fs::exists(file)) return file;
+  const std::string nearest = core::nearestName(source, shippedNames(folder));
+  throw core::InputError("network '" + source + "' is neither a file nor shipped in '" +
+                         folder.string() + "'" +
+                         (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
+}
+
+fs::path cachedFile(const std::string& content) {
+  const fs::path folder = core::cacheFolder() / "networks";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw core::InputError("cannot make the cache folder '" + folder.string() +
+                           "': " + error.message());
+  }
+  const std::string key = core::sha256(content + "\n" + kImporterVersion);
+  return folder / (key + ".net.xml");
+}
+
+/// netconvert's opening comment holds the date and paths: without it equal input gives equal text.
+std::string withoutGeneratedComment(std::string text) {
+  const std::size_t begin = text.find("<!-- generated on");
+  if (begin == std::string::npos) return text;
+  const std::size_t end = text.find("-->", begin);
+  if (end != std::string::npos) text.erase(begin, end + 3 - begin);
+  return text;
+}
+
+/// Network text that netconvert makes of an OpenDRIVE file.
+std::string convertOpenDrive(const fs::path& source, const fs::path& target) {
+  const std::string temporary =
+      target.string() + ".converting." + std::to_string(::getpid()) + ".net.xml";
+  const ProcessResult result = runProcess(
+      {"netconvert", "--opendrive-files", source.string(), "--output-file", temporary,
+       "--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
+       "--no-turnarounds.except-deadend", "true", "--xml-validation", "never"});
+  if (result.exit_code != 0 || !fs::exists(temporary)) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw core::InputError("netconvert could not convert '" + source.string() + "' (exit code " +
+                           std::to_string(result.exit_code) + "): " + result.output);
+  }
+  const std::string text = core::readFile(temporary, "converted network");
+  fs::remove(temporary);
+  return withoutGeneratedComment(text);
+}
+
+void storeUnlessThere(const fs::path& file, const std::string& text) {
+  if (fs::exists(file) && core::readFile(file, "cached network") == text) return;
+  core::writeFileAtomically(file, text);
+}
+
+bool isOpenDrive(const std::string& source, const std::string& content) {
+  return endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
+}
+
+void importOpenDrive(const std::string& content, ImportedNetwork& network) {
+  if (content.find("<OpenDRIVE") == std::string::npos) {
+    throw core::InputError("network '" + network.source.string() +
+                           "': no <OpenDRIVE> element; an OpenDRIVE file was expected");
+  }
+  network.file = cachedFile(content);
+  if (fs::exists(network.file)) {
+    network.text = core::readFile(network.file, "cached network");
+  } else {
+    network.text = convertOpenDrive(network.source, network.file);
+    core::writeFileAtomically(network.file, network.text);
+  }
+  network.changes.emplace_back("converted from OpenDRIVE with netconvert");
+}
+
+void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
+  if (content.size() > 1 && content[0] == '\x1f' && content[1] == '\x8b') {
+    throw core::InputError("network '" + network.source.string() +
+                           "' is compressed; unpack it with gunzip first");
+  }
+  if (content.find("<net") == std::string::npos) {
+    throw core::InputError("network '" + network.source.string() +
+                           "': no <net> element; a SUMO network (*.net.xml) or OpenDRIVE (*.xodr) "
+                           "was expected");
+  }
+  PermissionRewrite rewrite = dropUnknownClasses(content);
+  network.text = std::move(rewrite.text);
+  network.file = network.source;
+  if (rewrite.removed.empty()) return;
+  network.file = cachedFile(content);
+  storeUnlessThere(network.file, network.text);
+  network.changes.push_back("removed the vehicle classes " + core::joinText(rewrite.removed, " ") +
+                            " from " + std::to_string(rewrite.attributes) +
+                            " attributes, SUMO 1.15 does not know them");
+}
+
+}  // namespace
+
+ImportedNetwork importNetwork(const std::string& source) {
+  ImportedNetwork network;
+  network.source = sourceFile(source);
+  const std::string content = core::readFile(network.source, "network");
+  network.source_sha256 = core::sha256(content);
+  if (isOpenDrive(network.source.string(), content)) {
+    importOpenDrive(content, network);
+  } else {
+    importSumoNetwork(content, network);
+  }
+  return network;
+}
+
+}  // namespace cdiff::map

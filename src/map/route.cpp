@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/map/route.h"
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "lane_search.h"
+#include "route_builder.h"
+
+namespace cdiff::map {
+namespace {
+
+constexpr double kDistinct = 1e-3;  // [m] as Polyline merges
+
+/// What happens between two neighbouring points of a route.
+struct Step {
+  double begin = 0.0;  ///< arc length of the first point [m]
+  double end = 0.0;    ///< arc length of the second point [m]
+};
+
+/// Lanes driven from one point's lane to the next point's, both included; lanes too short to hold a point are filled in.
+std::vector<LaneIndex> lanesBetween(const RoadNetwork& network, const geometry::Polyline& path,
+                                    const Step& step, LaneIndex from, LaneIndex to) {
+  if (from == to) return {from};
+  if (follows(network, from, to)) return {from, to};
+  if (network.lane(from).left == to || network.lane(from).right == to) return {from, to};
+  const LanePosition start = {
+      from, network.lane(from).centerline.project(path.positionAt(step.begin)).arc_length};
+  const LanePosition goal = {
+      to, network.lane(to).centerline.project(path.positionAt(step.end)).arc_length};
+  SearchLimits limits;
+  limits.max_length = 2.0 * (step.end - step.begin) + 20.0;
+  limits.routable_only = false;
+  const auto found = LaneSearch(network, start, limits).pathTo(goal);
+  return found ? found->lanes : std::vector<LaneIndex>{from, to};
+}
+
+const LaneLink* linkBetween(const RoadNetwork& network, LaneIndex from, LaneIndex to) {
+  for (const LaneLink& link : network.lane(from).next) {
+    if (link.to == to) return &link;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Route::Route(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points,
+             const std::vector<LaneIndex>& lanes) {
+  if (points.size() != lanes.size()) {
+    throw core::InputError("a route has " + std::to_string(points.size()) + " points but " +
+                           std::to_string(lanes.size()) + " lanes");
+  }
+  std::vector<Eigen::Vector3d> distinct;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool repeated =
+        !distinct.empty() && (points[i] - distinct.back()).head<2>().norm() < kDistinct;
+    if (repeated) continue;
+    const Lane& lane = network.lane(lanes[i]);
+    distinct.push_back(points[i]);
+    lanes_.push_back(lanes[i]);
+    speed_limits_.push_back(lane.speed_limit);
+    in_junction_.push_back(lane.internal);
+  }
+  path_ = geometry::Polyline(distinct);
+  noteJunctions();
+  noteEdge(network.lane(lanes_.front()), 0.0);
+  for (std::size_t i = 1; i < lanes_.size(); ++i) noteStep(network, i);
+}
+
+void Route::noteJunctions() {
+  for (std::size_t i = 0; i < in_junction_.size(); ++i) {
+    if (!in_junction_[i]) continue;
+    const double begin = path_.arcLengths()[i];
+    const double end = path_.arcLengths()[std::min(i + 1, in_junction_.size() - 1)];
+    if (i > 0 && in_junction_[i - 1]) {
+      junctions_.back().second = end;
+    } else {
+      junctions_.emplace_back(begin, end);
+    }
+  }
+}
+
+void Route::noteEdge(const Lane& lane, double arc_length) {
+  if (lane.internal || (!edges_.empty() && edges_.back() == lane.edge_id)) return;
+  edges_.push_back(lane.edge_id);
+  edge_begins_.push_back(arc_length);
+}
+
+/// Edges, signals and lane changes between point `i` and the one before it.
+void Route::noteStep(const RoadNetwork& network, std::size_t i) {
+  const Step step = {path_.arcLengths()[i - 1], path_.arcLengths()[i]};
+  const std::vector<LaneIndex> lanes =
+      lanesBetween(network, path_, step, lanes_[i - 1], lanes_[i]);
+  for (std::size_t j = 1; j < lanes.size(); ++j) {
+    const Lane& lane = network.lane(lanes[j - 1]);
+    noteEdge(network.lane(lanes[j]), step.end);
+    if (lane.left == lanes[j] || lane.right == lanes[j]) lane_changes_.push_back(step.end);
+    const LaneLink* link = linkBetween(network, lanes[j - 1], lanes[j]);
+    if (link == nullptr || link->signal_id.empty()) continue;
+    const Eigen::Vector2d stop = lane.centerline.points().back().head<2>();
+    const double arc_length = path_.project(stop, step.begin, step.end).arc_length;
+    signals_.push_back({arc_length, link->signal_id, link->signal_link});
+  }
+}
+
+std::size_t Route::pointIndex(double arc_length) const {
+  const std::vector<double>& arcs = path_.arcLengths();
+  const auto after = std::upper_bound(arcs.begin(), arcs.end(), arc_length);
+  return after == arcs.begin() ? 0 : static_cast<std::size_t>(after - arcs.begin()) - 1;
+}
+
+LaneIndex Route::laneAt(double arc_length) const { return lanes_[pointIndex(arc_length)]; }
+
+double Route::speedLimitAt(double arc_length) const {
+  return speed_limits_[pointIndex(arc_length)];
+}
+
+bool Route::inJunctionAt(double arc_length) const { return in_junction_[pointIndex(arc_length)]; }
+
+}  // namespace cdiff::map

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Uniform grid over the segments of lane centre lines (map frame [m]); answers which lanes pass near a point.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "e2e_cdiff/map/road_network.h"
+
+namespace cdiff::map {
+
+/// Lanes that do not allow cars are left out.
+struct RoadNetwork::SpatialIndex {
+  /// What is asked for.
+  struct Query {
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();
+    double radius = 0.0;                                             ///< [m]
+    double elevation = 0.0;                                          ///< [m]
+    double level_height = std::numeric_limits<double>::infinity();   ///< [m]
+  };
+  /// The nearest segment of a lane.
+  struct Hit {
+    LaneIndex lane = kNoLane;
+    int segment = 0;
+    double squared_distance = 0.0;  ///< in the plane [m^2]
+  };
+
+  explicit SpatialIndex(const std::vector<Lane>& lanes);
+  /// One hit for each lane that fits, by lane index.
+  std::vector<Hit> find(const std::vector<Lane>& lanes, const Query& query) const;
+
+ private:
+  struct Entry {
+    LaneIndex lane = kNoLane;
+    int segment = 0;
+  };
+  int columnOf(double x) const;
+  int rowOf(double y) const;
+  void setBounds(const std::vector<Lane>& lanes);
+  template <class Visit>
+  void visitCells(const Lane& lane, Visit&& visit) const;
+
+  double cell_size_ = 10.0;  ///< [m]
+  Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
+  int columns_ = 1;
+  int rows_ = 1;
+  std::vector<std::size_t> cell_begin_;  ///< entries of cell c: [cell_begin_[c], cell_begin_[c + 1])
+  std::vector<Entry> entries_;
+};
+
+}  // namespace cdiff::map

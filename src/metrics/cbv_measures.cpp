@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/cbv_measures.h"
+
+#include <cmath>
+
+#include "e2e_cdiff/metrics/collisions_per_km.h"
+
+namespace cdiff::metrics {
+
+void CbvMeasures::observe(const std::vector<CbvSighting>& cbvs, bool decision_tick) {
+  std::map<std::string, Eigen::Vector2d> positions;
+  for (const CbvSighting& cbv : cbvs) {
+    const traffic::Vehicle& vehicle = *cbv.vehicle;
+    if (!vehicle.state.position.allFinite()) continue;
+    const auto last = last_positions_.find(vehicle.id);
+    if (last != last_positions_.end()) {
+      distance_ += (vehicle.state.position - last->second).norm();
+    } else {
+      driven_.insert(vehicle.id);
+    }
+    positions[vehicle.id] = vehicle.state.position;
+    off_road_.add(cbv.off_road);
+    if (!decision_tick) continue;
+    ++decisions_;
+    if (std::isfinite(vehicle.state.speed)) speeds_.push_back(vehicle.state.speed);
+    if (std::isfinite(vehicle.acceleration)) accelerations_.push_back(vehicle.acceleration);
+  }
+  last_positions_.swap(positions);
+}
+
+void CbvMeasures::countCollision(bool with_ego) {
+  ++collisions_;
+  if (with_ego) ++ego_collisions_;
+}
+
+Measure CbvMeasures::offRoadRatePercent() const { return off_road_.measure(kNoCbv); }
+
+Measure CbvMeasures::collisionsPerKilometre() const {
+  return metrics::collisionsPerKilometre(collisions_, distance_, count());
+}
+
+}  // namespace cdiff::metrics

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/collisions_per_km.h"
+
+namespace cdiff::metrics {
+
+Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles) {
+  Measure measure;
+  measure.unit = "1/km";
+  measure.n = vehicles;
+  if (vehicles == 0) {
+    measure.reason = "no CBV was driven";
+  } else if (!(distance > 0.0)) {
+    measure.reason = "no CBV moved";
+  } else {
+    measure.value = 1000.0 * static_cast<double>(collisions) / distance;
+  }
+  return measure;
+}
+
+}  // namespace cdiff::metrics

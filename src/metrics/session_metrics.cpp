@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/session_metrics.h"
+
+#include <cmath>
+#include <vector>
+
+#include "e2e_cdiff/metrics/cbv_measures.h"
+#include "e2e_cdiff/metrics/ego_measures.h"
+#include "e2e_cdiff/metrics/interaction_measures.h"
+#include "e2e_cdiff/metrics/rift_measures.h"
+#include "e2e_cdiff/metrics/sample_statistics.h"
+#include "e2e_cdiff/metrics/shapiro_wilk.h"
+#include "e2e_cdiff/metrics/wasserstein.h"
+
+namespace cdiff::metrics {
+namespace {
+
+using traffic::TrafficSnapshot;
+using traffic::Vehicle;
+using traffic::VehicleRole;
+
+constexpr double kBackgroundRadius = 150.0;  // [m] speeds of background vehicles are sampled within
+
+/// Every k-th sample, k the smallest that leaves no more than the test allows.
+std::vector<double> thinned(const std::vector<double>& samples, std::size_t& every) {
+  every = (samples.size() + kShapiroWilkMost - 1) / kShapiroWilkMost;
+  if (every <= 1) return samples;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < samples.size(); i += every) kept.push_back(samples[i]);
+  return kept;
+}
+
+Measure shapiroWilkMeasure(const std::vector<double>& samples) {
+  Measure measure;
+  measure.n = samples.size();
+  if (samples.empty()) {
+    measure.reason = kNoCbv;
+    return measure;
+  }
+  std::size_t every = 1;
+  const std::vector<double> used = thinned(samples, every);
+  const ShapiroWilk test = shapiroWilk(used);
+  measure.n = used.size();
+  measure.value = test.w;
+  measure.reason = test.reason;
+  if (test.w && every > 1) {
+    measure.reason = "1 in " + std::to_string(every) + " of " + std::to_string(samples.size()) +
+                     " samples taken";
+  }
+  return measure;
+}
+
+Measure wassersteinMeasure(const std::vector<double>& cbvs, const std::vector<double>& background) {
+  Measure measure;
+  measure.unit = "m/s";
+  measure.n = cbvs.size();
+  measure.value = wassersteinDistance(cbvs, background);
+  if (cbvs.empty()) {
+    measure.reason = kNoCbv;
+  } else if (background.empty()) {
+    measure.reason = "no background vehicle within 150 m of the ego";
+  }
+  return measure;
+}
+
+}  // namespace
+
+class SessionMetrics::Accumulator {
+ public:
+  Accumulator(const SessionMetricsOptions& options, const map::DrivableArea& drivable_area,
+              const map::Route& ego_route)
+      : options_(options),
+        drivable_area_(drivable_area),
+        ego_(ego_route, options.completion_percent, options.completion_distance) {}
+
+  TickMeasures observe(const TrafficSnapshot& snapshot) {
+    TickMeasures tick;
+    if (const Vehicle* ego = snapshot.ego()) observeEgo(*ego, snapshot, tick);
+    tick.route_completion_percent = ego_.routeCompletionPercent();
+    observeContacts(snapshot);
+    observeCbvs(snapshot, tick);
+    return tick;
+  }
+
+  SessionMeasures measures() const {
+    SessionMeasures result;
+    result.route_completion_percent = ego_.routeCompletionPercent();
+    result.driving_score = ego_.drivingScore();
+    result.ego_collisions = ego_.collisions();
+    result.ego_off_road_percent = ego_.offRoadPercent();
+    result.cbv_count = cbvs_.count();
+    result.cbv_decisions = cbvs_.decisions();
+    result.cbv_off_road_rate_percent = cbvs_.offRoadRatePercent();
+    result.cbv_collisions = cbvs_.collisions();
+    result.cbv_ego_collisions = cbvs_.egoCollisions();
+    result.collisions_per_km = cbvs_.collisionsPerKilometre();
+    result.cbv_distance_m = cbvs_.distance();
+    result.ttc_2d = times_.measure("s", "no vehicle was on a collision course with the ego");
+    result.speed_shapiro_wilk = shapiroWilkMeasure(cbvs_.speeds());
+    result.acceleration_shapiro_wilk = shapiroWilkMeasure(cbvs_.accelerations());
+    result.speed_wasserstein = wassersteinMeasure(cbvs_.speeds(), background_speeds_);
+    result.rift_compat = rift_.measures();
+    return result;
+  }
+
+ private:
+  bool offRoad(const Vehicle& vehicle) const {
+    const auto& state = vehicle.state;
+    if (!state.position.allFinite()) return false;
+    return drivable_area_.signedDistance(state.position, state.elevation) < 0.0;
+  }
+
+  void observeEgo(const Vehicle& ego, const TrafficSnapshot& snapshot, TickMeasures& tick) {
+    tick.ego_speed = ego.state.speed;
+    tick.ego_off_road = offRoad(ego);
+    ego_.observe(ego, tick.ego_off_road);
+    const Interaction interaction = interactionOf(
+        ego, snapshot, {options_.ttc_radius, options_.ttc_limit, snapshot.decision_tick});
+    tick.ttc_2d = interaction.ttc_2d;
+    tick.nearest_distance = interaction.nearest_distance;
+    if (!snapshot.decision_tick) return;
+    if (interaction.ttc_2d) times_.add(*interaction.ttc_2d);
+    rift_.observeEgo(ego.state.speed, interaction.rift_ttc);
+    sampleBackground(ego, snapshot);
+  }
+
+  void sampleBackground(const Vehicle& ego, const TrafficSnapshot& snapshot) {
+    for (const Vehicle& vehicle : snapshot.vehicles) {
+      if (vehicle.role != VehicleRole::kBackground || !std::isfinite(vehicle.state.speed)) continue;
+      const double distance = (vehicle.state.position - ego.state.position).norm();
+      if (distance <= kBackgroundRadius) background_speeds_.push_back(vehicle.state.speed);
+    }
+  }
+
+  /// By the role now, or at the last tick for a vehicle that this contact removed. Call before
+  /// observeCbvs.
+  bool isCbv(const TrafficSnapshot& snapshot, const std::string& id) const {
+    const Vehicle* vehicle = snapshot.find(id);
+    return vehicle != nullptr ? vehicle->role == VehicleRole::kCbv : cbvs_.isDriven(id);
+  }
+
+  void observeContacts(const TrafficSnapshot& snapshot) {
+    for (const traffic::Contact& contact : snapshot.contacts) {
+      const bool with_ego = contact.first == ego_.id() || contact.second == ego_.id();
+      if (with_ego) ego_.countCollision();
+      bool with_cbv = false;
+      for (const std::string* id : {&contact.first, &contact.second}) {
+        if (!isCbv(snapshot, *id)) continue;
+        with_cbv = true;
+        rift_.countCollision(*id);
+      }
+      if (with_cbv) cbvs_.countCollision(with_ego);
+    }
+  }
+
+  void observeCbvs(const TrafficSnapshot& snapshot, TickMeasures& tick) {
+    sightings_.clear();
+    for (const Vehicle& vehicle : snapshot.vehicles) {
+      if (vehicle.role != VehicleRole::kCbv) continue;
+      sightings_.push_back({&vehicle, offRoad(vehicle)});
+      if (sightings_.back().off_road) ++tick.cbv_off_road;
+    }
+    cbvs_.observe(sightings_, snapshot.decision_tick);
+    if (snapshot.decision_tick) rift_.observeCbvs(sightings_);
+  }
+
+  SessionMetricsOptions options_;
+  const map::DrivableArea& drivable_area_;
+  EgoMeasures ego_;
+  CbvMeasures cbvs_;
+  RiftMeasures rift_;
+  SampleStatistics times_;
+  std::vector<double> background_speeds_;
+  std::vector<CbvSighting> sightings_;  ///< of the present tick
+};
+
+SessionMetrics::SessionMetrics(const SessionMetricsOptions& options,
+                               const map::DrivableArea& drivable_area, const map::Route& ego_route)
+    : accumulator_(std::make_unique<Accumulator>(options, drivable_area, ego_route)) {}
+
+SessionMetrics::~SessionMetrics() = default;
+
+TickMeasures SessionMetrics::observe(const TrafficSnapshot& snapshot, const cbv::CbvSelection*) {
+  return accumulator_->observe(snapshot);
+}
+
+SessionMeasures SessionMetrics::measures() const { return accumulator_->measures(); }
+
+}  // namespace cdiff::metrics

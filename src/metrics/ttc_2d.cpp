@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/ttc_2d.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace cdiff::metrics {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool finite(const MovingBox& moving) {
+  const auto& box = moving.box;
+  return box.center.allFinite() && moving.velocity.allFinite() && std::isfinite(box.heading) &&
+         std::isfinite(box.length) && std::isfinite(box.width);
+}
+
+/// Times during which the shadows of two boxes on an axis overlap.
+struct Interval {
+  double begin = -kInfinity;
+  double end = kInfinity;
+};
+
+/// Times at which |offset + rate t| <= reach.
+Interval overlapTimes(double offset, double rate, double reach) {
+  if (rate == 0.0) {
+    return std::abs(offset) <= reach ? Interval{} : Interval{kInfinity, -kInfinity};
+  }
+  const double first = (-reach - offset) / rate;
+  const double second = (reach - offset) / rate;
+  return {std::min(first, second), std::max(first, second)};
+}
+
+using Axes = std::array<Eigen::Vector2d, 2>;
+
+/// Forward and left unit vectors.
+Axes axesOf(const geometry::OrientedBox& box) {
+  const Eigen::Vector2d forward = geometry::direction(box.heading);
+  return {forward, geometry::leftNormal(forward)};
+}
+
+/// Half the shadow of a box on an axis.
+double reach(const geometry::OrientedBox& box, const Axes& axes, const Eigen::Vector2d& axis) {
+  return 0.5 * (box.length * std::abs(axes[0].dot(axis)) + box.width * std::abs(axes[1].dot(axis)));
+}
+
+/// Distance along `ray` (a unit vector) from `origin` to the segment, negative behind; nullopt when
+/// its line misses.
+std::optional<double> rayToSegment(const Eigen::Vector2d& origin, const Eigen::Vector2d& ray,
+                                   const Eigen::Vector2d& begin, const Eigen::Vector2d& end) {
+  const Eigen::Vector2d side = end - begin;
+  const double denominator = geometry::cross(ray, side);
+  if (denominator == 0.0) return std::nullopt;
+  const Eigen::Vector2d offset = begin - origin;
+  const double along_side = geometry::cross(offset, ray) / denominator;
+  if (along_side < 0.0 || along_side > 1.0) return std::nullopt;
+  return geometry::cross(offset, side) / denominator;
+}
+
+using Outline = std::array<Eigen::Vector2d, 4>;
+
+/// RIFT's corner order: front-left, front-right, rear-left, rear-right.
+Outline bowTie(const geometry::OrientedBox& box) {
+  const Outline ring = box.corners();
+  return {ring[0], ring[1], ring[3], ring[2]};
+}
+
+/// Shortest positive distance from a corner along `ray` onto an outline; 0 when a corner has the
+/// outline behind it and then before it (it lies inside); infinity when no ray hits.
+double rayCast(const Outline& corners, const Eigen::Vector2d& ray, const Outline& outline) {
+  double shortest = kInfinity;
+  for (const Eigen::Vector2d& corner : corners) {
+    bool behind = false;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const auto hit = rayToSegment(corner, ray, outline[i], outline[(i + 1) % outline.size()]);
+      if (!hit) continue;
+      if (*hit < 0.0) {
+        behind = true;
+      } else if (behind) {
+        return 0.0;
+      } else {
+        shortest = std::min(shortest, *hit);
+      }
+    }
+  }
+  return shortest;
+}
+
+/// One direction of the paper's wording: the gap closes at `closing`, and then the other direction
+/// must overlap.
+double axisTime(double gap, double closing, double other_offset, double other_rate,
+                double other_reach) {
+  if (gap < 0.0 || closing <= 0.0) return kInfinity;
+  const double time = gap / closing;
+  return std::abs(other_offset + other_rate * time) <= other_reach ? time : kInfinity;
+}
+
+}  // namespace
+
+std::optional<double> timeToCollision2d(const MovingBox& first, const MovingBox& second) {
+  if (!finite(first) || !finite(second)) return std::nullopt;
+  const Eigen::Vector2d offset = second.box.center - first.box.center;
+  const Eigen::Vector2d rate = second.velocity - first.velocity;
+  const Axes first_axes = axesOf(first.box);
+  const Axes second_axes = axesOf(second.box);
+  Interval common;
+  for (const Axes* axes : {&first_axes, &second_axes}) {
+    for (const Eigen::Vector2d& axis : *axes) {
+      const double both = reach(first.box, first_axes, axis) + reach(second.box, second_axes, axis);
+      const Interval times = overlapTimes(offset.dot(axis), rate.dot(axis), both);
+      common.begin = std::max(common.begin, times.begin);
+      common.end = std::min(common.end, times.end);
+      if (common.begin > common.end || common.end < 0.0) return std::nullopt;
+    }
+  }
+  return std::max(common.begin, 0.0);
+}
+
+std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second) {
+  if (!finite(first) || !finite(second)) return std::nullopt;
+  const Eigen::Vector2d offset = second.box.center - first.box.center;
+  const Eigen::Vector2d closing = first.velocity - second.velocity;
+  const double speed = closing.norm();
+  if (speed == 0.0 || closing.dot(offset) < 0.0) return std::nullopt;
+  const Eigen::Vector2d ray = closing / speed;
+  const Outline first_outline = bowTie(first.box);
+  const Outline second_outline = bowTie(second.box);
+  const double distance = std::min(rayCast(first_outline, ray, second_outline),
+                                   rayCast(second_outline, -ray, first_outline));
+  if (!std::isfinite(distance)) return std::nullopt;
+  return std::nearbyint(100.0 * distance / speed) / 100.0;
+}
+
+std::optional<double> longitudinalLateralTimeToCollision(const MovingBox& first,
+                                                         const MovingBox& second) {
+  if (!finite(first) || !finite(second)) return std::nullopt;
+  const geometry::Pose2d frame{first.box.center, first.box.heading};
+  const Eigen::Vector2d offset = frame.toBody(second.box.center);
+  const Eigen::Vector2d rate = frame.toBody(first.box.center + second.velocity - first.velocity);
+  const double reach_lon = 0.5 * (first.box.length + second.box.length);
+  const double reach_lat = 0.5 * (first.box.width + second.box.width);
+  const double gap_lon = std::abs(offset.x()) - reach_lon;
+  const double gap_lat = std::abs(offset.y()) - reach_lat;
+  if (gap_lon <= 0.0 && gap_lat <= 0.0) return 0.0;
+  const double closing_lon = offset.x() > 0.0 ? -rate.x() : rate.x();
+  const double closing_lat = offset.y() > 0.0 ? -rate.y() : rate.y();
+  const double time = std::min(axisTime(gap_lon, closing_lon, offset.y(), rate.y(), reach_lat),
+                               axisTime(gap_lat, closing_lat, offset.x(), rate.x(), reach_lon));
+  return std::isfinite(time) ? std::optional<double>(time) : std::nullopt;
+}
+
+}  // namespace cdiff::metrics

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Owns a session's world and clock.
+#include "e2e_cdiff/ros/node_main.h"
+#include "e2e_cdiff/ros/topics.h"
+#include "e2e_cdiff/ros/traffic_simulator_ros.h"
+
+int main(int argc, char** argv) {
+  using namespace cdiff::ros;
+  return runNode(argc, argv, kTrafficSimulatorNode, [](StopSignal& stop) {
+    return TrafficSimulatorRos(Parameters::ofThisNode(), stop).run();
+  });
+}

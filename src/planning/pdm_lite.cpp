@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/planning/pdm_lite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "e2e_cdiff/planning/box_forecast.h"
+#include "e2e_cdiff/planning/idm.h"
+#include "e2e_cdiff/planning/longitudinal_controller.h"
+#include "e2e_cdiff/planning/motion_forecast.h"
+#include "e2e_cdiff/planning/route_rules.h"
+
+namespace cdiff::planning {
+namespace {
+
+constexpr double kStandingSpeed = 0.1;      // [m/s]
+constexpr double kStuckTime = 8.5;          // published: 170 ticks at 20 Hz [s]
+constexpr double kRollbackSpeed = 0.5;      // [m/s]
+constexpr double kLaneChangeHorizon = 1.1;  // of boxes near a lane change [s]
+constexpr double kEndZone = 5.0;            // of the route [m]
+constexpr double kLightGap = 6.0;           // s0 before a stop line [m]
+constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
+
+/// Pedals in the last metres of the route.
+PedalCommand endPedals(double remaining, double speed, double target_speed) {
+  constexpr double kCreepSpeed = 1.0;
+  if (remaining > 0.0 && speed < kCreepSpeed) {
+    return pedals(speed, std::min(kCreepSpeed, target_speed));
+  }
+  return {0.0, true};
+}
+
+/// Brake that stops the vehicle 1 m beyond the end of the route at an even deceleration.
+double endBrake(double remaining, double speed, double full_deceleration) {
+  constexpr double kOvershoot = 1.0;
+  const double distance = remaining + kOvershoot;
+  if (distance <= 0.0) return 1.0;
+  return std::clamp(speed * speed / (2.0 * distance * full_deceleration), 0.0, 1.0);
+}
+
+/// How long the way of a vehicle that gave way must be clear before it drives on [s].
+double restartDelay(int slot) { return slot < 0 ? 0.0 : 0.5 + 0.2 * slot; }
+
+void requireComplete(const PlanningTask& task) {
+  if (task.vehicle == nullptr) {
+    throw std::invalid_argument("PdmLite: the task of slot " + std::to_string(task.slot) +
+                                " has no vehicle");
+  }
+  if (task.route == nullptr || task.route->empty()) {
+    throw std::invalid_argument("PdmLite: vehicle '" + task.vehicle->id + "' has no route");
+  }
+}
+
+/// IDM speed behind a leader or before a light.
+double idmBehind(const traffic::Vehicle& self, const traffic::Vehicle& leader, double desired) {
+  IdmObstacle obstacle;
+  obstacle.distance = (leader.state.position - self.state.position).norm();
+  obstacle.speed = leader.state.speed;
+  obstacle.length = leader.dimensions.length;
+  return idmSpeed(self.state.speed, desired, obstacle);
+}
+
+double idmBeforeLight(double speed, double desired, double distance) {
+  IdmObstacle obstacle;
+  obstacle.distance = distance;
+  obstacle.minimum_gap = kLightGap;
+  obstacle.time_headway = kLightHeadway;
+  return idmSpeed(speed, desired, obstacle);
+}
+
+}  // namespace
+
+PdmLite::PdmLite(const PdmLiteOptions& options, const dynamics::BicycleModelOptions& vehicle,
+                 const PlanningContext& context)
+    : options_(options),
+      model_(vehicle),
+      network_(context.network),
+      decision_period_(context.decision_period) {
+  options_.validate();
+}
+
+std::size_t PdmLite::forecastSteps(double horizon) const {
+  const double shorter = std::min(horizon, options_.forecast_horizon);
+  return static_cast<std::size_t>(std::max(1L, std::lround(shorter / kForecastStep)));
+}
+
+std::vector<PlannedAction> PdmLite::plan(const traffic::TrafficSnapshot& snapshot,
+                                         const std::vector<PlanningTask>& tasks) {
+  std::map<std::string, Memory> kept;
+  Forecasts forecasts(snapshot.vehicles.size());
+  std::vector<PlannedAction> actions;
+  for (const PlanningTask& task : tasks) {
+    requireComplete(task);
+    const traffic::VehicleState& state = task.vehicle->state;
+    auto known = memories_.extract(task.vehicle->id);
+    if (!known.empty()) kept.insert(std::move(known));
+    const Memory fresh{{RouteFollower(), LateralController(options_)}};
+    Memory& memory = kept.try_emplace(task.vehicle->id, fresh).first->second;
+    memory.driver.follower.update(*task.route, state.position);
+    const double s = memory.driver.follower.arcLength();
+    const Situation situation{
+        task, snapshot, s,
+        initialTargetSpeed(options_, *task.route, s, state.speed, task.target_speed),
+        nearLaneChange(*task.route, s, state.speed)};
+    actions.push_back(planOne(situation, memory, forecasts));
+  }
+  memories_ = std::move(kept);
+  return actions;
+}
+
+PlannedAction PdmLite::planOne(const Situation& situation, Memory& memory,
+                               Forecasts& forecasts) const {
+  const PlanningTask& task = situation.task;
+  const traffic::VehicleState& state = task.vehicle->state;
+  PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
+  planned.rollout = forecastEgo(state, *task.route, memory.driver, situation.initial_speed, model_,
+                                forecastSteps(options_.forecast_horizon));
+  const double target = targetSpeed(situation, planned.rollout, memory, forecasts);
+  planned.action = pedalAction(situation, target, memory);
+  planned.action.steer = steerAlong(*task.route, state, memory.driver);
+  return planned;
+}
+
+traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double target,
+                                            Memory& memory) const {
+  const double speed = situation.task.vehicle->state.speed;
+  const double remaining = situation.task.route->length() - situation.arc_length;
+  const PedalCommand pedal =
+      remaining < kEndZone ? endPedals(remaining, speed, target) : pedals(speed, target);
+  memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
+  const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
+  if (stuck) return {1.0, 0.0, 0.0};
+  const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
+  if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
+  const bool ends = remaining < kEndZone && target > 0.0 && speed >= kRollbackSpeed;
+  const double strongest = model_.options().max_deceleration;
+  return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
+}
+
+double PdmLite::targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
+                            Memory& memory, Forecasts& forecasts) const {
+  const traffic::Vehicle& self = *situation.task.vehicle;
+  const map::Route& route = *situation.task.route;
+  const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
+  double target = situation.initial_speed;
+  bool box_met = false;
+  for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
+    const traffic::Vehicle& other = situation.snapshot.vehicles[i];
+    if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
+    const double distance = (other.state.position - self.state.position).norm();
+    const bool exempt = !situation.near_lane_change;
+    if (exempt && isLeading(route, situation.arc_length, other.state)) {
+      target = std::min(target, idmBehind(self, other, situation.initial_speed));
+    } else if (exempt && isTrailing(route, situation.arc_length, other.state)) {
+      continue;
+    } else if (!box_met && distance <= options_.detection_radius) {
+      box_met = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
+    }
+  }
+  if (options_.obey_lights) {
+    const auto light = distanceToRedLight(route, situation.arc_length, situation.snapshot);
+    if (light) {
+      const double speed = self.state.speed;
+      target = std::min(target, idmBeforeLight(speed, situation.initial_speed, *light));
+    }
+  }
+  return mustWait(situation, box_met, memory) ? 0.0 : target;
+}
+
+bool PdmLite::meetsBox(const Situation& situation, const traffic::Vehicle& other,
+                       const std::vector<geometry::OrientedBox>& own,
+                       const std::vector<traffic::VehicleState>& forecast) const {
+  const bool lane_change = situation.near_lane_change;
+  const double horizon = lane_change ? kLaneChangeHorizon : options_.forecast_horizon;
+  return meet(own, otherBoxes(other.dimensions, forecast, lane_change), forecastSteps(horizon));
+}
+
+bool PdmLite::mustWait(const Situation& situation, bool box_met, Memory& memory) const {
+  memory.clear_time = box_met ? 0.0 : memory.clear_time + decision_period_;
+  if (box_met) {
+    memory.gave_way = true;
+    return true;
+  }
+  const bool delayed =
+      memory.gave_way && memory.clear_time < restartDelay(situation.task.slot) - 1e-9;
+  if (!delayed) memory.gave_way = false;
+  return delayed;
+}
+
+const std::vector<traffic::VehicleState>& PdmLite::forecastOf(
+    const traffic::TrafficSnapshot& snapshot, std::size_t index, Forecasts& forecasts) const {
+  auto& forecast = forecasts[index];
+  if (!forecast) {
+    forecast = forecastMotion(snapshot.vehicles[index], network_, model_.options(),
+                              forecastSteps(options_.forecast_horizon));
+  }
+  return *forecast;
+}
+
+}  // namespace cdiff::planning

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/html_report.h"
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/playback.h"
+#include "e2e_cdiff/report/report_style.h"
+#include "e2e_cdiff/report/report_tables.h"
+#include "e2e_cdiff/report/session_charts.h"
+#include "e2e_cdiff/report/top_view.h"
+
+namespace cdiff::report {
+namespace {
+
+std::string section(const std::string& title, const std::string& content) {
+  return "<section>\n<h2>" + title + "</h2>\n" + content + "</section>\n";
+}
+
+std::string head(const SessionResult& result) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+         "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+         "name=\"color-scheme\" content=\"light dark\">\n<title>" +
+         escapeMarkup(result.setup.options().name) + " – session report</title>\n<style>" +
+         reportStyleSheet() + "</style>\n</head>\n";
+}
+
+std::string banner(const SessionResult& result) {
+  const scenario::ScenarioOptions& options = result.setup.options();
+  const bool judged = endedByItself(result.status);
+  const std::string outcome = !judged ? "error" : result.verdict.passed ? "passed" : "failed";
+  const std::string word = !judged ? (result.status == traffic::SessionStatus::kError
+                                          ? "Error: the session could not be judged"
+                                          : "Interrupted: the session was not judged")
+                           : result.verdict.passed ? "Passed"
+                                                   : "Failed";
+  const std::string mark = !judged ? "!" : result.verdict.passed ? "✓" : "✗";
+  std::string html = "<header>\n<h1>" + escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
+                     escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) +
+                     " · ego " + escapeMarkup(options.ego_planner) + " · CBV " +
+                     escapeMarkup(options.cbv_planner) + "</p>\n<div class=\"banner " + outcome +
+                     "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + mark +
+                     "</span><div><strong>" + word + "</strong>";
+  for (const std::string& failure : result.verdict.failures) {
+    html += "<p>" + escapeMarkup(failure) + "</p>";
+  }
+  if (result.verdict.failures.empty()) {
+    html += "<p>the session ended with status '" + std::string(traffic::toText(result.status)) +
+            "' and every rule was met</p>";
+  }
+  return html + "</div></div>\n</header>\n";
+}
+
+std::string figure(const std::string& name, const std::string& value, const std::string& unit,
+                   const std::string& note) {
+  return "<div class=\"figure\"><span class=\"name\">" + name + "</span><span class=\"value\">" +
+         value + (unit.empty() ? "" : " <small>" + escapeMarkup(unit) + "</small>") +
+         "</span><span class=\"under\">" + escapeMarkup(note) + "</span></div>\n";
+}
+
+std::string figure(const std::string& name, const metrics::Measure& measure, int decimals) {
+  if (!measure.value) return figure(name, "–", "", measure.reason);
+  return figure(name, core::formatFixed(*measure.value, decimals), measure.unit,
+                "n = " + std::to_string(measure.n));
+}
+
+std::string figures(const SessionResult& result) {
+  const metrics::SessionMeasures& measures = result.measures;
+  const std::string pace =
+      result.wall_seconds > 0.0
+          ? core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) +
+                " times real time"
+          : "wall time not measured";
+  return "<div class=\"figures\">\n" +
+         figure("Route completion", core::formatFixed(measures.route_completion_percent, 1), "%",
+                traffic::toText(result.status)) +
+         figure("Driving score", core::formatFixed(measures.driving_score, 1), "", "of 100") +
+         figure("Ego collisions", std::to_string(measures.ego_collisions), "",
+                std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
+         figure("CBVs", std::to_string(measures.cbv_count), "",
+                std::to_string(measures.cbv_decisions) + " decisions, " +
+                    core::formatFixed(measures.cbv_distance_m, 0) + " m") +
+         figure("CBV collisions", std::to_string(measures.cbv_collisions), "",
+                measures.collisions_per_km.value
+                    ? core::formatFixed(*measures.collisions_per_km.value, 2) + " per km"
+                    : measures.collisions_per_km.reason) +
+         figure("CBV off-road rate", measures.cbv_off_road_rate_percent, 2) +
+         figure("2D-TTC, minimum", measures.ttc_2d.minimum, 2) +
+         figure("2D-TTC, mean", measures.ttc_2d.mean, 2) +
+         figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", pace) +
+         "</div>\n";
+}
+
+/// Buttons and slider; shown by the script, so that the page makes sense without it.
+std::string playbackControls() {
+  return "<div class=\"controls\" id=\"controls\" hidden>\n<button type=\"button\" id=\"play\">"
+         "Play</button>\n<input type=\"range\" id=\"time\" min=\"0\" value=\"0\" step=\"1\" "
+         "aria-label=\"Time of the session\">\n<output id=\"now\" for=\"time\"></output>\n<span "
+         "class=\"group\"><button type=\"button\" id=\"closer\" aria-label=\"Zoom in\">+</button>"
+         "<button type=\"button\" id=\"farther\" aria-label=\"Zoom out\">−</button><button "
+         "type=\"button\" id=\"whole\">Whole picture</button></span>\n<label><input "
+         "type=\"checkbox\" id=\"follow\"> follow the ego</label>\n</div>\n";
+}
+
+std::string topView(const SessionResult& result, const MapCanvas& canvas) {
+  return "<div class=\"map\">\n" + topViewSvg(result, canvas) + "</div>\n" + playbackControls() +
+         topViewLegend(canvas);
+}
+
+std::string configuration(const SessionResult& result) {
+  return originTable(result) + "<details><summary>Resolved scenario</summary>\n<pre>" +
+         escapeMarkup(core::dumpOptions(result.setup.options())) + "</pre>\n</details>\n";
+}
+
+}  // namespace
+
+std::string htmlReport(const SessionResult& result) {
+  const MapCanvas canvas(sessionRegion(result));
+  return head(result) + "<body>\n<main>\n" + banner(result) + figures(result) +
+         section("From above", topView(result, canvas)) +
+         section("Over time", sessionCharts(result)) + section("Rules", ruleTable(result)) +
+         section("Metrics", metricTable(result.measures)) +
+         section("Critical background vehicles", selectionTable(result)) +
+         section("Rejected candidates", rejectionTable(result.cbv)) +
+         section("Contacts", contactTable(result.timeline)) +
+         section("Planner latency", latencyTable(result.latencies)) +
+         section("Faults", faultTable(result.faults)) +
+         section("Configuration and versions", configuration(result)) +
+         "</main>\n<script type=\"application/json\" id=\"playback\">" +
+         playbackJson(result, canvas) + "</script>\n<script>" + reportScript() +
+         "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace cdiff::report

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/junit.h"
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/markup.h"
+
+namespace cdiff::report {
+namespace {
+
+std::string attribute(const std::string& name, const std::string& value) {
+  return " " + name + "=\"" + escapeMarkup(value) + "\"";
+}
+
+std::string caseXml(const SessionResult& result, const Check& check) {
+  const bool session = check.name == "session";
+  std::string text = "    <testcase" +
+                     attribute("classname", "e2e_cdiff." + result.setup.options().name) +
+                     attribute("name", check.name) +
+                     attribute("time", session ? core::formatFixed(result.wall_seconds, 3) : "0");
+  if (check.outcome == CheckOutcome::kPassed) return text + "/>\n";
+  const std::string type = traffic::toText(result.status);
+  text += ">\n      ";
+  if (check.outcome == CheckOutcome::kSkipped) {
+    text += "<skipped" + attribute("message", check.text) + "/>";
+  } else {
+    const std::string tag = check.outcome == CheckOutcome::kError ? "error" : "failure";
+    text += "<" + tag + attribute("type", session ? type : check.name) +
+            attribute("message", check.text) + ">" + escapeMarkup(check.text) + "</" + tag + ">";
+  }
+  return text + "\n    </testcase>\n";
+}
+
+std::string countOf(const std::vector<Check>& checks, CheckOutcome outcome) {
+  return std::to_string(std::count_if(checks.begin(), checks.end(), [outcome](const Check& check) {
+    return check.outcome == outcome;
+  }));
+}
+
+}  // namespace
+
+std::string junitXml(const SessionResult& result) {
+  const std::string counts = attribute("tests", std::to_string(result.checks.size())) +
+                             attribute("failures", countOf(result.checks, CheckOutcome::kFailed)) +
+                             attribute("errors", countOf(result.checks, CheckOutcome::kError)) +
+                             attribute("skipped", countOf(result.checks, CheckOutcome::kSkipped)) +
+                             attribute("time", core::formatFixed(result.wall_seconds, 3));
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
+                     ">\n  <testsuite" + attribute("name", result.setup.options().name) + counts +
+                     ">\n";
+  for (const Check& check : result.checks) text += caseXml(result, check);
+  return text + "  </testsuite>\n</testsuites>\n";
+}
+
+}  // namespace cdiff::report

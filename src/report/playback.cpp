@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/playback.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/report/top_view.h"
+
+namespace cdiff::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPoses = 60000;
+
+std::size_t poseCount(const Timeline& timeline) {
+  std::size_t count = 0;
+  for (const TimelineFrame& frame : timeline.frames()) count += frame.poses.size();
+  return count;
+}
+
+long rounded(double value) { return std::lround(value); }
+
+/// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
+/// [0.1 m/s].
+Json frameNumbers(const TimelineFrame& frame, const MapCanvas& canvas,
+                  const std::vector<std::size_t>& cbv_styles) {
+  Json numbers = Json::array();
+  for (auto pose = frame.poses.rbegin(); pose != frame.poses.rend(); ++pose) {
+    if (!canvas.shows({pose->x, pose->y})) continue;
+    const Eigen::Vector2d pixel = canvas.toPixels({pose->x, pose->y});
+    const std::size_t style = pose->role == traffic::VehicleRole::kEgo   ? 0
+                              : pose->role == traffic::VehicleRole::kCbv ? cbv_styles[pose->vehicle]
+                                                                         : 1;
+    numbers.push_back(pose->vehicle);
+    numbers.push_back(style);
+    numbers.push_back(rounded(10.0 * pixel.x()));
+    numbers.push_back(rounded(10.0 * pixel.y()));
+    numbers.push_back(rounded(-core::radiansToDegrees(static_cast<double>(pose->heading))));
+    numbers.push_back(rounded(10.0 * static_cast<double>(pose->speed)));
+  }
+  return numbers;
+}
+
+/// `<` never appears, so no text can end the script element.
+std::string safeInScript(const std::string& json) {
+  std::string safe;
+  for (const char letter : json) {
+    if (letter == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += letter;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string playbackJson(const SessionResult& result, const MapCanvas& canvas) {
+  const Timeline& timeline = result.timeline;
+  Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
+               {"vehicles", Json::array()},
+               {"times", Json::array()},
+               {"frames", Json::array()}};
+  std::vector<std::size_t> cbv_styles;
+  for (const TimelineVehicle& vehicle : timeline.vehicles()) {
+    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
+    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
+    cbv_styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
+  }
+  const auto& frames = timeline.frames();
+  const std::size_t stride = 1 + poseCount(timeline) / kMostPoses;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i % stride != 0 && i + 1 != frames.size()) continue;
+    data["times"].push_back(std::round(100.0 * frames[i].time) / 100.0);
+    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
+  }
+  return safeInScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace cdiff::report

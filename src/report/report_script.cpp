@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/report_style.h"
+
+namespace cdiff::report {
+
+const char* reportScript() {
+  return R"JS(
+"use strict";
+(function () {
+  const data = JSON.parse(document.getElementById("playback").textContent);
+  const view = document.getElementById("top-view");
+  const layer = document.getElementById("vehicles");
+  const slider = document.getElementById("time");
+  const play = document.getElementById("play");
+  const now = document.getElementById("now");
+  const follow = document.getElementById("follow");
+  const full = view.viewBox.baseVal;
+  const whole = { x: 0, y: 0, w: full.width, h: full.height };
+  const scale = Number(view.dataset.magnification);
+  const last = data.frames.length - 1;
+  if (last < 1) return;
+
+  const boxes = new Map();
+  const svgElement = function (name, attributes, parent) {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const key in attributes) element.setAttribute(key, attributes[key]);
+    parent.appendChild(element);
+    return element;
+  };
+  const boxOf = function (index) {
+    if (boxes.has(index)) return boxes.get(index);
+    const vehicle = data.vehicles[index];
+    const l = 0.5 * vehicle[1] * scale, w = 0.5 * vehicle[2] * scale;
+    const box = svgElement("g", {}, layer);
+    svgElement("title", {}, box).textContent = vehicle[0];
+    svgElement("path", { d: `M${-l} ${-w}H${l}V${w}H${-l}Z` }, box);
+    svgElement("path", { class: "nose",
+      d: `M${0.3 * l} ${-0.8 * w}L${0.8 * l} 0L${0.3 * l} ${0.8 * w}Z` }, box);
+    boxes.set(index, box);
+    return box;
+  };
+
+  let zoom = 1;
+  let center = { x: whole.w / 2, y: whole.h / 2 };
+  const look = function () {
+    const w = whole.w / zoom, h = whole.h / zoom;
+    if (!follow.checked) {
+      center.x = Math.min(Math.max(center.x, w / 2), whole.w - w / 2);
+      center.y = Math.min(Math.max(center.y, h / 2), whole.h - h / 2);
+    }
+    view.setAttribute("viewBox", `${center.x - w / 2} ${center.y - h / 2} ${w} ${h}`);
+    view.style.setProperty("--zoom", zoom);
+  };
+  const zoomTo = function (value) { zoom = Math.min(Math.max(value, 1), 16); look(); };
+
+  const moveCursors = function (time) {
+    for (const chart of document.querySelectorAll(".chart svg")) {
+      const left = Number(chart.dataset.left), right = Number(chart.dataset.right);
+      const x = left + (right - left) * time / Number(chart.dataset.duration);
+      const cursor = chart.querySelector(".cursor");
+      cursor.setAttribute("transform", `translate(${x} 0)`);
+      cursor.style.visibility = "visible";
+    }
+  };
+  const draw = function (frame) {
+    const numbers = data.frames[frame], seen = new Set();
+    let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
+    for (let i = 0; i < numbers.length; i += 6) {
+      const index = numbers[i], box = boxOf(index);
+      const x = numbers[i + 2] / 10, y = numbers[i + 3] / 10;
+      box.setAttribute("class", "vehicle " + data.styles[numbers[i + 1]]);
+      box.setAttribute("transform", `translate(${x} ${y}) rotate(${numbers[i + 4]})`);
+      box.style.display = "";
+      seen.add(index);
+      if (numbers[i + 1] === 0) {
+        text += ", ego " + (numbers[i + 5] / 10).toFixed(1) + " m/s";
+        if (follow.checked) { center = { x: x, y: y }; look(); }
+      }
+    }
+    for (const [index, box] of boxes) if (!seen.has(index)) box.style.display = "none";
+    now.textContent = text;
+    moveCursors(data.times[frame]);
+  };
+
+  let playing = false, began = 0, offset = 0;
+  const stop = function () { playing = false; play.textContent = "Play"; };
+  const show = function (frame) { slider.value = frame; draw(frame); };
+  const tick = function (clock) {
+    if (!playing) return;
+    const time = offset + (clock - began) / 1000;
+    let frame = Number(slider.value);
+    while (frame < last && data.times[frame + 1] <= time) ++frame;
+    if (frame !== Number(slider.value)) show(frame);
+    if (frame === last) stop(); else requestAnimationFrame(tick);
+  };
+  play.addEventListener("click", function () {
+    if (playing) { stop(); return; }
+    if (Number(slider.value) === last) show(0);
+    playing = true;
+    play.textContent = "Pause";
+    began = performance.now();
+    offset = data.times[Number(slider.value)];
+    requestAnimationFrame(tick);
+  });
+  slider.addEventListener("input", function () { stop(); draw(Number(slider.value)); });
+  document.getElementById("closer").addEventListener("click", () => zoomTo(zoom * 1.6));
+  document.getElementById("farther").addEventListener("click", () => zoomTo(zoom / 1.6));
+  document.getElementById("whole").addEventListener("click", function () {
+    follow.checked = false;
+    zoomTo(1);
+  });
+  follow.addEventListener("change", function () {
+    if (follow.checked && zoom < 2) zoom = 3;
+    look();
+    draw(Number(slider.value));
+  });
+
+  let grip = null;
+  view.addEventListener("pointerdown", function (event) {
+    if (zoom === 1) return;
+    grip = { x: event.clientX, y: event.clientY };
+    follow.checked = false;
+    view.setPointerCapture(event.pointerId);
+    view.classList.add("moving");
+  });
+  view.addEventListener("pointermove", function (event) {
+    if (!grip) return;
+    const metre = whole.w / zoom / view.clientWidth;
+    center.x -= (event.clientX - grip.x) * metre;
+    center.y -= (event.clientY - grip.y) * metre;
+    grip = { x: event.clientX, y: event.clientY };
+    look();
+  });
+  const letGo = function () { grip = null; view.classList.remove("moving"); };
+  view.addEventListener("pointerup", letGo);
+  view.addEventListener("pointercancel", letGo);
+
+  for (const chart of document.querySelectorAll(".chart svg")) {
+    chart.addEventListener("click", function (event) {
+      const frame = chart.getBoundingClientRect(), left = Number(chart.dataset.left);
+      const x = (event.clientX - frame.left) * chart.viewBox.baseVal.width / frame.width;
+      const share = (x - left) / (Number(chart.dataset.right) - left);
+      const time = share * Number(chart.dataset.duration);
+      let best = 0;
+      data.times.forEach(function (value, i) {
+        if (Math.abs(value - time) < Math.abs(data.times[best] - time)) best = i;
+      });
+      stop();
+      show(best);
+    });
+  }
+
+  slider.max = last;
+  document.getElementById("controls").hidden = false;
+  layer.replaceChildren();
+  show(last);
+})();
+)JS";
+}
+
+}  // namespace cdiff::report

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/report_style.h"
+
+namespace cdiff::report {
+
+const char* reportStyleSheet() {
+  return R"CSS(
+:root {
+  color-scheme: light dark;
+  --page: #ffffff; --text: #1c2024; --soft: #5d6670; --line: #d9dde2; --panel: #f5f6f8;
+  --ground: #eef1ec; --road: #d3d7dc; --edge: #a3a9b1; --lane: #aeb4bc; --halo: #ffffff;
+  --ego: #c62828; --bg: #1f6fc4; --goal: #2e7d32; --conflict: #111417; --contact: #e65100;
+  --c0: #7b1fa2; --c1: #d01884; --c2: #5b3bd1; --c3: #a06bc4; --c4: #4a0d66;
+  --passed: #1b6e36; --passed-back: #e2f4e6; --failed: #a31919; --failed-back: #fde8e6;
+  --error: #7a4a00; --error-back: #fdf0d5;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --page: #14171a; --text: #e6e9ec; --soft: #9aa4ae; --line: #343a41; --panel: #1d2125;
+    --ground: #181c1a; --road: #363c43; --edge: #5b636c; --lane: #555d66; --halo: #14171a;
+    --ego: #ff6b60; --bg: #6ab0ff; --goal: #7bd389; --conflict: #ffffff; --contact: #ffa14a;
+    --c0: #d29bea; --c1: #ff85cf; --c2: #ab9bff; --c3: #ecd6f7; --c4: #a25fd0;
+    --passed: #8fe0a3; --passed-back: #12301c; --failed: #ffb0a8; --failed-back: #3d1513;
+    --error: #ffd08a; --error-back: #3a2a0c;
+  }
+}
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--page); color: var(--text);
+  font: 15px/1.45 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
+main { max-width: 1160px; margin: 0 auto; padding: 20px 24px 60px; }
+h1 { font-size: 1.6rem; margin: 0; overflow-wrap: anywhere; }
+h2 { font-size: 1.15rem; margin: 34px 0 10px; }
+.sub { margin: 2px 0 14px; color: var(--soft); overflow-wrap: anywhere; }
+.note { color: var(--soft); margin: 6px 0; }
+.banner { display: flex; gap: 16px; align-items: center; padding: 14px 18px; border-radius: 8px;
+  border-left: 6px solid; }
+.banner p { margin: 2px 0 0; color: var(--text); overflow-wrap: anywhere; }
+.banner strong { font-size: 1.3rem; }
+.banner .sign { font-size: 2rem; line-height: 1; font-weight: 700; }
+.banner.passed { color: var(--passed); background: var(--passed-back); }
+.banner.failed { color: var(--failed); background: var(--failed-back); }
+.banner.error { color: var(--error); background: var(--error-back); }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); gap: 10px;
+  margin-top: 16px; }
+.figure { background: var(--panel); border-radius: 8px; padding: 10px 14px; display: flex;
+  flex-direction: column; }
+.figure .name, .figure .under { color: var(--soft); font-size: .85rem; overflow-wrap: anywhere; }
+.figure .value { font-size: 1.45rem; font-weight: 600; font-variant-numeric: tabular-nums; }
+.figure small { font-size: .9rem; font-weight: 400; }
+.map { border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--ground); }
+#top-view { display: block; width: 100%; height: auto; --zoom: 1; }
+#top-view.moving { cursor: grabbing; }
+svg path, svg circle { fill: none; stroke-linejoin: round; stroke-linecap: round;
+  vector-effect: non-scaling-stroke; }
+svg path.road { fill: var(--road); fill-rule: evenodd; stroke: var(--edge); stroke-width: 1; }
+svg path.lane { stroke: var(--lane); stroke-width: .8; stroke-dasharray: 3 4; }
+svg path.route { stroke: var(--goal); stroke-width: 7; opacity: .3; stroke-linecap: butt; }
+svg path.planned { stroke-width: 2; stroke-dasharray: 7 5; opacity: .85; }
+svg path.trail { stroke-width: 2.6; }
+svg path.trail.bg { stroke-width: 1.2; opacity: .45; }
+.ego { --own: var(--ego); } .bg { --own: var(--bg); } .c0 { --own: var(--c0); }
+.c1 { --own: var(--c1); } .c2 { --own: var(--c2); } .c3 { --own: var(--c3); } .c4 { --own: var(--c4); }
+svg path.ego, svg path.bg, svg path.cbv { stroke: var(--own); }
+.vehicle path { fill: var(--own); stroke: var(--halo); stroke-width: 1; }
+.vehicle path.nose { fill: var(--halo); stroke: none; }
+.vehicle.start path { fill: none; stroke: var(--ego); stroke-width: 1.5; stroke-dasharray: 3 2; }
+.vehicle.start path.nose { display: none; }
+svg circle.goal { stroke: var(--goal); stroke-width: 3; fill: var(--page); }
+svg path.conflict { stroke: var(--conflict); stroke-width: 2.6; }
+svg circle.contact { stroke: var(--contact); stroke-width: 3; }
+svg path.scale { stroke: var(--text); stroke-width: 2; }
+svg path.north { fill: var(--text); }
+svg text { fill: var(--text); font-size: 12px; }
+svg text.name { font-size: calc(13px / var(--zoom)); font-weight: 600; paint-order: stroke;
+  stroke: var(--halo); stroke-width: calc(3px / var(--zoom)); stroke-linejoin: round; }
+.controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
+.controls[hidden] { display: none; }
+.controls input[type=range] { flex: 1 1 260px; accent-color: var(--ego); }
+.controls output { min-width: 19em; font-variant-numeric: tabular-nums; }
+.controls .group { display: inline-flex; gap: 4px; }
+button { font: inherit; color: inherit; background: var(--panel); border: 1px solid var(--line);
+  border-radius: 6px; padding: 4px 12px; cursor: pointer; }
+#play { min-width: 5.2em; }
+.legend { display: flex; flex-wrap: wrap; gap: 4px 18px; margin: 8px 0; color: var(--soft);
+  font-size: .88rem; }
+.legend .item { display: inline-flex; gap: 6px; align-items: center; }
+.legend svg { width: 28px; height: 14px; }
+.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr));
+  gap: 10px 24px; }
+.chart { margin: 0; min-width: 0; }
+.chart figcaption { font-weight: 600; font-size: .92rem; margin-bottom: 2px; }
+.chart svg { display: block; width: 100%; height: auto; }
+.chart path.grid { stroke: var(--line); stroke-width: 1; }
+.chart text { fill: var(--soft); }
+svg text.end { text-anchor: end; } svg text.middle { text-anchor: middle; }
+svg path.series { stroke-width: 2; }
+svg circle.mark { fill: var(--page); stroke: var(--conflict); stroke-width: 2; }
+.chart text.mark-text { fill: var(--text); font-weight: 600; paint-order: stroke;
+  stroke: var(--page); stroke-width: 3px; }
+.chart path.cursor { stroke: var(--soft); stroke-width: 1; visibility: hidden; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .92rem; min-width: 50%; }
+th, td { text-align: left; padding: 5px 14px 5px 0; border-bottom: 1px solid var(--line);
+  vertical-align: top; overflow-wrap: break-word; }
+th { color: var(--soft); font-weight: 600; }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+th.number { white-space: normal; }
+tr.absent td { color: var(--soft); }
+tr.passed td:nth-child(2) { color: var(--passed); font-weight: 600; }
+tr.failed td:nth-child(2) { color: var(--failed); font-weight: 600; }
+tr.error td:nth-child(2) { color: var(--error); font-weight: 600; }
+tr.skipped td { color: var(--soft); }
+details { margin-top: 14px; } summary { cursor: pointer; font-weight: 600; }
+pre { background: var(--panel); border-radius: 8px; padding: 12px 14px; overflow-x: auto;
+  font-size: .85rem; }
+@media print {
+  main { max-width: none; padding: 0; }
+  .controls { display: none; }
+  section, .figure, tr { break-inside: avoid; }
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+}
+)CSS";
+}
+
+}  // namespace cdiff::report

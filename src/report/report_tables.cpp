@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/report_tables.h"
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/build_info.h"
+#include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/summary.h"
+
+namespace cdiff::report {
+namespace {
+
+constexpr std::size_t kMostFaults = 200;  // rows shown
+
+std::string fixed(double value, int decimals) { return core::formatFixed(value, decimals); }
+
+/// Rows of plain texts under a head; a column whose name begins with '#' holds numbers.
+class Table {
+ public:
+  explicit Table(const std::vector<std::string>& head) {
+    html_ = "<div class=\"scroll\"><table><thead><tr>";
+    for (const std::string& name : head) {
+      const bool number = name.front() == '#';
+      numeric_.push_back(number);
+      html_ += std::string(number ? "<th scope=\"col\" class=\"number\">" : "<th scope=\"col\">") +
+               escapeMarkup(number ? name.substr(1) : name) + "</th>";
+    }
+    html_ += "</tr></thead><tbody>\n";
+  }
+  void row(const std::vector<std::string>& cells, const std::string& style = {}) {
+    html_ += style.empty() ? "<tr>" : "<tr class=\"" + style + "\">";
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      html_ += std::string(numeric_[i] ? "<td class=\"number\">" : "<td>") +
+               escapeMarkup(cells[i]) + "</td>";
+    }
+    html_ += "</tr>\n";
+  }
+  std::string html() const { return html_ + "</tbody></table></div>\n"; }
+
+ private:
+  std::vector<bool> numeric_;
+  std::string html_;
+};
+
+void measureRow(Table& table, const std::string& name, const metrics::Measure& measure) {
+  table.row({name, measure.value ? fixed(*measure.value, 3) : "–", measure.unit,
+             std::to_string(measure.n), measure.reason},
+            measure.value ? "" : "absent");
+}
+
+}  // namespace
+
+std::string ruleTable(const SessionResult& result) {
+  Table table({"Rule", "Outcome", "Found"});
+  for (const Check& check : result.checks) {
+    table.row({check.name, toText(check.outcome), check.text}, toText(check.outcome));
+  }
+  return table.html();
+}
+
+std::string metricTable(const metrics::SessionMeasures& measures) {
+  Table table({"Metric", "#Value", "Unit", "#n", "Note"});
+  measureRow(table, "2D-TTC, mean", measures.ttc_2d.mean);
+  measureRow(table, "2D-TTC, standard deviation", measures.ttc_2d.standard_deviation);
+  measureRow(table, "2D-TTC, minimum", measures.ttc_2d.minimum);
+  measureRow(table, "Off-road rate of CBVs (ORR)", measures.cbv_off_road_rate_percent);
+  measureRow(table, "Collisions of CBVs per km (CPK)", measures.collisions_per_km);
+  measureRow(table, "Shapiro-Wilk W of CBV speeds", measures.speed_shapiro_wilk);
+  measureRow(table, "Shapiro-Wilk W of CBV accelerations", measures.acceleration_shapiro_wilk);
+  measureRow(table, "Wasserstein distance of CBV speeds to background", measures.speed_wasserstein);
+  measureRow(table, "Ego off the road", measures.ego_off_road_percent);
+  for (const auto& [name, measure] : measures.rift_compat) {
+    measureRow(table, "RIFT's definition: " + name, measure);
+  }
+  return table.html();
+}
+
+std::string selectionTable(const SessionResult& result) {
+  if (result.cbv.records().empty()) {
+    return "<p class=\"note\">No vehicle was selected as CBV.</p>\n";
+  }
+  Table table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score", "#Ego to conflict [m]",
+               "#CBV to conflict [m]", "#Arrival gap [s]", "Place", "#Decisions", "#Released [s]",
+               "Why"});
+  const double step = result.setup.options().simulation_step;
+  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
+    const CbvRecord& record = result.cbv.records()[i];
+    const cbv::ConflictPoint& conflict = record.conflict_point;
+    const bool junction = atOrBeyondFirstJunction(conflict, result.setup.egoRoute());
+    table.row(
+        {"C" + std::to_string(i + 1), record.vehicle_id, std::to_string(record.slot),
+         fixed(static_cast<double>(record.selected_tick) * step, 2),
+         fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
+         fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
+         junction ? "at or beyond the first junction" : "before the first junction",
+         std::to_string(record.decisions_driven),
+         record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
+         record.release_reason});
+  }
+  return table.html();
+}
+
+std::string rejectionTable(const CbvLog& cbv) {
+  if (cbv.rejected().empty()) return "<p class=\"note\">No candidate was rejected.</p>\n";
+  std::vector<std::pair<std::string, std::size_t>> rows(cbv.rejected().begin(),
+                                                        cbv.rejected().end());
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& left, const auto& right) { return left.second > right.second; });
+  Table table({"Reason", "#Candidates, over all decisions"});
+  for (const auto& [reason, count] : rows) table.row({reason, std::to_string(count)});
+  return table.html();
+}
+
+std::string contactTable(const Timeline& timeline) {
+  if (timeline.contacts().empty()) return "<p class=\"note\">No vehicles touched.</p>\n";
+  Table table({"#Time [s]", "Vehicle", "Vehicle"});
+  for (const TimelineContact& contact : timeline.contacts()) {
+    table.row({fixed(contact.time, 2), contact.first, contact.second});
+  }
+  return table.html();
+}
+
+std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies) {
+  if (latencies.empty()) return "<p class=\"note\">No planner was timed.</p>\n";
+  Table table({"Planner", "#Median [ms]", "#95th percentile [ms]", "#Maximum [ms]", "#Decisions"});
+  for (const auto& [planner, figures] : latencies) {
+    table.row({planner, fixed(figures.median, 2), fixed(figures.percentile_95, 2),
+               fixed(figures.maximum, 2), std::to_string(figures.n)});
+  }
+  return table.html();
+}
+
+std::string faultTable(const std::vector<traffic::Fault>& faults) {
+  if (faults.empty()) return "<p class=\"note\">None.</p>\n";
+  Table table({"#Tick", "Source", "What happened"});
+  const std::size_t shown = std::min(faults.size(), kMostFaults);
+  for (std::size_t i = 0; i < shown; ++i) {
+    table.row({std::to_string(faults[i].tick), faults[i].source, faults[i].text});
+  }
+  const std::size_t left = faults.size() - shown;
+  if (left == 0) return table.html();
+  return table.html() + "<p class=\"note\">" + std::to_string(left) +
+         " more are in summary.json.</p>\n";
+}
+
+std::string originTable(const SessionResult& result) {
+  const map::ImportedNetwork& network = result.setup.import();
+  Table table({"What", "Is"});
+  table.row({"package", "e2e_cdiff " + packageVersion() + ", revision " + packageRevision()});
+  table.row(
+      {"deployment", result.facts.deployment +
+                         (result.facts.deterministic ? ", deterministic" : ", not deterministic")});
+  table.row({"simulator", result.facts.simulator_version});
+  table.row({"network", network.source.string()});
+  table.row({"network sha256", network.source_sha256});
+  for (const std::string& change : network.changes) table.row({"network import", change});
+  for (const auto& [name, version] : libraryVersions()) table.row({name, version});
+  table.row({"processor", processorModel() + "; built for " + instructionSet()});
+  table.row({"trace sha256", result.trace_sha256});
+  return table.html();
+}
+
+}  // namespace cdiff::report

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/session_charts.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/line_chart.h"
+#include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/top_view.h"
+
+namespace cdiff::report {
+namespace {
+
+using traffic::VehicleRole;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMostPoints = 1500;  // of a line
+
+/// What a chart shows of a pose; not a number where there is nothing.
+using Quantity = std::function<double(const TimelinePose&)>;
+
+/// The ego (where it was), then every CBV in order of selection.
+struct Subject {
+  std::string id;
+  VehicleRole role = VehicleRole::kCbv;
+};
+
+std::vector<Subject> subjectsOf(const SessionResult& result) {
+  std::vector<Subject> subjects;
+  for (const TimelineFrame& frame : result.timeline.frames()) {
+    const bool ego = !frame.poses.empty() && frame.poses.front().role == VehicleRole::kEgo;
+    if (!ego) continue;
+    subjects.push_back(
+        {result.timeline.vehicles()[frame.poses.front().vehicle].id, VehicleRole::kEgo});
+    break;
+  }
+  for (const CbvRecord& record : result.cbv.records()) {
+    const bool known = std::any_of(subjects.begin(), subjects.end(), [&](const Subject& subject) {
+      return subject.id == record.vehicle_id;
+    });
+    if (!known) subjects.push_back({record.vehicle_id, VehicleRole::kCbv});
+  }
+  return subjects;
+}
+
+ChartSeries seriesOf(const SessionResult& result, const Subject& subject,
+                     const Quantity& quantity) {
+  const Timeline& timeline = result.timeline;
+  ChartSeries series{styleOf(subject.role, subject.id, result.cbv), {}};
+  const std::size_t stride = 1 + timeline.frames().size() / kMostPoints;
+  for (std::size_t i = 0; i < timeline.frames().size(); i += stride) {
+    const TimelineFrame& frame = timeline.frames()[i];
+    double value = kNothing;
+    for (const TimelinePose& pose : frame.poses) {
+      if (pose.role == VehicleRole::kBackground) break;  // ego first, then CBVs
+      const bool same =
+          pose.role == subject.role && timeline.vehicles()[pose.vehicle].id == subject.id;
+      if (same) value = quantity(pose);
+    }
+    series.points.emplace_back(frame.time, value);
+  }
+  return series;
+}
+
+Chart chartOf(const SessionResult& result, const std::vector<Subject>& subjects,
+              const Quantity& quantity) {
+  Chart chart;
+  chart.duration = result.timeline.duration();
+  for (const Subject& subject : subjects) {
+    chart.series.push_back(seriesOf(result, subject, quantity));
+  }
+  return chart;
+}
+
+std::string speedChart(const SessionResult& result, const std::vector<Subject>& subjects) {
+  Chart chart = chartOf(result, subjects,
+                        [](const TimelinePose& pose) { return static_cast<double>(pose.speed); });
+  chart.title = "Speed";
+  chart.unit = "m/s";
+  chart.least_top = 5.0;
+  return chartSvg(chart);
+}
+
+std::string gapChart(const SessionResult& result, const std::vector<Subject>& subjects) {
+  Chart chart = chartOf(result, subjects, [](const TimelinePose& pose) {
+    return pose.gap < 0.0F ? kNothing : static_cast<double>(pose.gap);
+  });
+  chart.title = "Gap between the outlines of ego and CBV";
+  chart.unit = "m";
+  chart.least_top = 5.0;
+  if (const auto& gap = result.timeline.smallestGap()) {
+    chart.marks.push_back({gap->time, gap->distance,
+                           "smallest: " + core::formatFixed(gap->distance, 2) + " m at " +
+                               core::formatFixed(gap->time, 2) + " s"});
+  }
+  return chartSvg(chart);
+}
+
+std::string commandChart(const SessionResult& result, const std::vector<Subject>& subjects,
+                         const std::string& title, float TimelinePose::*command) {
+  Chart chart = chartOf(result, subjects, [command](const TimelinePose& pose) {
+    return pose.driven ? static_cast<double>(pose.*command) : kNothing;
+  });
+  chart.title = title;
+  if (command == &TimelinePose::steer) chart.bottom = -1.0;
+  return chartSvg(chart);
+}
+
+std::string legend(const SessionResult& result, const std::vector<Subject>& subjects) {
+  std::string html = "<p class=\"legend\">\n";
+  for (const Subject& subject : subjects) {
+    html +=
+        "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
+        "class=\"series " +
+        styleOf(subject.role, subject.id, result.cbv) + "\" d=\"M1 7H27\"/></svg>" +
+        (subject.role == VehicleRole::kEgo ? "ego" : "CBV " + escapeMarkup(subject.id)) +
+        "</span>\n";
+  }
+  return html + "</p>\n";
+}
+
+}  // namespace
+
+std::string sessionCharts(const SessionResult& result) {
+  const std::vector<Subject> subjects = subjectsOf(result);
+  if (subjects.empty()) return "<p class=\"note\">No vehicle was driven.</p>\n";
+  std::string html =
+      legend(result, subjects) + "<div class=\"charts\">\n" + speedChart(result, subjects);
+  if (result.timeline.smallestGap()) html += gapChart(result, subjects);
+  return html + commandChart(result, subjects, "Throttle", &TimelinePose::throttle) +
+         commandChart(result, subjects, "Brake", &TimelinePose::brake) +
+         commandChart(result, subjects, "Steering, positive left", &TimelinePose::steer) +
+         "</div>\n";
+}
+
+}  // namespace cdiff::report

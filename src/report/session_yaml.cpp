@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/session_yaml.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/report/build_info.h"
+
+namespace cdiff::report {
+namespace {
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+std::string line(int depth, const std::string& key, const std::string& value) {
+  return std::string(static_cast<std::size_t>(2 * depth), ' ') + key + ": " + value + "\n";
+}
+
+/// Every line of a YAML block one level deeper.
+std::string indented(const std::string& block) {
+  std::string text;
+  std::size_t begin = 0;
+  while (begin < block.size()) {
+    const std::size_t end = std::min(block.find('\n', begin), block.size());
+    text += "  " + block.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return text;
+}
+
+std::string networkBlock(const map::ImportedNetwork& network) {
+  std::string text = "network:\n" + line(1, "source", quoted(network.source.string())) +
+                     line(1, "source_sha256", quoted(network.source_sha256)) +
+                     line(1, "imported_sha256", quoted(core::sha256(network.text)));
+  if (network.changes.empty()) return text + line(1, "changes", "[]");
+  text += "  changes:\n";
+  for (const std::string& change : network.changes) text += "    - " + quoted(change) + "\n";
+  return text;
+}
+
+std::string machineBlock() {
+  std::string text = "libraries:\n";
+  for (const auto& [name, version] : libraryVersions()) text += line(1, name, quoted(version));
+  return text + "processor:\n" + line(1, "model", quoted(processorModel())) +
+         line(1, "instruction_set", quoted(instructionSet()));
+}
+
+}  // namespace
+
+std::string sessionYaml(const scenario::SessionSetup& setup, const RunFacts& facts) {
+  const scenario::ScenarioOptions& options = setup.options();
+  return line(0, "schema_version", "1") + "package:\n" + line(1, "name", quoted("e2e_cdiff")) +
+         line(1, "version", quoted(packageVersion())) +
+         line(1, "revision", quoted(packageRevision())) +
+         line(0, "deployment", quoted(facts.deployment)) +
+         line(0, "deterministic", facts.deterministic ? "true" : "false") + "seeds:\n" +
+         line(1, "root", std::to_string(options.seed)) + "simulator:\n" +
+         line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
+         machineBlock() + "scenario:\n" + indented(core::dumpOptions(options));
+}
+
+}  // namespace cdiff::report

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/summary.h"
+
+#include <nlohmann/json.hpp>
+
+namespace cdiff::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+/// {value, n, unit} and, where there is one, the reason (why absent, or how thinned out).
+Json measureObject(const metrics::Measure& measure) {
+  Json object = {{"value", number(measure.value)}, {"n", measure.n}, {"unit", measure.unit}};
+  if (!measure.reason.empty()) object["reason"] = measure.reason;
+  return object;
+}
+
+/// `key: value`, and `key_reason` beside it where there is one.
+void addMeasure(Json& object, const std::string& key, const metrics::Measure& measure) {
+  object[key] = number(measure.value);
+  if (!measure.reason.empty()) object[key + "_reason"] = measure.reason;
+}
+
+Json distributionObject(const metrics::DistributionMeasure& distribution) {
+  Json object = {{"mean", number(distribution.mean.value)},
+                 {"std", number(distribution.standard_deviation.value)},
+                 {"min", number(distribution.minimum.value)},
+                 {"n", distribution.mean.n}};
+  for (const metrics::Measure* measure :
+       {&distribution.mean, &distribution.minimum, &distribution.standard_deviation}) {
+    if (!measure->reason.empty() && !object.contains("reason")) object["reason"] = measure->reason;
+  }
+  return object;
+}
+
+Json egoObject(const metrics::SessionMeasures& measures) {
+  Json object = {{"route_completion_percent", measures.route_completion_percent},
+                 {"driving_score", measures.driving_score},
+                 {"collisions", measures.ego_collisions}};
+  addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
+  return object;
+}
+
+Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  return {{"x", conflict.position.x()},
+          {"y", conflict.position.y()},
+          {"z", conflict.position.z()},
+          {"ego_distance_m", conflict.ego_distance},
+          {"cbv_distance_m", conflict.cbv_distance},
+          {"ego_arrival_s", conflict.ego_arrival},
+          {"cbv_arrival_s", conflict.cbv_arrival},
+          {"arrival_time_gap_s", conflict.arrivalTimeGap()},
+          {"ego_arc_length_m", conflict.ego_arc_length},
+          {"in_junction_or_beyond", atOrBeyondFirstJunction(conflict, ego_route)}};
+}
+
+Json selectionObject(const CbvRecord& record, const scenario::SessionSetup& setup) {
+  const double step = setup.options().simulation_step;
+  Json object = {{"slot", record.slot},
+                 {"vehicle_id", record.vehicle_id},
+                 {"selected_tick", record.selected_tick},
+                 {"selected_seconds", static_cast<double>(record.selected_tick) * step},
+                 {"interaction_score", record.interaction_score},
+                 {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
+                 {"decisions_driven", record.decisions_driven},
+                 {"released_tick", nullptr},
+                 {"release_reason", record.release_reason},
+                 {"route_length_m", record.route_length}};
+  if (record.released_tick) object["released_tick"] = *record.released_tick;
+  return object;
+}
+
+Json cbvObject(const SessionResult& result) {
+  const metrics::SessionMeasures& measures = result.measures;
+  Json object = {{"count", measures.cbv_count}, {"decisions", measures.cbv_decisions}};
+  addMeasure(object, "off_road_rate_percent", measures.cbv_off_road_rate_percent);
+  object["collisions"] = measures.cbv_collisions;
+  object["collisions_with_ego"] = measures.cbv_ego_collisions;
+  addMeasure(object, "collisions_per_km", measures.collisions_per_km);
+  object["distance_m"] = measures.cbv_distance_m;
+  object["selections"] = Json::array();
+  for (const CbvRecord& record : result.cbv.records()) {
+    object["selections"].push_back(selectionObject(record, result.setup));
+  }
+  object["rejected"] = Json::object();
+  for (const auto& [reason, count] : result.cbv.rejected()) object["rejected"][reason] = count;
+  return object;
+}
+
+Json metricsObject(const metrics::SessionMeasures& measures) {
+  Json rift = Json::object();
+  for (const auto& [name, measure] : measures.rift_compat) rift[name] = measureObject(measure);
+  return {{"ttc_2d_s", distributionObject(measures.ttc_2d)},
+          {"speed_shapiro_wilk", measureObject(measures.speed_shapiro_wilk)},
+          {"acceleration_shapiro_wilk", measureObject(measures.acceleration_shapiro_wilk)},
+          {"speed_wasserstein_mps", measureObject(measures.speed_wasserstein)},
+          {"rift_compat", rift}};
+}
+
+Json latencyObject(const std::map<std::string, LatencyFigures>& latencies) {
+  Json object = Json::object();
+  for (const auto& [planner, figures] : latencies) {
+    object[planner] = {{"p50", figures.median},
+                       {"p95", figures.percentile_95},
+                       {"max", figures.maximum},
+                       {"n", figures.n}};
+  }
+  return object;
+}
+
+Json faultList(const std::vector<traffic::Fault>& faults) {
+  Json list = Json::array();
+  for (const traffic::Fault& fault : faults) {
+    list.push_back({{"tick", fault.tick}, {"source", fault.source}, {"text", fault.text}});
+  }
+  return list;
+}
+
+/// How the session was asked for and how it ended.
+Json headOf(const SessionResult& result) {
+  const scenario::ScenarioOptions& options = result.setup.options();
+  Json head = {{"schema_version", 1},
+               {"scenario", options.name},
+               {"seed", options.seed},
+               {"mode", options.mode},
+               {"ego_planner", options.ego_planner},
+               {"cbv_planner", options.cbv_planner},
+               {"status", traffic::toText(result.status)},
+               {"simulated_seconds", result.simulated_seconds},
+               {"wall_seconds", result.wall_seconds}};
+  if (result.wall_seconds > 0.0) {
+    head["real_time_factor"] = result.simulated_seconds / result.wall_seconds;
+  } else {
+    head["real_time_factor"] = nullptr;
+    head["real_time_factor_reason"] = "no wall time was measured";
+  }
+  head["trace_sha256"] = result.trace_sha256;
+  return head;
+}
+
+}  // namespace
+
+bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  const auto& junctions = ego_route.junctionStretches();
+  return !junctions.empty() && conflict.ego_arc_length >= junctions.front().first;
+}
+
+std::string summaryJson(const SessionResult& result) {
+  Json summary = headOf(result);
+  summary["ego"] = egoObject(result.measures);
+  summary["cbv"] = cbvObject(result);
+  summary["metrics"] = metricsObject(result.measures);
+  summary["planner_latency_ms"] = latencyObject(result.latencies);
+  summary["faults"] = faultList(result.faults);
+  summary["verdict"] = {{"passed", result.verdict.passed}, {"failures", result.verdict.failures}};
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace cdiff::report

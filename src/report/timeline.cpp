@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdiff::report {
+namespace {
+
+constexpr double kFramePeriod = 0.2;  // [s]
+
+/// Gap between the boxes of the ego and a CBV on its level [m]; nullopt without ego or on another
+/// level.
+std::optional<double> gapToEgo(const traffic::Vehicle* ego, const traffic::Vehicle& vehicle) {
+  if (ego == nullptr || traffic::onDifferentLevels(*ego, vehicle)) return std::nullopt;
+  return geometry::distance(ego->box(), vehicle.box());
+}
+
+TimelinePose poseOf(const traffic::Vehicle& vehicle, const traffic::Vehicle* ego) {
+  TimelinePose pose;
+  pose.x = vehicle.state.position.x();
+  pose.y = vehicle.state.position.y();
+  pose.heading = static_cast<float>(vehicle.state.heading);
+  pose.speed = static_cast<float>(vehicle.state.speed);
+  pose.role = vehicle.role;
+  if (vehicle.applied_action) {
+    pose.driven = true;
+    pose.throttle = static_cast<float>(vehicle.applied_action->throttle);
+    pose.steer = static_cast<float>(vehicle.applied_action->steer);
+    pose.brake = static_cast<float>(vehicle.applied_action->brake);
+  }
+  if (vehicle.role == traffic::VehicleRole::kCbv) {
+    pose.gap = static_cast<float>(gapToEgo(ego, vehicle).value_or(-1.0));
+  }
+  return pose;
+}
+
+}  // namespace
+
+Timeline::Timeline(double simulation_step)
+    : ticks_per_frame_(
+          static_cast<std::uint64_t>(std::max(1.0, std::round(kFramePeriod / simulation_step)))) {}
+
+void Timeline::observe(const traffic::TrafficSnapshot& snapshot) {
+  duration_ = snapshot.time;
+  const bool last = snapshot.status != traffic::SessionStatus::kRunning;
+  if (last || snapshot.tick % ticks_per_frame_ == 0) addFrame(snapshot);
+  addContacts(snapshot);
+  updateGap(snapshot);
+}
+
+void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
+  TimelineFrame frame;
+  frame.time = snapshot.time;
+  frame.poses.reserve(snapshot.vehicles.size());
+  const traffic::Vehicle* ego = snapshot.ego();
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    frame.poses.push_back(poseOf(vehicle, ego));
+    frame.poses.back().vehicle = indexOf(vehicle);
+  }
+  frames_.push_back(std::move(frame));
+}
+
+void Timeline::addContacts(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Contact& contact : snapshot.contacts) {
+    const traffic::Vehicle* first = snapshot.find(contact.first);
+    const traffic::Vehicle* second = snapshot.find(contact.second);
+    TimelineContact entry{snapshot.time, contact.first, contact.second, std::nullopt};
+    if (first != nullptr && second != nullptr) {
+      entry.position = 0.5 * (first->state.position + second->state.position);
+    }
+    contacts_.push_back(entry);
+  }
+}
+
+void Timeline::updateGap(const traffic::TrafficSnapshot& snapshot) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    if (vehicle.role != traffic::VehicleRole::kCbv) continue;
+    const std::optional<double> gap = gapToEgo(ego, vehicle);
+    if (!gap || (smallest_gap_ && smallest_gap_->distance <= *gap)) continue;
+    smallest_gap_ = SmallestGap{snapshot.time, *gap, vehicle.id};
+  }
+}
+
+std::uint32_t Timeline::indexOf(const traffic::Vehicle& vehicle) {
+  const auto index = static_cast<std::uint32_t>(vehicles_.size());
+  const auto [entry, added] = index_by_id_.emplace(vehicle.id, index);
+  if (added) {
+    vehicles_.push_back({vehicle.id, vehicle.dimensions.length, vehicle.dimensions.width});
+  }
+  return entry->second;
+}
+
+}  // namespace cdiff::report

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/top_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/line_chart.h"
+#include "e2e_cdiff/report/markup.h"
+
+namespace cdiff::report {
+namespace {
+
+using traffic::VehicleRole;
+
+constexpr double kLabelHeight = 15.0;  // [pixels]
+
+std::string path(const std::string& style, const std::string& data, const std::string& title = {}) {
+  if (data.empty()) return {};
+  const std::string begin = "<path class=\"" + style + "\" d=\"" + data + "\"";
+  if (title.empty()) return begin + "/>\n";
+  return begin + "><title>" + escapeMarkup(title) + "</title></path>\n";
+}
+
+std::string label(const Eigen::Vector2d& pixel, const std::string& style, const std::string& text) {
+  return "<text class=\"" + style + "\" x=\"" + shortNumber(pixel.x()) + "\" y=\"" +
+         shortNumber(pixel.y()) + "\">" + escapeMarkup(text) + "</text>\n";
+}
+
+/// Drivable area on every level that the ego route touches, each level once.
+std::string drivableArea(const SessionResult& result, const MapCanvas& canvas) {
+  constexpr double kSpacing = 20.0;  // between examined elevations along the route [m]
+  const map::DrivableArea& area = result.setup.drivableArea();
+  const geometry::Polyline& route = result.setup.egoRoute().path();
+  std::vector<std::string> levels;
+  for (double s = 0.0; s <= route.length(); s += kSpacing) {
+    const double elevation = route.empty() ? 0.0 : route.pointAt(s).z();
+    std::string data;
+    for (const Points& ring : area.border(elevation)) data += canvas.ring(ring);
+    if (std::find(levels.begin(), levels.end(), data) == levels.end()) levels.push_back(data);
+    if (area.levelCount() < 2) break;
+  }
+  std::string svg;
+  for (const std::string& level : levels) svg += path("road", level);
+  return svg;
+}
+
+std::string laneLines(const map::RoadNetwork& network, const MapCanvas& canvas) {
+  std::string data;
+  for (const map::Lane& lane : network.lanes()) {
+    if (lane.allows_cars) data += canvas.line(inPlane(lane.centerline.points()));
+  }
+  return path("lane", data);
+}
+
+std::string egoRoute(const SessionResult& result, const MapCanvas& canvas) {
+  const auto& points = result.setup.egoRoute().path().points();
+  if (points.empty()) return {};
+  const std::string data = canvas.line(inPlane(points));
+  const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
+  const std::string place = " cx=\"" + shortNumber(goal.x()) + "\" cy=\"" + shortNumber(goal.y());
+  return path("route", data, "ego route") + "<circle class=\"goal\"" + place + "\" r=\"6\"/>\n" +
+         label(goal + Eigen::Vector2d(10.0, 4.0), "name", "goal");
+}
+
+std::string conflictRoutes(const SessionResult& result, const MapCanvas& canvas) {
+  std::string svg;
+  for (const CbvRecord& record : result.cbv.records()) {
+    const std::string style = styleOf(VehicleRole::kCbv, record.vehicle_id, result.cbv);
+    svg += path("planned " + style, canvas.line(inPlane(record.route)),
+                "conflict-aware route of " + record.vehicle_id);
+  }
+  return svg;
+}
+
+/// A stretch of one vehicle's way in one role.
+struct Trail {
+  std::uint32_t vehicle = 0;
+  VehicleRole role = VehicleRole::kBackground;
+  Points points;
+};
+
+std::vector<Trail> trailsOf(const Timeline& timeline) {
+  std::vector<Trail> trails;
+  std::vector<std::ptrdiff_t> present(timeline.vehicles().size(), -1);  // trail of each vehicle
+  std::vector<std::size_t> last_frame(timeline.vehicles().size(), 0);
+  for (std::size_t frame = 0; frame < timeline.frames().size(); ++frame) {
+    for (const TimelinePose& pose : timeline.frames()[frame].poses) {
+      std::ptrdiff_t& trail = present[pose.vehicle];
+      const bool goes_on = trail >= 0 && last_frame[pose.vehicle] + 1 == frame;
+      const Trail* before = trail < 0 ? nullptr : &trails[static_cast<std::size_t>(trail)];
+      if (!goes_on || before->role != pose.role) {
+        Points start;
+        if (goes_on) start.push_back(before->points.back());
+        trail = static_cast<std::ptrdiff_t>(trails.size());
+        trails.push_back({pose.vehicle, pose.role, start});
+      }
+      trails[static_cast<std::size_t>(trail)].points.emplace_back(pose.x, pose.y);
+      last_frame[pose.vehicle] = frame;
+    }
+  }
+  return trails;
+}
+
+std::string trailPaths(const SessionResult& result, const MapCanvas& canvas, VehicleRole role) {
+  std::string svg;
+  for (const Trail& trail : trailsOf(result.timeline)) {
+    if (trail.role != role) continue;
+    const std::string& id = result.timeline.vehicles()[trail.vehicle].id;
+    svg += path("trail " + styleOf(role, id, result.cbv), canvas.line(trail.points), id);
+  }
+  return svg;
+}
+
+/// A vehicle's outline with its front window, nose to the right, around the origin.
+std::string vehicleShape(const TimelineVehicle& vehicle, double scale) {
+  const double half_length = 0.5 * vehicle.length * scale;
+  const double half_width = 0.5 * vehicle.width * scale;
+  const std::string x = shortNumber(half_length);
+  const std::string y = shortNumber(half_width);
+  return "<path d=\"M-" + x + " -" + y + "H" + x + "V" + y + "H-" + x +
+         "Z\"/><path class=\"nose\" " + "d=\"M" + shortNumber(0.3 * half_length) + " -" +
+         shortNumber(0.8 * half_width) + "L" + shortNumber(0.8 * half_length) + " 0L" +
+         shortNumber(0.3 * half_length) + " " + shortNumber(0.8 * half_width) + "Z\"/>";
+}
+
+std::string vehicleBox(const TimelinePose& pose, const SessionResult& result,
+                       const MapCanvas& canvas, const std::string& style) {
+  const TimelineVehicle& vehicle = result.timeline.vehicles()[pose.vehicle];
+  const Eigen::Vector2d pixel = canvas.toPixels({pose.x, pose.y});
+  return "<g class=\"vehicle " + style + "\" transform=\"translate(" + shortNumber(pixel.x()) +
+         " " + shortNumber(pixel.y()) + ") rotate(" +
+         shortNumber(-core::radiansToDegrees(static_cast<double>(pose.heading))) + ")\"><title>" +
+         escapeMarkup(vehicle.id) + "</title>" +
+         vehicleShape(vehicle, canvas.scale() * vehicleMagnification(canvas)) + "</g>\n";
+}
+
+std::string startBox(const SessionResult& result, const MapCanvas& canvas) {
+  for (const TimelineFrame& frame : result.timeline.frames()) {
+    for (const TimelinePose& pose : frame.poses) {
+      if (pose.role != VehicleRole::kEgo) continue;
+      const Eigen::Vector2d pixel = canvas.toPixels({pose.x, pose.y});
+      return vehicleBox(pose, result, canvas, "start") +
+             label(pixel + Eigen::Vector2d(10.0, -10.0), "name", "start");
+    }
+  }
+  return {};
+}
+
+std::string finalBoxes(const SessionResult& result, const MapCanvas& canvas) {
+  std::string svg = "<g id=\"vehicles\">\n";
+  if (!result.timeline.frames().empty()) {
+    const auto& poses = result.timeline.frames().back().poses;
+    for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {  // the ego on top
+      if (!canvas.shows({pose->x, pose->y})) continue;
+      const std::string& id = result.timeline.vehicles()[pose->vehicle].id;
+      svg += vehicleBox(*pose, result, canvas, styleOf(pose->role, id, result.cbv));
+    }
+  }
+  return svg + "</g>\n";
+}
+
+std::string cross(const Eigen::Vector2d& pixel, const std::string& style, double reach,
+                  const std::string& title) {
+  const std::string size = shortNumber(reach);
+  const std::string twice = shortNumber(2.0 * reach);
+  return path(style,
+              "M" + shortNumber(pixel.x() - reach) + " " + shortNumber(pixel.y() - reach) + "l" +
+                  twice + " " + twice + "m0 -" + twice + "l-" + twice + " " + twice,
+              title);
+}
+
+std::string conflictPoints(const SessionResult& result, const MapCanvas& canvas) {
+  std::string svg;
+  std::vector<Eigen::Vector2d> taken;
+  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
+    const CbvRecord& record = result.cbv.records()[i];
+    const Eigen::Vector2d pixel = canvas.toPixels(record.conflict_point.position.head<2>());
+    const std::string name = "C" + std::to_string(i + 1) + " " + record.vehicle_id;
+    svg += cross(pixel, "conflict", 6.0, "conflict point " + name);
+    Eigen::Vector2d place = pixel + Eigen::Vector2d(10.0, -8.0);
+    const auto hidden = [&place](const Eigen::Vector2d& other) {
+      return std::abs(other.x() - place.x()) < 70.0 &&
+             std::abs(other.y() - place.y()) < kLabelHeight;
+    };
+    while (std::any_of(taken.begin(), taken.end(), hidden)) place.y() += kLabelHeight;
+    taken.push_back(place);
+    svg += label(place, "name", name);
+  }
+  return svg;
+}
+
+std::string contactMarks(const Timeline& timeline, const MapCanvas& canvas) {
+  std::string svg;
+  for (const TimelineContact& contact : timeline.contacts()) {
+    if (!contact.position || !canvas.shows(*contact.position)) continue;
+    const Eigen::Vector2d pixel = canvas.toPixels(*contact.position);
+    svg += "<circle class=\"contact\" cx=\"" + shortNumber(pixel.x()) + "\" cy=\"" +
+           shortNumber(pixel.y()) + "\" r=\"11\"><title>contact of " +
+           escapeMarkup(contact.first + " and " + contact.second) + " at " +
+           core::formatFixed(contact.time, 2) + " s</title></circle>\n";
+  }
+  return svg;
+}
+
+std::string scaleBar(const MapCanvas& canvas) {
+  const double metres = niceStep(200.0 / canvas.scale(), 2);
+  const double y = canvas.height() - 18.0;
+  const std::string length = shortNumber(metres * canvas.scale());
+  return "<g class=\"frame\">" +
+         path("scale", "M18 " + shortNumber(y - 5.0) + "v5h" + length + "v-5") +
+         label({24.0, y - 7.0}, "name", core::formatNumber(metres) + " m") +
+         path("north", "M" + shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
+         label({canvas.width() - 29.0, 46.0}, "name", "N") + "</g>\n";
+}
+
+}  // namespace
+
+double vehicleMagnification(const MapCanvas& canvas) {
+  constexpr double kLeastLength = 9.0;  // of a car in the picture [pixels]
+  constexpr double kCarLength = 4.5;    // [m]
+  return std::max(1.0, kLeastLength / (kCarLength * canvas.scale()));
+}
+
+std::string styleOf(VehicleRole role, const std::string& id, const CbvLog& cbv) {
+  if (role == VehicleRole::kEgo) return "ego";
+  if (role == VehicleRole::kBackground) return "bg";
+  constexpr std::size_t kShades = 5;
+  std::vector<std::string> seen;
+  for (const CbvRecord& record : cbv.records()) {
+    if (record.vehicle_id == id) break;
+    if (std::find(seen.begin(), seen.end(), record.vehicle_id) == seen.end()) {
+      seen.push_back(record.vehicle_id);
+    }
+  }
+  return "cbv c" + std::to_string(seen.size() % kShades);
+}
+
+std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas) {
+  const std::string size = shortNumber(canvas.width()) + " " + shortNumber(canvas.height());
+  return "<svg id=\"top-view\" role=\"img\" aria-label=\"The session from above\" viewBox=\"0 0 " +
+         size + "\" data-magnification=\"" +
+         core::formatFixed(canvas.scale() * vehicleMagnification(canvas), 4) + "\">\n" +
+         drivableArea(result, canvas) + laneLines(result.setup.network(), canvas) +
+         egoRoute(result, canvas) + conflictRoutes(result, canvas) +
+         trailPaths(result, canvas, VehicleRole::kBackground) +
+         trailPaths(result, canvas, VehicleRole::kCbv) +
+         trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
+         conflictPoints(result, canvas) + contactMarks(result.timeline, canvas) +
+         finalBoxes(result, canvas) + scaleBar(canvas) + "</svg>\n";
+}
+
+}  // namespace cdiff::report

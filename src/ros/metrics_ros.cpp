@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/metrics_ros.h"
+
+#include <iostream>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/ros/conversions.h"
+
+namespace cdiff::ros {
+namespace {
+
+metrics::SessionMetricsOptions metricsOptions(const scenario::ScenarioOptions& options) {
+  metrics::SessionMetricsOptions result;
+  result.simulation_step = options.simulation_step;
+  result.completion_percent = options.protocol.completion_percent;
+  result.completion_distance = options.protocol.completion_distance;
+  return result;
+}
+
+/// The last state with the end that nobody told: as World::end would have made it.
+traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double step, Ending ending) {
+  traffic::TrafficSnapshot snapshot = last;
+  snapshot.tick += 1;
+  snapshot.time = static_cast<double>(snapshot.tick) * step;
+  snapshot.decision_tick = false;
+  snapshot.contacts.clear();
+  snapshot.removed.clear();
+  const bool stopped = ending == Ending::kStopped;
+  snapshot.status = stopped ? traffic::SessionStatus::kInterrupted : traffic::SessionStatus::kError;
+  snapshot.faults = {{last.tick, kTrafficSimulatorNode, stopped ? "interrupted; no last snapshot came" : "the node left the session"}};
+  return snapshot;
+}
+
+}  // namespace
+
+void MetricsRos::begin(const msgs::SessionInfo& info) {
+  setup_ = std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info), routeFromMsg(info));
+  const bool deterministic = setup_->options().real_time_factor == 0.0;
+  const report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
+  writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, info.results_folder);
+  metrics_ = std::make_unique<metrics::SessionMetrics>(metricsOptions(setup_->options()), setup_->drivableArea(),
+                                                       setup_->egoRoute());
+  answers_ = TickAnswers(setup_->options().simulation_step);
+  reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
+  marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
+  map_output_ = advertise<visualization_msgs::MarkerArray>(kMapMarkersTopic, true);
+  map_output_.publish(mapMarkers(*setup_));
+  listenToAnswers();
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_->setHardwareID(setup_->options().name);
+  diagnostics_->add("session", this, &MetricsRos::diagnose);
+}
+
+void MetricsRos::listenToAnswers() {
+  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) { answers_.add(message); });
+  listen<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) { answers_.addEgo(message); });
+  for (int slot = 0; slot < graph().max_cbv; ++slot) {
+    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); });
+  }
+}
+
+bool MetricsRos::handle(const Snapshot& message, bool superseded) {
+  if (!superseded && !answers_.missing(*message).empty()) return false;
+  if (!begin_) begin_ = Clock::now();
+  const traffic::TrafficSnapshot snapshot = fromMsg(*message);
+  std::optional<cbv::CbvSelection> selection;
+  if (const auto answer = answers_.selection(message->tick)) selection = fromMsg(*answer, setup_->network());
+  observe(snapshot, selection ? &*selection : nullptr, answers_.answers(*message));
+  acknowledge(message->tick);
+  show(snapshot, selection ? &*selection : nullptr);
+  answers_.forgetBefore(message->tick);
+  last_ = snapshot;
+  return true;
+}
+
+void MetricsRos::observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection,
+                         const std::vector<Answer>& answers) {
+  const std::vector<planning::PlannedAction> actions = actionsOf(answers);
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  if (snapshot.decision_tick) {
+    record.selection = selection;
+    record.actions = &actions;
+    record.latencies = latenciesOf(answers);
+  }
+  writer_->observe(record);
+  publishReport(snapshot, metrics_->observe(snapshot, record.selection));
+  for (const scenario::PlannerLatency& latency : record.latencies) {
+    if (latency.milliseconds <= slowest_planner_ms_) continue;
+    slowest_planner_ms_ = latency.milliseconds;
+    slowest_planner_ = latency.planner;
+  }
+}
+
+void MetricsRos::publishReport(const traffic::TrafficSnapshot& snapshot, const metrics::TickMeasures& measures) {
+  const bool final = snapshot.status != traffic::SessionStatus::kRunning;
+  if (!snapshot.decision_tick && !final) return;
+  msgs::MetricReport report = toMsg(measures, snapshot);
+  if (final) report.measures = toMsg(metrics_->measures());
+  reports_.publish(boost::make_shared<const msgs::MetricReport>(report));
+}
+
+void MetricsRos::show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection) {
+  const bool final = snapshot.status != traffic::SessionStatus::kRunning;
+  if (!snapshot.decision_tick && !final) return;
+  if (marker_output_.getNumSubscribers() > 0) marker_output_.publish(markers_.build(snapshot, selection));
+  diagnostics_->update();
+}
+
+void MetricsRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const double wall = wallSeconds();
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, traffic::toText(last_.status));
+  status.add("tick", last_.tick);
+  status.add("simulated seconds", core::formatFixed(last_.time, 2));
+  status.add("real-time factor", core::formatFixed(wall > 0.0 ? last_.time / wall : 0.0, 2));
+  status.add("vehicles", last_.vehicles.size());
+  status.add("slowest planner", slowest_planner_);
+  status.add("slowest planning call [ms]", core::formatFixed(slowest_planner_ms_, 2));
+}
+
+double MetricsRos::wallSeconds() const {
+  return begin_ ? std::chrono::duration<double>(Clock::now() - *begin_).count() : 0.0;
+}
+
+int MetricsRos::conclude(Ending ending) {
+  if (ending != Ending::kFinalSnapshot) {
+    const traffic::TrafficSnapshot snapshot = endedAfter(last_, setup_->options().simulation_step, ending);
+    scenario::TickRecord record;
+    record.snapshot = &snapshot;
+    writer_->observe(record);
+  }
+  writer_->finish(wallSeconds());
+  std::cout << writer_->table() << std::flush;
+  return writer_->exitCode();
+}
+
+}  // namespace cdiff::ros

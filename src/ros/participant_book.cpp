@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/participant_book.h"
+
+#include "e2e_cdiff/ros/topics.h"
+
+namespace cdiff::ros {
+
+ParticipantBook::ParticipantBook(const std::vector<std::string>& nodes) {
+  for (const std::string& node : nodes) entries_[node];
+}
+
+void ParticipantBook::note(const ::e2e_cdiff::TickAck& message) {
+  const auto found = entries_.find(message.node);
+  if (found == entries_.end()) return;
+  Entry& entry = found->second;
+  using Ack = ::e2e_cdiff::TickAck;
+  if (message.kind == Ack::WAITING) entry.waiting_for = message.text;
+  if (message.kind == Ack::READY) entry.ready = true;
+  if (message.kind == Ack::ACKNOWLEDGED) entry.acknowledged = message.tick;
+  if (message.kind == Ack::FINISHED) entry.finished = true;
+  if (message.kind == Ack::ERROR && !error_) error_ = Error{message.node, message.text};
+}
+
+std::vector<std::string> ParticipantBook::notReady() const {
+  std::vector<std::string> texts;
+  for (const auto& [node, entry] : entries_) {
+    if (!entry.ready) texts.push_back(node + " is not ready (" + entry.waiting_for + ")");
+  }
+  return texts;
+}
+
+std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (isObserver(node) && (!entry.acknowledged || *entry.acknowledged < tick)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+std::vector<std::string> ParticipantBook::notFinished() const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (isObserver(node) && !entry.finished) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+bool ParticipantBook::finished(const std::string& node) const {
+  const auto found = entries_.find(node);
+  return found != entries_.end() && found->second.finished;
+}
+
+}  // namespace cdiff::ros

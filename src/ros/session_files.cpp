@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/session_files.h"
+
+#include <cstdlib>
+#include <ctime>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::ros {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string timeText() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", &local);
+  return text;
+}
+
+fs::path ownFolder(const scenario::ScenarioOptions& options) {
+  const char* home = std::getenv("HOME");
+  const fs::path base = home != nullptr ? fs::path(home) : fs::temp_directory_path();
+  return base / "e2e_cdiff_results" / (options.name + "_seed" + std::to_string(options.seed) + "_" + timeText());
+}
+
+}  // namespace
+
+fs::path makeResultFolder(const std::string& given, const scenario::ScenarioOptions& options) {
+  const fs::path folder = fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw core::InputError("cannot make the result folder '" + folder.string() + "': " + error.message());
+  return folder;
+}
+
+void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last, const report::RunFacts& facts,
+                 const fs::path& folder, double wall_seconds) {
+  report::ResultWriter writer(setup, facts, folder);
+  scenario::TickRecord record;
+  record.snapshot = &last;
+  writer.observe(record);
+  writer.finish(wall_seconds);
+}
+
+}  // namespace cdiff::ros

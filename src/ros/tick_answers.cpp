@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/tick_answers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/topics.h"
+
+namespace cdiff::ros {
+namespace {
+
+const msgs::Vehicle* findEgo(const msgs::TrafficSnapshot& snapshot) {
+  const auto found = std::find_if(snapshot.vehicles.begin(), snapshot.vehicles.end(),
+                                  [](const msgs::Vehicle& vehicle) { return vehicle.role == msgs::Vehicle::EGO; });
+  return found == snapshot.vehicles.end() ? nullptr : &*found;
+}
+
+/// A user's own planner may leave out whom it drives and what it is called.
+Answer answerOf(const msgs::ControlAction& control, int slot, const std::string& vehicle_id) {
+  Answer answer;
+  answer.action = fromMsg(control);
+  answer.action.slot = slot;
+  answer.action.vehicle_id = vehicle_id;
+  answer.planner = control.planner.empty() ? "ego:external" : control.planner;
+  answer.latency_ms = control.planner_latency_ms;
+  answer.fault = control.fault;
+  return answer;
+}
+
+}  // namespace
+
+std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answers) {
+  std::vector<planning::PlannedAction> actions;
+  for (const Answer& answer : answers) actions.push_back(answer.action);
+  return actions;
+}
+
+std::vector<scenario::PlannerLatency> latenciesOf(const std::vector<Answer>& answers) {
+  std::vector<scenario::PlannerLatency> latencies;
+  for (const Answer& answer : answers) {
+    const bool same_call = !latencies.empty() && latencies.back().planner == answer.planner;
+    if (!same_call) latencies.push_back({answer.planner, answer.latency_ms});
+  }
+  return latencies;
+}
+
+bool contains(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_id) {
+  return std::any_of(snapshot.vehicles.begin(), snapshot.vehicles.end(),
+                     [&](const msgs::Vehicle& vehicle) { return vehicle.id == vehicle_id; });
+}
+
+std::uint64_t TickAnswers::tickOf(const msgs::ControlAction& control, std::uint64_t otherwise) const {
+  if (control.tick != 0) return control.tick;
+  if (control.header.stamp.isZero()) return otherwise;
+  return static_cast<std::uint64_t>(std::llround(control.header.stamp.toSec() / simulation_step_));
+}
+
+void TickAnswers::add(const Selection& selection) { selections_.emplace(selection->tick, selection); }
+
+void TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
+  controls_[tickOf(*control, otherwise)].emplace(kEgoSlot, control);
+}
+
+void TickAnswers::addCbv(int slot, const Control& control) { controls_[control->tick].emplace(slot, control); }
+
+std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
+  std::vector<std::string> topics;
+  if (!snapshot.decision_tick) return topics;
+  if (findEgo(snapshot) != nullptr && !ego(snapshot.tick)) topics.emplace_back(kEgoControlTopic);
+  const Selection chosen = selection(snapshot.tick);
+  if (!chosen) {
+    topics.emplace_back(kSelectionTopic);
+    return topics;
+  }
+  for (const msgs::CbvAssignment& assignment : chosen->assignments) {
+    if (!contains(snapshot, assignment.vehicle_id) || cbv(assignment.slot, snapshot.tick)) continue;
+    topics.push_back(cbvControlTopic(assignment.slot));
+  }
+  return topics;
+}
+
+TickAnswers::Selection TickAnswers::selection(std::uint64_t tick) const {
+  const auto found = selections_.find(tick);
+  return found == selections_.end() ? nullptr : found->second;
+}
+
+TickAnswers::Control TickAnswers::cbv(int slot, std::uint64_t tick) const {
+  const auto at_tick = controls_.find(tick);
+  if (at_tick == controls_.end()) return nullptr;
+  const auto found = at_tick->second.find(slot);
+  return found == at_tick->second.end() ? nullptr : found->second;
+}
+
+TickAnswers::Control TickAnswers::ego(std::uint64_t tick) const { return cbv(kEgoSlot, tick); }
+
+std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) const {
+  std::vector<Answer> answers;
+  const msgs::Vehicle* ego_vehicle = findEgo(snapshot);
+  const Control ego_control = ego(snapshot.tick);
+  if (ego_vehicle != nullptr && ego_control) answers.push_back(answerOf(*ego_control, kEgoSlot, ego_vehicle->id));
+  const Selection chosen = selection(snapshot.tick);
+  if (!chosen) return answers;
+  for (const msgs::CbvAssignment& assignment : chosen->assignments) {
+    const Control control = cbv(assignment.slot, snapshot.tick);
+    if (!control || !contains(snapshot, assignment.vehicle_id)) continue;
+    answers.push_back(answerOf(*control, assignment.slot, assignment.vehicle_id));
+  }
+  return answers;
+}
+
+TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehicle_id, std::uint64_t tick) const {
+  for (auto at_tick = controls_.rbegin(); at_tick != controls_.rend(); ++at_tick) {
+    const auto found = at_tick->second.find(slot);
+    if (at_tick->first > tick || found == at_tick->second.end()) continue;
+    if (slot == kEgoSlot || found->second->vehicle_id == vehicle_id) return {at_tick->first, found->second};
+  }
+  return {};
+}
+
+TickAnswers::Selection TickAnswers::selectionAfter(std::uint64_t tick) const {
+  const auto found = selections_.upper_bound(tick);
+  return found == selections_.end() ? nullptr : found->second;
+}
+
+void TickAnswers::forgetBefore(std::uint64_t tick) {
+  selections_.erase(selections_.begin(), selections_.lower_bound(tick));
+  controls_.erase(controls_.begin(), controls_.lower_bound(tick));
+}
+
+}  // namespace cdiff::ros

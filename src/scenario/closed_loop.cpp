@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/scenario/closed_loop.h"
+
+#include <chrono>
+#include <exception>
+#include <thread>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/planning/planner_factory.h"
+
+namespace cdiff::scenario {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using planning::PlannedAction;
+using planning::PlanningTask;
+using traffic::SessionStatus;
+
+PlannedAction failSafe(const PlanningTask& task) {
+  return {task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}};
+}
+
+std::vector<PlannedAction> failSafe(const std::vector<PlanningTask>& tasks) {
+  std::vector<PlannedAction> actions;
+  for (const PlanningTask& task : tasks) actions.push_back(failSafe(task));
+  return actions;
+}
+
+bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<PlanningTask>& tasks) {
+  if (actions.size() != tasks.size()) return false;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (actions[i].slot != tasks[i].slot || actions[i].vehicle_id != tasks[i].vehicle->id) return false;
+  }
+  return true;
+}
+
+/// Sleeps until the wall clock has come as far as the simulation asks for.
+void pace(Clock::time_point begin, double simulated_seconds, double real_time_factor) {
+  if (real_time_factor <= 0.0) return;
+  const std::chrono::duration<double> due(simulated_seconds / real_time_factor);
+  std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(due));
+}
+
+}  // namespace
+
+std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection& selection,
+                                   double target_speed) {
+  std::vector<PlanningTask> tasks;
+  for (const cbv::CbvAssignment& assignment : selection.assignments) {
+    const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
+    if (vehicle == nullptr) continue;
+    tasks.push_back({assignment.slot, vehicle, &assignment.conflict_aware_route, target_speed});
+  }
+  return tasks;
+}
+
+std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot, const map::Route& route,
+                                   double target_speed) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego == nullptr) return {};
+  return {{-1, ego, &route, target_speed}};
+}
+
+std::vector<PlannedAction> planTimed(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                                     const std::vector<PlanningTask>& tasks, double& milliseconds,
+                                     std::string& fault) {
+  const Clock::time_point begin = Clock::now();
+  std::vector<PlannedAction> actions;
+  fault.clear();
+  try {
+    actions = planner.plan(snapshot, tasks);
+    if (!answersAll(actions, tasks)) fault = "the planner answered for other vehicles than it was asked for";
+  } catch (const std::exception& error) {
+    fault = error.what();
+  }
+  milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  return fault.empty() ? actions : failSafe(tasks);
+}
+
+ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
+  const ScenarioOptions& options = setup.options();
+  const planning::PlannerOptions planner_options{options.pdm_lite, options.vehicle};
+  ego_planner_ = planning::makePlanner(options.ego_planner, planner_options, setup.planningContext());
+  cbv_planner_ = planning::makePlanner(options.cbv_planner, planner_options, setup.planningContext());
+  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv), setup.graph(),
+                                                 setup.egoRoute());
+  world_ = std::make_unique<World>(setup);
+}
+
+ClosedLoop::~ClosedLoop() = default;
+
+struct ClosedLoop::Decision {
+  cbv::CbvSelection selection;
+  std::vector<PlannedAction> actions;
+  std::vector<PlannerLatency> latencies;
+};
+
+ClosedLoop::Decision ClosedLoop::decide() {
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const ScenarioOptions& options = setup_.options();
+  Decision decision;
+  decision.selection = selector_->update(snapshot);
+  const auto ask = [&](planning::Planner& planner, const std::string& name, const std::vector<PlanningTask>& tasks) {
+    if (tasks.empty()) return;
+    PlannerLatency latency{name, 0.0};
+    std::string fault;
+    for (PlannedAction& action : planTimed(planner, snapshot, tasks, latency.milliseconds, fault)) {
+      decision.actions.push_back(std::move(action));
+    }
+    if (!fault.empty()) world_->recordFault(name, fault);
+    decision.latencies.push_back(latency);
+  };
+  ask(*ego_planner_, "ego:" + options.ego_planner, egoTasks(snapshot, setup_.egoRoute(), options.target_speed));
+  ask(*cbv_planner_, "cbv:" + options.cbv_planner, cbvTasks(snapshot, decision.selection, options.target_speed));
+  return decision;
+}
+
+SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
+  const Clock::time_point begin = Clock::now();
+  while (true) {
+    const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+    TickRecord record;
+    record.snapshot = &snapshot;
+    Decision decision;
+    if (snapshot.decision_tick) {
+      decision = decide();
+      record.selection = &decision.selection;
+      record.actions = &decision.actions;
+      record.latencies = decision.latencies;
+    } else {
+      selector_->observe(snapshot);
+    }
+    for (SessionObserver* observer : observers_) observer->observe(record);
+    if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
+    if (stop) {
+      world_->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
+      continue;
+    }
+    pace(begin, snapshot.time, setup_.options().real_time_factor);
+    world_->advance(record.selection, decision.actions);
+  }
+}
+
+}  // namespace cdiff::scenario

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/scenario/session_request.h"
+
+#include <filesystem>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+/// A scenario made of a Bench2Drive route alone, with generated demand.
+ScenarioOptions bench2DriveScenario(const SessionRequest& request) {
+  if (request.route.empty()) throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
+  if (request.network.empty()) {
+    throw InputError("route " + request.route + " lies in " + map::bench2DriveTown(request.bench2drive, request.route) +
+                     "; give that town's network (--network NET.net.xml)");
+  }
+  ScenarioOptions options;
+  options.name = "bench2drive_" + request.route;
+  options.route.bench2drive_file = fs::absolute(request.bench2drive).string();
+  options.route.bench2drive_id = request.route;
+  return options;
+}
+
+ScenarioOptions baseScenario(const SessionRequest& request) {
+  const bool bench2drive = !request.bench2drive.empty();
+  if (bench2drive && !request.scenario.empty()) {
+    throw InputError("give either a scenario or a Bench2Drive file, not both ('" + request.scenario + "' and '" +
+                     request.bench2drive + "')");
+  }
+  if (bench2drive) return bench2DriveScenario(request);
+  if (!request.route.empty()) throw InputError("--route " + request.route + " needs --bench2drive FILE");
+  if (request.scenario.empty()) {
+    throw InputError("nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID --network NET");
+  }
+  return loadScenario(request.scenario);
+}
+
+}  // namespace
+
+ScenarioOptions resolveRequest(const SessionRequest& request) {
+  ScenarioOptions options = baseScenario(request);
+  if (!request.network.empty()) {
+    options.network = fs::exists(request.network) ? fs::absolute(request.network).string() : request.network;
+  }
+  const auto apply = [&](const std::string& key, const std::string& value) {
+    if (!value.empty()) core::overrideOption(key + "=" + value, "argument '" + key + "'", options);
+  };
+  apply("mode", request.mode);
+  apply("ego_planner", request.ego_planner);
+  apply("cbv_planner", request.cbv_planner);
+  apply("seed", request.seed);
+  for (const std::string& assignment : request.set) core::overrideOption(assignment, request.set_source, options);
+  options.validate();
+  return options;
+}
+
+}  // namespace cdiff::scenario

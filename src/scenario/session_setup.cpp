@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/scenario/session_setup.h"
+
+#include <cmath>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::scenario {
+namespace {
+
+const ScenarioOptions& validated(const ScenarioOptions& options) {
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+SessionSetup::SessionSetup(const ScenarioOptions& options)
+    : options_(validated(options)),
+      import_(map::importNetwork(options.network)),
+      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
+      graph_(network_),
+      drivable_area_(network_),
+      ego_route_(map::matchRoute(network_, map::makeRoute(graph_, options_.route).path().points())) {}
+
+SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
+                           const std::vector<Eigen::Vector3d>& ego_route_points)
+    : options_(options),
+      import_(std::move(import)),
+      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
+      graph_(network_),
+      drivable_area_(network_),
+      ego_route_(map::matchRoute(network_, ego_route_points)) {}
+
+planning::PlanningContext SessionSetup::planningContext() const {
+  return {network_, drivable_area_, static_cast<std::uint64_t>(options_.seed), options_.simulation_step,
+          options_.decision_period};
+}
+
+std::uint64_t SessionSetup::ticksPerDecision() const {
+  return static_cast<std::uint64_t>(std::llround(options_.decision_period / options_.simulation_step));
+}
+
+}  // namespace cdiff::scenario

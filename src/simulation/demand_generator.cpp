@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/simulation/demand_generator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace cdiff::simulation {
+
+namespace {
+
+constexpr double kStartSpacing = 15.0;    ///< between places on a lane [m]
+constexpr double kStartMargin = 1.0;      ///< rear bumper to the lane's start, front bumper to its end [m]
+constexpr double kOutOfSight = 60.0;      ///< from the ego, once the session runs [m]
+constexpr double kRouteLength = 800.0;    ///< [m]
+constexpr double kUsualSpeed = 8.0;       ///< wished at the start, or 0.7 of the limit when that is more [m/s]
+constexpr int kTriesPerCall = 12;
+constexpr double kLevelHeight = 2.5;      ///< [m]
+
+constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {{
+    {4.2, 1.75, 1.50}, {4.5, 1.80, 1.50}, {4.8, 1.85, 1.45}, {5.2, 1.95, 1.85}}};
+constexpr double kLongest = 5.2;
+
+// Elements of one attempt's draws; the router's begin at 16.
+constexpr std::uint32_t kPlaceElement = 0;
+constexpr std::uint32_t kSizeElement = 1;
+
+double fingerprintOf(const std::vector<traffic::Vehicle>& vehicles) {
+  double sum = static_cast<double>(vehicles.size());
+  for (const traffic::Vehicle& vehicle : vehicles) {
+    sum += vehicle.state.position.x() + 3.0 * vehicle.state.position.y();
+  }
+  return sum;
+}
+
+}  // namespace
+
+void DemandOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.integer({"density", "", "Vehicles kept alive near the ego."}, density, 0, 1000);
+  visitor.number({"radius", "m", "Near means within this distance of the ego; vehicles begin within it of the ego route."},
+                 radius, 20.0, 2000.0);
+  visitor.number({"clear_start", "m", "No vehicle begins nearer to the ego's start."}, clear_start, 0.0, 1000.0);
+  visitor.number({"warm_up", "s", "Traffic is driven this long before the session begins."}, warm_up, 0.0, 3600.0);
+}
+
+DemandGenerator::DemandGenerator(const DemandOptions& options, const map::LaneGraph& graph,
+                                 const map::Route& ego_route, std::uint64_t seed)
+    : options_(options),
+      ego_route_(ego_route),
+      random_(seed, "traffic"),
+      edges_(graph.network()),
+      router_(edges_, ego_route, options.radius) {
+  collectStarts();
+}
+
+void DemandGenerator::collectStarts() {
+  const map::RoadNetwork& network = edges_.network();
+  for (map::LaneIndex lane = 0; lane < static_cast<map::LaneIndex>(network.lanes().size()); ++lane) {
+    if (network.lane(lane).routable && !network.lane(lane).internal) addStartsOf(lane);
+  }
+}
+
+void DemandGenerator::addStartsOf(map::LaneIndex index) {
+  const map::Lane& lane = edges_.network().lane(index);
+  const Eigen::Vector2d ego_start = ego_route_.path().positionAt(0.0);
+  const double last = lane.centerline.length() - kStartMargin;
+  for (double front = kLongest + kStartMargin; front <= last; front += kStartSpacing) {
+    const Eigen::Vector3d point = lane.centerline.pointAt(front);
+    const Eigen::Vector2d position = point.head<2>();
+    const Eigen::Vector2d rear =
+        position - kLongest * geometry::direction(lane.centerline.headingAt(front));
+    const double to_start = std::min((position - ego_start).norm(), (rear - ego_start).norm());
+    if (to_start < options_.clear_start + 0.5 * kLongest) continue;
+    if (ego_route_.path().project(position).distance > options_.radius) continue;
+    starts_.push_back({index, front, position, point.z()});
+  }
+}
+
+bool DemandGenerator::allowed(const Start& start, const Eigen::Vector2d& ego_position,
+                              double ego_elevation, bool warm_up) const {
+  const double distance = (start.position - ego_position).norm();
+  if (distance > options_.radius) return false;
+  const bool same_level = std::abs(start.elevation - ego_elevation) < kLevelHeight;
+  return warm_up || distance > kOutOfSight || (!same_level && distance > 0.5 * kOutOfSight);
+}
+
+std::size_t DemandGenerator::countNear(const std::vector<traffic::Vehicle>& vehicles,
+                                       const Eigen::Vector2d& ego_position) const {
+  return static_cast<std::size_t>(
+      std::count_if(vehicles.begin(), vehicles.end(), [&](const traffic::Vehicle& vehicle) {
+        return vehicle.role != traffic::VehicleRole::kEgo &&
+               (vehicle.state.position - ego_position).norm() <= options_.radius;
+      }));
+}
+
+void DemandGenerator::forgetOldCandidates(const std::vector<traffic::Vehicle>& present) {
+  const double fingerprint = fingerprintOf(present);
+  if (fingerprint != fingerprint_) announced_.clear();
+  fingerprint_ = fingerprint;
+}
+
+std::optional<DemandVehicle> DemandGenerator::tryStart(
+    const Start& start, const std::vector<traffic::Vehicle>& vehicles) {
+  const core::RandomKey key{0, draws_, 0};
+  const map::Lane& lane = edges_.network().lane(start.lane);
+  Insertion insertion;
+  insertion.lane = start.lane;
+  insertion.front = start.front;
+  insertion.dimensions = kSizes[random_.index(key, kSizeElement, kSizes.size())];
+  insertion.speed = std::min(lane.speed_limit, std::max(kUsualSpeed, 0.7 * lane.speed_limit));
+  const std::optional<double> speed = freeSpeed(edges_.network(), insertion, vehicles);
+  if (!speed) return std::nullopt;
+  insertion.speed = *speed;
+  DemandVehicle vehicle;
+  vehicle.id = "bg_" + std::to_string(count_++);
+  vehicle.edges = edges_.ids(router_.route(start.lane, start.front, kRouteLength, random_, key));
+  vehicle.depart_position = start.front;
+  vehicle.depart_lane = lane.index;
+  vehicle.depart_speed = *speed;
+  vehicle.dimensions = insertion.dimensions;
+  traffic::Vehicle announced;
+  announced.id = vehicle.id;
+  announced.state = stateAt(edges_.network(), insertion);
+  announced.dimensions = insertion.dimensions;
+  announced.lane_id = lane.id;
+  announced_.push_back(announced);
+  return vehicle;
+}
+
+std::optional<DemandVehicle> DemandGenerator::next(const std::vector<traffic::Vehicle>& present,
+                                                   const Eigen::Vector2d& ego_position,
+                                                   double ego_elevation, bool warm_up) {
+  forgetOldCandidates(present);
+  std::vector<traffic::Vehicle> vehicles = present;
+  vehicles.insert(vehicles.end(), announced_.begin(), announced_.end());
+  if (countNear(vehicles, ego_position) < static_cast<std::size_t>(options_.density)) {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < starts_.size(); ++i) {
+      if (allowed(starts_[i], ego_position, ego_elevation, warm_up)) places.push_back(i);
+    }
+    for (int attempt = 0; attempt < kTriesPerCall && !places.empty(); ++attempt) {
+      ++draws_;
+      const std::size_t drawn = random_.index({0, draws_, 0}, kPlaceElement, places.size());
+      std::optional<DemandVehicle> vehicle = tryStart(starts_[places[drawn]], vehicles);
+      if (vehicle) return vehicle;
+    }
+  }
+  announced_.clear();
+  return std::nullopt;
+}
+
+}  // namespace cdiff::simulation

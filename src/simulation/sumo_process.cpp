@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/simulation/sumo_process.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::simulation {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kPortAttempts = 5;
+constexpr std::chrono::milliseconds kListenPeriod{5};
+
+bool isProgram(const fs::path& file) {
+  return fs::is_regular_file(file) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// Our environment, with SUMO_HOME added where it is unset.
+std::vector<std::string> sumoEnvironment() {
+  std::vector<std::string> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) variables.emplace_back(*entry);
+  if (std::getenv("SUMO_HOME") == nullptr) variables.emplace_back("SUMO_HOME=/usr/share/sumo");
+  return variables;
+}
+
+/// Inode of the socket that listens on `port` according to one of the kernel's tables; empty when there is none.
+std::string listeningInode(const char* table, int port) {
+  std::ifstream file(table);
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    const std::vector<std::string> fields = core::splitText(line, ' ');
+    if (fields.size() < 10 || fields[3] != "0A") continue;
+    const std::size_t colon = fields[1].rfind(':');
+    if (std::strtol(fields[1].c_str() + colon + 1, nullptr, 16) == port) return fields[9];
+  }
+  return "";
+}
+
+bool holdsSocket(int process_id, const std::string& inode) {
+  const std::string wanted = "socket:[" + inode + "]";
+  std::error_code error;
+  fs::directory_iterator entries("/proc/" + std::to_string(process_id) + "/fd", error);
+  if (error) return false;
+  for (; entries != fs::directory_iterator(); entries.increment(error)) {
+    if (error) return false;
+    if (fs::read_symlink(entries->path(), error) == wanted) return true;
+  }
+  return false;
+}
+
+/// The last lines of a text file in one line; empty when there are none.
+std::string lastLines(const fs::path& path) {
+  constexpr std::size_t kLines = 4;
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty()) lines.push_back(line);
+  }
+  if (lines.size() > kLines) lines.erase(lines.begin(), lines.end() - kLines);
+  return core::joinText(lines, " | ");
+}
+
+}  // namespace
+
+fs::path findProgram(const std::string& name) {
+  if (name.find('/') != std::string::npos && isProgram(name)) return name;
+  if (name.find('/') == std::string::npos && !name.empty()) {
+    const char* path = std::getenv("PATH");
+    for (const std::string& folder : core::splitText(path != nullptr ? path : "", ':')) {
+      if (isProgram(fs::path(folder) / name)) return fs::path(folder) / name;
+    }
+  }
+  throw core::InputError("SUMO's program '" + name +
+                         "' was not found; install the package sumo or name the program's file");
+}
+
+int freePort() {
+  const int handle = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_ANY);
+  socklen_t size = sizeof(address);
+  const bool bound =
+      handle >= 0 && ::bind(handle, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+      ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  if (handle >= 0) ::close(handle);
+  if (!bound) throw core::SimulatorError("no free TCP port was found for SUMO");
+  return ntohs(address.sin_port);
+}
+
+bool listensOn(int process_id, int port) {
+  for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+    const std::string inode = listeningInode(table, port);
+    if (!inode.empty() && holdsSocket(process_id, inode)) return true;
+  }
+  return false;
+}
+
+LogFolder::LogFolder(const fs::path& wanted) : path_(wanted), temporary_(wanted.empty()) {
+  if (!temporary_) {
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error) throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
+    return;
+  }
+  std::string name = (fs::temp_directory_path() / "e2e_cdiff_sumo_XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw core::InputError("no temporary folder could be made from '" + name + "' for SUMO's log");
+  }
+  path_ = name;
+}
+
+LogFolder::~LogFolder() {
+  std::error_code ignored;
+  if (temporary_) fs::remove_all(path_, ignored);
+}
+
+SumoProcess::SumoProcess(const SumoCommand& command) : logs_(command.log_folder) {
+  const fs::path program = findProgram(command.binary);
+  for (int attempt = 0; attempt < kPortAttempts; ++attempt) {
+    if (tryStart(command, program) == Start::kListening) return;
+  }
+  throw core::SimulatorError("SUMO found no free port in " + std::to_string(kPortAttempts) +
+                             " attempts, the last one was " + std::to_string(port_));
+}
+
+SumoProcess::~SumoProcess() = default;
+
+SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::path& program) {
+  std::error_code ignored;
+  fs::remove(logs_.errorLog(), ignored);
+  fs::remove(logs_.output(), ignored);
+  port_ = command.choose_port();
+  std::vector<std::string> arguments = {"--remote-port", std::to_string(port_), "--num-clients", "1",
+                                        "--error-log", logs_.errorLog().string()};
+  arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
+  process_ =
+      std::make_unique<GuardedProcess>(program, arguments, sumoEnvironment(), logs_.output());
+  const auto limit = std::chrono::steady_clock::now() +
+                     std::chrono::duration<double>(command.start_timeout);
+  while (!listensOn(process_->id(), port_)) {
+    if (process_->ended()) {
+      const std::string words = lastWords();
+      if (words.find("already in use") != std::string::npos) return Start::kPortTaken;
+      throw core::SimulatorError("SUMO did not start (" + process_->endText() + "): " + words);
+    }
+    if (std::chrono::steady_clock::now() > limit) {
+      throw core::SimulatorError("SUMO did not listen within " +
+                                 core::formatNumber(command.start_timeout) + " s");
+    }
+    std::this_thread::sleep_for(kListenPeriod);
+  }
+  return Start::kListening;
+}
+
+std::string SumoProcess::lastWords() const {
+  const std::string errors = lastLines(logs_.errorLog());
+  if (!errors.empty()) return errors;
+  const std::string output = lastLines(logs_.output());
+  return output.empty() ? "its log is empty" : output;
+}
+
+}  // namespace cdiff::simulation

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/simulation/sumo_simulator.h"
+
+#include <libsumo/libtraci.h>
+
+#include <algorithm>
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/simulation/driven_fleet.h"
+#include "e2e_cdiff/simulation/traffic_observer.h"
+
+namespace cdiff::simulation {
+
+namespace {
+
+void requireFile(const std::filesystem::path& file, const char* what) {
+  if (std::filesystem::is_regular_file(file)) return;
+  throw core::InputError(std::string(what) + " '" + file.string() + "' is not a file");
+}
+
+/// SUMO's seed is a 32-bit signed number.
+std::string sumoSeed(std::uint64_t seed) { return std::to_string(seed % 2147483647ULL); }
+
+SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
+  requireFile(session.network_file, "the network for SUMO");
+  if (!session.demand_file.empty()) requireFile(session.demand_file, "the demand for SUMO");
+  SumoCommand command;
+  command.binary = options.binary;
+  command.log_folder = session.log_folder;
+  command.start_timeout = options.start_timeout;
+  command.arguments = {"--net-file", session.network_file.string(),
+                       "--begin", core::formatNumber(session.begin_time),
+                       "--step-length", core::formatNumber(session.simulation_step),
+                       "--seed", sumoSeed(session.seed),
+                       "--xml-validation", "never", "--xml-validation.net", "never",
+                       "--xml-validation.routes", "never",
+                       "--no-step-log", "true", "--no-warnings", "true",
+                       "--duration-log.disable", "true",
+                       "--collision.action", "none", "--time-to-teleport", "-1",
+                       "--lanechange.duration", "3"};
+  if (!session.demand_file.empty()) {
+    command.arguments.insert(command.arguments.end(), {"--route-files", session.demand_file.string()});
+  }
+  return command;
+}
+
+}  // namespace
+
+void SumoOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"binary", "", "Program of SUMO to start."}, binary, {});
+  visitor.number({"start_timeout", "s", "Wall time within which SUMO must listen and have loaded its input."},
+                 start_timeout, 0.1, 3600.0);
+  visitor.number({"step_timeout", "s", "Wall time after which a step counts as a frozen SUMO."}, step_timeout,
+                 0.1, 3600.0);
+  visitor.number({"match_threshold", "m", "How far from a lane SUMO looks for one for a vehicle that is moved."},
+                 match_threshold, 1.0, 1000.0);
+}
+
+/// Everything behind the simulator: the session with SUMO, what it reports and what we move.
+class SumoSimulator::Connection {
+ public:
+  Connection(const SumoOptions& options, const SumoSession& session, const map::RoadNetwork& network)
+      : step_(session.simulation_step),
+        graph_(network),
+        link_(commandFor(options, session), options.step_timeout),
+        fleet_(link_, graph_, options.match_threshold) {
+    link_.guarded("start", [&] { observer_.start(session.lights_green); });
+  }
+
+  SumoLink& link() { return link_; }
+  TrafficObserver& observer() { return observer_; }
+
+  void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
+                 const DrivenVehicle& start) {
+    DrivenVehicle named = start;
+    named.id = id;
+    link_.guarded("adding vehicle '" + id + "'",
+                  [&] { fleet_.add(named, dimensions, typeFor(dimensions)); });
+    observer_.watch(id);
+    fresh_.insert(id);
+  }
+
+  void takeOver(const std::string& id) {
+    const SimulatedVehicle* vehicle = observer_.find(id);
+    if (vehicle == nullptr) throw core::SimulatorError("SUMO has no vehicle '" + id + "' to take over");
+    const traffic::VehicleDimensions dimensions = vehicle->dimensions;
+    link_.guarded("taking over '" + id + "'", [&] { fleet_.takeOver(id, dimensions); });
+  }
+
+  bool release(const DrivenVehicle& vehicle) {
+    if (!fleet_.contains(vehicle.id)) {
+      throw core::SimulatorError("vehicle '" + vehicle.id + "' is released but is not driven by us");
+    }
+    const bool released = link_.guarded("releasing '" + vehicle.id + "'",
+                                        [&] { return fleet_.release(vehicle, reportedLane(vehicle.id)); });
+    if (!released) remove(vehicle.id);
+    return released;
+  }
+
+  void remove(const std::string& id) {
+    fleet_.forget(id);
+    fresh_.erase(id);
+    link_.guarded("removing '" + id + "'", [&] { takeOut(id); });
+  }
+
+  void step(const std::vector<DrivenVehicle>& driven) {
+    for (const DrivenVehicle& vehicle : driven) bringBack(vehicle);
+    link_.guarded("step", [&] {
+      for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle, reportedLane(vehicle.id));
+      fleet_.advance(step_);
+      libtraci::Simulation::step();
+      observer_.read();
+      dropWaiting();
+    });
+    fresh_.clear();
+  }
+
+  bool addBackground(const std::string& id, const std::vector<std::string>& edges, double depart_position,
+                     int depart_lane, double depart_speed, const traffic::VehicleDimensions& dimensions) {
+    const std::string route_id = "route_" + id;
+    const bool added = link_.guarded("adding vehicle '" + id + "'", [&] {
+      return link_.attempt([&] {
+        libtraci::Route::add(route_id, edges);
+        libtraci::Vehicle::add(id, route_id, typeFor(dimensions), "now", std::to_string(depart_lane),
+                               core::formatNumber(depart_position), core::formatNumber(depart_speed));
+      });
+    });
+    if (added) waiting_.push_back(id);
+    return added;
+  }
+
+ private:
+  std::string reportedLane(const std::string& id) const {
+    const SimulatedVehicle* vehicle = observer_.find(id);
+    return vehicle != nullptr ? vehicle->lane_id : "";
+  }
+
+  /// SUMO takes a moved vehicle out when it believes that it has arrived; it goes on where we say.
+  void bringBack(const DrivenVehicle& vehicle) {
+    if (!fleet_.contains(vehicle.id) || fresh_.count(vehicle.id) != 0) return;
+    if (observer_.find(vehicle.id) != nullptr) return;
+    const traffic::VehicleDimensions dimensions = fleet_.dimensions(vehicle.id);
+    addDriven(vehicle.id, dimensions, vehicle);
+  }
+
+  /// Background vehicles that found no room in the step just made are not tried again.
+  void dropWaiting() {
+    for (const std::string& id : waiting_) {
+      if (observer_.find(id) != nullptr) continue;
+      takeOut(id);
+    }
+    waiting_.clear();
+  }
+
+  /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first. No error when it is gone already.
+  void takeOut(const std::string& id) {
+    link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
+    link_.attempt([&] { libtraci::Vehicle::remove(id, libsumo::REMOVE_VAPORIZED); });
+  }
+
+  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's seeded speed factor.
+  std::string typeFor(const traffic::VehicleDimensions& dimensions) {
+    const std::string id = "car_" + core::formatNumber(dimensions.length) + "_" +
+                           core::formatNumber(dimensions.width) + "_" + core::formatNumber(dimensions.height);
+    if (!types_.insert(id).second) return id;
+    using Type = libtraci::VehicleType;
+    Type::copy("DEFAULT_VEHTYPE", id);
+    Type::setLength(id, dimensions.length);
+    Type::setWidth(id, dimensions.width);
+    Type::setHeight(id, dimensions.height);
+    Type::setImperfection(id, 0.0);
+    return id;
+  }
+
+  double step_;
+  EdgeGraph graph_;
+  SumoLink link_;
+  TrafficObserver observer_;
+  DrivenFleet fleet_;
+  std::set<std::string> fresh_;        ///< added since the last step
+  std::vector<std::string> waiting_;   ///< background vehicles added since the last step
+  std::set<std::string> types_;
+};
+
+SumoSimulator::SumoSimulator(const SumoOptions& options, const SumoSession& session,
+                             const map::RoadNetwork& network)
+    : connection_(std::make_unique<Connection>(options, session, network)) {}
+
+SumoSimulator::~SumoSimulator() = default;
+
+void SumoSimulator::addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
+                              const DrivenVehicle& start) {
+  connection_->addDriven(id, dimensions, start);
+}
+
+void SumoSimulator::takeOver(const std::string& id) { connection_->takeOver(id); }
+
+bool SumoSimulator::release(const DrivenVehicle& vehicle) { return connection_->release(vehicle); }
+
+void SumoSimulator::remove(const std::string& id) { connection_->remove(id); }
+
+void SumoSimulator::step(const std::vector<DrivenVehicle>& driven) { connection_->step(driven); }
+
+const std::vector<SimulatedVehicle>& SumoSimulator::vehicles() const {
+  return connection_->observer().vehicles();
+}
+
+const std::vector<traffic::SignalState>& SumoSimulator::signals() const {
+  return connection_->observer().signals();
+}
+
+std::string SumoSimulator::version() const { return connection_->link().version(); }
+
+int SumoSimulator::processId() const { return connection_->link().processId(); }
+
+bool SumoSimulator::addBackground(const std::string& id, const std::vector<std::string>& edges,
+                                  double depart_position, int depart_lane, double depart_speed,
+                                  const traffic::VehicleDimensions& dimensions) {
+  return connection_->addBackground(id, edges, depart_position, depart_lane, depart_speed, dimensions);
+}
+
+}  // namespace cdiff::simulation

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// How long a CBV keeps its slot, in both life cycles.
+#include <gtest/gtest.h>
+
+#include "cbv/crossing_world.h"
+
+namespace cdiff::cbv {
+namespace {
+
+constexpr std::uint64_t kFirst = 52;  // 2.6 s
+constexpr std::uint64_t kPeriod = 4;  // 0.2 s
+
+/// As the simulator reports a vehicle once it drives it as a CBV.
+traffic::Vehicle driven(traffic::Vehicle vehicle, int slot) {
+  vehicle.role = traffic::VehicleRole::kCbv;
+  vehicle.cbv_slot = slot;
+  return vehicle;
+}
+
+CbvOptions reselecting() {
+  CbvOptions options;
+  options.life_cycle = "reselect";
+  return options;
+}
+
+TEST(LifeCycle, DistancesOfAHeldCbvAreThoseOfTheDecision) {
+  CrossingWorld world({}, 1);
+  world.selector.update(
+      crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));  // conflict point x = 148
+  // Between selections, too: 0.1 s later the ego is 1 m and the CBV 0.9 m farther.
+  const auto next = world.selector.update(
+      crossingSnapshot(kFirst + 2, 71.0, {driven(fromSouth("a", -29.1, 5.0), 0)}));
+  ASSERT_EQ(next.assignments.size(), 1u);
+  const ConflictPoint& point = next.assignments[0].conflict_point;
+  EXPECT_NEAR(point.position.x(), 148.0, 1e-9);
+  EXPECT_NEAR(point.ego_distance, 77.0, 1e-6);
+  EXPECT_NEAR(point.cbv_distance, 24.1 + std::sqrt(50.0) + 38.0,
+              0.1);  // the route cuts corners a little
+  EXPECT_NEAR(point.cbv_arrival, point.cbv_distance / 5.0, 1e-12);
+  EXPECT_NEAR(point.ego_arrival, 7.7, 1e-6);
+  EXPECT_EQ(next.assignments[0].selected_tick, kFirst);
+  // Both have passed it.
+  const auto passed = world.selector.update(
+      crossingSnapshot(kFirst + 4, 160.0, {driven(test::vehicle("a", {151.0, 0.0, 0.0, 5.0}), 0)}));
+  ASSERT_EQ(passed.assignments.size(), 1u);
+  EXPECT_EQ(passed.assignments[0].conflict_point.ego_distance, 0.0);
+  EXPECT_EQ(passed.assignments[0].conflict_point.cbv_distance, 0.0);
+}
+
+TEST(LifeCycle, RiftNeverRanksAgain) {
+  CrossingWorld world({}, 1);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("weak", -20.0, 2.0)}));
+  const auto later = world.selector.update(
+      crossingSnapshot(kFirst + kPeriod, 70.0,
+                       {driven(fromSouth("weak", -20.0, 2.0), 0), fromNorth("better", 30.0, 9.0)}));
+  ASSERT_EQ(later.assignments.size(), 1u);
+  EXPECT_EQ(later.assignments[0].vehicle_id, "weak");
+  EXPECT_TRUE(later.released.empty());
+  EXPECT_EQ(reasonOf(later, "better"), kOutranked);
+  EXPECT_EQ(reasonOf(later, "weak"), "");
+}
+
+TEST(LifeCycle, ContactReleasesAndTheFreedSlotIsFilled) {
+  CrossingWorld world;
+  const std::vector<traffic::Vehicle> both = {fromSouth("a", -30.0, 9.0),
+                                              fromNorth("b", 30.0, 9.0)};
+  ASSERT_EQ(world.selector.update(crossingSnapshot(kFirst, 70.0, both)).assignments.size(), 2u);
+  auto snapshot = crossingSnapshot(
+      kFirst + kPeriod, 70.0, {driven(both[0], 0), driven(both[1], 1), fromSouth("c", -40.0, 9.0)});
+  snapshot.contacts.push_back({"a", "other"});
+  const auto selection = world.selector.update(snapshot);
+  ASSERT_EQ(selection.released.size(), 1u);
+  EXPECT_EQ(selection.released[0].vehicle_id, "a");
+  EXPECT_EQ(selection.released[0].slot, 0);
+  EXPECT_EQ(selection.released[0].reason, kContact);
+  ASSERT_EQ(selection.assignments.size(), 2u);
+  EXPECT_EQ(selection.assignments[0].vehicle_id, "c");  // the lowest free slot
+  EXPECT_EQ(selection.assignments[1].vehicle_id, "b");
+}
+
+TEST(LifeCycle, RemovedVehicleCountsAsContact) {
+  CrossingWorld world;
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+  auto snapshot = crossingSnapshot(kFirst + 2, 70.0, {});
+  snapshot.removed.push_back("a");
+  const auto selection = world.selector.update(snapshot);
+  EXPECT_TRUE(selection.assignments.empty());
+  ASSERT_EQ(selection.released.size(), 1u);
+  EXPECT_EQ(selection.released[0].reason, kContact);
+}
+
+TEST(LifeCycle, VanishedVehicleIsGone) {
+  CrossingWorld world;
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+  const auto selection = world.selector.update(crossingSnapshot(kFirst + 2, 70.0, {}));
+  ASSERT_EQ(selection.released.size(), 1u);
+  EXPECT_EQ(selection.released[0].reason, kGone);
+}
+
+TEST(LifeCycle, EndOfTheRouteReleasesForGood) {
+  CrossingWorld world({}, 1);
+  const auto first =
+      world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+  ASSERT_EQ(first.assignments.size(), 1u);
+  const map::Route& route = first.assignments[0].conflict_aware_route;
+  const auto at = [&](double remaining) {
+    const Eigen::Vector2d position = route.path().positionAt(route.length() - remaining);
+    return driven(test::vehicle("a", {position.x(), position.y(), 0.0, 9.0}), 0);
+  };
+  EXPECT_TRUE(
+      world.selector.update(crossingSnapshot(kFirst + 2, 150.0, {at(4.0)})).released.empty());
+  const auto end = world.selector.update(crossingSnapshot(kFirst + 4, 150.0, {at(2.5)}));
+  ASSERT_EQ(end.released.size(), 1u);
+  EXPECT_EQ(end.released[0].reason, kRouteEnd);
+  EXPECT_TRUE(end.assignments.empty());
+  // Back among the background, where it would have a conflict: never chosen again.
+  const auto again =
+      world.selector.update(crossingSnapshot(kFirst + 8, 70.0, {fromSouth("a", -30.0, 9.0)}));
+  EXPECT_TRUE(again.assignments.empty());
+  EXPECT_EQ(reasonOf(again, "a"), kAlreadyChosen);
+}
+
+TEST(LifeCycle, VehicleInContactIsNotChosen) {
+  CrossingWorld world;
+  auto snapshot = crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)});
+  snapshot.contacts.push_back({"a", "b"});
+  const auto selection = world.selector.update(snapshot);
+  EXPECT_TRUE(selection.assignments.empty());
+  EXPECT_EQ(reasonOf(selection, "a"), kInContact);
+}
+
+TEST(LifeCycle, ReselectTakesABetterCandidateBeyondTheHysteresis) {
+  const std::vector<traffic::Vehicle> first = {fromSouth("weak", -20.0, 2.0)};
+  const std::vector<traffic::Vehicle> then = {driven(first[0], 0), fromNorth("better", 30.0, 9.0)};
+  CbvOptions options = reselecting();
+  options.hysteresis = 0.1;
+  CrossingWorld world(options, 1);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, first));
+  const auto replaced = world.selector.update(crossingSnapshot(kFirst + kPeriod, 70.0, then));
+  ASSERT_EQ(replaced.assignments.size(), 1u);
+  EXPECT_EQ(replaced.assignments[0].vehicle_id, "better");
+  ASSERT_EQ(replaced.released.size(), 1u);
+  EXPECT_EQ(replaced.released[0].reason, kOutranked);
+  // The better score is exp(-0.31 - 1.15) = 0.23 at most: no challenger can be better by 0.3.
+  options.hysteresis = 0.3;
+  CrossingWorld inert(options, 1);
+  inert.selector.update(crossingSnapshot(kFirst, 70.0, first));
+  const auto kept = inert.selector.update(crossingSnapshot(kFirst + kPeriod, 70.0, then));
+  EXPECT_EQ(kept.assignments.at(0).vehicle_id, "weak");
+  EXPECT_EQ(reasonOf(kept, "better"), kOutranked);
+}
+
+TEST(LifeCycle, ReselectReleasesALostConflictAfterItsTimeAndMayChooseAgain) {
+  CrossingWorld world(reselecting(), 1);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+  // The ego has driven on: at x = 200 it is 90 m ahead of the CBV's turn, so no distances agree.
+  // Lost from 2.8 s on.
+  const auto waits = driven(fromSouth("a", -30.0, 0.0), 0);
+  for (std::uint64_t tick = kFirst + kPeriod; tick < kFirst + kPeriod + 40; tick += kPeriod) {
+    ASSERT_EQ(world.selector.update(crossingSnapshot(tick, 200.0, {waits})).assignments.size(), 1u)
+        << tick;
+  }
+  const auto lost =
+      world.selector.update(crossingSnapshot(kFirst + kPeriod + 40, 200.0, {waits}));  // 4.8 s
+  EXPECT_TRUE(lost.assignments.empty());
+  ASSERT_EQ(lost.released.size(), 1u);
+  EXPECT_EQ(lost.released[0].reason, kConflictLost);
+  // On the ego's own way behind it, 15 m apart at every point: a conflict again.
+  const auto again = world.selector.update(crossingSnapshot(
+      kFirst + 2 * kPeriod + 40, 200.0, {test::vehicle("a", {185.0, 0.0, 0.0, 10.0})}));
+  ASSERT_EQ(again.assignments.size(), 1u);
+  EXPECT_EQ(again.assignments[0].vehicle_id, "a");
+}
+
+TEST(LifeCycle, ReselectForgetsAShortLoss) {
+  CrossingWorld world(reselecting(), 1);
+  const auto present = fromSouth("a", -30.0, 9.0);
+  world.selector.update(crossingSnapshot(kFirst, 70.0, {present}));
+  auto askew = driven(present, 0);
+  askew.state.heading = 0.0;  // off its lane for a moment: no conflict
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    const bool lost = i % 10 != 0;  // 1.8 s without, then one decision with a conflict
+    const auto selection = world.selector.update(
+        crossingSnapshot(kFirst + i * kPeriod, 70.0, {lost ? askew : driven(present, 0)}));
+    ASSERT_EQ(selection.assignments.size(), 1u) << i;
+  }
+}
+
+}  // namespace
+}  // namespace cdiff::cbv

@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""Check the layer table on the compiler's own dependency records: which headers each target really read.
+
+    check_layers.py BUILD SOURCE RESULT.xml
+
+Debian puts ROS, SUMO, torch and OpenCV headers in /usr/include, so the compiler stops nobody; this does.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+# Headers that only some layers may read: pattern -> layers that may.
+RESTRICTED = {
+    "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|"
+            r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
+    "torch": (r"^/usr/include/(torch|ATen|c10)/", {"diffusion", "guidance", "planning", "training"}),
+    "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
+    "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "report", "ros"}),
+}
+# Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
+ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics planning simulation", "scenario", "report",
+         "ros", "nodes cli"]
+RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
+
+
+def records_of_ninja(build):
+    text = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
+    record, headers = None, []
+    for line in text.splitlines():
+        if line and not line.startswith((" ", "ninja:")):
+            record, headers = line.split(":")[0], []
+            yield record, headers
+        elif line.strip():
+            headers.append(line.strip())
+
+
+def records_of_make(build):
+    for path in Path(build).rglob("*.o.d"):
+        words = path.read_text().replace("\\\n", " ").split()
+        yield str(path.relative_to(build))[:-2], words[1:]
+
+
+def layer_of(record):
+    found = re.search(r"^(?:src|examples)/?([a-z_]*)", record)
+    if record.startswith("examples/"):
+        return "examples"
+    return found.group(1) if found else None
+
+
+def violations(layer, headers, source, build):
+    for header in headers:
+        path = str((Path(build) / header).resolve())
+        for name, (pattern, allowed) in RESTRICTED.items():
+            if layer not in allowed and re.search(pattern, path):
+                yield f"reads {name}'s header {path}"
+        inside = re.search(re.escape(f"{source}/include/e2e_cdiff/") + r"([a-z_]+)/", path)
+        if inside and RANK.get(inside.group(1), -1) > RANK.get(layer, 99):
+            yield f"reads {path}, which is of a higher layer"
+
+
+def main():
+    build, source, result = sys.argv[1:4]
+    source = str(Path(source).resolve())
+    records = list(records_of_ninja(build) if (Path(build) / "build.ninja").exists() else records_of_make(build))
+    checked = [(record, headers) for record, headers in records if record.startswith(("src/", "examples/"))]
+    cases = []
+    for record, headers in checked:
+        found = sorted(set(violations(layer_of(record), headers, source, build)))
+        for line in found:
+            print(f"{record}: {line}")
+        cases.append((record, found))
+    if not cases:
+        print("no dependency record was found; build first")
+    body = "".join(
+        f"<testcase classname='layers' name={quoteattr(record)}>"
+        + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>"
+        for record, found in cases)
+    Path(result).parent.mkdir(parents=True, exist_ok=True)
+    Path(result).write_text(f"<testsuite name='layers'>{body}</testsuite>\n")
+    return 1 if not cases or any(found for _, found in cases) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "e2e_cdiff/metrics/session_metrics.h"
+#include "metrics/straight_road.h"
+
+namespace cdiff::metrics {
+namespace {
+
+using test::background;
+using test::cbv;
+using test::ego;
+using test::snapshot;
+
+class SessionMetricsTest : public ::testing::Test {
+ protected:
+  TickMeasures observe(std::uint64_t tick, const std::vector<traffic::Vehicle>& vehicles) {
+    return metrics_.observe(snapshot(tick, vehicles), nullptr);
+  }
+  test::StraightRoad road_;
+  SessionMetrics metrics_{{}, road_.drivable_area, road_.route};
+};
+
+TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_EQ(measures.route_completion_percent, 0.0);
+  EXPECT_EQ(measures.driving_score, 0.0);
+  for (const Measure& measure : {measures.ego_off_road_percent, measures.cbv_off_road_rate_percent,
+                                 measures.collisions_per_km, measures.ttc_2d.mean,
+                                 measures.ttc_2d.minimum, measures.speed_shapiro_wilk,
+                                 measures.acceleration_shapiro_wilk, measures.speed_wasserstein}) {
+    EXPECT_FALSE(measure.value.has_value());
+    EXPECT_EQ(measure.n, 0U);
+    EXPECT_FALSE(measure.reason.empty());
+  }
+  EXPECT_EQ(measures.speed_shapiro_wilk.reason, "no CBV was driven");
+}
+
+TEST_F(SessionMetricsTest, FollowsTheEgoAlongItsRoute) {
+  for (std::uint64_t tick = 0; tick <= 5; ++tick) observe(tick, {ego(10.0 * tick, 0, 10)});
+  EXPECT_NEAR(metrics_.measures().route_completion_percent, 50.0, 1e-9);
+  EXPECT_NEAR(metrics_.measures().driving_score, 50.0, 1e-9);
+  for (std::uint64_t tick = 6; tick <= 9; ++tick) observe(tick, {ego(10.0 * tick, 0, 10)});
+  // 99.5 m of 100 m, 0.5 m from the end: complete by the protocol (99 %, 10 m).
+  EXPECT_EQ(observe(10, {ego(99.5, 0, 10)}).route_completion_percent, 100.0);
+  EXPECT_NEAR(metrics_.measures().driving_score, 100.0, 1e-9);
+}
+
+TEST_F(SessionMetricsTest, ChargesTheEgosWayOffTheRoad) {
+  // The lane ends at y = 1.6. 30 m on the road, then 10 m more ending off it at (30, 5) -> (40, 5):
+  // of 20 + sqrt(125) + 10 m driven, the last two parts, sqrt(125) + 10, end off the road. Two of
+  // five ticks: 40 %.
+  const double outside = std::sqrt(125.0) + 10.0;
+  EXPECT_FALSE(observe(0, {ego(0, 0, 10)}).ego_off_road);
+  observe(1, {ego(10, 0, 10)});
+  observe(2, {ego(20, 0, 10)});
+  EXPECT_TRUE(observe(3, {ego(30, 5, 10)}).ego_off_road);
+  observe(4, {ego(40, 5, 10)});
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_NEAR(*measures.ego_off_road_percent.value, 40.0, 1e-9);
+  EXPECT_NEAR(measures.route_completion_percent, 40.0, 1e-9);
+  EXPECT_NEAR(measures.driving_score, 40.0 * (1.0 - outside / (20.0 + outside)), 1e-9);
+}
+
+TEST_F(SessionMetricsTest, CountsACbvOnlyWhileItIsOne) {
+  // Background at tick 0, CBV at ticks 1 to 4, background at 5. Decisions at 2 and 4. Off the road
+  // at ticks 3 and 4 (y = 2). Chords between CBV ticks: 1 + hypot(1, 2) + 1.
+  observe(0, {background("a", 50, 0, 1)});
+  observe(1, {cbv("a", 51, 0, 2)});
+  observe(2, {cbv("a", 52, 0, 3)});
+  EXPECT_EQ(observe(3, {cbv("a", 53, 2, 4)}).cbv_off_road, 1U);
+  observe(4, {cbv("a", 54, 2, 5)});
+  EXPECT_EQ(observe(5, {background("a", 55, 2, 6)}).cbv_off_road, 0U);
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_EQ(measures.cbv_count, 1U);
+  EXPECT_EQ(measures.cbv_decisions, 2U);
+  EXPECT_NEAR(measures.cbv_distance_m, 2.0 + std::sqrt(5.0), 1e-9);
+  EXPECT_NEAR(*measures.cbv_off_road_rate_percent.value, 50.0, 1e-9);
+  EXPECT_EQ(measures.cbv_off_road_rate_percent.n, 4U);
+  EXPECT_EQ(measures.speed_shapiro_wilk.reason, "n = 2, needs at least 3");
+  // RIFT's rate knows decision ticks alone: off at one of two.
+  EXPECT_NEAR(*measures.rift_compat.at("off_road_rate_percent").value, 50.0, 1e-9);
+}
+
+TEST_F(SessionMetricsTest, SamplesSpeedsAndSignedAccelerationsAtDecisions) {
+  // Decisions at ticks 0, 2, 4 see speeds 1, 2, 4: W = 27/28 (three values); accelerations -1, 0, 1
+  // lie evenly: W = 1.
+  const double speeds[] = {1, 50, 2, 60, 4};
+  const double accelerations[] = {-1, 7, 0, 8, 1};
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    auto vehicle = cbv("a", 50, 0, speeds[tick]);
+    vehicle.acceleration = accelerations[tick];
+    observe(tick, {vehicle});
+  }
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_NEAR(*measures.speed_shapiro_wilk.value, 27.0 / 28.0, 1e-12);
+  EXPECT_NEAR(*measures.acceleration_shapiro_wilk.value, 1.0, 1e-12);
+  EXPECT_EQ(measures.speed_shapiro_wilk.n, 3U);
+}
+
+TEST_F(SessionMetricsTest, ThinsOutMoreSamplesThanTheTestAllows) {
+  for (std::uint64_t i = 0; i < 5001; ++i)
+    observe(2 * i, {cbv("a", 50, 0, static_cast<double>(i % 13))});
+  const Measure measure = metrics_.measures().speed_shapiro_wilk;
+  EXPECT_TRUE(measure.value.has_value());
+  EXPECT_EQ(measure.n, 2501U);  // samples 0, 2, ..., 5000
+  EXPECT_EQ(measure.reason, "1 in 2 of 5001 samples taken");
+}
+
+TEST_F(SessionMetricsTest, ComparesSpeedsWithTheBackgroundNearTheEgo) {
+  // CBV 4 and 6, background 5 and 5 within 150 m, 99 outside: every half moves by 1.
+  const auto far = background("far", 150.1, 0, 99);
+  observe(0, {ego(0, 0, 5), cbv("a", 50, 0, 4), background("b", 150, 0, 5), far});
+  observe(1, {ego(0, 0, 5), cbv("a", 50, 0, 80), background("b", 150, 0, 70), far});
+  observe(2, {ego(0, 0, 5), cbv("a", 50, 0, 6), background("b", 150, 0, 5), far});
+  EXPECT_NEAR(*metrics_.measures().speed_wasserstein.value, 1.0, 1e-12);
+  EXPECT_EQ(metrics_.measures().speed_wasserstein.n, 2U);
+}
+
+TEST_F(SessionMetricsTest, SaysWhenThereIsNoBackground) {
+  observe(0, {ego(0, 0, 5), cbv("a", 50, 0, 4)});
+  EXPECT_EQ(metrics_.measures().speed_wasserstein.reason,
+            "no background vehicle within 150 m of the ego");
+}
+
+TEST_F(SessionMetricsTest, TakesTimesToCollisionAtDecisions) {
+  // Gaps 15.2 m, 10.2 m, 5.2 m at 10 m/s at ticks 0, 1, 2: decisions see 1.52 s and 0.52 s.
+  EXPECT_NEAR(*observe(0, {ego(0, 0, 10), background("a", 20, 0, 0)}).ttc_2d, 1.52, 1e-12);
+  EXPECT_NEAR(*observe(1, {ego(0, 0, 10), background("a", 15, 0, 0)}).ttc_2d, 1.02, 1e-12);
+  const TickMeasures last = observe(2, {ego(0, 0, 10), background("a", 10, 0, 0)});
+  EXPECT_NEAR(*last.nearest_distance, 5.2, 1e-12);
+  const DistributionMeasure times = metrics_.measures().ttc_2d;
+  EXPECT_EQ(times.mean.n, 2U);
+  EXPECT_NEAR(*times.mean.value, 1.02, 1e-12);
+  EXPECT_NEAR(*times.minimum.value, 0.52, 1e-12);
+  EXPECT_NEAR(*times.standard_deviation.value, std::sqrt(0.5),
+              1e-12);  // +-0.5 about the mean, n - 1 = 1
+}
+
+TEST_F(SessionMetricsTest, SurvivesValuesThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  observe(0, {ego(nan, 0, nan), cbv("a", nan, 0, nan), background("b", 0, nan, nan)});
+  observe(2, {ego(10, 0, 5), cbv("a", 50, 0, 4), background("b", 60, 0, 4)});
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_NEAR(measures.route_completion_percent, 10.0, 1e-9);
+  EXPECT_EQ(measures.cbv_decisions, 1U);
+  EXPECT_NEAR(*measures.speed_wasserstein.value, 0.0, 1e-12);
+}
+
+TEST(SessionMetricsWithoutRoute, CompletesNothing) {
+  const test::StraightRoad road;
+  const map::Route none;
+  SessionMetrics metrics({}, road.drivable_area, none);
+  EXPECT_EQ(metrics.observe(snapshot(0, {ego(5, 0, 5)}), nullptr).route_completion_percent, 0.0);
+}
+
+}  // namespace
+}  // namespace cdiff::metrics

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include "course.h"
+#include "e2e_cdiff/planning/box_forecast.h"
+#include "e2e_cdiff/planning/ego_forecast.h"
+#include "e2e_cdiff/planning/motion_forecast.h"
+
+namespace cdiff::planning {
+namespace {
+
+using testing::leftBend;
+using testing::makeNetwork;
+using testing::routeAlong;
+using testing::straight;
+using testing::vehicleAt;
+
+TEST(MotionForecast, HoldsTheActionOfADrivenVehicle) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  traffic::Vehicle vehicle = vehicleAt("a", 0.0, 0.0, 0.0, 8.0);
+  vehicle.applied_action = traffic::ControlAction{0.0, 0.0, 1.0};
+  const auto states = forecastMotion(vehicle, network, {}, 20);
+  ASSERT_EQ(states.size(), 20u);
+  // 8 m/s - 4.952399 m/s^2 t: 3.0476 m/s after 1 s, standing from 1.6154 s on.
+  EXPECT_NEAR(states[9].speed, 8.0 - 4.952399, 1e-9);
+  // Euler with 0.05 s: x(1 s) = 8 - 4.952399 x 0.05^2 x (0 + 1 + ... + 19) = 8 - 4.952399 x 0.475.
+  EXPECT_NEAR(states[9].position.x(), 8.0 - 4.952399 * 0.475, 1e-9);
+  EXPECT_EQ(states[19].speed, 0.0);
+  vehicle.applied_action = traffic::ControlAction{1.0, 0.0, 0.0};
+  EXPECT_NEAR(forecastMotion(vehicle, network, {}, 20)[19].speed, 8.0 + 2.0 * 0.5633837, 1e-9);
+}
+
+TEST(MotionForecast, HeldSteerTurnsOnACircle) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  traffic::Vehicle vehicle = vehicleAt("a", 0.0, 0.0, 0.0, 5.0);
+  vehicle.applied_action = traffic::ControlAction{0.0, 0.3, 0.0};
+  // slip = atan(1.4178275 / 1.327058485 tan(0.110545)) = 0.118032; yaw rate = 5 / 1.4178275
+  // sin(slip) = 0.41527 rad/s.
+  EXPECT_NEAR(forecastMotion(vehicle, network, {}, 10)[9].heading, 0.41527, 1e-4);
+}
+
+TEST(MotionForecast, FollowsTheLaneOfACarOfSumo) {
+  // Straight 20 m, then a quarter circle of 12 m: the car starts 5 m before the bend, 0.5 m left of
+  // the centre line.
+  const auto network = makeNetwork({{"bend", leftBend(20.0, 12.0, 50.0)}});
+  traffic::Vehicle vehicle = vehicleAt("a", 15.0, 0.5, 0.0, 8.0);
+  vehicle.lane_id = "bend_0";
+  const auto states = forecastMotion(vehicle, network, {}, 20);
+  const geometry::Polyline& line = network.lane(0).centerline;
+  for (const auto& state : states) {
+    EXPECT_NEAR(line.project(state.position).lateral_offset, 0.5, 0.03);
+  }
+  // 16 m further along chords of a 12 m circle.
+  EXPECT_NEAR(line.project(states[19].position).arc_length, 31.0, 0.1);
+  EXPECT_EQ(states[19].speed, 8.0);
+}
+
+TEST(MotionForecast, GoesOnIntoTheNextLaneAndLimitsTheSpeed) {
+  const auto network = makeNetwork(
+      {{"first", straight(0.0, 0.0, 10.0, 0.0), 9.0}, {"second", leftBend(0.0, 12.0, 30.0), 9.0}},
+      {{"first", "second", ""}});
+  traffic::Vehicle vehicle = vehicleAt("a", 8.0, 0.0, 0.0, 8.0);
+  vehicle.lane_id = "first_0";
+  vehicle.acceleration = 2.0;
+  const auto states = forecastMotion(vehicle, network, {}, 20);
+  EXPECT_EQ(states[19].speed, 9.0);
+  // The second lane begins at its own origin; the car has left the x axis there.
+  EXPECT_GT(states[19].position.y(), 3.0);
+}
+
+TEST(MotionForecast, WithoutALaneHoldsYawRateAndAcceleration) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  traffic::Vehicle vehicle = vehicleAt("a", 0.0, 30.0, 0.0, 4.0);
+  vehicle.yaw_rate = 0.5;
+  vehicle.acceleration = -1.0;
+  const auto states = forecastMotion(vehicle, network, {}, 20);
+  EXPECT_NEAR(states[9].heading, 0.5, 1e-9);
+  EXPECT_NEAR(states[9].speed, 3.0, 1e-9);
+}
+
+TEST(MotionForecast, AStandingVehicleStays) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  traffic::Vehicle vehicle = vehicleAt("a", 20.0, 0.3, 0.2, 0.0);
+  vehicle.lane_id = "road_0";
+  vehicle.yaw_rate = 0.4;
+  const auto states = forecastMotion(vehicle, network, {}, 20);
+  EXPECT_EQ(states[19].position, vehicle.state.position);
+  EXPECT_EQ(states[19].heading, 0.2);
+}
+
+TEST(EgoForecast, AcceleratesTowardsTheTargetAndLeavesTheDriverAlone) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  DriverState driver{RouteFollower(), LateralController(PdmLiteOptions())};
+  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.0, 0.0, 0.0);
+  driver.follower.update(route, ego.state.position);
+  const auto rollout = forecastEgo(ego.state, route, driver, 8.0, dynamics::BicycleModel(), 20);
+  ASSERT_EQ(rollout.size(), 20u);
+  EXPECT_EQ(rollout.front().action.throttle, 1.0);
+  // Full throttle for 0.1 s from rest: about 7.6 m/s^2 x 0.1 s.
+  EXPECT_NEAR(rollout.front().state.speed, 0.756, 0.01);
+  // Full throttle up to 0.117 m/s below the target (1.7108 x 0.42 km/h + 0.28 = 1), each time 0.1 s
+  // of at most 5.5 m/s^2.
+  EXPECT_GT(rollout.back().state.speed, 8.0 - 0.117);
+  EXPECT_LT(rollout.back().state.speed, 8.0 - 0.117 + 0.55);
+  EXPECT_NEAR(rollout.back().state.position.y(), 0.0, 1e-9);
+  EXPECT_EQ(driver.follower.arcLength(), 5.0);
+}
+
+TEST(BoxForecast, GrowsAsPublished) {
+  traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0, 0.0, 4.9);
+  const std::vector<RolloutPoint> points(2, RolloutPoint{ego.state, {}});
+  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[0].length, 4.5);
+  ego.state.speed = 5.0;
+  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[1].length, 4.5 * 1.3);
+  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[1].width, 1.8 * 1.2);
+
+  std::vector<traffic::VehicleState> states(20, ego.state);
+  states[5].speed = 0.9;
+  const auto boxes = otherBoxes(ego.dimensions, states, false);
+  EXPECT_DOUBLE_EQ(boxes[0].length, 4.5 * 1.2);
+  EXPECT_DOUBLE_EQ(boxes[0].width, 1.8);
+  EXPECT_DOUBLE_EQ(boxes[5].length, 4.5);
+  // Step 18 of 20: 1.3 x 18 / 20 = 1.17.
+  EXPECT_DOUBLE_EQ(boxes[17].width, 1.8 * 1.17);
+  EXPECT_DOUBLE_EQ(boxes[19].width, 1.8 * 1.3);
+  EXPECT_DOUBLE_EQ(otherBoxes(ego.dimensions, states, true)[0].length, 9.0);
+}
+
+TEST(BoxForecast, BoxesMeetOnlyAtTheSameStep) {
+  const geometry::OrientedBox here{{0.0, 0.0}, 0.0, 4.0, 2.0};
+  const geometry::OrientedBox away{{20.0, 0.0}, 0.0, 4.0, 2.0};
+  EXPECT_FALSE(meet({here, away}, {away, here}, 2));
+  EXPECT_TRUE(meet({away, here}, {here, here}, 2));
+  EXPECT_FALSE(meet({away, here}, {here, here}, 1));
+}
+
+}  // namespace
+}  // namespace cdiff::planning

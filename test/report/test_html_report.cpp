@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/report/html_report.h"
+#include "report/sample_session.h"
+
+namespace cdiff::report {
+namespace {
+
+using traffic::SessionStatus;
+
+/// The page of the sample session under a scenario name.
+std::string pageOf(const std::string& name, SessionStatus status = SessionStatus::kTimedOut) {
+  const test::ScratchFolder scratch;
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.name = name;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, status, {{120, "planner", "</script><b>fault</b>"}});
+  writer.finish(2.0);
+  return core::readFile(scratch.path() / "report.html", "report");
+}
+
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t from = text.find(begin);
+  if (from == std::string::npos) return {};
+  const std::size_t to = text.find(end, from + begin.size());
+  return text.substr(from + begin.size(), to - from - begin.size());
+}
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(HtmlReport, EscapesNamesEverywhere) {
+  const std::string page = pageOf("<img src=x onerror=alert(1)>");
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_NE(page.find("<h1>&lt;img src=x onerror=alert(1)&gt;</h1>"), std::string::npos);
+  EXPECT_EQ(page.find("<b>fault"), std::string::npos);
+  EXPECT_EQ(countOf(page, "</script>"), 2u);
+}
+
+TEST(HtmlReport, EveryPictureIsWellFormed) {
+  const std::string page = pageOf("crossing");
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("<svg"); at != std::string::npos;
+       at = page.find("<svg", at + 1)) {
+    const std::string svg = page.substr(at, page.find("</svg>", at) + 6 - at);
+    pugi::xml_document document;
+    EXPECT_TRUE(document.load_string(svg.c_str())) << svg.substr(0, 200);
+    ++pictures;
+  }
+  EXPECT_GT(pictures, 6u);  // from above, five charts, legends
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(HtmlReport, NeedsNothingFromOutside) {
+  const std::string page = pageOf("crossing");
+  EXPECT_EQ(countOf(page, "http"), countOf(page, "http://www.w3.org/2000/svg"));
+  EXPECT_EQ(page.find("src="), std::string::npos);
+  EXPECT_EQ(page.find("@import"), std::string::npos);
+}
+
+TEST(HtmlReport, ShowsTheVerdictFirst) {
+  const std::string page = pageOf("crossing");
+  const std::size_t banner = page.find("class=\"banner passed\"");
+  ASSERT_NE(banner, std::string::npos);
+  EXPECT_LT(banner, page.find("class=\"figures\""));
+  EXPECT_NE(pageOf("crossing", SessionStatus::kError).find("class=\"banner error\""),
+            std::string::npos);
+}
+
+TEST(HtmlReport, PlaysBackEveryFrame) {
+  const std::string page = pageOf("crossing");
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  // 0 to 6 s every 0.2 s.
+  ASSERT_EQ(data["times"].size(), 31u);
+  ASSERT_EQ(data["frames"].size(), 31u);
+  EXPECT_DOUBLE_EQ(data["times"][30], 6.0);
+  EXPECT_EQ(data["vehicles"].size(), 3u);
+  const auto& last = data["frames"][30];
+  ASSERT_EQ(last.size(), 18u);  // three vehicles of six numbers, the ego last: on top
+  EXPECT_EQ(last[12], 0);
+  EXPECT_EQ(last[13], 0);
+  EXPECT_EQ(last[16], 0);       // heading [deg]
+  EXPECT_EQ(last[17], 80);      // 8 m/s
+  EXPECT_EQ(last[6 + 4], -90);  // northbound: SVG turns clockwise
+  EXPECT_EQ(data["styles"][last[6 + 1].get<std::size_t>()], "cbv c0");
+}
+
+TEST(HtmlReport, ShowsRoadTrailsAndConflict) {
+  const std::string view = between(pageOf("crossing"), "<svg id=\"top-view\"", "</svg>");
+  EXPECT_EQ(countOf(view, "class=\"road\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail ego\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail cbv c0\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail bg\""), 2u);  // bg_2, and bg_1 before its selection
+  EXPECT_EQ(countOf(view, "class=\"planned cbv c0\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"conflict\""), 1u);
+  EXPECT_NE(view.find("C1 bg_1"), std::string::npos);
+}
+
+TEST(HtmlReport, KeepsALongSessionSmall) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  // 60 vehicles that wobble for 300 s: 90 000 poses.
+  for (std::uint64_t tick = 0; tick <= 6000; tick += 4) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+    snapshot.tick = tick;
+    snapshot.time = 0.05 * static_cast<double>(tick);
+    snapshot.status = tick == 6000 ? SessionStatus::kTimedOut : SessionStatus::kRunning;
+    for (int i = 0; i < 60; ++i) {
+      const Eigen::Vector2d position(20.0 + 2.5 * i + std::sin(0.3 * static_cast<double>(tick)),
+                                     2.0);
+      snapshot.vehicles.push_back(test::sampleVehicle(
+          "bg_" + std::to_string(100 + i), traffic::VehicleRole::kBackground, position, 0.0, 1.0));
+    }
+    scenario::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  writer.finish(1.0);
+  EXPECT_LT(std::filesystem::file_size(scratch.path() / "report.html"), 3'000'000u);
+}
+
+}  // namespace
+}  // namespace cdiff::report

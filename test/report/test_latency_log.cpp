@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include "e2e_cdiff/report/latency_log.h"
+
+namespace cdiff::report {
+namespace {
+
+TEST(LatencyLog, GivesNearestRanksPerPlanner) {
+  LatencyLog log;
+  // 1 to 20 ms in falling order: rank ceil(0.50 * 20) = 10 -> 10 ms, ceil(0.95 * 20) = 19 -> 19 ms.
+  for (int i = 20; i >= 1; --i) log.observe({{"ego:a", static_cast<double>(i)}});
+  log.observe({{"cbv:b", 4.0}});
+  const auto figures = log.figures();
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures.at("ego:a").median, 10.0);
+  EXPECT_EQ(figures.at("ego:a").percentile_95, 19.0);
+  EXPECT_EQ(figures.at("ego:a").maximum, 20.0);
+  EXPECT_EQ(figures.at("ego:a").n, 20u);
+  EXPECT_EQ(figures.at("cbv:b").median, 4.0);
+  EXPECT_EQ(figures.at("cbv:b").percentile_95, 4.0);
+}
+
+TEST(LatencyLog, NearestRankReachesBothEnds) {
+  EXPECT_EQ(nearestRank({1.0, 2.0, 3.0}, 0.0), 1.0);
+  EXPECT_EQ(nearestRank({1.0, 2.0, 3.0}, 100.0), 3.0);
+}
+
+}  // namespace
+}  // namespace cdiff::report

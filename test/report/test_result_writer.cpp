@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/report/result_writer.h"
+#include "report/sample_session.h"
+
+namespace cdiff::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using traffic::SessionStatus;
+
+std::string textOf(const test::ScratchFolder& scratch, const std::string& name) {
+  return core::readFile(scratch.path() / name, name);
+}
+
+Json summaryOf(const test::ScratchFolder& scratch) {
+  return Json::parse(textOf(scratch, "summary.json"));
+}
+
+std::vector<std::string> keysOf(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return keys;
+}
+
+/// A session of 121 ticks (6 s) with this end; answers the exit code.
+int runSample(const test::ScratchFolder& scratch, SessionStatus status,
+              const scenario::ScenarioOptions& options = test::sampleOptions(),
+              const std::vector<traffic::Fault>& faults = {}) {
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, status, faults);
+  writer.finish(2.0);
+  return writer.exitCode();
+}
+
+TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
+  const test::ScratchFolder scratch;
+  EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
+  const Json summary = summaryOf(scratch);
+  using Keys = std::vector<std::string>;
+  EXPECT_EQ(keysOf(summary),
+            Keys({"schema_version", "scenario", "seed", "mode", "ego_planner", "cbv_planner",
+                  "status", "simulated_seconds", "wall_seconds", "real_time_factor", "trace_sha256",
+                  "ego", "cbv", "metrics", "planner_latency_ms", "faults", "verdict"}));
+  EXPECT_EQ(keysOf(summary["ego"]),
+            Keys({"route_completion_percent", "driving_score", "collisions", "off_road_percent"}));
+  EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count", "decisions", "off_road_rate_percent",
+                                          "collisions", "collisions_with_ego", "collisions_per_km",
+                                          "distance_m", "selections", "rejected"}));
+  EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
+            Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
+                  "conflict_point", "decisions_driven", "released_tick", "release_reason",
+                  "route_length_m"}));
+  EXPECT_EQ(
+      keysOf(summary["cbv"]["selections"][0]["conflict_point"]),
+      Keys({"x", "y", "z", "ego_distance_m", "cbv_distance_m", "ego_arrival_s", "cbv_arrival_s",
+            "arrival_time_gap_s", "ego_arc_length_m", "in_junction_or_beyond"}));
+  EXPECT_EQ(keysOf(summary["metrics"]),
+            Keys({"ttc_2d_s", "speed_shapiro_wilk", "acceleration_shapiro_wilk",
+                  "speed_wasserstein_mps", "rift_compat"}));
+}
+
+TEST(ResultWriter, SummaryTellsWhatHappened) {
+  const test::ScratchFolder scratch;
+  runSample(scratch, SessionStatus::kTimedOut);
+  const Json summary = summaryOf(scratch);
+  EXPECT_EQ(summary["schema_version"], 1);
+  EXPECT_EQ(summary["scenario"], "crossing");
+  EXPECT_EQ(summary["seed"], 7);
+  EXPECT_EQ(summary["status"], "timed_out");
+  EXPECT_DOUBLE_EQ(summary["simulated_seconds"], 6.0);
+  EXPECT_DOUBLE_EQ(summary["real_time_factor"], 3.0);  // 6 s in 2 s
+  // The ego drives 48 m of 190 m.
+  EXPECT_NEAR(summary["ego"]["route_completion_percent"].get<double>(), 100.0 * 48.0 / 190.0, 1e-6);
+  EXPECT_EQ(summary["cbv"]["rejected"], Json::parse(R"({"no_way": 61})"));  // ticks 0, 2 ... 120
+  const Json& selection = summary["cbv"]["selections"][0];
+  EXPECT_EQ(selection["vehicle_id"], "bg_1");
+  EXPECT_DOUBLE_EQ(selection["selected_seconds"], 2.6);
+  EXPECT_EQ(selection["decisions_driven"], 35);  // ticks 52, 54 ... 120
+  EXPECT_TRUE(selection["released_tick"].is_null());
+  EXPECT_EQ(selection["release_reason"], "session_end");
+  EXPECT_DOUBLE_EQ(selection["conflict_point"]["ego_distance_m"], 97.0 - 0.4 * 52.0);
+  EXPECT_DOUBLE_EQ(selection["conflict_point"]["arrival_time_gap_s"], -0.5);
+  EXPECT_EQ(selection["conflict_point"]["in_junction_or_beyond"], true);  // 97 m >= 85 m
+  EXPECT_NEAR(selection["route_length_m"].get<double>(), 104.0, 1e-9);
+  // 61 decisions, 1 ms + 0.01 ms x tick: rank 31 is tick 60, rank ceil(57.95) = 58 is tick 114.
+  const Json& latency = summary["planner_latency_ms"]["ego:pdm_lite"];
+  EXPECT_DOUBLE_EQ(latency["p50"], 1.6);
+  EXPECT_DOUBLE_EQ(latency["p95"], 2.14);
+  EXPECT_DOUBLE_EQ(latency["max"], 2.2);
+  EXPECT_EQ(latency["n"], 61);
+  EXPECT_EQ(summary["verdict"], Json::parse(R"({"passed": true, "failures": []})"));
+}
+
+TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {
+  const test::ScratchFolder first;
+  const test::ScratchFolder second;
+  runSample(first, SessionStatus::kTimedOut);
+  scenario::ScenarioOptions renamed = test::sampleOptions();
+  renamed.name = "another name";
+  renamed.seed = 8;
+  runSample(second, SessionStatus::kTimedOut, renamed);
+  EXPECT_EQ(summaryOf(first)["trace_sha256"], core::sha256(textOf(first, "trace.csv")));
+  EXPECT_EQ(textOf(first, "trace.csv"), textOf(second, "trace.csv"));
+  const std::string trace = textOf(first, "trace.csv");
+  EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'), 1 + 121 * 3);
+}
+
+TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 10, SessionStatus::kBlocked);  // over before any CBV
+  writer.finish(0.0);
+  const Json summary = summaryOf(scratch);
+  EXPECT_TRUE(summary["real_time_factor"].is_null());
+  EXPECT_EQ(summary["real_time_factor_reason"], "no wall time was measured");
+  EXPECT_TRUE(summary["cbv"]["off_road_rate_percent"].is_null());
+  EXPECT_FALSE(summary["cbv"]["off_road_rate_percent_reason"].get<std::string>().empty());
+  EXPECT_TRUE(summary["cbv"]["collisions_per_km"].is_null());
+  EXPECT_FALSE(summary["cbv"]["collisions_per_km_reason"].get<std::string>().empty());
+  EXPECT_TRUE(summary["metrics"]["speed_shapiro_wilk"]["value"].is_null());
+  EXPECT_EQ(summary["metrics"]["speed_shapiro_wilk"]["n"], 0);
+  EXPECT_FALSE(summary["metrics"]["speed_shapiro_wilk"]["reason"].get<std::string>().empty());
+  EXPECT_EQ(summary["cbv"]["selections"], Json::array());
+}
+
+TEST(ResultWriter, ExitCodesFollowStatusAndVerdict) {
+  scenario::ScenarioOptions strict = test::sampleOptions();
+  strict.verdict.minimum_route_completion = 90.0;
+  const test::ScratchFolder scratch;
+  EXPECT_EQ(runSample(scratch, SessionStatus::kCompleted), 0);
+  EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut, strict), 1);
+  EXPECT_EQ(runSample(scratch, SessionStatus::kError, strict), 2);
+  EXPECT_EQ(runSample(scratch, SessionStatus::kInterrupted, strict), 130);
+}
+
+TEST(ResultWriter, JunitTellsFailureFromError) {
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.name = "a <b> & \"c\"";
+  options.verdict.minimum_route_completion = 90.0;
+  const test::ScratchFolder scratch;
+  runSample(scratch, SessionStatus::kTimedOut, options);
+  pugi::xml_document junit;
+  ASSERT_TRUE(junit.load_string(textOf(scratch, "junit.xml").c_str()));
+  pugi::xml_node suite = junit.child("testsuites").child("testsuite");
+  EXPECT_STREQ(suite.attribute("name").value(), "a <b> & \"c\"");
+  EXPECT_EQ(suite.attribute("tests").as_int(), 5);
+  EXPECT_EQ(suite.attribute("failures").as_int(), 1);
+  EXPECT_EQ(suite.attribute("errors").as_int(), 0);
+  const pugi::xml_node failed =
+      suite.find_child_by_attribute("testcase", "name", "route_completion");
+  EXPECT_FALSE(failed.child("failure").empty());
+
+  runSample(scratch, SessionStatus::kError, options, {{120, "simulator", "SUMO <died>"}});
+  ASSERT_TRUE(junit.load_string(textOf(scratch, "junit.xml").c_str()));
+  suite = junit.child("testsuites").child("testsuite");
+  EXPECT_EQ(suite.attribute("failures").as_int(), 0);
+  EXPECT_EQ(suite.attribute("errors").as_int(), 1);
+  EXPECT_EQ(suite.attribute("skipped").as_int(), 4);
+  const pugi::xml_node session = suite.find_child_by_attribute("testcase", "name", "session");
+  EXPECT_NE(std::string(session.child("error").attribute("message").value()).find("SUMO <died>"),
+            std::string::npos);
+}
+
+TEST(ResultWriter, ARecordThatStopsWhileRunningIsAnError) {
+  const test::ScratchFolder scratch;
+  EXPECT_EQ(runSample(scratch, SessionStatus::kRunning), 2);
+  const Json summary = summaryOf(scratch);
+  EXPECT_EQ(summary["status"], "error");
+  EXPECT_EQ(summary["faults"][0]["source"], "session");
+}
+
+TEST(ResultWriter, ASessionThatNeverBeganStillHasItsFiles) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path() / "new" / "folder");
+  traffic::TrafficSnapshot snapshot;
+  snapshot.status = SessionStatus::kError;
+  snapshot.faults = {{0, "simulator", "SUMO did not start"}};
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+  EXPECT_FALSE(writer.finish(1.0).passed);
+  EXPECT_EQ(writer.exitCode(), 2);
+  for (const char* name :
+       {"session.yaml", "trace.csv", "summary.json", "junit.xml", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(scratch.path() / "new" / "folder" / name)) << name;
+  }
+  EXPECT_NE(writer.table().find("SUMO did not start"), std::string::npos) << writer.table();
+}
+
+TEST(ResultWriter, TheSameTickAgainChangesTheStatusOnly) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+  snapshot.status = SessionStatus::kInterrupted;
+  writer.observe(record);
+  writer.finish(1.0);
+  EXPECT_EQ(writer.exitCode(), 130);
+  const std::string trace = textOf(scratch, "trace.csv");
+  EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'), 4);
+}
+
+TEST(ResultWriter, TakesAwayWhatAnEarlierSessionLeft) {
+  const test::ScratchFolder scratch;
+  core::writeFileAtomically(scratch.path() / "summary.json", "old");
+  core::writeFileAtomically(scratch.path() / "notes.txt", "mine");
+  {
+    const test::SampleSetup sample;
+    const ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  }  // a session that died
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "summary.json"));
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "trace.csv"));
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "session.yaml"));
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "notes.txt"));
+}
+
+TEST(ResultWriter, SessionYamlHoldsTheScenarioItWasRunWith) {
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.name = "colon: \"quote\" # hash";
+  options.target_speed = 7.25;
+  options.verdict.statuses = {"completed"};
+  const test::ScratchFolder scratch;
+  runSample(scratch, SessionStatus::kTimedOut, options);
+  const YAML::Node session = YAML::Load(textOf(scratch, "session.yaml"));
+  EXPECT_EQ(session["schema_version"].as<int>(), 1);
+  EXPECT_EQ(session["deployment"].as<std::string>(), "cdiff run");
+  EXPECT_EQ(session["simulator"]["version"].as<std::string>(), "SUMO 1.15.0");
+  EXPECT_EQ(session["seeds"]["root"].as<int>(), 7);
+  EXPECT_EQ(session["network"]["source_sha256"].as<std::string>(), std::string(64, 'a'));
+  EXPECT_EQ(session["network"]["changes"][0].as<std::string>(), test::crossingImport().changes[0]);
+  EXPECT_TRUE(session["deterministic"].as<bool>());
+  for (const char* name : {"eigen", "yaml_cpp", "nlohmann_json", "compiler"}) {
+    const std::string version = session["libraries"][name].as<std::string>("");
+    EXPECT_NE(version.find_first_of("0123456789"), std::string::npos) << name << ": " << version;
+  }
+  scenario::ScenarioOptions loaded;
+  YAML::Emitter scenario_text;
+  scenario_text << session["scenario"];
+  core::loadOptions({"session.yaml", scenario_text.c_str()}, loaded);
+  EXPECT_EQ(core::dumpOptions(loaded), core::dumpOptions(options));
+}
+
+TEST(ResultWriter, TableNamesFiguresVerdictAndPaths) {
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.verdict.minimum_route_completion = 90.0;
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
+  writer.finish(2.0);
+  const std::string table = writer.table();
+  for (const std::string part :
+       {"timed_out", "25.3 %", "FAILED", "at least 90 %", "3.0 times real time"}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
+  EXPECT_NE(table.find((scratch.path() / "report.html").string()), std::string::npos);
+}
+
+TEST(ResultWriter, RefusesAFolderThatIsAFile) {
+  const test::ScratchFolder scratch;
+  core::writeFileAtomically(scratch.path() / "file", "");
+  const test::SampleSetup sample;
+  EXPECT_THROW(ResultWriter(sample.setup, test::sampleFacts(), scratch.path() / "file" / "results"),
+               core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::report

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// SUMO dies, freezes, refuses or is missing: every case is an error that says so, soon, and leaves no process behind.
+#include <gtest/gtest.h>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/simulation/sumo_process.h"
+#include "simulation/crossing_world.h"
+
+namespace cdiff {
+namespace {
+
+using simulation::SumoOptions;
+using simulation::SumoSession;
+using simulation::SumoSimulator;
+using test::CrossingWorld;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool exists(int process_id) { return ::kill(process_id, 0) == 0; }
+
+/// Text of the SimulatorError of a step; empty when there is none.
+std::string stepError(SumoSimulator& simulator) {
+  try {
+    simulator.step({});
+  } catch (const core::SimulatorError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SumoLoss, KilledIsReportedWithinASecond) {
+  CrossingWorld world;
+  world.simulator().step({});
+  const int process = world.simulator().processId();
+  ASSERT_TRUE(exists(process));
+  ASSERT_EQ(::kill(process, SIGKILL), 0);
+  const auto start = std::chrono::steady_clock::now();
+  const std::string error = stepError(world.simulator());
+  EXPECT_LT(secondsSince(start), 1.0);
+  EXPECT_NE(error.find("signal 9"), std::string::npos) << error;
+  // Further calls write to a closed socket: errors again, and no SIGPIPE.
+  EXPECT_NE(stepError(world.simulator()), "");
+  EXPECT_THROW(world.simulator().remove("ours"), core::SimulatorError);
+  world.close();
+  EXPECT_FALSE(exists(process));
+}
+
+TEST(SumoLoss, FrozenIsEndedAndReported) {
+  SumoOptions options;
+  options.step_timeout = 1.0;
+  CrossingWorld world(false, 1, options);
+  world.simulator().step({});
+  const int process = world.simulator().processId();
+  ASSERT_EQ(::kill(process, SIGSTOP), 0);
+  const auto start = std::chrono::steady_clock::now();
+  const std::string error = stepError(world.simulator());
+  const double waited = secondsSince(start);
+  EXPECT_GE(waited, 0.9);
+  EXPECT_LT(waited, 2.0);
+  EXPECT_NE(error.find("did not answer for 1 s"), std::string::npos) << error;
+  world.close();
+  EXPECT_FALSE(exists(process));
+}
+
+TEST(SumoLoss, SumoEndsWithUsWhenWeAreKilled) {
+  int channel[2];
+  ASSERT_EQ(::pipe(channel), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    CrossingWorld world;
+    const int process = world.simulator().processId();
+    if (::write(channel[1], &process, sizeof(process)) != sizeof(process)) ::_exit(1);
+    ::kill(::getpid(), SIGKILL);
+  }
+  int process = 0;
+  ASSERT_EQ(::read(channel[0], &process, sizeof(process)), static_cast<ssize_t>(sizeof(process)));
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  const auto start = std::chrono::steady_clock::now();
+  while (exists(process) && secondsSince(start) < 2.0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_FALSE(exists(process));
+  ::close(channel[0]);
+  ::close(channel[1]);
+}
+
+TEST(SumoLoss, AnotherSimulatorStartsAfterALoss) {
+  {
+    CrossingWorld world;
+    ::kill(world.simulator().processId(), SIGKILL);
+    EXPECT_NE(stepError(world.simulator()), "");
+  }
+  CrossingWorld world;
+  world.simulator().step({});
+  EXPECT_TRUE(world.simulator().vehicles().empty());
+}
+
+TEST(SumoSessions, OneAfterTheOtherAndSideBySide) {
+  int first_process = 0;
+  {
+    CrossingWorld world;
+    first_process = world.simulator().processId();
+    EXPECT_EQ(world.simulator().version().substr(0, 4), "SUMO");
+    world.simulator().step({});
+  }
+  EXPECT_FALSE(exists(first_process));
+  CrossingWorld left;
+  CrossingWorld right;
+  const traffic::VehicleDimensions car;
+  ASSERT_TRUE(left.simulator().addBackground("car", {"west", "east"}, 50.0, 0, 8.0, car));
+  left.simulator().step({});
+  right.simulator().step({});
+  EXPECT_EQ(left.simulator().vehicles().size(), 1U);
+  EXPECT_TRUE(right.simulator().vehicles().empty());
+}
+
+/// Text of the error of a start; the type is the caller's.
+template <class Error>
+std::string startError(const SumoOptions& options, const SumoSession& session, const map::RoadNetwork& network) {
+  try {
+    const SumoSimulator simulator(options, session, network);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SumoStart, NamesAMissingProgram) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoOptions options;
+  options.binary = "sumo_of_nowhere";
+  SumoSession session;
+  session.network_file = made.file;
+  const std::string error = startError<core::InputError>(options, session, made.network);
+  EXPECT_NE(error.find("sumo_of_nowhere"), std::string::npos) << error;
+  EXPECT_NE(error.find("install the package sumo"), std::string::npos) << error;
+}
+
+TEST(SumoStart, NamesAMissingNetwork) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoSession session;
+  session.network_file = folder.path() / "none.net.xml";
+  const std::string error = startError<core::InputError>({}, session, made.network);
+  EXPECT_NE(error.find("none.net.xml"), std::string::npos) << error;
+}
+
+TEST(SumoStart, QuotesSumoOnABrokenNetworkAndDemand) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoSession session;
+  session.network_file = folder.path() / "broken.net.xml";
+  std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"";
+  std::string error = startError<core::SimulatorError>({}, session, made.network);
+  EXPECT_NE(error.find("Error:"), std::string::npos) << error;
+  session.network_file = made.file;
+  session.demand_file = folder.path() / "bad.rou.xml";
+  std::ofstream(session.demand_file) << "<routes><trip id=\"t\" depart=\"0\" from=\"west\" to=\"nowhere\"/></routes>";
+  error = startError<core::SimulatorError>({}, session, made.network);
+  EXPECT_NE(error.find("nowhere"), std::string::npos) << error;
+}
+
+TEST(SumoStart, ReadsDemandAndBeginTime) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoSession session;
+  session.network_file = made.file;
+  session.begin_time = 3600.0;
+  session.demand_file = folder.path() / "demand.rou.xml";
+  std::ofstream(session.demand_file)
+      << "<routes><vType id=\"van\" length=\"6\" width=\"2\" height=\"2.5\"/>"
+         "<vehicle id=\"v\" type=\"van\" depart=\"3600\" departPos=\"50\"><route edges=\"west east\"/></vehicle></routes>";
+  SumoSimulator simulator({}, session, made.network);
+  simulator.step({});
+  simulator.step({});
+  ASSERT_EQ(simulator.vehicles().size(), 1U);
+  const simulation::SimulatedVehicle& van = simulator.vehicles().front();
+  EXPECT_EQ(van.id, "v");
+  EXPECT_DOUBLE_EQ(van.dimensions.length, 6.0);
+  EXPECT_DOUBLE_EQ(van.dimensions.width, 2.0);
+  EXPECT_DOUBLE_EQ(van.dimensions.height, 2.5);
+  // The front bumper departs at 50 m of the edge that begins at x = -200 m; the centre is 3 m behind.
+  EXPECT_NEAR(van.state.position.x(), -153.0, 0.2);
+  EXPECT_NEAR(van.state.position.y(), -1.6, 1e-6);
+}
+
+/// A socket that listens on a port of its own for as long as it exists.
+class TakenPort {
+ public:
+  TakenPort() : handle_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_ANY);
+    socklen_t size = sizeof(address);
+    EXPECT_EQ(::bind(handle_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::listen(handle_, 1), 0);
+    EXPECT_EQ(::getsockname(handle_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    number_ = ntohs(address.sin_port);
+  }
+  ~TakenPort() { ::close(handle_); }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int handle_;
+  int number_ = 0;
+};
+
+TEST(SumoStart, TakesAnotherPortWhenOneIsTaken) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  const TakenPort taken;
+  int asked = 0;
+  simulation::SumoCommand command;
+  command.arguments = {"--net-file", made.file.string(), "--xml-validation", "never"};
+  command.choose_port = [&] { return ++asked <= 2 ? taken.number() : simulation::freePort(); };
+  const simulation::SumoProcess process(command);
+  EXPECT_EQ(asked, 3);
+  EXPECT_NE(process.port(), taken.number());
+  EXPECT_TRUE(simulation::listensOn(process.process().id(), process.port()));
+  EXPECT_FALSE(simulation::listensOn(process.process().id(), taken.number()));  // listens, but is ours
+}
+
+TEST(SumoStart, GivesUpAfterFiveTakenPorts) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  const TakenPort taken;
+  int asked = 0;
+  simulation::SumoCommand command;
+  command.arguments = {"--net-file", made.file.string(), "--xml-validation", "never"};
+  command.choose_port = [&] { return ++asked, taken.number(); };
+  EXPECT_THROW(simulation::SumoProcess{command}, core::SimulatorError);
+  EXPECT_EQ(asked, 5);
+}
+
+}  // namespace
+}  // namespace cdiff
