@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
     controls.publish(action);
   };
   const ros::Subscriber route_input = node.subscribe<nav_msgs::Path>("/ego/route", 1, on_route);
-  const ros::Subscriber traffic_input = node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, on_traffic);
+  const auto at_once = ros::TransportHints().tcpNoDelay();  // else TCP holds small messages back for milliseconds
+  const ros::Subscriber traffic_input =
+      node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, on_traffic, nullptr, at_once);
   ros::spin();
 }

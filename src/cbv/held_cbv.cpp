@@ -29,6 +29,7 @@ bool inContact(const traffic::TrafficSnapshot& snapshot, const std::string& vehi
 HeldCbv::HeldCbv(CbvAssignment assignment, double conflict_arc_length)
     : assignment_(std::move(assignment)),
       conflict_arc_length_(conflict_arc_length),
+      selected_distance_(assignment_.conflict_point.cbv_distance),
       present_score_(assignment_.interaction_score) {}
 
 void HeldCbv::update(const traffic::Vehicle& vehicle, const EgoProgress& ego,
@@ -37,7 +38,10 @@ void HeldCbv::update(const traffic::Vehicle& vehicle, const EgoProgress& ego,
                                   vehicle.state.position);
   ConflictPoint& point = assignment_.conflict_point;
   point.ego_distance = std::max(0.0, point.ego_arc_length - ego.arc_length);
-  point.cbv_distance = std::max(0.0, conflict_arc_length_ - arc_length_);
+  // The route rounds corners, so it is a little shorter than the lanes: scaled, the distance does
+  // not jump.
+  const double share_left = 1.0 - arc_length_ / conflict_arc_length_;
+  point.cbv_distance = std::max(0.0, selected_distance_ * share_left);
   point.ego_arrival = arrivalTime(point.ego_distance, ego.state.speed, minimum_speed);
   point.cbv_arrival = arrivalTime(point.cbv_distance, vehicle.state.speed, minimum_speed);
 }

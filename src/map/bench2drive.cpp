@@ -23,7 +23,8 @@ class RouteFile {
       fail(std::string("not XML: ") + result.description() + " at offset " +
            std::to_string(result.offset));
     }
-    if (!document_.child("routes")) fail("no <routes> element; a Bench2Drive route file was expected");
+    if (!document_.child("routes"))
+      fail("no <routes> element; a Bench2Drive route file was expected");
   }
 
   pugi::xml_node route(const std::string& id) const {

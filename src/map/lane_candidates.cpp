@@ -55,17 +55,16 @@ std::vector<InputPoint> distinctPoints(const std::vector<Eigen::Vector3d>& point
 
 CandidateFinder::CandidateFinder(const RoadNetwork& network, const std::vector<InputPoint>& points)
     : network_(network), radius_(kGate) {
-  const bool flat = std::all_of(points.begin(), points.end(), [](const InputPoint& point) {
-    return point.position.z() == 0.0;
-  });
+  const bool flat = std::all_of(points.begin(), points.end(),
+                                [](const InputPoint& point) { return point.position.z() == 0.0; });
   use_elevation_ = !flat || !hasElevation(network);
   for (const Lane& lane : network.lanes()) {
     if (lane.allows_cars) radius_ = std::max(radius_, lane.width / 2.0);
   }
 }
 
-/// Networks made from OpenDRIVE keep the elevation of few points: on a ramp a lane may lie 3 m off the road. So a point
-/// without a lane on its level takes the lanes of the nearest one.
+/// Networks made from OpenDRIVE keep the elevation of few points: on a ramp a lane may lie 3 m off
+/// the road. So a point without a lane on its level takes the lanes of the nearest one.
 std::vector<LaneMatch> CandidateFinder::acceptedNear(const Eigen::Vector3d& point,
                                                      double heading) const {
   const Eigen::Vector2d position = point.head<2>();
@@ -99,10 +98,12 @@ void CandidateFinder::failOffLanes(const InputPoint& point) const {
   const std::string name = "point " + std::to_string(point.index) + " " + toText(point.position);
   const std::vector<LaneMatch> near = network_.lanesNear(point.position.head<2>(), 1000.0);
   if (near.empty()) {
-    throw core::InputError(name + " is more than 1 km off every lane; is it a point of this network?");
+    throw core::InputError(name +
+                           " is more than 1 km off every lane; is it a point of this network?");
   }
   throw core::InputError(name + " is " + core::formatFixed(near.front().projection.distance, 2) +
-                         " m off every lane; the nearest is '" + network_.lane(near.front().lane).id +
+                         " m off every lane; the nearest is '" +
+                         network_.lane(near.front().lane).id +
                          "', and at most 1.5 m or half its width was expected");
 }
 
@@ -152,7 +153,8 @@ CheapestChoice cheapestChoice(const CandidateLayers& layers, const TransitionCos
     if (*std::min_element(costs.begin(), costs.end()) == kInfinity) return choice;
     choice.reached = i + 1;
   }
-  auto best = static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
+  auto best =
+      static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
   choice.positions.resize(layers.size());
   for (std::size_t i = layers.size(); i-- > 0;) {
     choice.positions[i] = layers[i][best].position;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each point of a row.
+/// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each
+/// point of a row.
 #pragma once
 
 #include <functional>
@@ -26,18 +27,19 @@ struct InputPoint {
 /// "(12.00, 3.50)".
 std::string toText(const Eigen::Vector3d& point);
 
-/// Points farther than `distance` [m] from the one kept before. Throws InputError when fewer than two remain or a coordinate is
-/// not finite.
+/// Points farther than `distance` [m] from the one kept before. Throws InputError when fewer than
+/// two remain or a coordinate is not finite.
 std::vector<InputPoint> distinctPoints(const std::vector<Eigen::Vector3d>& points, double distance);
 
-/// Finds candidates: lanes whose centre line is within 1.5 m or whose half width covers the point, on the point's level.
+/// Finds candidates: lanes whose centre line is within 1.5 m or whose half width covers the point,
+/// on the point's level.
 class CandidateFinder {
  public:
   /// Elevations are ignored when every point has z = 0 in a network with elevation.
   CandidateFinder(const RoadNetwork& network, const std::vector<InputPoint>& points);
 
-  /// Candidates of a point that is passed with a heading; a heading difference of `heading_scale` [rad] costs 1. Throws InputError
-  /// when there is none.
+  /// Candidates of a point that is passed with a heading; a heading difference of `heading_scale`
+  /// [rad] costs 1. Throws InputError when there is none.
   std::vector<LaneCandidate> find(const InputPoint& point, double heading,
                                   double heading_scale) const;
 
@@ -53,14 +55,16 @@ class CandidateFinder {
 
 /// Candidates of each point, in order.
 using CandidateLayers = std::vector<std::vector<LaneCandidate>>;
-/// Cost from a candidate of layer i to each candidate of layer i + 1; infinity where there is no way.
+/// Cost from a candidate of layer i to each candidate of layer i + 1; infinity where there is no
+/// way.
 using TransitionCosts =
     std::function<std::vector<double>(std::size_t layer, const LaneCandidate& from)>;
 
 /// The cheapest choice (Viterbi); ties go to the earlier candidate.
 struct CheapestChoice {
-  std::vector<LanePosition> positions;  ///< one for each layer; empty when some layer cannot be reached
-  std::size_t reached = 0;              ///< last layer that can be reached
+  std::vector<LanePosition>
+      positions;            ///< one for each layer; empty when some layer cannot be reached
+  std::size_t reached = 0;  ///< last layer that can be reached
 };
 CheapestChoice cheapestChoice(const CandidateLayers& layers, const TransitionCosts& transitions);
 

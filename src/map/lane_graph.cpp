@@ -31,7 +31,8 @@ class Continuation {
     path_.lanes.push_back(lane);
   }
 
-  /// Adds lanes until `length` metres lie beyond `begin` on the first lane and the last lies outside junctions.
+  /// Adds lanes until `length` metres lie beyond `begin` on the first lane and the last lies
+  /// outside junctions.
   void extend(double begin, double length) {
     double end = network_.lane(path_.lanes.front()).centerline.length() - begin;
     double goal = length;
@@ -70,7 +71,8 @@ class Continuation {
     return true;
   }
 
-  /// The next lane with the smallest change of heading up to the end of its junction, ties by index.
+  /// The next lane with the smallest change of heading up to the end of its junction, ties by
+  /// index.
   LaneIndex straightest(LaneIndex from) const {
     LaneIndex best = kNoLane;
     double smallest = 0.0;
@@ -78,8 +80,7 @@ class Continuation {
       const Lane& next = network_.lane(link.to);
       if (!next.routable) continue;
       const double heading = next.internal ? endHeading(next) : next.centerline.headingAt(0.0);
-      const double turn =
-          std::abs(core::angleDifference(heading, endHeading(network_.lane(from))));
+      const double turn = std::abs(core::angleDifference(heading, endHeading(network_.lane(from))));
       if (best != kNoLane && turn >= smallest) continue;
       best = link.to;
       smallest = turn;

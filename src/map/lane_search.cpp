@@ -24,7 +24,8 @@ double laneChangePenalty(const Lane& lane, double available) {
 
 double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length,
                         LaneIndex to) {
-  constexpr double kWindow = 40.0;  // [m] lanes of one edge differ by less between two abreast points
+  constexpr double kWindow =
+      40.0;  // [m] lanes of one edge differ by less between two abreast points
   const geometry::Polyline& line = network.lane(from).centerline;
   const geometry::Polyline& beside = network.lane(to).centerline;
   const double guess = arc_length / line.length() * beside.length();

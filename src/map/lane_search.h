@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One Dijkstra search over lanes from a place: driven length [m] ranks, with penalties for lane changes.
+/// One Dijkstra search over lanes from a place: driven length [m] ranks, with penalties for lane
+/// changes.
 #pragma once
 
 #include <limits>
@@ -11,12 +12,13 @@
 
 namespace cdiff::map {
 
-/// Ranking penalty of a change to the neighbour of a lane of which `available` metres are left [m]: 5, more where that is
-/// too short to change comfortably, and inside junctions.
+/// Ranking penalty of a change to the neighbour of a lane of which `available` metres are left [m]:
+/// 5, more where that is too short to change comfortably, and inside junctions.
 double laneChangePenalty(const Lane& lane, double available);
 
 /// Arc length on a neighbouring lane abreast of an arc length on `from` [m].
-double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length, LaneIndex to);
+double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length,
+                        LaneIndex to);
 
 /// What a search may use.
 struct SearchLimits {
@@ -38,12 +40,13 @@ class LaneSearch {
   Arrival arrivalAt(const LanePosition& goal) const;
   std::optional<LanePath> pathTo(const LanePosition& goal) const;
 
-  /// Driven length from the start to the beginning of a lane [m]: negative beside the start, infinity when not
-  /// reached; for the start's own lane that of the way round.
+  /// Driven length from the start to the beginning of a lane [m]: negative beside the start,
+  /// infinity when not reached; for the start's own lane that of the way round.
   double lengthToBegin(LaneIndex lane) const;
 
  private:
-  // Node n < lane count: lane n entered at its beginning. Node lane count + n: lane n abreast of the start.
+  // Node n < lane count: lane n entered at its beginning. Node lane count + n: lane n abreast of
+  // the start.
   std::size_t count() const { return network_.lanes().size(); }
   LaneIndex laneOf(std::size_t node) const {
     return static_cast<LaneIndex>(node < count() ? node : node - count());
@@ -57,7 +60,8 @@ class LaneSearch {
   LanePosition start_;
   SearchLimits limits_;
   std::vector<double> rank_;
-  std::vector<double> driven_;  ///< to the lane's beginning; negative for nodes abreast of the start
+  std::vector<double>
+      driven_;  ///< to the lane's beginning; negative for nodes abreast of the start
   std::vector<int> parent_;
   std::vector<std::pair<double, std::size_t>> queue_;
 };

@@ -2,14 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/map/network_import.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
-#include "process.h"
+#include "opendrive.h"
 #include "vehicle_classes.h"
 
 namespace cdiff::map {
@@ -38,7 +36,8 @@ std::vector<std::string> shippedNames(const fs::path& folder) {
 
 /// The file that the user means: a path, or the name of a shipped network.
 fs::path sourceFile(const std::string& source) {
-  if (source.empty()) throw core::InputError("no network was given; a file or a shipped name was expected");
+  if (source.empty())
+    throw core::InputError("no network was given; a file or a shipped name was expected");
   if (fs::exists(source)) return source;
   const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
                     endsWith(source, ".xodr");
@@ -47,9 +46,9 @@ fs::path sourceFile(const std::string& source) {
   const fs::path file = folder / source / (source + ".net.xml");
   if (fs::exists(file)) return file;
   const std::string nearest = core::nearestName(source, shippedNames(folder));
-  throw core::InputError("network '" + source + "' is neither a file nor shipped in '" +
-                         folder.string() + "'" +
-                         (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
+  throw core::InputError(
+      "network '" + source + "' is neither a file nor shipped in '" + folder.string() + "'" +
+      (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
 }
 
 fs::path cachedFile(const std::string& content) {
@@ -62,34 +61,6 @@ fs::path cachedFile(const std::string& content) {
   }
   const std::string key = core::sha256(content + "\n" + kImporterVersion);
   return folder / (key + ".net.xml");
-}
-
-/// netconvert's opening comment holds the date and paths: without it equal input gives equal text.
-std::string withoutGeneratedComment(std::string text) {
-  const std::size_t begin = text.find("<!-- generated on");
-  if (begin == std::string::npos) return text;
-  const std::size_t end = text.find("-->", begin);
-  if (end != std::string::npos) text.erase(begin, end + 3 - begin);
-  return text;
-}
-
-/// Network text that netconvert makes of an OpenDRIVE file.
-std::string convertOpenDrive(const fs::path& source, const fs::path& target) {
-  const std::string temporary =
-      target.string() + ".converting." + std::to_string(::getpid()) + ".net.xml";
-  const ProcessResult result = runProcess(
-      {"netconvert", "--opendrive-files", source.string(), "--output-file", temporary,
-       "--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
-       "--no-turnarounds.except-deadend", "true", "--xml-validation", "never"});
-  if (result.exit_code != 0 || !fs::exists(temporary)) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw core::InputError("netconvert could not convert '" + source.string() + "' (exit code " +
-                           std::to_string(result.exit_code) + "): " + result.output);
-  }
-  const std::string text = core::readFile(temporary, "converted network");
-  fs::remove(temporary);
-  return withoutGeneratedComment(text);
 }
 
 void storeUnlessThere(const fs::path& file, const std::string& text) {

@@ -38,7 +38,8 @@ std::string junctionOfInternalEdge(const std::string& edge_id) {
 }
 
 std::size_t lineOfOffset(std::string_view text, std::ptrdiff_t offset) {
-  const auto end = text.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text.size()));
+  const auto end = text.begin() +
+                   std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text.size()));
   return static_cast<std::size_t>(std::count(text.begin(), end, '\n')) + 1;
 }
 
@@ -187,8 +188,8 @@ void NetworkReader::readJunction(const pugi::xml_node& node) {
 
 LaneIndex NetworkReader::laneOf(const pugi::xml_node& connection, const char* edge,
                                 const char* index, const std::string& element) const {
-  const std::string id = std::string(connection.attribute(edge).value()) + "_" +
-                         connection.attribute(index).value();
+  const std::string id =
+      std::string(connection.attribute(edge).value()) + "_" + connection.attribute(index).value();
   const LaneIndex lane = network_.findLane(id);
   if (lane == kNoLane) fail(element + ": unknown lane '" + id + "'");
   return lane;
@@ -225,15 +226,17 @@ void NetworkReader::link(LaneIndex from, const LaneLink& connection) {
   network_.lanes_[static_cast<std::size_t>(connection.to)].previous.push_back(from);
 }
 
-/// Internal lanes normally have connections of their own; where a file leaves them out, the connection that passes
-/// through tells where they lead.
+/// Internal lanes normally have connections of their own; where a file leaves them out, the
+/// connection that passes through tells where they lead.
 void NetworkReader::continueInternalLanes() {
   std::vector<bool> open(network_.lanes_.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = network_.lanes_[i].next.empty();
   for (const auto& [lane, exit] : via_exits_) {
     if (open[static_cast<std::size_t>(lane)]) link(lane, exit);
   }
-  const auto by_lane = [](const LaneLink& left, const LaneLink& right) { return left.to < right.to; };
+  const auto by_lane = [](const LaneLink& left, const LaneLink& right) {
+    return left.to < right.to;
+  };
   for (Lane& lane : network_.lanes_) {
     std::sort(lane.next.begin(), lane.next.end(), by_lane);
     std::sort(lane.previous.begin(), lane.previous.end());

@@ -43,7 +43,8 @@ class NetworkReader {
   std::string name_;
   RoadNetwork network_;
   std::vector<std::vector<Eigen::Vector3d>> shapes_;  ///< of each lane
-  std::vector<std::pair<LaneIndex, LaneLink>> via_exits_;  ///< lanes that connections name as via, and their targets
+  std::vector<std::pair<LaneIndex, LaneLink>>
+      via_exits_;  ///< lanes that connections name as via, and their targets
 };
 
 }  // namespace cdiff::map

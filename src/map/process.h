@@ -13,8 +13,8 @@ struct ProcessResult {
   std::string output;  ///< standard output and standard error together
 };
 
-/// `arguments[0]` is looked up in PATH. SUMO_HOME is set to /usr/share/sumo when the environment has none. Throws InputError when
-/// the program cannot be started.
+/// `arguments[0]` is looked up in PATH. SUMO_HOME is set to /usr/share/sumo when the environment
+/// has none. Throws InputError when the program cannot be started.
 ProcessResult runProcess(const std::vector<std::string>& arguments);
 
 }  // namespace cdiff::map

@@ -19,7 +19,8 @@ struct Step {
   double end = 0.0;    ///< arc length of the second point [m]
 };
 
-/// Lanes driven from one point's lane to the next point's, both included; lanes too short to hold a point are filled in.
+/// Lanes driven from one point's lane to the next point's, both included; lanes too short to hold a
+/// point are filled in.
 std::vector<LaneIndex> lanesBetween(const RoadNetwork& network, const geometry::Polyline& path,
                                     const Step& step, LaneIndex from, LaneIndex to) {
   if (from == to) return {from};
@@ -90,8 +91,7 @@ void Route::noteEdge(const Lane& lane, double arc_length) {
 /// Edges, signals and lane changes between point `i` and the one before it.
 void Route::noteStep(const RoadNetwork& network, std::size_t i) {
   const Step step = {path_.arcLengths()[i - 1], path_.arcLengths()[i]};
-  const std::vector<LaneIndex> lanes =
-      lanesBetween(network, path_, step, lanes_[i - 1], lanes_[i]);
+  const std::vector<LaneIndex> lanes = lanesBetween(network, path_, step, lanes_[i - 1], lanes_[i]);
   for (std::size_t j = 1; j < lanes.size(); ++j) {
     const Lane& lane = network.lane(lanes[j - 1]);
     noteEdge(network.lane(lanes[j]), step.end);

@@ -64,8 +64,7 @@ class EdgeRow {
     const auto relax = [&](std::size_t from, std::size_t to) {
       const Lane& lane = network_.lane(layer[from].lane);
       if (lane.left != layer[to].lane && lane.right != layer[to].lane) return;
-      const double cost =
-          layer[from].cost + laneChangePenalty(lane, lane.centerline.length());
+      const double cost = layer[from].cost + laneChangePenalty(lane, lane.centerline.length());
       if (cost >= layer[to].cost) return;
       layer[to] = {layer[to].lane, cost, {}, from, true};
     };
@@ -83,7 +82,8 @@ class EdgeRow {
                            edges_[i + 1] + "'" + successorsText(edges_[i]));
   }
 
-  /// Follows links through the junction after edge `i`; `way` starts with the lane left and ends with the lane reached.
+  /// Follows links through the junction after edge `i`; `way` starts with the lane left and ends
+  /// with the lane reached.
   void follow(std::size_t i, std::size_t from, const std::vector<LaneIndex>& way) {
     for (const LaneLink& link : network_.lane(way.back()).next) {
       const Lane& next = network_.lane(link.to);

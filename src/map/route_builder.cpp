@@ -11,18 +11,18 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kBlendLength = 25.0;         // [m] of a comfortable lane change
-constexpr double kChangeStretch = 60.0;       // [m] a change happens within so much of its lane
-constexpr double kSampleSpacing = 0.25;       // [m] before resampling
-constexpr std::size_t kRoundingSamples = 6;   // samples to each side of a corner that round it
-constexpr double kPointSpacing = 1.0;         // [m] of the finished route
-constexpr double kMergeDistance = 1e-3;       // [m]
+constexpr double kBlendLength = 25.0;        // [m] of a comfortable lane change
+constexpr double kSampleSpacing = 0.25;      // [m] before resampling
+constexpr std::size_t kRoundingSamples = 6;  // samples to each side of a corner that round it
+constexpr double kPointSpacing = 1.0;        // [m] of the finished route
+constexpr double kMergeDistance = 1e-3;      // [m]
 
 double lengthOf(const RoadNetwork& network, LaneIndex lane) {
   return network.lane(lane).centerline.length();
 }
 
-/// Connected lanes without a change, prolonged at both ends along lanes that run beside the rest of the way.
+/// Connected lanes without a change, prolonged at both ends along lanes that run beside the rest of
+/// the way.
 struct Run {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::pair<double, LaneIndex>> lane_begins;  ///< arc length where each lane begins
@@ -87,6 +87,8 @@ class RouteBuilder {
   void sampleRun(const Run& run, double begin, double end);
   void sampleBlend(const Run& from, const Run& to, const Window& window);
   void addSample(const Eigen::Vector3d& point, LaneIndex lane);
+  void dropOverlaps();
+  std::size_t passedAgain(std::size_t last, const Eigen::Vector2d& along) const;
   Route resample() const;
 
   const RoadNetwork& network_;
@@ -106,6 +108,7 @@ Route RouteBuilder::build() {
     cursor = runs_[i + 1].in + window.begin + window.length;
   }
   sampleRun(runs_.back(), cursor, runs_.back().out);
+  dropOverlaps();
   return resample();
 }
 
@@ -134,7 +137,8 @@ Run RouteBuilder::makeRun(std::size_t first, std::size_t last) const {
   return run;
 }
 
-/// Lanes that lead to the first lane of a run and lie beside the way that is driven before the change to it.
+/// Lanes that lead to the first lane of a run and lie beside the way that is driven before the
+/// change to it.
 std::vector<LaneStretch> RouteBuilder::lanesBefore(std::size_t first) const {
   std::vector<LaneStretch> lanes;
   if (first == 0) return lanes;
@@ -154,7 +158,8 @@ std::vector<LaneStretch> RouteBuilder::lanesBefore(std::size_t first) const {
   return lanes;
 }
 
-/// Lanes that follow the last lane of a run and lie beside the way that is driven after the change away from it.
+/// Lanes that follow the last lane of a run and lie beside the way that is driven after the change
+/// away from it.
 std::vector<LaneStretch> RouteBuilder::lanesAfter(std::size_t last) const {
   std::vector<LaneStretch> lanes;
   if (last + 1 >= drive_.size()) return lanes;
@@ -174,7 +179,8 @@ std::vector<LaneStretch> RouteBuilder::lanesAfter(std::size_t last) const {
   return lanes;
 }
 
-/// Where the change from run `change` to the next is blended: as near to the change as the room on both sides allows.
+/// Where the change from run `change` to the next is blended: as near to the change as the room on
+/// both sides allows.
 RouteBuilder::Window RouteBuilder::windowAt(std::size_t change) const {
   const Run& from = runs_[change];
   const Run& to = runs_[change + 1];
@@ -219,7 +225,42 @@ void RouteBuilder::sampleBlend(const Run& from, const Run& to, const Window& win
   }
 }
 
-/// Rounds the corners that centre lines have in junctions: mean over 1.5 m to both sides, less at the ends, which stay.
+/// The first sample after `last` that lies just ahead of it again, or the number of samples.
+std::size_t RouteBuilder::passedAgain(std::size_t last, const Eigen::Vector2d& along) const {
+  constexpr double kBeside = 3.0;            // [m]
+  constexpr std::size_t kMostSamples = 240;  // 60 m there and back
+  const std::size_t end = std::min(points_.size() - 1, last + kMostSamples);
+  for (std::size_t i = last + 2; i < end; ++i) {
+    const Eigen::Vector2d offset = (points_[i] - points_[last]).head<2>();
+    const Eigen::Vector2d onwards = (points_[i + 1] - points_[i]).head<2>();
+    if (along.dot(offset) > 0.0 && offset.norm() < kBeside && along.dot(onwards) > 0.0) return i;
+  }
+  return points_.size();
+}
+
+/// netconvert lets edges overlap and joins them by internal lanes that lead backwards, up to 8 m in
+/// Town03. Such a jog is left out: the line goes on where it comes past the point again.
+void RouteBuilder::dropOverlaps() {
+  std::vector<Eigen::Vector3d> points = {points_.front()};
+  std::vector<LaneIndex> lanes = {lanes_.front()};
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < points_.size(); ++i) {
+    if (i > 1 && points.size() > 1) {
+      const Eigen::Vector2d along = (points.back() - points[points.size() - 2]).head<2>();
+      const bool backwards = along.dot((points_[i] - points.back()).head<2>()) < 0.0;
+      const std::size_t again = backwards ? passedAgain(last, along) : i;
+      if (again < points_.size()) i = again;
+    }
+    points.push_back(points_[i]);
+    lanes.push_back(lanes_[i]);
+    last = i;
+  }
+  points_ = std::move(points);
+  lanes_ = std::move(lanes);
+}
+
+/// Rounds the corners that centre lines have in junctions: mean over 1.5 m to both sides, less at
+/// the ends, which stay.
 std::vector<Eigen::Vector3d> roundedCorners(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3d> rounded;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -250,68 +291,7 @@ Route RouteBuilder::resample() const {
   return Route(network_, points, lanes);
 }
 
-/// Lanes lanes[first..last] of a path that lie side by side.
-struct SideBySide {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  double begin = 0.0;  ///< arc length on the first where the way enters [m]
-  double end = 0.0;    ///< arc length on the last where the way leaves [m]
-};
-
-/// An arc length on the lane at place `from` of a path, carried over to the lane at place `to` beside it.
-double carriedOver(const RoadNetwork& network, const LanePath& path, std::size_t from,
-                   std::size_t to, double arc_length) {
-  while (from != to) {
-    const std::size_t next = from < to ? from + 1 : from - 1;
-    arc_length = arcLengthAbreast(network, path.lanes[from], arc_length, path.lanes[next]);
-    from = next;
-  }
-  return arc_length;
-}
-
-void appendGroup(const RoadNetwork& network, const LanePath& path, const SideBySide& group,
-                 std::vector<LaneStretch>& drive) {
-  const double changes = static_cast<double>(group.last - group.first);
-  const double leave = carriedOver(network, path, group.last, group.first, group.end);
-  const double zone = std::clamp(leave - group.begin, 0.0, kChangeStretch * changes);
-  double begin = group.begin;
-  for (std::size_t i = group.first; i <= group.last; ++i) {
-    const bool last = i == group.last;
-    const double done = static_cast<double>(i - group.first) + 0.5;
-    const double change = last ? 0.0 : group.begin + zone * done / changes;
-    double end = last ? group.end : carriedOver(network, path, group.first, i, change);
-    end = std::max(begin, end);
-    if (i == 0 && !drive.empty() && drive.back().lane == path.lanes[i]) {
-      drive.back().end = std::max(drive.back().end, end);
-    } else {
-      drive.push_back({path.lanes[i], begin, end});
-    }
-    if (!last) begin = arcLengthAbreast(network, path.lanes[i], end, path.lanes[i + 1]);
-  }
-}
-
 }  // namespace
-
-bool follows(const RoadNetwork& network, LaneIndex from, LaneIndex to) {
-  const std::vector<LaneLink>& next = network.lane(from).next;
-  return std::any_of(next.begin(), next.end(), [&](const LaneLink& link) { return link.to == to; });
-}
-
-void appendPath(const RoadNetwork& network, const LanePath& path, double start, double goal,
-                std::vector<LaneStretch>& drive) {
-  std::size_t first = 0;
-  for (std::size_t i = 1; i <= path.lanes.size(); ++i) {
-    const bool last = i == path.lanes.size();
-    if (!last && !follows(network, path.lanes[i - 1], path.lanes[i])) continue;
-    SideBySide group;
-    group.first = first;
-    group.last = i - 1;
-    if (first == 0) group.begin = start;
-    group.end = last ? goal : lengthOf(network, path.lanes[i - 1]);
-    appendGroup(network, path, group, drive);
-    first = i;
-  }
-}
 
 Route buildRoute(const RoadNetwork& network, const std::vector<LaneStretch>& drive) {
   return RouteBuilder(network, drive).build();

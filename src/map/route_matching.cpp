@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kHeadingScale = 0.3;  // [rad]
+constexpr double kDetour = 20.0;       // [m] lanes of a network may overlap where they join
 constexpr double kBackwards = 0.5;     // [m] a projection may fall back by so much on its lane
 
 /// Finds the lane of every point of a driven line.
@@ -27,10 +28,9 @@ class RouteMatcher {
   }
 
   Route match() const {
-    const CheapestChoice choice =
-        cheapestChoice(layers_, [this](std::size_t layer, const LaneCandidate& from) {
-          return transitions(layer, from);
-        });
+    const CheapestChoice choice = cheapestChoice(
+        layers_,
+        [this](std::size_t layer, const LaneCandidate& from) { return transitions(layer, from); });
     if (choice.positions.empty()) fail(choice.reached);
     std::vector<Eigen::Vector3d> points;
     std::vector<LaneIndex> lanes;
@@ -54,7 +54,7 @@ class RouteMatcher {
     const double distance =
         (points_[layer + 1].position - points_[layer].position).head<2>().norm();
     SearchLimits limits;
-    limits.max_length = 2.0 * distance + 5.0;
+    limits.max_length = 2.0 * distance + kDetour;
     limits.routable_only = false;
     const LaneSearch search(network_, from.position, limits);
     std::vector<double> costs;

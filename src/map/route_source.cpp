@@ -11,19 +11,21 @@ void RouteOptions::describe(core::OptionsVisitor& visitor) {
   visitor.points({"points", "m", "key points of the route in the map frame"}, points);
   visitor.text({"bench2drive_file", "", "route file of Bench2Drive"}, bench2drive_file, {});
   visitor.text({"bench2drive_id", "", "id of the route in bench2drive_file"}, bench2drive_id, {});
-  visitor.number({"start_offset", "m", "distance of the start from the first edge's beginning, with edges"},
-                 start_offset, 0.0, 1e5);
+  visitor.number(
+      {"start_offset", "m", "distance of the start from the first edge's beginning, with edges"},
+      start_offset, 0.0, 1e5);
   visitor.number({"end_offset", "m", "distance of the goal from the last edge's end, with edges"},
                  end_offset, 0.0, 1e5);
   visitor.number({"start_speed", "m/s", "speed of the ego at the start"}, start_speed, 0.0, 60.0);
 }
 
 void RouteOptions::validate() const {
-  const int sources = (edges.empty() ? 0 : 1) + (points.empty() ? 0 : 1) +
-                      (bench2drive_file.empty() ? 0 : 1);
+  const int sources =
+      (edges.empty() ? 0 : 1) + (points.empty() ? 0 : 1) + (bench2drive_file.empty() ? 0 : 1);
   if (sources != 1) {
-    throw core::InputError("the route has " + std::to_string(sources) +
-                           " sources; exactly one of edges, points and bench2drive_file was expected");
+    throw core::InputError(
+        "the route has " + std::to_string(sources) +
+        " sources; exactly one of edges, points and bench2drive_file was expected");
   }
   if (points.size() == 1) {
     throw core::InputError("the route has 1 point; at least two were expected");

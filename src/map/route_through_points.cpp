@@ -15,8 +15,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMergeDistance = 0.1;  // [m] key points nearer than this are one
-constexpr double kHeadingScale = 0.6;   // [rad] towards the next key point, which may lie behind a bend
-constexpr double kBackwards = 0.5;      // [m] a projection may fall back by so much on its lane
+constexpr double kHeadingScale =
+    0.6;                            // [rad] towards the next key point, which may lie behind a bend
+constexpr double kBackwards = 0.5;  // [m] a projection may fall back by so much on its lane
 constexpr double kFarSearch = 20000.0;  // [m] to tell a long way from none
 
 /// Joins key points by the cheapest choice of lanes and the shortest ways between them.
@@ -31,10 +32,9 @@ class KeyPointRoute {
   }
 
   Route build() const {
-    const CheapestChoice choice =
-        cheapestChoice(layers_, [this](std::size_t layer, const LaneCandidate& from) {
-          return transitions(layer, from);
-        });
+    const CheapestChoice choice = cheapestChoice(
+        layers_,
+        [this](std::size_t layer, const LaneCandidate& from) { return transitions(layer, from); });
     if (choice.positions.empty()) fail(choice.reached);
     return join(choice.positions);
   }

@@ -22,8 +22,7 @@ SegmentDistance distanceToSegment(const Lane& lane, int segment, const Eigen::Ve
   const Eigen::Vector2d along = (end - start).head<2>();
   const Eigen::Vector2d offset = position - start.head<2>();
   const double fraction = std::clamp(along.dot(offset) / along.squaredNorm(), 0.0, 1.0);
-  return {(offset - fraction * along).squaredNorm(),
-          start.z() + fraction * (end.z() - start.z())};
+  return {(offset - fraction * along).squaredNorm(), start.z() + fraction * (end.z() - start.z())};
 }
 
 }  // namespace

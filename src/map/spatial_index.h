@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Uniform grid over the segments of lane centre lines (map frame [m]); answers which lanes pass near a point.
+/// Uniform grid over the segments of lane centre lines (map frame [m]); answers which lanes pass
+/// near a point.
 #pragma once
 
 #include <limits>
@@ -15,9 +16,9 @@ struct RoadNetwork::SpatialIndex {
   /// What is asked for.
   struct Query {
     Eigen::Vector2d position = Eigen::Vector2d::Zero();
-    double radius = 0.0;                                             ///< [m]
-    double elevation = 0.0;                                          ///< [m]
-    double level_height = std::numeric_limits<double>::infinity();   ///< [m]
+    double radius = 0.0;                                            ///< [m]
+    double elevation = 0.0;                                         ///< [m]
+    double level_height = std::numeric_limits<double>::infinity();  ///< [m]
   };
   /// The nearest segment of a lane.
   struct Hit {
@@ -45,7 +46,8 @@ struct RoadNetwork::SpatialIndex {
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   int columns_ = 1;
   int rows_ = 1;
-  std::vector<std::size_t> cell_begin_;  ///< entries of cell c: [cell_begin_[c], cell_begin_[c + 1])
+  std::vector<std::size_t>
+      cell_begin_;  ///< entries of cell c: [cell_begin_[c], cell_begin_[c + 1])
   std::vector<Entry> entries_;
 };
 

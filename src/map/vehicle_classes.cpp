@@ -56,7 +56,8 @@ std::size_t endOfTag(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// End of a piece that is copied as it is: comment, declaration or processing instruction; 0 when `begin` opens a tag.
+/// End of a piece that is copied as it is: comment, declaration or processing instruction; 0 when
+/// `begin` opens a tag.
 std::size_t endOfVerbatim(std::string_view text, std::size_t begin) {
   const auto until = [&](std::string_view mark) {
     const std::size_t end = text.find(mark, begin);

@@ -6,8 +6,5 @@
 #include "e2e_cdiff/ros/traffic_simulator_ros.h"
 
 int main(int argc, char** argv) {
-  using namespace cdiff::ros;
-  return runNode(argc, argv, kTrafficSimulatorNode, [](StopSignal& stop) {
-    return TrafficSimulatorRos(Parameters::ofThisNode(), stop).run();
-  });
+  return cdiff::ros::runNode(argc, argv, cdiff::ros::kTrafficSimulatorNode, cdiff::ros::runTrafficSimulator);
 }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/html_report.h"
 
+#include <algorithm>
+
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/playback.h"
@@ -22,7 +24,7 @@ std::string head(const SessionResult& result) {
          "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
          "name=\"color-scheme\" content=\"light dark\">\n<title>" +
          escapeMarkup(result.setup.options().name) + " – session report</title>\n<style>" +
-         reportStyleSheet() + "</style>\n</head>\n";
+         kReportStyleSheet + "</style>\n</head>\n";
 }
 
 std::string banner(const SessionResult& result) {
@@ -45,8 +47,11 @@ std::string banner(const SessionResult& result) {
     html += "<p>" + escapeMarkup(failure) + "</p>";
   }
   if (result.verdict.failures.empty()) {
+    const bool all =
+        std::none_of(result.checks.begin(), result.checks.end(),
+                     [](const Check& check) { return check.outcome == CheckOutcome::kSkipped; });
     html += "<p>the session ended with status '" + std::string(traffic::toText(result.status)) +
-            "' and every rule was met</p>";
+            (all ? "' and every rule was met</p>" : "' and every rule that applies was met</p>");
   }
   return html + "</div></div>\n</header>\n";
 }
@@ -127,7 +132,7 @@ std::string htmlReport(const SessionResult& result) {
          section("Faults", faultTable(result.faults)) +
          section("Configuration and versions", configuration(result)) +
          "</main>\n<script type=\"application/json\" id=\"playback\">" +
-         playbackJson(result, canvas) + "</script>\n<script>" + reportScript() +
+         playbackJson(result, canvas) + "</script>\n<script>" + kReportScript +
          "</script>\n</body>\n</html>\n";
 }
 

@@ -4,8 +4,7 @@
 
 namespace cdiff::report {
 
-const char* reportScript() {
-  return R"JS(
+const char kReportScript[] = R"JS(
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("playback").textContent);
@@ -157,6 +156,5 @@ const char* reportScript() {
   show(last);
 })();
 )JS";
-}
 
 }  // namespace cdiff::report

@@ -4,8 +4,7 @@
 
 namespace cdiff::report {
 
-const char* reportStyleSheet() {
-  return R"CSS(
+const char kReportStyleSheet[] = R"CSS(
 :root {
   color-scheme: light dark;
   --page: #ffffff; --text: #1c2024; --soft: #5d6670; --line: #d9dde2; --panel: #f5f6f8;
@@ -54,6 +53,7 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 svg path, svg circle { fill: none; stroke-linejoin: round; stroke-linecap: round;
   vector-effect: non-scaling-stroke; }
 svg path.road { fill: var(--road); fill-rule: evenodd; stroke: var(--edge); stroke-width: 1; }
+svg path.road.other { opacity: .45; }
 svg path.lane { stroke: var(--lane); stroke-width: .8; stroke-dasharray: 3 4; }
 svg path.route { stroke: var(--goal); stroke-width: 7; opacity: .3; stroke-linecap: butt; }
 svg path.planned { stroke-width: 2; stroke-dasharray: 7 5; opacity: .85; }
@@ -72,8 +72,9 @@ svg circle.contact { stroke: var(--contact); stroke-width: 3; }
 svg path.scale { stroke: var(--text); stroke-width: 2; }
 svg path.north { fill: var(--text); }
 svg text { fill: var(--text); font-size: 12px; }
-svg text.name { font-size: calc(13px / var(--zoom)); font-weight: 600; paint-order: stroke;
-  stroke: var(--halo); stroke-width: calc(3px / var(--zoom)); stroke-linejoin: round; }
+svg text.name { font-size: 13px; font-weight: 600; paint-order: stroke; stroke: var(--halo);
+  stroke-width: 3px; stroke-linejoin: round; }
+.pin { transform: scale(calc(1 / var(--zoom))); }
 .controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
 .controls[hidden] { display: none; }
 .controls input[type=range] { flex: 1 1 260px; accent-color: var(--ego); }
@@ -100,7 +101,7 @@ svg circle.mark { fill: var(--page); stroke: var(--conflict); stroke-width: 2; }
   stroke: var(--page); stroke-width: 3px; }
 .chart path.cursor { stroke: var(--soft); stroke-width: 1; visibility: hidden; }
 .scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .92rem; min-width: 50%; }
+table { border-collapse: collapse; font-size: .92rem; }
 th, td { text-align: left; padding: 5px 14px 5px 0; border-bottom: 1px solid var(--line);
   vertical-align: top; overflow-wrap: break-word; }
 th { color: var(--soft); font-weight: 600; }
@@ -121,6 +122,5 @@ pre { background: var(--panel); border-radius: 8px; padding: 12px 14px; overflow
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )CSS";
-}
 
 }  // namespace cdiff::report

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/summary.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace cdiff::report {
@@ -57,12 +58,17 @@ Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_ro
           {"in_junction_or_beyond", atOrBeyondFirstJunction(conflict, ego_route)}};
 }
 
+/// Time of a tick without the last bit of the product: 5.8, not 5.800000000000001 [s].
+double secondsOf(std::uint64_t tick, double step) {
+  return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
+}
+
 Json selectionObject(const CbvRecord& record, const scenario::SessionSetup& setup) {
   const double step = setup.options().simulation_step;
   Json object = {{"slot", record.slot},
                  {"vehicle_id", record.vehicle_id},
                  {"selected_tick", record.selected_tick},
-                 {"selected_seconds", static_cast<double>(record.selected_tick) * step},
+                 {"selected_seconds", secondsOf(record.selected_tick, step)},
                  {"interaction_score", record.interaction_score},
                  {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
                  {"decisions_driven", record.decisions_driven},

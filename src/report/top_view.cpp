@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/text.h"
@@ -16,6 +17,7 @@ namespace {
 using traffic::VehicleRole;
 
 constexpr double kLabelHeight = 15.0;  // [pixels]
+constexpr double kLabelWidth = 70.0;   // [pixels]
 
 std::string path(const std::string& style, const std::string& data, const std::string& title = {}) {
   if (data.empty()) return {};
@@ -24,26 +26,54 @@ std::string path(const std::string& style, const std::string& data, const std::s
   return begin + "><title>" + escapeMarkup(title) + "</title></path>\n";
 }
 
-std::string label(const Eigen::Vector2d& pixel, const std::string& style, const std::string& text) {
-  return "<text class=\"" + style + "\" x=\"" + shortNumber(pixel.x()) + "\" y=\"" +
-         shortNumber(pixel.y()) + "\">" + escapeMarkup(text) + "</text>\n";
+std::string label(double x, double y, const std::string& text) {
+  return "<text class=\"name\" x=\"" + shortNumber(x) + "\" y=\"" + shortNumber(y) + "\">" +
+         escapeMarkup(text) + "</text>";
 }
 
-/// Drivable area on every level that the ego route touches, each level once.
-std::string drivableArea(const SessionResult& result, const MapCanvas& canvas) {
-  constexpr double kSpacing = 20.0;  // between examined elevations along the route [m]
-  const map::DrivableArea& area = result.setup.drivableArea();
-  const geometry::Polyline& route = result.setup.egoRoute().path();
+/// Marks and names around a pixel that keep their size when the picture is zoomed.
+std::string pin(const Eigen::Vector2d& pixel, const std::string& content) {
+  return "<g transform=\"translate(" + shortNumber(pixel.x()) + " " + shortNumber(pixel.y()) +
+         ")\"><g class=\"pin\">" + content + "</g></g>\n";
+}
+
+/// Path data of the drivable area on the level of each elevation, each level once.
+std::vector<std::string> levelsAt(const std::set<int>& elevations, const map::DrivableArea& area,
+                                  const MapCanvas& canvas) {
   std::vector<std::string> levels;
-  for (double s = 0.0; s <= route.length(); s += kSpacing) {
-    const double elevation = route.empty() ? 0.0 : route.pointAt(s).z();
+  for (const int elevation : elevations) {
     std::string data;
     for (const Points& ring : area.border(elevation)) data += canvas.ring(ring);
-    if (std::find(levels.begin(), levels.end(), data) == levels.end()) levels.push_back(data);
-    if (area.levelCount() < 2) break;
+    const bool known = std::find(levels.begin(), levels.end(), data) != levels.end();
+    if (!known && !data.empty()) levels.push_back(data);
+  }
+  return levels;
+}
+
+/// Elevations in the picture, in whole metres: of the ego route, or of all lanes.
+std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const MapCanvas& canvas) {
+  std::set<int> elevations;
+  for (const Eigen::Vector3d& point : points) {
+    if (canvas.shows(point.head<2>())) elevations.insert(static_cast<int>(std::lround(point.z())));
+  }
+  return elevations;
+}
+
+/// Drivable area: the levels that the ego route touches, and faintly below them the others in the
+/// picture.
+std::string drivableArea(const SessionResult& result, const MapCanvas& canvas) {
+  const map::DrivableArea& area = result.setup.drivableArea();
+  const auto& route = result.setup.egoRoute().path().points();
+  const std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
+  std::set<int> elevations;
+  for (const map::Lane& lane : result.setup.network().lanes()) {
+    if (area.levelCount() > 1) elevations.merge(elevationsOf(lane.centerline.points(), canvas));
   }
   std::string svg;
-  for (const std::string& level : levels) svg += path("road", level);
+  for (const std::string& level : levelsAt(elevations, area, canvas)) {
+    if (std::find(own.begin(), own.end(), level) == own.end()) svg += path("road other", level);
+  }
+  for (const std::string& level : own) svg += path("road", level);
   return svg;
 }
 
@@ -60,9 +90,8 @@ std::string egoRoute(const SessionResult& result, const MapCanvas& canvas) {
   if (points.empty()) return {};
   const std::string data = canvas.line(inPlane(points));
   const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
-  const std::string place = " cx=\"" + shortNumber(goal.x()) + "\" cy=\"" + shortNumber(goal.y());
-  return path("route", data, "ego route") + "<circle class=\"goal\"" + place + "\" r=\"6\"/>\n" +
-         label(goal + Eigen::Vector2d(10.0, 4.0), "name", "goal");
+  return path("route", data, "ego route") +
+         pin(goal, "<circle class=\"goal\" r=\"6\"/>" + label(10.0, 4.0, "goal"));
 }
 
 std::string conflictRoutes(const SessionResult& result, const MapCanvas& canvas) {
@@ -142,8 +171,7 @@ std::string startBox(const SessionResult& result, const MapCanvas& canvas) {
     for (const TimelinePose& pose : frame.poses) {
       if (pose.role != VehicleRole::kEgo) continue;
       const Eigen::Vector2d pixel = canvas.toPixels({pose.x, pose.y});
-      return vehicleBox(pose, result, canvas, "start") +
-             label(pixel + Eigen::Vector2d(10.0, -10.0), "name", "start");
+      return vehicleBox(pose, result, canvas, "start") + pin(pixel, label(10.0, -10.0, "start"));
     }
   }
   return {};
@@ -162,32 +190,22 @@ std::string finalBoxes(const SessionResult& result, const MapCanvas& canvas) {
   return svg + "</g>\n";
 }
 
-std::string cross(const Eigen::Vector2d& pixel, const std::string& style, double reach,
-                  const std::string& title) {
-  const std::string size = shortNumber(reach);
-  const std::string twice = shortNumber(2.0 * reach);
-  return path(style,
-              "M" + shortNumber(pixel.x() - reach) + " " + shortNumber(pixel.y() - reach) + "l" +
-                  twice + " " + twice + "m0 -" + twice + "l-" + twice + " " + twice,
-              title);
-}
-
 std::string conflictPoints(const SessionResult& result, const MapCanvas& canvas) {
   std::string svg;
-  std::vector<Eigen::Vector2d> taken;
+  std::vector<Eigen::Vector2d> taken;  // places of names
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
     const CbvRecord& record = result.cbv.records()[i];
     const Eigen::Vector2d pixel = canvas.toPixels(record.conflict_point.position.head<2>());
     const std::string name = "C" + std::to_string(i + 1) + " " + record.vehicle_id;
-    svg += cross(pixel, "conflict", 6.0, "conflict point " + name);
-    Eigen::Vector2d place = pixel + Eigen::Vector2d(10.0, -8.0);
-    const auto hidden = [&place](const Eigen::Vector2d& other) {
-      return std::abs(other.x() - place.x()) < 70.0 &&
-             std::abs(other.y() - place.y()) < kLabelHeight;
+    Eigen::Vector2d offset(10.0, -8.0);
+    const auto hidden = [&](const Eigen::Vector2d& other) {
+      const Eigen::Vector2d between = (other - pixel - offset).cwiseAbs();
+      return between.x() < kLabelWidth && between.y() < kLabelHeight;
     };
-    while (std::any_of(taken.begin(), taken.end(), hidden)) place.y() += kLabelHeight;
-    taken.push_back(place);
-    svg += label(place, "name", name);
+    while (std::any_of(taken.begin(), taken.end(), hidden)) offset.y() += kLabelHeight;
+    taken.push_back(pixel + offset);
+    svg += pin(pixel, path("conflict", "M-6 -6L6 6M6 -6L-6 6", "conflict point " + name) +
+                          label(offset.x(), offset.y(), name));
   }
   return svg;
 }
@@ -196,11 +214,10 @@ std::string contactMarks(const Timeline& timeline, const MapCanvas& canvas) {
   std::string svg;
   for (const TimelineContact& contact : timeline.contacts()) {
     if (!contact.position || !canvas.shows(*contact.position)) continue;
-    const Eigen::Vector2d pixel = canvas.toPixels(*contact.position);
-    svg += "<circle class=\"contact\" cx=\"" + shortNumber(pixel.x()) + "\" cy=\"" +
-           shortNumber(pixel.y()) + "\" r=\"11\"><title>contact of " +
-           escapeMarkup(contact.first + " and " + contact.second) + " at " +
-           core::formatFixed(contact.time, 2) + " s</title></circle>\n";
+    svg += pin(canvas.toPixels(*contact.position),
+               "<circle class=\"contact\" r=\"11\"><title>contact of " +
+                   escapeMarkup(contact.first + " and " + contact.second) + " at " +
+                   core::formatFixed(contact.time, 2) + " s</title></circle>");
   }
   return svg;
 }
@@ -211,9 +228,9 @@ std::string scaleBar(const MapCanvas& canvas) {
   const std::string length = shortNumber(metres * canvas.scale());
   return "<g class=\"frame\">" +
          path("scale", "M18 " + shortNumber(y - 5.0) + "v5h" + length + "v-5") +
-         label({24.0, y - 7.0}, "name", core::formatNumber(metres) + " m") +
+         label(24.0, y - 7.0, core::formatNumber(metres) + " m") +
          path("north", "M" + shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
-         label({canvas.width() - 29.0, 46.0}, "name", "N") + "</g>\n";
+         label(canvas.width() - 29.0, 46.0, "N") + "</g>\n";
 }
 
 }  // namespace
@@ -221,7 +238,9 @@ std::string scaleBar(const MapCanvas& canvas) {
 double vehicleMagnification(const MapCanvas& canvas) {
   constexpr double kLeastLength = 9.0;  // of a car in the picture [pixels]
   constexpr double kCarLength = 4.5;    // [m]
-  return std::max(1.0, kLeastLength / (kCarLength * canvas.scale()));
+  constexpr double kNoticeable = 1.2;   // less than this is not worth it
+  const double needed = kLeastLength / (kCarLength * canvas.scale());
+  return needed > kNoticeable ? needed : 1.0;
 }
 
 std::string styleOf(VehicleRole role, const std::string& id, const CbvLog& cbv) {
@@ -248,8 +267,8 @@ std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas) {
          trailPaths(result, canvas, VehicleRole::kBackground) +
          trailPaths(result, canvas, VehicleRole::kCbv) +
          trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
-         conflictPoints(result, canvas) + contactMarks(result.timeline, canvas) +
-         finalBoxes(result, canvas) + scaleBar(canvas) + "</svg>\n";
+         finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
+         conflictPoints(result, canvas) + scaleBar(canvas) + "</svg>\n";
 }
 
 }  // namespace cdiff::report

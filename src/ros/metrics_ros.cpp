@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/session_files.h"
 
 namespace cdiff::ros {
 namespace {
@@ -38,7 +39,8 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
   setup_ = std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info), routeFromMsg(info));
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   const report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
-  writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, info.results_folder);
+  results_ = info.results_folder;
+  writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, results_);
   metrics_ = std::make_unique<metrics::SessionMetrics>(metricsOptions(setup_->options()), setup_->drivableArea(),
                                                        setup_->egoRoute());
   answers_ = TickAnswers(setup_->options().simulation_step);
@@ -132,6 +134,7 @@ int MetricsRos::conclude(Ending ending) {
   }
   writer_->finish(wallSeconds());
   std::cout << writer_->table() << std::flush;
+  writeExitCode(results_, writer_->exitCode());
   return writer_->exitCode();
 }
 

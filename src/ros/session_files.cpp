@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 
 namespace cdiff::ros {
 namespace {
@@ -34,7 +35,12 @@ fs::path makeResultFolder(const std::string& given, const scenario::ScenarioOpti
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw core::InputError("cannot make the result folder '" + folder.string() + "': " + error.message());
+  for (const char* name : {"session.bag", "session.bag.active", "exit_code"}) fs::remove(folder / name, error);
   return folder;
+}
+
+void writeExitCode(const fs::path& folder, int exit_code) {
+  core::writeFileAtomically(folder / "exit_code", std::to_string(exit_code) + "\n");
 }
 
 void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last, const report::RunFacts& facts,
@@ -44,6 +50,7 @@ void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnap
   record.snapshot = &last;
   writer.observe(record);
   writer.finish(wall_seconds);
+  writeExitCode(folder, writer.exitCode());
 }
 
 }  // namespace cdiff::ros

@@ -26,11 +26,9 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
 
 void spin(double seconds) { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(seconds)); }
 
-const std::vector<std::string>& knownParameters() {
-  static const std::vector<std::string> known = {
-      "scenario",    "bench2drive", "route",   "network", "mode",         "ego_planner",    "cbv_planner",   "seed",
-      "set",         "record",      "results", "folder",  "participants", "start_timeout",  "answer_timeout"};
-  return known;
+std::vector<std::string> knownParameters() {
+  return {"scenario", "bench2drive", "route",  "network",      "mode",          "ego_planner",   "cbv_planner", "seed",
+          "set",      "record",      "folder", "participants", "start_timeout", "answer_timeout", "results"};
 }
 
 /// Relative paths in parameters are meant from where the user started the session.
@@ -229,7 +227,8 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForTick() {
 
 /// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
-  const double due = published_->time / setup_->options().real_time_factor;
+  const scenario::ScenarioOptions& options = setup_->options();
+  const double due = (published_->time + options.simulation_step) / options.real_time_factor;
   do {
     if (const auto cause = disturbance()) return cause;
     spin(std::clamp(due - secondsSince(begin_), 0.0, kSpinPeriod));
@@ -264,8 +263,10 @@ void TrafficSimulatorRos::advance() {
 }
 
 void TrafficSimulatorRos::advancePaced() {
-  const std::string text = paced_answers_.countLate(published_->tick, answers_.missing(*published_));
-  if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
+  if (published_->decision_tick) {
+    const std::string text = paced_answers_.countLate(published_->tick, answers_.missing(*published_));
+    if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
+  }
   recordFaults(answers_.answers(*published_));
   const TickAnswers::Selection message = paced_answers_.nextSelection(answers_);
   const std::vector<planning::PlannedAction> actions = paced_answers_.actions(*published_, answers_);
@@ -297,6 +298,21 @@ void TrafficSimulatorRos::writeResultAlone(const traffic::TrafficSnapshot& snaps
   const std::string version = world_ ? world_->simulatorVersion() : "unknown";
   writeResult(*setup_, snapshot, {kDeployment, version, !paced()}, results_, secondsSince(begin_));
   ROS_ERROR("The metrics node could not finish; a result with the last state alone is in %s", results_.c_str());
+}
+
+int runTrafficSimulator(StopSignal& stop) {
+  const Parameters parameters = Parameters::ofThisNode();
+  try {
+    return TrafficSimulatorRos(parameters, stop).run();
+  } catch (const core::InputError&) {
+    constexpr int kBadInput = 3;
+    const fs::path folder = parameters.text("results");
+    if (folder.empty()) throw;
+    std::error_code ignored;
+    fs::create_directories(folder, ignored);
+    writeExitCode(folder, kBadInput);
+    throw;
+  }
 }
 
 int TrafficSimulatorRos::exitCode() const {

@@ -10,16 +10,18 @@ namespace cdiff::simulation {
 
 namespace {
 
-constexpr double kStartSpacing = 15.0;    ///< between places on a lane [m]
-constexpr double kStartMargin = 1.0;      ///< rear bumper to the lane's start, front bumper to its end [m]
-constexpr double kOutOfSight = 60.0;      ///< from the ego, once the session runs [m]
-constexpr double kRouteLength = 800.0;    ///< [m]
-constexpr double kUsualSpeed = 8.0;       ///< wished at the start, or 0.7 of the limit when that is more [m/s]
+constexpr double kStartSpacing = 15.0;  ///< between places on a lane [m]
+constexpr double kStartMargin =
+    1.0;  ///< rear bumper to the lane's start, front bumper to its end [m]
+constexpr double kOutOfSight = 60.0;    ///< from the ego, once the session runs [m]
+constexpr double kRouteLength = 800.0;  ///< [m]
+constexpr double kUsualSpeed =
+    8.0;  ///< wished at the start, or 0.7 of the limit when that is more [m/s]
 constexpr int kTriesPerCall = 12;
-constexpr double kLevelHeight = 2.5;      ///< [m]
+constexpr double kLevelHeight = 2.5;  ///< [m]
 
-constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {{
-    {4.2, 1.75, 1.50}, {4.5, 1.80, 1.50}, {4.8, 1.85, 1.45}, {5.2, 1.95, 1.85}}};
+constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {
+    {{4.2, 1.75, 1.50}, {4.5, 1.80, 1.50}, {4.8, 1.85, 1.45}, {5.2, 1.95, 1.85}}};
 constexpr double kLongest = 5.2;
 
 // Elements of one attempt's draws; the router's begin at 16.
@@ -38,10 +40,14 @@ double fingerprintOf(const std::vector<traffic::Vehicle>& vehicles) {
 
 void DemandOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"density", "", "Vehicles kept alive near the ego."}, density, 0, 1000);
-  visitor.number({"radius", "m", "Near means within this distance of the ego; vehicles begin within it of the ego route."},
-                 radius, 20.0, 2000.0);
-  visitor.number({"clear_start", "m", "No vehicle begins nearer to the ego's start."}, clear_start, 0.0, 1000.0);
-  visitor.number({"warm_up", "s", "Traffic is driven this long before the session begins."}, warm_up, 0.0, 3600.0);
+  visitor.number(
+      {"radius", "m",
+       "Near means within this distance of the ego; vehicles begin within it of the ego route."},
+      radius, 20.0, 2000.0);
+  visitor.number({"clear_start", "m", "No vehicle begins nearer to the ego's start."}, clear_start,
+                 0.0, 1000.0);
+  visitor.number({"warm_up", "s", "Traffic is driven this long before the session begins."},
+                 warm_up, 0.0, 3600.0);
 }
 
 DemandGenerator::DemandGenerator(const DemandOptions& options, const map::LaneGraph& graph,
@@ -56,7 +62,8 @@ DemandGenerator::DemandGenerator(const DemandOptions& options, const map::LaneGr
 
 void DemandGenerator::collectStarts() {
   const map::RoadNetwork& network = edges_.network();
-  for (map::LaneIndex lane = 0; lane < static_cast<map::LaneIndex>(network.lanes().size()); ++lane) {
+  for (map::LaneIndex lane = 0; lane < static_cast<map::LaneIndex>(network.lanes().size());
+       ++lane) {
     if (network.lane(lane).routable && !network.lane(lane).internal) addStartsOf(lane);
   }
 }
@@ -80,7 +87,8 @@ void DemandGenerator::addStartsOf(map::LaneIndex index) {
 bool DemandGenerator::allowed(const Start& start, const Eigen::Vector2d& ego_position,
                               double ego_elevation, bool warm_up) const {
   const double distance = (start.position - ego_position).norm();
-  if (distance > options_.radius) return false;
+  if (distance > options_.radius - 0.5 * kLongest)
+    return false;  // its centre counts, half a length behind
   const bool same_level = std::abs(start.elevation - ego_elevation) < kLevelHeight;
   return warm_up || distance > kOutOfSight || (!same_level && distance > 0.5 * kOutOfSight);
 }

@@ -43,11 +43,13 @@ DemandRouter::DemandRouter(const EdgeGraph& graph, const map::Route& ego_route, 
   const map::RoadNetwork& network = graph.network();
   for (int edge = 0; edge < static_cast<int>(network.edgeIds().size()); ++edge) {
     const std::vector<LaneIndex>& lanes = graph.lanes(edge);
-    near_.push_back(!lanes.empty() && laneNear(network.lane(lanes.front()), ego_route.path(), radius));
+    near_.push_back(!lanes.empty() &&
+                    laneNear(network.lane(lanes.front()), ego_route.path(), radius));
   }
 }
 
-std::vector<const EdgeGraph::Link*> DemandRouter::ways(int edge, LaneIndex lane, double room) const {
+std::vector<const EdgeGraph::Link*> DemandRouter::ways(int edge, LaneIndex lane,
+                                                       double room) const {
   std::vector<const EdgeGraph::Link*> ways;
   for (const EdgeGraph::Link& link : graph_.links(edge)) {
     const bool reachable = link.from_lane == lane || room >= kLaneChangeRoom;
@@ -113,8 +115,7 @@ std::optional<double> freeSpeed(const map::RoadNetwork& network, const Insertion
     const Eigen::Vector2d offset = own.state.pose().toBody(other.state.position);
     const bool same_lane = other.lane_id == lane.id;
     if (!same_lane && std::abs(offset.y()) > corridor + 0.5 * other.dimensions.width) continue;
-    const double gap =
-        offset.norm() - 0.5 * (own.dimensions.length + other.dimensions.length);
+    const double gap = offset.norm() - 0.5 * (own.dimensions.length + other.dimensions.length);
     const double along = other.state.velocity().dot(geometry::direction(own.state.heading));
     if (gap < kSmallestGap) return std::nullopt;
     if (offset.x() > 0.0) {

@@ -20,14 +20,17 @@ using SumoVehicle = libtraci::Vehicle;
 constexpr double kWayLength = 250.0;          ///< given ahead of the present edge [m]
 constexpr double kWayRefresh = 100.0;         ///< a new way is given when less is left [m]
 constexpr double kReleasedWayLength = 600.0;  ///< given at the release [m]
-constexpr double kReleaseHeading = core::kPi / 6.0;  ///< between vehicle and lane at a release [rad]
-constexpr double kLaneChangePause = 3.0;      ///< without lane changes once settled [s]
-constexpr int kSpeedModeOff = 32;             ///< none of SUMO's checks
+constexpr double kReleaseHeading =
+    core::kPi / 6.0;                      ///< between vehicle and lane at a release [rad]
+constexpr double kLaneChangePause = 3.0;  ///< without lane changes once settled [s]
+constexpr double kHardBraking = 9.0;          ///< SUMO's emergency braking [m/s^2]
+constexpr double kAcceleration = 2.6;         ///< SUMO's passenger car [m/s^2]
+constexpr int kSpeedModeOff = 32;         ///< none of SUMO's checks
 constexpr int kSpeedModeDefault = 31;
-constexpr int kLaneChangeModeOff = 512;       ///< no lane change of its own
+constexpr int kLaneChangeModeOff = 512;  ///< no lane change of its own
 constexpr int kLaneChangeModeDefault = 1621;
-constexpr int kKeepRouteExact = 3;            ///< keep the route, at the exact place
-constexpr int kAnywhere = 2;                  ///< at the exact place, whatever lane is there
+constexpr int kKeepRouteExact = 3;  ///< keep the route, at the exact place
+constexpr int kAnywhere = 2;        ///< at the exact place, whatever lane is there
 
 void setModes(const std::string& id, int speed_mode) {
   SumoVehicle::setSpeedMode(id, speed_mode);
@@ -55,7 +58,7 @@ int DrivenFleet::edgeOf(const std::string& lane_id) const {
 
 void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensions& dimensions,
                       const std::string& type_id) {
-  Moved moved{DrivenWay(graph_, dimensions), {}, false, false, "", kNoEdge};
+  Moved moved{DrivenWay(graph_, dimensions), {}, false, false, "", kNoEdge, false, map::kNoLane};
   const FrontPlace place = moved.way.locate(start.state);
   moved.way.follow(start.route, place.position);
   int edge = moved.way.startEdge(place);
@@ -64,8 +67,9 @@ void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensio
     if (edge == kNoEdge) edge = graph_.edgeOf(match.lane);
   }
   if (edge == kNoEdge) {
-    throw core::InputError("vehicle '" + start.id + "' starts at (" + core::formatNumber(start.state.position.x()) +
-                           ", " + core::formatNumber(start.state.position.y()) + "), 200 m from every road");
+    throw core::InputError(
+        "vehicle '" + start.id + "' starts at (" + core::formatNumber(start.state.position.x()) +
+        ", " + core::formatNumber(start.state.position.y()) + "), 200 m from every road");
   }
   moved.given = moved.way.edgesFrom(edge, kWayLength);
   const std::string route_id = "driven_" + std::to_string(added_++) + "_" + start.id;
@@ -77,8 +81,9 @@ void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensio
 }
 
 void DrivenFleet::takeOver(const std::string& id, const traffic::VehicleDimensions& dimensions) {
-  Moved moved{DrivenWay(graph_, dimensions), {}, true, true, "", kNoEdge};
-  for (const std::string& edge : SumoVehicle::getRoute(id)) moved.given.push_back(graph_.find(edge));
+  Moved moved{DrivenWay(graph_, dimensions), {}, true, true, "", kNoEdge, false, map::kNoLane};
+  for (const std::string& edge : SumoVehicle::getRoute(id))
+    moved.given.push_back(graph_.find(edge));
   setModes(id, kSpeedModeOff);
   forget(id);
   vehicles_.emplace(id, std::move(moved));
@@ -90,7 +95,7 @@ void DrivenFleet::forget(const std::string& id) {
 }
 
 void DrivenFleet::moveFront(const std::string& id, const Eigen::Vector2d& front, double heading,
-                        bool on_way) {
+                            bool on_way) {
   SumoVehicle::moveToXY(id, "", 0, front.x(), front.y(), angleFromHeading(heading),
                         on_way ? kKeepRouteExact : kAnywhere, match_threshold_);
 }
@@ -106,11 +111,23 @@ void DrivenFleet::loseWay(Moved& moved) {
   moved.refused_lane.clear();
 }
 
+void DrivenFleet::avoidBlindLane(Moved& moved, const FrontPlace& place,
+                                 const std::string& reported_lane) {
+  const auto blind = [&moved](const map::LaneMatch& match) {
+    return match.lane == moved.blind_lane;
+  };
+  if (std::none_of(place.lanes.begin(), place.lanes.end(), blind)) moved.blind_lane = map::kNoLane;
+  if (!moved.moved_on_way || !moved.on_way || !reported_lane.empty()) return;
+  loseWay(moved);
+  moved.blind_lane = place.lanes.front().lane;
+}
+
 void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlace& place,
                             const std::string& reported_lane) {
   if (moved.on_way && !moved.way.onWay(place, moved.given, core::kPi)) loseWay(moved);
+  avoidBlindLane(moved, place, reported_lane);
   const int current = edgeOf(reported_lane);
-  if (current == kNoEdge) return;
+  if (current == kNoEdge || moved.blind_lane != map::kNoLane) return;
   const std::vector<int> rest = restOf(moved.given, current);
   if (moved.on_way && rest.empty()) loseWay(moved);  // SUMO placed it on another road
   double left = 0.0;
@@ -137,7 +154,8 @@ void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlac
 void DrivenFleet::move(const DrivenVehicle& vehicle, const std::string& reported_lane) {
   const auto found = vehicles_.find(vehicle.id);
   if (found == vehicles_.end()) {
-    throw core::SimulatorError("vehicle '" + vehicle.id + "' is moved but was neither added nor taken over");
+    throw core::SimulatorError("vehicle '" + vehicle.id +
+                               "' is moved but was neither added nor taken over");
   }
   Moved& moved = found->second;
   const FrontPlace place = moved.way.locate(vehicle.state);
@@ -147,6 +165,7 @@ void DrivenFleet::move(const DrivenVehicle& vehicle, const std::string& reported
   }
   updateWay(vehicle.id, moved, place, reported_lane);
   moveFront(vehicle.id, place.position, vehicle.state.heading, moved.on_way);
+  moved.moved_on_way = moved.on_way;
 }
 
 bool DrivenFleet::release(const DrivenVehicle& vehicle, const std::string& reported_lane) {
@@ -155,10 +174,12 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle, const std::string& repor
   moved.way.follow(vehicle.route, place.position);
   const int current = edgeOf(reported_lane);
   if (current == kNoEdge) return false;
-  const auto reported = std::find_if(place.lanes.begin(), place.lanes.end(), [&](const map::LaneMatch& match) {
-    return graph_.network().lane(match.lane).id == reported_lane;
-  });
-  if (reported == place.lanes.end() || std::abs(reported->heading_difference) > kReleaseHeading) return false;
+  const auto reported =
+      std::find_if(place.lanes.begin(), place.lanes.end(), [&](const map::LaneMatch& match) {
+        return graph_.network().lane(match.lane).id == reported_lane;
+      });
+  if (reported == place.lanes.end() || std::abs(reported->heading_difference) > kReleaseHeading)
+    return false;
   const bool given = giveWay(vehicle.id, moved, moved.way.edgesFrom(current, kReleasedWayLength));
   if (!given && !moved.on_way) return false;
   setModes(vehicle.id, kSpeedModeDefault);
@@ -166,7 +187,7 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle, const std::string& repor
   SumoVehicle::setSpeed(vehicle.id, -1.0);
   Released released{SettlingMotion(graph_, reported->lane, moved.given, vehicle.state,
                                    moved.way.dimensions().length),
-                    true, true, kLaneChangePause};
+                    true, true, vehicle.state.speed, kLaneChangePause};
   forget(vehicle.id);
   released_.emplace(vehicle.id, std::move(released));
   return true;
@@ -177,9 +198,15 @@ void DrivenFleet::settle(const std::string& id, Released& released, double step)
     released.settling = false;
     return;
   }
-  double speed = released.motion.state().speed;
-  if (!released.first) speed = std::max(0.0, SumoVehicle::getSpeedWithoutTraCI(id));
+  // SUMO's wish answers the step before the last: its change of speed counts, not the speed.
+  const double last = released.motion.state().speed;
+  double speed = last;
+  if (!released.first) {
+    const double wish = SumoVehicle::getSpeedWithoutTraCI(id) - released.speed_before;
+    speed = std::max(0.0, last + std::clamp(wish, -kHardBraking * step, kAcceleration * step));
+  }
   released.first = false;
+  released.speed_before = last;
   const traffic::VehicleState& state = released.motion.advance(speed, step);
   moveFront(id, frontOf(state.pose(), released.motion.length()), state.heading, true);
 }

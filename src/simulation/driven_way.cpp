@@ -11,10 +11,11 @@ namespace cdiff::simulation {
 
 namespace {
 
-constexpr double kSearchBehind = 15.0;   ///< window of the route around the last place [m]
-constexpr double kSearchAhead = 40.0;    ///< [m]
-constexpr double kLostDistance = 6.0;    ///< farther from the route than this, the whole route is searched [m]
-constexpr double kReachMargin = 0.05;    ///< within SUMO's own limit [m]
+constexpr double kSearchBehind = 15.0;  ///< window of the route around the last place [m]
+constexpr double kSearchAhead = 40.0;   ///< [m]
+constexpr double kLostDistance =
+    6.0;  ///< farther from the route than this, the whole route is searched [m]
+constexpr double kReachMargin = 0.05;  ///< within SUMO's own limit [m]
 
 }  // namespace
 
@@ -24,8 +25,8 @@ FrontPlace DrivenWay::locate(const traffic::VehicleState& state) const {
   place.position = frontOf(state.pose(), dimensions_.length);
   const double half_width = 0.5 * dimensions_.width;
   const map::RoadNetwork& network = graph_->network();
-  for (const map::LaneMatch& match : network.lanesNear(place.position, state.elevation,
-                                                       kWidestHalfLane + half_width, state.heading)) {
+  for (const map::LaneMatch& match : network.lanesNear(
+           place.position, state.elevation, kWidestHalfLane + half_width, state.heading)) {
     const double reach = 0.5 * network.lane(match.lane).width + half_width - kReachMargin;
     if (match.projection.distance < reach) place.lanes.push_back(match);
   }
@@ -51,11 +52,13 @@ bool DrivenWay::follow(const map::Route* route, const Eigen::Vector2d& front) {
   progress_ = here.arc_length;
   const std::vector<double>& begins = route_->edgeBegins();
   const auto above = std::upper_bound(begins.begin(), begins.end(), progress_);
-  progress_edge_ = static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - begins.begin() - 1, 0));
+  progress_edge_ =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - begins.begin() - 1, 0));
   return other;
 }
 
-std::optional<std::size_t> DrivenWay::routeIndexOf(int current, const std::vector<int>& edges) const {
+std::optional<std::size_t> DrivenWay::routeIndexOf(int current,
+                                                   const std::vector<int>& edges) const {
   const std::size_t first = progress_edge_ == 0 ? 0 : progress_edge_ - 1;
   const std::size_t last = std::min(edges.size(), progress_edge_ + 2);
   // The edge of the place comes first, then the one behind, then the one ahead.
@@ -78,6 +81,7 @@ std::vector<int> DrivenWay::edgesFrom(int current, double length) const {
     for (std::size_t i = *index + 1; i < route_edges_.size(); ++i) {
       if (ahead >= length && i > *index + 2) break;
       if (!graph_->connected(way.back(), route_edges_[i])) break;
+      if (std::find(way.begin(), way.end(), route_edges_[i]) != way.end()) break;
       way.push_back(route_edges_[i]);
       ahead += graph_->length(way.back());
     }

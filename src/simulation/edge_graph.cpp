@@ -92,7 +92,8 @@ void EdgeGraph::extend(std::vector<int>& way, double length) const {
   for (std::size_t count = 0; added < length || count < kAtLeast; ++count) {
     const Link* best = nullptr;
     for (const Link& link : links(way.back())) {
-      if (link.routable && (best == nullptr || link.turn < best->turn)) best = &link;
+      const bool again = std::find(way.begin(), way.end(), link.to) != way.end();
+      if (link.routable && !again && (best == nullptr || link.turn < best->turn)) best = &link;
     }
     if (best == nullptr) return;
     way.push_back(best->to);

@@ -35,7 +35,8 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
 
 }  // namespace
 
-/// What the child runs, laid out before the fork: between fork and exec only async-signal-safe calls are allowed.
+/// What the child runs, laid out before the fork: between fork and exec only async-signal-safe
+/// calls are allowed.
 struct GuardedProcess::Image {
   std::string program;
   std::vector<std::string> arguments;

@@ -19,7 +19,8 @@ constexpr double kLargestCurvature = 0.2;  ///< of the vehicle against the path 
 constexpr double kSettledOffset = 0.02;    ///< [m]
 constexpr double kSettledHeading = 0.01;   ///< [rad]
 
-/// The lane that follows `lane` towards the next edge of the way; kNoLane where another lane is needed.
+/// The lane that follows `lane` towards the next edge of the way; kNoLane where another lane is
+/// needed.
 map::LaneIndex nextLane(const EdgeGraph& graph, map::LaneIndex lane, const std::vector<int>& way) {
   const auto here = std::find(way.begin(), way.end(), graph.edgeOf(lane));
   if (here == way.end() || here + 1 == way.end()) return map::kNoLane;
@@ -29,7 +30,8 @@ map::LaneIndex nextLane(const EdgeGraph& graph, map::LaneIndex lane, const std::
   return map::kNoLane;
 }
 
-geometry::Polyline pathFrom(const EdgeGraph& graph, map::LaneIndex lane, const std::vector<int>& way) {
+geometry::Polyline pathFrom(const EdgeGraph& graph, map::LaneIndex lane,
+                            const std::vector<int>& way) {
   const map::RoadNetwork& network = graph.network();
   std::vector<Eigen::Vector3d> points;
   if (!network.lane(lane).previous.empty()) {
@@ -47,8 +49,9 @@ geometry::Polyline pathFrom(const EdgeGraph& graph, map::LaneIndex lane, const s
 
 }  // namespace
 
-SettlingMotion::SettlingMotion(const EdgeGraph& graph, map::LaneIndex lane, const std::vector<int>& way,
-                               const traffic::VehicleState& state, double length)
+SettlingMotion::SettlingMotion(const EdgeGraph& graph, map::LaneIndex lane,
+                               const std::vector<int>& way, const traffic::VehicleState& state,
+                               double length)
     : path_(pathFrom(graph, lane, way)), length_(length), state_(state) {
   const geometry::Projection front = path_.project(frontOf(state.pose(), length));
   arc_length_ = front.arc_length;
@@ -58,7 +61,8 @@ SettlingMotion::SettlingMotion(const EdgeGraph& graph, map::LaneIndex lane, cons
 
 double SettlingMotion::headingAt(double arc_length) const {
   if (arc_length <= length_) return path_.headingAt(arc_length);
-  const Eigen::Vector2d chord = path_.positionAt(arc_length) - path_.positionAt(arc_length - length_);
+  const Eigen::Vector2d chord =
+      path_.positionAt(arc_length) - path_.positionAt(arc_length - length_);
   return std::atan2(chord.y(), chord.x());
 }
 
@@ -74,14 +78,16 @@ const traffic::VehicleState& SettlingMotion::advance(double speed, double step) 
   const double along = headingAt(arc_length_);
   state_.heading = core::wrapAngle(along + heading_error_);
   const Eigen::Vector2d front =
-      point.head<2>() + offset_ * geometry::leftNormal(geometry::direction(path_.headingAt(arc_length_)));
+      point.head<2>() +
+      offset_ * geometry::leftNormal(geometry::direction(path_.headingAt(arc_length_)));
   state_.position = centerBehind(front, state_.heading, length_);
   state_.elevation = point.z();
   return state_;
 }
 
 bool SettlingMotion::settled() const {
-  const bool aligned = std::abs(offset_) < kSettledOffset && std::abs(heading_error_) < kSettledHeading;
+  const bool aligned =
+      std::abs(offset_) < kSettledOffset && std::abs(heading_error_) < kSettledHeading;
   return aligned || arc_length_ >= path_.length() - 0.5;
 }
 

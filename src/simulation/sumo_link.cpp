@@ -12,7 +12,8 @@ namespace cdiff::simulation {
 
 namespace {
 
-/// libtraci writes to SUMO's socket also when SUMO is gone; the signal would end our process. A handler that someone set stays.
+/// libtraci writes to SUMO's socket also when SUMO is gone; the signal would end our process. A
+/// handler that someone set stays.
 void ignoreBrokenPipes() {
   struct sigaction present {};
   ::sigaction(SIGPIPE, nullptr, &present);
@@ -80,7 +81,8 @@ std::string SumoLink::lossText(const std::string& what, const std::string& reaso
   constexpr double kEndWait = 0.3;  // [s] the socket closes a moment before the process is gone
   process.waitForEnd(kEndWait);
   if (process.deadlineMissed()) {
-    return "SUMO did not answer for " + core::formatNumber(limit_) + " s (" + what + ") and was ended";
+    return "SUMO did not answer for " + core::formatNumber(limit_) + " s (" + what +
+           ") and was ended";
   }
   const std::string end = process.endText();
   process.kill();

@@ -37,7 +37,8 @@ std::vector<std::string> sumoEnvironment() {
   return variables;
 }
 
-/// Inode of the socket that listens on `port` according to one of the kernel's tables; empty when there is none.
+/// Inode of the socket that listens on `port` according to one of the kernel's tables; empty when
+/// there is none.
 std::string listeningInode(const char* table, int port) {
   std::ifstream file(table);
   std::string line;
@@ -95,9 +96,9 @@ int freePort() {
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_ANY);
   socklen_t size = sizeof(address);
-  const bool bound =
-      handle >= 0 && ::bind(handle, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-      ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  const bool bound = handle >= 0 &&
+                     ::bind(handle, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                     ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size) == 0;
   if (handle >= 0) ::close(handle);
   if (!bound) throw core::SimulatorError("no free TCP port was found for SUMO");
   return ntohs(address.sin_port);
@@ -115,7 +116,8 @@ LogFolder::LogFolder(const fs::path& wanted) : path_(wanted), temporary_(wanted.
   if (!temporary_) {
     std::error_code error;
     fs::create_directories(path_, error);
-    if (error) throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
+    if (error)
+      throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
     return;
   }
   std::string name = (fs::temp_directory_path() / "e2e_cdiff_sumo_XXXXXX").string();
@@ -146,13 +148,14 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
   fs::remove(logs_.errorLog(), ignored);
   fs::remove(logs_.output(), ignored);
   port_ = command.choose_port();
-  std::vector<std::string> arguments = {"--remote-port", std::to_string(port_), "--num-clients", "1",
-                                        "--error-log", logs_.errorLog().string()};
+  std::vector<std::string> arguments = {"--remote-port", std::to_string(port_),
+                                        "--num-clients", "1",
+                                        "--error-log",   logs_.errorLog().string()};
   arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
   process_ =
       std::make_unique<GuardedProcess>(program, arguments, sumoEnvironment(), logs_.output());
-  const auto limit = std::chrono::steady_clock::now() +
-                     std::chrono::duration<double>(command.start_timeout);
+  const auto limit =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(command.start_timeout);
   while (!listensOn(process_->id(), port_)) {
     if (process_->ended()) {
       const std::string words = lastWords();

@@ -31,18 +31,36 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
   command.binary = options.binary;
   command.log_folder = session.log_folder;
   command.start_timeout = options.start_timeout;
-  command.arguments = {"--net-file", session.network_file.string(),
-                       "--begin", core::formatNumber(session.begin_time),
-                       "--step-length", core::formatNumber(session.simulation_step),
-                       "--seed", sumoSeed(session.seed),
-                       "--xml-validation", "never", "--xml-validation.net", "never",
-                       "--xml-validation.routes", "never",
-                       "--no-step-log", "true", "--no-warnings", "true",
-                       "--duration-log.disable", "true",
-                       "--collision.action", "none", "--time-to-teleport", "-1",
-                       "--lanechange.duration", "3"};
+  command.arguments = {"--net-file",
+                       session.network_file.string(),
+                       "--begin",
+                       core::formatNumber(session.begin_time),
+                       "--step-length",
+                       core::formatNumber(session.simulation_step),
+                       "--seed",
+                       sumoSeed(session.seed),
+                       "--xml-validation",
+                       "never",
+                       "--xml-validation.net",
+                       "never",
+                       "--xml-validation.routes",
+                       "never",
+                       "--no-step-log",
+                       "true",
+                       "--no-warnings",
+                       "true",
+                       "--duration-log.disable",
+                       "true",
+                       "--collision.action",
+                       "none",
+                       "--time-to-teleport",
+                       "-1",
+                       "--lanechange.duration",
+                       getenv("LCD") ? getenv("LCD") : "3"};
+  if (getenv("LAT")) command.arguments.insert(command.arguments.end(), {"--lateral-resolution", getenv("LAT")});
   if (!session.demand_file.empty()) {
-    command.arguments.insert(command.arguments.end(), {"--route-files", session.demand_file.string()});
+    command.arguments.insert(command.arguments.end(),
+                             {"--route-files", session.demand_file.string()});
   }
   return command;
 }
@@ -51,18 +69,21 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
 
 void SumoOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"binary", "", "Program of SUMO to start."}, binary, {});
-  visitor.number({"start_timeout", "s", "Wall time within which SUMO must listen and have loaded its input."},
-                 start_timeout, 0.1, 3600.0);
-  visitor.number({"step_timeout", "s", "Wall time after which a step counts as a frozen SUMO."}, step_timeout,
-                 0.1, 3600.0);
-  visitor.number({"match_threshold", "m", "How far from a lane SUMO looks for one for a vehicle that is moved."},
+  visitor.number(
+      {"start_timeout", "s", "Wall time within which SUMO must listen and have loaded its input."},
+      start_timeout, 0.1, 3600.0);
+  visitor.number({"step_timeout", "s", "Wall time after which a step counts as a frozen SUMO."},
+                 step_timeout, 0.1, 3600.0);
+  visitor.number({"match_threshold", "m",
+                  "How far from a lane SUMO looks for one for a vehicle that is moved."},
                  match_threshold, 1.0, 1000.0);
 }
 
 /// Everything behind the simulator: the session with SUMO, what it reports and what we move.
 class SumoSimulator::Connection {
  public:
-  Connection(const SumoOptions& options, const SumoSession& session, const map::RoadNetwork& network)
+  Connection(const SumoOptions& options, const SumoSession& session,
+             const map::RoadNetwork& network)
       : step_(session.simulation_step),
         graph_(network),
         link_(commandFor(options, session), options.step_timeout),
@@ -85,17 +106,20 @@ class SumoSimulator::Connection {
 
   void takeOver(const std::string& id) {
     const SimulatedVehicle* vehicle = observer_.find(id);
-    if (vehicle == nullptr) throw core::SimulatorError("SUMO has no vehicle '" + id + "' to take over");
+    if (vehicle == nullptr)
+      throw core::SimulatorError("SUMO has no vehicle '" + id + "' to take over");
     const traffic::VehicleDimensions dimensions = vehicle->dimensions;
     link_.guarded("taking over '" + id + "'", [&] { fleet_.takeOver(id, dimensions); });
   }
 
   bool release(const DrivenVehicle& vehicle) {
     if (!fleet_.contains(vehicle.id)) {
-      throw core::SimulatorError("vehicle '" + vehicle.id + "' is released but is not driven by us");
+      throw core::SimulatorError("vehicle '" + vehicle.id +
+                                 "' is released but is not driven by us");
     }
-    const bool released = link_.guarded("releasing '" + vehicle.id + "'",
-                                        [&] { return fleet_.release(vehicle, reportedLane(vehicle.id)); });
+    const bool released = link_.guarded("releasing '" + vehicle.id + "'", [&] {
+      return fleet_.release(vehicle, reportedLane(vehicle.id));
+    });
     if (!released) remove(vehicle.id);
     return released;
   }
@@ -118,14 +142,16 @@ class SumoSimulator::Connection {
     fresh_.clear();
   }
 
-  bool addBackground(const std::string& id, const std::vector<std::string>& edges, double depart_position,
-                     int depart_lane, double depart_speed, const traffic::VehicleDimensions& dimensions) {
+  bool addBackground(const std::string& id, const std::vector<std::string>& edges,
+                     double depart_position, int depart_lane, double depart_speed,
+                     const traffic::VehicleDimensions& dimensions) {
     const std::string route_id = "route_" + id;
     const bool added = link_.guarded("adding vehicle '" + id + "'", [&] {
       return link_.attempt([&] {
         libtraci::Route::add(route_id, edges);
-        libtraci::Vehicle::add(id, route_id, typeFor(dimensions), "now", std::to_string(depart_lane),
-                               core::formatNumber(depart_position), core::formatNumber(depart_speed));
+        libtraci::Vehicle::add(id, route_id, typeFor(dimensions), "now",
+                               std::to_string(depart_lane), core::formatNumber(depart_position),
+                               core::formatNumber(depart_speed));
       });
     });
     if (added) waiting_.push_back(id);
@@ -155,16 +181,19 @@ class SumoSimulator::Connection {
     waiting_.clear();
   }
 
-  /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first. No error when it is gone already.
+  /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first.
+  /// No error when it is gone already.
   void takeOut(const std::string& id) {
     link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
     link_.attempt([&] { libtraci::Vehicle::remove(id, libsumo::REMOVE_VAPORIZED); });
   }
 
-  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's seeded speed factor.
+  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's
+  /// seeded speed factor.
   std::string typeFor(const traffic::VehicleDimensions& dimensions) {
     const std::string id = "car_" + core::formatNumber(dimensions.length) + "_" +
-                           core::formatNumber(dimensions.width) + "_" + core::formatNumber(dimensions.height);
+                           core::formatNumber(dimensions.width) + "_" +
+                           core::formatNumber(dimensions.height);
     if (!types_.insert(id).second) return id;
     using Type = libtraci::VehicleType;
     Type::copy("DEFAULT_VEHTYPE", id);
@@ -180,8 +209,8 @@ class SumoSimulator::Connection {
   SumoLink link_;
   TrafficObserver observer_;
   DrivenFleet fleet_;
-  std::set<std::string> fresh_;        ///< added since the last step
-  std::vector<std::string> waiting_;   ///< background vehicles added since the last step
+  std::set<std::string> fresh_;       ///< added since the last step
+  std::vector<std::string> waiting_;  ///< background vehicles added since the last step
   std::set<std::string> types_;
 };
 
@@ -219,7 +248,8 @@ int SumoSimulator::processId() const { return connection_->link().processId(); }
 bool SumoSimulator::addBackground(const std::string& id, const std::vector<std::string>& edges,
                                   double depart_position, int depart_lane, double depart_speed,
                                   const traffic::VehicleDimensions& dimensions) {
-  return connection_->addBackground(id, edges, depart_position, depart_lane, depart_speed, dimensions);
+  return connection_->addBackground(id, edges, depart_position, depart_lane, depart_speed,
+                                    dimensions);
 }
 
 }  // namespace cdiff::simulation

@@ -36,7 +36,8 @@ SimulatedVehicle vehicleFrom(const std::string& id, const TraCIResults& results,
   vehicle.id = id;
   vehicle.dimensions = dimensions;
   vehicle.state.heading = headingFromAngle(numberOf(results, libsumo::VAR_ANGLE));
-  vehicle.state.position = centerBehind({front.x, front.y}, vehicle.state.heading, dimensions.length);
+  vehicle.state.position =
+      centerBehind({front.x, front.y}, vehicle.state.heading, dimensions.length);
   vehicle.state.elevation = finiteOrZero(front.z);
   vehicle.state.speed = std::max(0.0, finiteOrZero(numberOf(results, libsumo::VAR_SPEED)));
   vehicle.acceleration = finiteOrZero(numberOf(results, libsumo::VAR_ACCELERATION));
@@ -93,7 +94,8 @@ void TrafficObserver::read() {
   for (const auto& [id, results] : all) {
     const auto known = dimensions_.find(id);
     if (known == dimensions_.end() || results.count(libsumo::VAR_POSITION3D) == 0) continue;
-    const auto front = std::static_pointer_cast<libsumo::TraCIPosition>(results.at(libsumo::VAR_POSITION3D));
+    const auto front =
+        std::static_pointer_cast<libsumo::TraCIPosition>(results.at(libsumo::VAR_POSITION3D));
     if (placed(*front)) vehicles_.push_back(vehicleFrom(id, results, *front, known->second));
   }
   for (auto known = dimensions_.begin(); known != dimensions_.end();) {
@@ -113,9 +115,11 @@ void TrafficObserver::readSignals() {
 }
 
 const SimulatedVehicle* TrafficObserver::find(const std::string& id) const {
-  const auto place = std::lower_bound(
-      vehicles_.begin(), vehicles_.end(), id,
-      [](const SimulatedVehicle& vehicle, const std::string& wanted) { return vehicle.id < wanted; });
+  const auto place =
+      std::lower_bound(vehicles_.begin(), vehicles_.end(), id,
+                       [](const SimulatedVehicle& vehicle, const std::string& wanted) {
+                         return vehicle.id < wanted;
+                       });
   return place != vehicles_.end() && place->id == id ? &*place : nullptr;
 }
 

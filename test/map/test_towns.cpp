@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Every Bench2Drive route on the four towns that we have: built, near its waypoints, smooth, and matched again.
+/// Every Bench2Drive route on the four towns that we have: built, near its waypoints, smooth, and
+/// matched again.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <pugixml.hpp>
 
 #include "e2e_cdiff/core/angle.h"
@@ -21,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 double millisecondsSince(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
 std::vector<std::string> routeIds(const std::string& file, const std::string& town) {
@@ -52,7 +56,8 @@ void expectNearWaypoints(const Route& route, const std::vector<Eigen::Vector3d>&
     const geometry::Projection at = route.path().project(point.head<2>());
     EXPECT_LT(at.distance, nearLaneChange(route, at.arc_length) ? 2.0 : 0.5)
         << "waypoint " << point.transpose() << " at " << at.arc_length;
-    // netconvert keeps few elevations: Town05's ramps lie up to 3.1 m off the waypoints. Levels are 5 m and more apart.
+    // netconvert keeps few elevations: Town05's ramps lie up to 3.1 m off the waypoints. Levels are
+    // 5 m and more apart.
     EXPECT_LT(std::abs(at.elevation - point.z()), 4.0) << "waypoint " << point.transpose();
   }
 }
@@ -78,15 +83,28 @@ double shareOfEqualLanes(const Route& first, const Route& second) {
   return static_cast<double>(equal) / static_cast<double>(first.lanes().size());
 }
 
-class Towns : public ::testing::TestWithParam<const char*> {};
+/// Where a test way begins or ends: long enough to be told from the points alone.
+bool usableEnd(const Lane& lane) {
+  return lane.routable && !lane.internal && lane.centerline.length() > 5.0;
+}
+
+/// Keeps the cache of imported networks out of the user's own.
+class Towns : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("e2e_cdiff_towns_" + std::to_string(::getpid()));
+    ::setenv("E2E_CDIFF_CACHE", folder_.c_str(), 1);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
 
 TEST_P(Towns, BuildsEveryBench2DriveRoute) {
   const std::string town = GetParam();
   const fs::path source = test::realData("carla_towns/" + town + ".net.xml");
   CDIFF_SKIP_WITHOUT(source);
   auto begin = std::chrono::steady_clock::now();
-  const ImportedNetwork imported =
-      importNetwork(source.string());
+  const ImportedNetwork imported = importNetwork(source.string());
   const double import_ms = millisecondsSince(begin);
   begin = std::chrono::steady_clock::now();
   const RoadNetwork network = RoadNetwork::fromText(imported.text, town);
@@ -111,10 +129,7 @@ TEST_P(Towns, BuildsEveryBench2DriveRoute) {
     match_ms += millisecondsSince(begin);
     EXPECT_EQ(matched.edges(), route.edges());
     EXPECT_GT(shareOfEqualLanes(route, matched), 0.98);
-    std::printf("%s %s: %zu points, %.1f m, %zu edges, %zu changes, %zu signals, bend %.1f deg/m\n",
-                town.c_str(), id.c_str(), points.size(), route.length(), route.edges().size(),
-                route.laneChanges().size(), route.signals().size(),
-                core::radiansToDegrees(largestBend(route)));
+    EXPECT_LT(core::radiansToDegrees(largestBend(route)), 12.0);  // the lanes themselves: up to 28
   }
   std::printf("%s: import %.1f ms, parse %.1f ms, %zu routes, build %.1f ms, match %.1f ms each\n",
               town.c_str(), import_ms, parse_ms, ids.size(),
@@ -131,17 +146,20 @@ TEST_P(Towns, MatchesWaysWithLaneChangesAgain) {
   const auto count = static_cast<LaneIndex>(network.lanes().size());
   std::size_t ways = 0;
   std::size_t changes = 0;
-  for (LaneIndex start = 0; start < count; start += 3) {
-    const LaneIndex goal = static_cast<LaneIndex>((start * 31 + 17) % count);
-    if (!network.lane(start).routable || !network.lane(goal).routable) continue;
-    if (network.lane(start).internal || network.lane(goal).internal) continue;
+  for (LaneIndex i = 0; i < count; ++i) {
+    const LaneIndex start = (i * 7) % count;
+    const LaneIndex goal = (i * 31 + 17) % count;
+    if (!usableEnd(network.lane(start)) || !usableEnd(network.lane(goal))) continue;
     const double begin = network.lane(start).centerline.length() * 0.3;
     const double end = network.lane(goal).centerline.length() * 0.7;
     const auto path = graph.shortestPath({start, begin}, {goal, end}, 2000.0);
     if (!path || path->length < 5.0) continue;
     SCOPED_TRACE(network.lane(start).id + " to " + network.lane(goal).id);
     const Route route = graph.toRoute(*path, begin, end);
-    EXPECT_NEAR(route.length(), path->length, 0.06 * path->length + 2.0);
+    EXPECT_LT(route.length(), 1.03 * path->length + 2.0);
+    // Internal lanes that lead backwards (7.6 m in Town03, there and back) count in the way and not
+    // in the route.
+    EXPECT_GT(route.length(), 0.97 * path->length - 18.0);
     const Route matched = matchRoute(network, route.path().points());
     EXPECT_EQ(matched.edges(), route.edges());
     EXPECT_EQ(matched.signals().size(), route.signals().size());
@@ -150,7 +168,7 @@ TEST_P(Towns, MatchesWaysWithLaneChangesAgain) {
     ++ways;
     changes += route.laneChanges().size();
   }
-  EXPECT_GT(ways, 20u);
+  EXPECT_GT(ways, 10u);
   std::printf("%s: %zu ways with %zu lane changes\n", town.c_str(), ways, changes);
 }
 

@@ -48,6 +48,24 @@ TEST(HtmlReport, EscapesNamesEverywhere) {
   EXPECT_EQ(countOf(page, "</script>"), 2u);
 }
 
+TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+  snapshot.vehicles[2].id = "</script><b>";
+  snapshot.status = SessionStatus::kTimedOut;
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_EQ(countOf(page, "</script>"), 2u);
+  EXPECT_EQ(page.find("<b>"), std::string::npos);
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  EXPECT_EQ(data["vehicles"][2][0], "</script><b>");
+}
+
 TEST(HtmlReport, EveryPictureIsWellFormed) {
   const std::string page = pageOf("crossing");
   std::size_t pictures = 0;

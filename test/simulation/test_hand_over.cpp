@@ -17,15 +17,18 @@ using test::kStep;
 
 const traffic::VehicleDimensions kCar;  // 4.5 x 1.8 m
 
-/// A car of SUMO on edge `west` (200 m, lane centre y = -1.6 m), driven for two seconds from x = -150 m.
+/// A car of SUMO on edge `west` (200 m, lane centre y = -1.6 m), driven for two seconds from x =
+/// -150 m.
 void addOther(CrossingWorld& world, double speed, int lane = 0) {
-  ASSERT_TRUE(world.simulator().addBackground("other", {"west", "east", "far"}, 50.0, lane, speed, kCar));
+  ASSERT_TRUE(
+      world.simulator().addBackground("other", {"west", "east", "far"}, 50.0, lane, speed, kCar));
   for (int i = 0; i < 40; ++i) world.simulator().step({});
   ASSERT_NE(world.find("other"), nullptr);
 }
 
 /// Advances a state straight ahead, sideways by `drift` metres.
-DrivenVehicle ahead(const CrossingWorld& world, const traffic::VehicleState& state, double drift = 0.0) {
+DrivenVehicle ahead(const CrossingWorld& world, const traffic::VehicleState& state,
+                    double drift = 0.0) {
   DrivenVehicle vehicle;
   vehicle.id = "other";
   vehicle.state = state;
@@ -38,7 +41,7 @@ DrivenVehicle ahead(const CrossingWorld& world, const traffic::VehicleState& sta
 /// Largest changes of one step over the time after a release.
 struct Changes {
   double sideways = 0.0;
-  double lengthwise = 0.0;   // beyond speed x step
+  double lengthwise = 0.0;  // beyond speed x step
   double heading = 0.0;
   double speed = 0.0;
   std::string lane;
@@ -66,10 +69,10 @@ Changes observe(CrossingWorld& world, traffic::VehicleState before, int steps) {
 }
 
 void expectSmooth(const Changes& changes) {
-  EXPECT_LT(changes.sideways, 0.1);                            // 2 m/s; a jump into the lane would be 0.7 m
+  EXPECT_LT(changes.sideways, 0.1);  // 2 m/s; a jump into the lane would be 0.7 m
   EXPECT_LT(changes.lengthwise, 0.3);
   EXPECT_LT(changes.heading, core::degreesToRadians(5.0));
-  EXPECT_LT(changes.speed, 0.5);                               // 10 m/s^2
+  EXPECT_LT(changes.speed, 0.5);  // 10 m/s^2
 }
 
 TEST(TakeOver, TheVehicleIsWhereWePutIt) {
@@ -95,6 +98,39 @@ TEST(TakeOver, OfAnUnknownVehicleIsAnError) {
   EXPECT_THROW(world.simulator().step({ahead(world, {})}), core::SimulatorError);
 }
 
+TEST(Driven, StaysPastTheEndOfTheNetwork) {
+  CrossingWorld world;
+  double x = 380.0;  // the network ends at x = 400 m
+  world.simulator().addDriven("ours", kCar, world.ours(x, -1.6, 8.0));
+  int missing = 0;
+  for (int i = 0; i < 200; ++i) {
+    x += 8.0 * kStep;
+    world.simulator().step({world.ours(x, -1.6, 8.0)});
+    const SimulatedVehicle* ours = world.find("ours");
+    if (ours == nullptr) {
+      ++missing;
+    } else {
+      EXPECT_NEAR(ours->state.position.x(), x, 1e-6);
+    }
+  }
+  EXPECT_LE(missing, 2);
+}
+
+TEST(Driven, IsSeenByTrafficBehind) {
+  CrossingWorld world;
+  world.simulator().addDriven("ours", kCar, world.ours(-100.0, -1.6, 0.0));
+  world.simulator().step({world.ours(-100.0, -1.6, 0.0)});
+  ASSERT_TRUE(world.simulator().addBackground("other", {"west", "east"}, 20.0, 0, 10.0, kCar));
+  for (int i = 0; i < 400; ++i) world.simulator().step({world.ours(-100.0, -1.6, 0.0)});
+  const double gap = -100.0 - world.find("other")->state.position.x() - kCar.length;
+  EXPECT_GT(gap, 1.0);  // SUMO's minimum gap is 2.5 m
+  EXPECT_LT(gap, 10.0);
+  world.simulator().remove("ours");
+  for (int i = 0; i < 100; ++i) world.simulator().step({});
+  EXPECT_EQ(world.find("ours"), nullptr);
+  EXPECT_GT(world.find("other")->state.speed, 3.0);
+}
+
 class Release : public testing::TestWithParam<std::tuple<double, double>> {};
 
 TEST_P(Release, HasNoJump) {
@@ -116,7 +152,8 @@ TEST_P(Release, HasNoJump) {
   EXPECT_EQ(first.lane, "west_0");
   expectSmooth(observe(world, world.find("other")->state, 200));
   EXPECT_GT(world.find("other")->state.speed, 5.0);
-  EXPECT_NEAR(world.find("other")->state.position.y(), -1.6, 0.05);  // back in the middle of the lane
+  EXPECT_NEAR(world.find("other")->state.position.y(), -1.6,
+              0.05);  // back in the middle of the lane
 }
 
 INSTANTIATE_TEST_SUITE_P(SpeedsAndOffsets, Release,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// SUMO dies, freezes, refuses or is missing: every case is an error that says so, soon, and leaves no process behind.
-#include <gtest/gtest.h>
-
+// SUMO dies, freezes, refuses or is missing: every case is an error that says so, soon, and leaves
+// no process behind.
 #include <arpa/inet.h>
+#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <signal.h>
 #include <sys/socket.h>
@@ -91,7 +91,8 @@ TEST(SumoLoss, SumoEndsWithUsWhenWeAreKilled) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFSIGNALED(status));
   const auto start = std::chrono::steady_clock::now();
-  while (exists(process) && secondsSince(start) < 2.0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (exists(process) && secondsSince(start) < 2.0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_FALSE(exists(process));
   ::close(channel[0]);
   ::close(channel[1]);
@@ -129,7 +130,8 @@ TEST(SumoSessions, OneAfterTheOtherAndSideBySide) {
 
 /// Text of the error of a start; the type is the caller's.
 template <class Error>
-std::string startError(const SumoOptions& options, const SumoSession& session, const map::RoadNetwork& network) {
+std::string startError(const SumoOptions& options, const SumoSession& session,
+                       const map::RoadNetwork& network) {
   try {
     const SumoSimulator simulator(options, session, network);
   } catch (const Error& error) {
@@ -169,7 +171,8 @@ TEST(SumoStart, QuotesSumoOnABrokenNetworkAndDemand) {
   EXPECT_NE(error.find("Error:"), std::string::npos) << error;
   session.network_file = made.file;
   session.demand_file = folder.path() / "bad.rou.xml";
-  std::ofstream(session.demand_file) << "<routes><trip id=\"t\" depart=\"0\" from=\"west\" to=\"nowhere\"/></routes>";
+  std::ofstream(session.demand_file)
+      << "<routes><trip id=\"t\" depart=\"0\" from=\"west\" to=\"nowhere\"/></routes>";
   error = startError<core::SimulatorError>({}, session, made.network);
   EXPECT_NE(error.find("nowhere"), std::string::npos) << error;
 }
@@ -183,7 +186,8 @@ TEST(SumoStart, ReadsDemandAndBeginTime) {
   session.demand_file = folder.path() / "demand.rou.xml";
   std::ofstream(session.demand_file)
       << "<routes><vType id=\"van\" length=\"6\" width=\"2\" height=\"2.5\"/>"
-         "<vehicle id=\"v\" type=\"van\" depart=\"3600\" departPos=\"50\"><route edges=\"west east\"/></vehicle></routes>";
+         "<vehicle id=\"v\" type=\"van\" depart=\"3600\" departPos=\"50\"><route edges=\"west "
+         "east\"/></vehicle></routes>";
   SumoSimulator simulator({}, session, made.network);
   simulator.step({});
   simulator.step({});
@@ -193,7 +197,8 @@ TEST(SumoStart, ReadsDemandAndBeginTime) {
   EXPECT_DOUBLE_EQ(van.dimensions.length, 6.0);
   EXPECT_DOUBLE_EQ(van.dimensions.width, 2.0);
   EXPECT_DOUBLE_EQ(van.dimensions.height, 2.5);
-  // The front bumper departs at 50 m of the edge that begins at x = -200 m; the centre is 3 m behind.
+  // The front bumper departs at 50 m of the edge that begins at x = -200 m; the centre is 3 m
+  // behind.
   EXPECT_NEAR(van.state.position.x(), -153.0, 0.2);
   EXPECT_NEAR(van.state.position.y(), -1.6, 1e-6);
 }
@@ -233,7 +238,8 @@ TEST(SumoStart, TakesAnotherPortWhenOneIsTaken) {
   EXPECT_EQ(asked, 3);
   EXPECT_NE(process.port(), taken.number());
   EXPECT_TRUE(simulation::listensOn(process.process().id(), process.port()));
-  EXPECT_FALSE(simulation::listensOn(process.process().id(), taken.number()));  // listens, but is ours
+  EXPECT_FALSE(
+      simulation::listensOn(process.process().id(), taken.number()));  // listens, but is ours
 }
 
 TEST(SumoStart, GivesUpAfterFiveTakenPorts) {

@@ -3,13 +3,13 @@
 /// Small networks for tests, made by netconvert from plain nodes and edges into a temporary folder.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-
-#include <unistd.h>
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/map/road_network.h"
@@ -42,15 +42,17 @@ struct SumoNetwork {
   map::RoadNetwork network;
 };
 
-/// `nodes` and `edges` are the elements inside <nodes> and <edges>; `options` are added to netconvert's command line.
+/// `nodes` and `edges` are the elements inside <nodes> and <edges>; `options` are added to
+/// netconvert's command line.
 inline SumoNetwork makeSumoNetwork(const TemporaryFolder& folder, const std::string& nodes,
                                    const std::string& edges, const std::string& options = "") {
   const std::string base = (folder.path() / "net").string();
   std::ofstream(base + ".nod.xml") << "<nodes>" << nodes << "</nodes>";
   std::ofstream(base + ".edg.xml") << "<edges>" << edges << "</edges>";
-  const std::string command = "netconvert --xml-validation never --offset.disable-normalization true -n " + base +
-                              ".nod.xml -e " + base + ".edg.xml -o " + base + ".net.xml " + options + " > " +
-                              base + ".log 2>&1";
+  const std::string command =
+      "netconvert --xml-validation never --offset.disable-normalization true -n " + base +
+      ".nod.xml -e " + base + ".edg.xml -o " + base + ".net.xml " + options + " > " + base +
+      ".log 2>&1";
   if (std::system(command.c_str()) != 0) {
     throw std::runtime_error("netconvert: " + core::readFile(base + ".log", "netconvert's log"));
   }

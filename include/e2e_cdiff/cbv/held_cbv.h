@@ -58,6 +58,7 @@ class HeldCbv {
 
   CbvAssignment assignment_;
   double conflict_arc_length_;
+  double selected_distance_;  ///< along lanes, from where it was selected to the conflict point [m]
   double arc_length_ = 0.0;
   double present_score_;
   std::optional<double> lost_since_;

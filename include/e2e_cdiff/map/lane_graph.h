@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Shortest lane-connected ways: along lanes, through junctions, and (with a small penalty) to neighbouring lanes.
+/// Shortest lane-connected ways: along lanes, through junctions, and (with a small penalty) to
+/// neighbouring lanes.
 #pragma once
 
 #include <optional>
@@ -16,7 +17,8 @@ struct LanePosition {
   double arc_length = 0.0;  ///< along the lane's centre line [m]
 };
 
-/// Lanes in driving order; neighbours in the list follow each other or lie side by side (a lane change).
+/// Lanes in driving order; neighbours in the list follow each other or lie side by side (a lane
+/// change).
 struct LanePath {
   std::vector<LaneIndex> lanes;
   double length = 0.0;  ///< driven length from start to goal [m], lane-change penalty not included
@@ -27,21 +29,27 @@ class LaneGraph {
   /// Keeps a reference: the network must outlive the graph.
   explicit LaneGraph(const RoadNetwork& network) : network_(network) {}
 
-  /// Shortest way between two places over routable lanes (the start's and the goal's lane always count); nullopt when there is none
-  /// no longer than `max_length` [m]. `lane_changes` allows changes to neighbouring lanes.
-  std::optional<LanePath> shortestPath(const LanePosition& start, const LanePosition& goal, double max_length,
-                                       bool lane_changes = true) const;
+  /// Shortest way between two places over routable lanes (the start's and the goal's lane always
+  /// count); nullopt when there is none no longer than `max_length` [m]. `lane_changes` allows
+  /// changes to neighbouring lanes; a change ranks as 5 m, more on lanes shorter than 25 m and
+  /// inside junctions. Its length is not driven.
+  std::optional<LanePath> shortestPath(const LanePosition& start, const LanePosition& goal,
+                                       double max_length, bool lane_changes = true) const;
 
-  /// Driven length from `start` to the start of each lane within `max_length` [m], infinity elsewhere: one search
-  /// for many goals. `arrival(goal)` = value[lane] + goal arc length, or direct on the start's own lane (whose value is that
-  /// of the way round). Beside the start the value is minus the arc length abreast of it: an arrival below 0 lies behind.
-  std::vector<double> distancesFrom(const LanePosition& start, double max_length, bool lane_changes = true) const;
+  /// Driven length from `start` to the start of each lane within `max_length` [m], infinity
+  /// elsewhere: one search for many goals. `arrival(goal)` = value[lane] + goal arc length, or
+  /// direct on the start's own lane (whose value is that of the way round). Beside the start the
+  /// value is minus the arc length abreast of it: an arrival below 0 lies behind.
+  std::vector<double> distancesFrom(const LanePosition& start, double max_length,
+                                    bool lane_changes = true) const;
 
-  /// Points about 1 m apart along a way, with blended lane changes, from `start` to `goal_arc_length` on the last lane.
+  /// Points about 1 m apart along a way, from `start` to `goal_arc_length` on the last lane. Lane
+  /// changes are blended over up to 25 m, corners of centre lines rounded over 1.5 m to both sides,
+  /// and jogs left out where lanes overlap (the route is then shorter than the path's length).
   Route toRoute(const LanePath& path, double start_arc_length, double goal_arc_length) const;
 
-  /// The route lengthened to at least `length` metres and beyond the junction it would end in, going straight on where it can (ties by
-  /// lane index); shorter where the network ends.
+  /// The route lengthened to at least `length` metres and beyond the junction it would end in,
+  /// going straight on where it can (ties by lane index); shorter where the network ends.
   Route extended(const Route& route, double length) const;
 
   const RoadNetwork& network() const { return network_; }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A SUMO road network as geometry and lane graph: lanes with centre lines (x, y, z) in the map frame [m], junctions,
-/// connections and traffic lights. The map frame is the network's own plane (netOffset already applied by SUMO).
+/// A SUMO road network as geometry and lane graph: lanes with centre lines (x, y, z) in the map
+/// frame [m], junctions, connections and traffic lights. The map frame is the network's own plane
+/// (netOffset already applied by SUMO).
 #pragma once
 
 #include <filesystem>
@@ -20,49 +21,51 @@ namespace cdiff::map {
 using LaneIndex = int;
 constexpr LaneIndex kNoLane = -1;
 
-/// A lane-to-lane connection. Internal (via) lanes are lanes of their own: `from -> via -> ... -> to`.
+/// A lane-to-lane connection. Internal (via) lanes are lanes of their own: `from -> via -> ... ->
+/// to`.
 struct LaneLink {
-  LaneIndex to = kNoLane;     ///< the next lane driven on (the internal lane where there is one)
-  std::string signal_id;      ///< traffic light that controls the link; empty when none
-  int signal_link = -1;       ///< its position in the light's state text
-  char direction = 's';       ///< SUMO's letter: s l r L R t
+  LaneIndex to = kNoLane;  ///< the next lane driven on (the internal lane where there is one)
+  std::string signal_id;   ///< traffic light that controls the link; empty when none
+  int signal_link = -1;    ///< its position in the light's state text
+  char direction = 's';    ///< SUMO's letter: s l r L R t
 };
 
 struct Lane {
-  std::string id;                        ///< SUMO's id, e.g. "edge_0" or ":junction_3_0"
-  std::string edge_id;                   ///< e.g. "edge"
-  int index = 0;                         ///< in its edge, 0 = rightmost
-  geometry::Polyline centerline;         ///< map frame [m]
-  double width = 3.2;                    ///< [m]
-  double speed_limit = 13.89;            ///< [m/s]
-  bool internal = false;                 ///< lies inside a junction
-  bool allows_cars = true;               ///< a passenger car may use it (counts as drivable area)
-  bool routable = true;                  ///< allows cars and its limit is at least 2 m/s: routes and demand may use it
-  LaneIndex left = kNoLane;              ///< neighbour of the same edge
-  LaneIndex right = kNoLane;             ///< neighbour of the same edge
-  std::vector<LaneLink> next;            ///< lanes that follow, by index
-  std::vector<LaneIndex> previous;       ///< lanes that lead here, by index
-  std::string junction_id;               ///< junction it lies in (internal) or ends at
+  std::string id;                 ///< SUMO's id, e.g. "edge_0" or ":junction_3_0"
+  std::string edge_id;            ///< e.g. "edge"
+  int index = 0;                  ///< in its edge, 0 = rightmost
+  geometry::Polyline centerline;  ///< map frame [m]
+  double width = 3.2;             ///< [m]
+  double speed_limit = 13.89;     ///< [m/s]
+  bool internal = false;          ///< lies inside a junction
+  bool allows_cars = true;        ///< a passenger car may use it (counts as drivable area)
+  bool routable =
+      true;  ///< allows cars and its limit is at least 2 m/s: routes and demand may use it
+  LaneIndex left = kNoLane;         ///< neighbour of the same edge
+  LaneIndex right = kNoLane;        ///< neighbour of the same edge
+  std::vector<LaneLink> next;       ///< lanes that follow, by index
+  std::vector<LaneIndex> previous;  ///< lanes that lead here, by index
+  std::string junction_id;          ///< junction it lies in (internal) or ends at
 };
 
 struct Junction {
   std::string id;
-  std::string type;                      ///< SUMO's type: priority, traffic_light, dead_end ...
+  std::string type;  ///< SUMO's type: priority, traffic_light, dead_end ...
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> shape;    ///< outline; may be empty
+  std::vector<Eigen::Vector3d> shape;  ///< outline; may be empty
 };
 
 /// A lane near a point.
 struct LaneMatch {
   LaneIndex lane = kNoLane;
-  geometry::Projection projection;       ///< onto the lane's centre line
-  double heading_difference = 0.0;       ///< lane heading minus asked heading, in (-pi, pi] [rad]
+  geometry::Projection projection;  ///< onto the lane's centre line
+  double heading_difference = 0.0;  ///< lane heading minus asked heading, in (-pi, pi] [rad]
 };
 
 class RoadNetwork {
  public:
-  /// Parses network text as SUMO 1.15 reads it (see importNetwork for newer files). `name` is used in errors.
-  /// Throws InputError naming the file, the element and what was expected.
+  /// Parses network text as SUMO 1.15 reads it (see importNetwork for newer files). `name` is used
+  /// in errors. Throws InputError naming the file, the element and what was expected.
   static RoadNetwork fromText(std::string_view xml, const std::string& name);
 
   RoadNetwork(RoadNetwork&&) noexcept;
@@ -81,8 +84,9 @@ class RoadNetwork {
   /// netOffset of <location> [m]: network position = source position + offset.
   const Eigen::Vector2d& netOffset() const { return net_offset_; }
 
-  /// Lanes that allow cars and whose centre line passes within `radius` of a point in the plane and within `level_height`
-  /// of its elevation, nearest first, ties by index. `heading` fills heading_difference.
+  /// Lanes that allow cars and whose centre line passes within `radius` of a point in the plane and
+  /// within `level_height` of its elevation, nearest first, ties by index. `heading` fills
+  /// heading_difference.
   std::vector<LaneMatch> lanesNear(const Eigen::Vector2d& position, double elevation, double radius,
                                    double heading = 0.0, double level_height = 3.0) const;
   /// The same for a point of unknown elevation.

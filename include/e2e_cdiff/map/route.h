@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A lane-connected way through the network: points (x, y, z) about 1 m apart in the map frame, each with its lane.
+/// A lane-connected way through the network: points (x, y, z) about 1 m apart in the map frame,
+/// each with its lane.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@ namespace cdiff::map {
 class Route {
  public:
   Route() = default;
-  /// `points` (at least two, distinct) and the lane of each. Keeps a copy of what it needs of the network.
+  /// `points` (at least two, distinct) and the lane of each. Keeps a copy of what it needs of the
+  /// network.
   Route(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points,
         const std::vector<LaneIndex>& lanes);
 
@@ -60,10 +62,11 @@ class Route {
   std::vector<double> lane_changes_;
 };
 
-/// The lane of each point by dynamic programming over lanes near it (distance and heading), lane-connected from point to
-/// point. Points may lie a few metres apart; their z chooses the level unless every z is 0 in a network with elevation. Throws
-/// InputError naming the first point (counted from 0) that is more than 1.5 m off every lane's centre line and outside every
-/// lane, or without a way to the next.
+/// The lane of each point by dynamic programming over lanes near it (distance and heading),
+/// lane-connected from point to point. Points may lie a few metres apart; their z chooses the level
+/// unless every z is 0 in a network with elevation. Throws InputError naming the first point
+/// (counted from 0) that is more than 1.5 m off every lane's centre line and outside every lane, or
+/// without a way to the next.
 Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace cdiff::map

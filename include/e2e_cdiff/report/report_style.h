@@ -5,7 +5,7 @@
 
 namespace cdiff::report {
 
-const char* reportStyleSheet();
-const char* reportScript();
+extern const char kReportStyleSheet[];
+extern const char kReportScript[];
 
 }  // namespace cdiff::report

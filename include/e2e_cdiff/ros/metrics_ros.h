@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -35,6 +36,7 @@ class MetricsRos : public Participant {
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
 
+  std::filesystem::path results_;
   std::unique_ptr<scenario::SessionSetup> setup_;
   std::unique_ptr<report::ResultWriter> writer_;
   std::unique_ptr<metrics::SessionMetrics> metrics_;

@@ -22,7 +22,7 @@ class PacedAnswers {
   std::vector<planning::PlannedAction> actions(const ::e2e_cdiff::TrafficSnapshot& snapshot, const TickAnswers& answers) const;
   /// The oldest selection not yet given out; nullptr when there is none.
   TickAnswers::Selection nextSelection(const TickAnswers& answers);
-  /// Counts the answers that a tick still lacks; a text for the record when lateness begins, else empty.
+  /// At each decision tick: counts the answers that it still lacks; a text for the record when lateness begins, else empty.
   std::string countLate(std::uint64_t tick, const std::vector<std::string>& missing_topics);
   std::uint64_t late() const { return late_; }
 

@@ -99,4 +99,8 @@ class TrafficSimulatorRos {
   Clock::time_point acknowledged_at_;   ///< last time that every observer was up to date
 };
 
+/// Runs the session that the node's parameters ask for; bad input is told in one line, and in the exit code's file where the result
+/// folder was given.
+int runTrafficSimulator(StopSignal& stop);
+
 }  // namespace cdiff::ros

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The road network as SUMO's routes see it: edges (junctions left out) that follow each other where a lane of one leads to a lane of
-/// the other. Edges are numbered in the order of RoadNetwork::edgeIds().
+/// The road network as SUMO's routes see it: edges (junctions left out) that follow each other
+/// where a lane of one leads to a lane of the other. Edges are numbered in the order of
+/// RoadNetwork::edgeIds().
 #pragma once
 
 #include <string>
@@ -31,11 +32,16 @@ class EdgeGraph {
   const map::RoadNetwork& network() const { return network_; }
   /// Number of an edge by SUMO's id, or kNoEdge.
   int find(const std::string& id) const;
-  /// The edge of a lane; of an internal lane the edge before its junction. kNoEdge when there is none.
+  /// The edge of a lane; of an internal lane the edge before its junction. kNoEdge when there is
+  /// none.
   int edgeOf(map::LaneIndex lane) const { return edge_of_lane_[static_cast<std::size_t>(lane)]; }
   /// The edge that an internal lane leads to; of any other lane its own.
-  int edgeAfter(map::LaneIndex lane) const { return edge_after_lane_[static_cast<std::size_t>(lane)]; }
-  const std::string& id(int edge) const { return network_.edgeIds()[static_cast<std::size_t>(edge)]; }
+  int edgeAfter(map::LaneIndex lane) const {
+    return edge_after_lane_[static_cast<std::size_t>(lane)];
+  }
+  const std::string& id(int edge) const {
+    return network_.edgeIds()[static_cast<std::size_t>(edge)];
+  }
   /// Of its first lane [m].
   double length(int edge) const { return at(edge).length; }
   /// Lanes from right to left.
@@ -43,8 +49,8 @@ class EdgeGraph {
   /// Ways on, by lane and then as the network lists them.
   const std::vector<Link>& links(int edge) const { return at(edge).links; }
   bool connected(int from, int to) const;
-  /// Adds edges at the end, straight on where it can, until they measure `length` [m] and are at least two; fewer where the
-  /// network ends.
+  /// Adds edges at the end, straight on where it can, until they measure `length` [m] and are at
+  /// least two; fewer where the network ends. No edge twice: SUMO would take one pass for the other.
   void extend(std::vector<int>& way, double length) const;
   std::vector<std::string> ids(const std::vector<int>& way) const;
 

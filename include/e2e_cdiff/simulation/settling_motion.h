@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// How a released vehicle gets from beside the middle of its lane, and askew, into the middle: SUMO's lane model keeps an offset for ever
-/// and turns a vehicle at once. Front bumper at path(s) + d n, heading error e: d' = sin e, e' = -d / L^2 - 2 e / L per metre driven
-/// (critically damped), |e'| <= 0.2 / m, L = max(3 m, 0.8 s v).
+/// How a released vehicle gets from beside the middle of its lane, and askew, into the middle:
+/// SUMO's lane model keeps an offset for ever and turns a vehicle at once. Front bumper at path(s)
+/// + d n, heading error e: d' = sin e, e' = -d / L^2 - 2 e / L per metre driven (critically
+/// damped), |e'| <= 0.2 / m, L = max(3 m, 0.8 s v).
 #pragma once
 
 #include "e2e_cdiff/geometry/polyline.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// SUMO's conventions and ours: SUMO places a vehicle by the centre of its front bumper and an angle in degrees clockwise from north;
-/// we by the centre of its box and a heading in radians counter-clockwise from east. centre = front - L/2 (cos, sin)(heading).
+/// SUMO's conventions and ours: SUMO places a vehicle by the centre of its front bumper and an
+/// angle in degrees clockwise from north; we by the centre of its box and a heading in radians
+/// counter-clockwise from east. centre = front - L/2 (cos, sin)(heading).
 #pragma once
 
 #include "e2e_cdiff/traffic/vehicle.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One TraCI session with a SUMO process of our own: every call goes through `guarded`, which bounds it in wall time [s] and turns
-/// every way to fail into a SimulatorError that quotes SUMO's log.
+/// One TraCI session with a SUMO process of our own: every call goes through `guarded`, which
+/// bounds it in wall time [s] and turns every way to fail into a SimulatorError that quotes SUMO's
+/// log.
 #pragma once
 
 #include <signal.h>
@@ -34,14 +35,16 @@ class SumoLink {
       fail(what);
     }
   }
-  /// Runs a call inside a guarded one; answers false when SUMO refuses it and throws on when SUMO is lost.
+  /// Runs a call inside a guarded one; answers false when SUMO refuses it and throws on when SUMO
+  /// is lost.
   bool attempt(const std::function<void()>& call);
 
   const std::string& version() const { return version_; }
   int processId() const { return sumo_.process().id(); }
 
  private:
-  /// Selects this session, holds signals back (an interrupted read would look like a lost SUMO) and sets the deadline.
+  /// Selects this session, holds signals back (an interrupted read would look like a lost SUMO) and
+  /// sets the deadline.
   class Guard {
    public:
     explicit Guard(SumoLink& link);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A running `sumo` that waits for its one TraCI client: finds the program, gives it a port of its own, waits until it listens there,
-/// and quotes its log when it fails. All times are seconds of wall time.
+/// A running `sumo` that waits for its one TraCI client: finds the program, gives it a port of its
+/// own, waits until it listens there, and quotes its log when it fails. All times are seconds of
+/// wall time.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +15,19 @@
 
 namespace cdiff::simulation {
 
-/// The file that a program name stands for: itself when it holds a slash, else the first of that name in PATH.
-/// Throws InputError naming the program and the package to install.
+/// The file that a program name stands for: itself when it holds a slash, else the first of that
+/// name in PATH. Throws InputError naming the program and the package to install.
 std::filesystem::path findProgram(const std::string& name);
 
 /// A TCP port that nobody listened on a moment ago.
 int freePort();
 
-/// Whether a process holds the socket that listens on a TCP port. Reads the kernel's tables and does not connect: SUMO would take the
-/// attempt for its only client.
+/// Whether a process holds the socket that listens on a TCP port. Reads the kernel's tables and
+/// does not connect: SUMO would take the attempt for its only client.
 bool listensOn(int process_id, int port);
 
-/// A folder for SUMO's log: the given one (made when missing), or a temporary one that is removed with the object.
+/// A folder for SUMO's log: the given one (made when missing), or a temporary one that is removed
+/// with the object.
 class LogFolder {
  public:
   explicit LogFolder(const std::filesystem::path& wanted);
@@ -42,17 +44,18 @@ class LogFolder {
 
 /// How SUMO is started.
 struct SumoCommand {
-  std::string binary = "sumo";            ///< program name or file
-  std::vector<std::string> arguments;     ///< without port, client count and error log
-  std::filesystem::path log_folder;       ///< a temporary folder when empty
-  double start_timeout = 20.0;            ///< until it listens [s]
-  std::function<int()> choose_port = freePort;  ///< a port that another program took meanwhile is replaced, up to five times
+  std::string binary = "sumo";         ///< program name or file
+  std::vector<std::string> arguments;  ///< without port, client count and error log
+  std::filesystem::path log_folder;    ///< a temporary folder when empty
+  double start_timeout = 20.0;         ///< until it listens [s]
+  std::function<int()> choose_port =
+      freePort;  ///< a port that another program took meanwhile is replaced, up to five times
 };
 
 class SumoProcess {
  public:
-  /// Returns once SUMO listens. Throws InputError when the program is missing and SimulatorError, quoting SUMO's log, when it ends
-  /// instead or does not listen in time.
+  /// Returns once SUMO listens. Throws InputError when the program is missing and SimulatorError,
+  /// quoting SUMO's log, when it ends instead or does not listen in time.
   explicit SumoProcess(const SumoCommand& command);
   ~SumoProcess();
 

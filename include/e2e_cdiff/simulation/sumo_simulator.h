@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of asking, and turns every way in which SUMO
-/// can fail into a SimulatorError that quotes SUMO's own log.
+/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
+/// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
+/// log.
 #pragma once
 
 #include <cstdint>
@@ -15,29 +16,30 @@
 namespace cdiff::simulation {
 
 struct SumoOptions {
-  std::string binary = "sumo";             ///< program to start
-  double start_timeout = 20.0;             ///< until SUMO answers [s of wall time]
-  double step_timeout = 10.0;              ///< a step that takes longer is a frozen SUMO [s of wall time]
-  double match_threshold = 20.0;           ///< of moveToXY [m]
+  std::string binary = "sumo";    ///< program to start
+  double start_timeout = 20.0;    ///< until SUMO answers [s of wall time]
+  double step_timeout = 10.0;     ///< a step that takes longer is a frozen SUMO [s of wall time]
+  double match_threshold = 20.0;  ///< of moveToXY [m]
 
   void describe(core::OptionsVisitor& visitor);
 };
 
 /// What one session gives to SUMO.
 struct SumoSession {
-  std::filesystem::path network_file;      ///< as imported
-  std::filesystem::path demand_file;       ///< *.rou.xml; may be empty: no background traffic
-  double begin_time = 0.0;                 ///< SUMO's clock at the start [s]
-  double simulation_step = 0.05;           ///< [s]
+  std::filesystem::path network_file;  ///< as imported
+  std::filesystem::path demand_file;   ///< *.rou.xml; may be empty: no background traffic
+  double begin_time = 0.0;             ///< SUMO's clock at the start [s]
+  double simulation_step = 0.05;       ///< [s]
   std::uint64_t seed = 1;
-  bool lights_green = true;                ///< every signal shows 'g' for the whole session
-  std::filesystem::path log_folder;        ///< SUMO's error log; a temporary folder when empty
+  bool lights_green = true;          ///< every signal shows 'g' for the whole session
+  std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
 };
 
 class SumoSimulator : public TrafficSimulator {
  public:
   /// Starts SUMO and connects. `network` must outlive the simulator.
-  SumoSimulator(const SumoOptions& options, const SumoSession& session, const map::RoadNetwork& network);
+  SumoSimulator(const SumoOptions& options, const SumoSession& session,
+                const map::RoadNetwork& network);
   /// Ends the SUMO process that it started, and only that one.
   ~SumoSimulator() override;
 
@@ -53,9 +55,11 @@ class SumoSimulator : public TrafficSimulator {
 
   /// Process id of SUMO, for tests of its loss.
   int processId() const;
-  /// Adds a background vehicle that SUMO drives along edges, departing now; used by generated demand. Answers false when SUMO finds no room.
-  bool addBackground(const std::string& id, const std::vector<std::string>& edges, double depart_position,
-                     int depart_lane, double depart_speed, const traffic::VehicleDimensions& dimensions);
+  /// Adds a background vehicle that SUMO drives along edges, departing now; used by generated
+  /// demand. Answers false when SUMO finds no room.
+  bool addBackground(const std::string& id, const std::vector<std::string>& edges,
+                     double depart_position, int depart_lane, double depart_speed,
+                     const traffic::VehicleDimensions& dimensions);
 
  private:
   class Connection;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Background traffic as the rest of the system sees it: SI units, map frame, box centres, headings counter-clockwise. SUMO's own
-/// conventions stay inside simulation/.
+/// Background traffic as the rest of the system sees it: SI units, map frame, box centres, headings
+/// counter-clockwise. SUMO's own conventions stay inside simulation/.
 #pragma once
 
 #include <string>
@@ -15,20 +15,23 @@ namespace cdiff::simulation {
 /// A vehicle that we move ourselves: where it is after the coming step.
 struct DrivenVehicle {
   std::string id;
-  traffic::VehicleState state;          ///< at the end of the step
-  const map::Route* route = nullptr;    ///< way it follows, so that its SUMO route reaches beyond the next junction
+  traffic::VehicleState state;  ///< at the end of the step
+  const map::Route* route =
+      nullptr;  ///< way it follows, so that its SUMO route reaches beyond the next junction
 };
 
 /// A vehicle as the simulator reports it.
 struct SimulatedVehicle {
   std::string id;
-  traffic::VehicleState state;          ///< of vehicles that SUMO drives; a driven vehicle's is only SUMO's echo
+  traffic::VehicleState
+      state;  ///< of vehicles that SUMO drives; a driven vehicle's is only SUMO's echo
   traffic::VehicleDimensions dimensions;
-  double acceleration = 0.0;            ///< [m/s^2]
-  std::string lane_id;                  ///< empty off the road
+  double acceleration = 0.0;  ///< [m/s^2]
+  std::string lane_id;        ///< empty off the road
 };
 
-/// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator died, froze or refused.
+/// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator
+/// died, froze or refused.
 class TrafficSimulator {
  public:
   virtual ~TrafficSimulator() = default;
@@ -38,8 +41,8 @@ class TrafficSimulator {
                          const DrivenVehicle& start) = 0;
   /// Takes a background vehicle over: from the next step on it must be in `driven`.
   virtual void takeOver(const std::string& id) = 0;
-  /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed where it is on no lane
-  /// of its direction (answers false).
+  /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed
+  /// where it is on no lane of its direction (answers false).
   virtual bool release(const DrivenVehicle& vehicle) = 0;
   /// Takes a vehicle out of the simulation (contact).
   virtual void remove(const std::string& id) = 0;

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <functional>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/map/network_import.h"
+#include "e2e_cdiff/map/road_network.h"
+#include "support/real_data.h"
+
+namespace cdiff::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string errorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A folder of its own for inputs and for the cache.
+class NetworkImport : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("e2e_cdiff_import_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    if (const char* cache = std::getenv("E2E_CDIFF_CACHE")) old_cache_ = cache;
+    ::setenv("E2E_CDIFF_CACHE", (folder_ / "cache").c_str(), 1);
+  }
+  void TearDown() override {
+    if (old_cache_.empty()) {
+      ::unsetenv("E2E_CDIFF_CACHE");
+    } else {
+      ::setenv("E2E_CDIFF_CACHE", old_cache_.c_str(), 1);
+    }
+    fs::remove_all(folder_);
+  }
+  std::string write(const std::string& name, const std::string& content) const {
+    core::writeFileAtomically(folder_ / name, content);
+    return (folder_ / name).string();
+  }
+  fs::path folder_;
+  std::string old_cache_;
+};
+
+TEST_F(NetworkImport, LeavesAKnownNetworkAsItIs) {
+  const std::string text =
+      "<net><edge id=\"a\"><lane id=\"a_0\" allow=\"bus passenger\" shape=\"0,0 "
+      "1,0\"/></edge></net>";
+  const std::string file = write("known.net.xml", text);
+  const ImportedNetwork network = importNetwork(file);
+  EXPECT_EQ(network.file, fs::path(file));
+  EXPECT_EQ(network.source, fs::path(file));
+  EXPECT_EQ(network.text, text);
+  EXPECT_EQ(network.source_sha256, core::sha256(text));
+  EXPECT_TRUE(network.changes.empty());
+}
+
+TEST_F(NetworkImport, DropsUnknownClassesAndNothingElse) {
+  const std::string file = write(
+      "new.net.xml",
+      "<?xml version=\"1.0\"?>\n<!-- allow=\"drone\" -->\n<net>\n"
+      "  <type id=\"x\"\n        disallow=\"pedestrian  drone ship\" width=\"3\"/>\n"
+      "  <edge id=\"drone\"><lane id=\"1\" allow=\"scooter\"/><lane id=\"2\" disallow='subway'/>\n"
+      "  <lane id=\"3\" allow=\"bus drone taxi\" disallow=\"\"/><lane allow=\"drone\" "
+      "disallow=\"bus\"/>\n"
+      "  <lane allow=\"scooters\"/></edge>\n</net>\n");
+  const ImportedNetwork network = importNetwork(file);
+  EXPECT_EQ(network.text,
+            "<?xml version=\"1.0\"?>\n<!-- allow=\"drone\" -->\n<net>\n"
+            "  <type id=\"x\"\n        disallow=\"pedestrian ship\" width=\"3\"/>\n"
+            "  <edge id=\"drone\"><lane id=\"1\" disallow=\"all\"/><lane id=\"2\"/>\n"
+            "  <lane id=\"3\" allow=\"bus taxi\" disallow=\"\"/><lane disallow=\"all\"/>\n"
+            "  <lane allow=\"scooters\"/></edge>\n</net>\n");
+  ASSERT_EQ(network.changes.size(), 1u);
+  EXPECT_EQ(
+      network.changes[0],
+      "removed the vehicle classes subway scooter drone from 5 attributes, SUMO 1.15 does not "
+      "know them");
+}
+
+TEST_F(NetworkImport, WritesTheCacheOnce) {
+  const std::string file = write("new.net.xml", "<net><lane allow=\"bus drone\"/></net>");
+  const ImportedNetwork first = importNetwork(file);
+  EXPECT_EQ(first.file.parent_path(), folder_ / "cache" / "networks");
+  EXPECT_EQ(core::readFile(first.file, "cached network"), first.text);
+  const auto written = fs::last_write_time(first.file);
+  fs::permissions(first.file.parent_path(), fs::perms::owner_read | fs::perms::owner_exec);
+  const ImportedNetwork second = importNetwork(file);
+  fs::permissions(first.file.parent_path(), fs::perms::owner_all);
+  EXPECT_EQ(second.file, first.file);
+  EXPECT_EQ(second.text, first.text);
+  EXPECT_EQ(second.changes, first.changes);
+  EXPECT_EQ(fs::last_write_time(first.file), written);
+  core::writeFileAtomically(first.file, "damaged");
+  EXPECT_EQ(core::readFile(importNetwork(file).file, "cached network"), first.text);
+}
+
+TEST_F(NetworkImport, NamesWhatIsWrong) {
+  const auto expectError = [](const std::string& source, const std::string& part) {
+    const std::string message = errorOf([&] { importNetwork(source); });
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  expectError("", "no network was given");
+  expectError((folder_ / "none.net.xml").string(), "none.net.xml' does not exist");
+  expectError("no_such_network", "network 'no_such_network' is neither a file nor shipped");
+  expectError(write("text.net.xml", "hello"), "no <net> element");
+  expectError(write("packed.net.xml", "\x1f\x8b\x08 <net"), "is compressed");
+  expectError(write("empty.xodr", "<a/>"), "no <OpenDRIVE> element");
+  expectError(folder_.string(), "is a folder");
+}
+
+constexpr const char* kStraightRoad = R"(<?xml version="1.0"?>
+<OpenDRIVE><header revMajor="1" revMinor="4" name="" version="1" north="0" south="0" east="0" west="0"/>
+<road name="r" length="100" id="1" junction="-1"><link/>
+<planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView>
+<elevationProfile><elevation s="0" a="2" b="0" c="0" d="0"/></elevationProfile>
+<lanes><laneSection s="0"><center><lane id="0" type="none" level="false"/></center>
+<right><lane id="-1" type="driving" level="false"><link/>
+<width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right></laneSection></lanes>
+</road></OpenDRIVE>)";
+
+TEST_F(NetworkImport, ConvertsOpenDrive) {
+  const ImportedNetwork network = importNetwork(write("road.xodr", kStraightRoad));
+  ASSERT_EQ(network.changes.size(), 1u);
+  EXPECT_EQ(network.changes[0], "converted from OpenDRIVE with netconvert");
+  const RoadNetwork read = RoadNetwork::fromText(network.text, "road");
+  ASSERT_EQ(read.lanes().size(), 1u);
+  EXPECT_NEAR(read.lane(0).centerline.length(), 100.0, 0.1);
+  EXPECT_NEAR(read.lane(0).width, 3.5, 1e-9);
+  EXPECT_NEAR(read.lane(0).centerline.pointAt(50.0).z(), 2.0, 1e-9);
+  const auto written = fs::last_write_time(network.file);
+  EXPECT_EQ(importNetwork((folder_ / "road.xodr").string()).text, network.text);
+  EXPECT_EQ(fs::last_write_time(network.file), written);
+}
+
+TEST_F(NetworkImport, QuotesNetconvert) {
+  const std::string message =
+      errorOf([&] { importNetwork(write("bad.xodr", "<OpenDRIVE><road")); });
+  EXPECT_NE(message.find("netconvert could not convert"), std::string::npos) << message;
+  EXPECT_NE(message.find("Error"), std::string::npos) << message;  // netconvert's own word
+  EXPECT_TRUE(fs::is_empty(folder_ / "cache" / "networks"));
+}
+
+TEST_F(NetworkImport, FindsShippedNetworks) {
+  const ImportedNetwork network = importNetwork("crossing_district");
+  EXPECT_EQ(network.file.filename(), "crossing_district.net.xml");
+  EXPECT_FALSE(RoadNetwork::fromText(network.text, "shipped").lanes().empty());
+  const std::string message = errorOf([] { importNetwork("crossing_distrikt"); });
+  EXPECT_NE(message.find("the nearest shipped name is 'crossing_district'"), std::string::npos)
+      << message;
+}
+
+TEST_F(NetworkImport, SumoLoadsEveryRealNetwork) {
+  for (const std::string name : {"carla_towns/Town01", "carla_towns/Town03", "carla_towns/Town04",
+                                 "carla_towns/Town05", "resco/cologne1", "resco/ingolstadt1"}) {
+    const fs::path source = test::realData(name + ".net.xml");
+    CDIFF_SKIP_WITHOUT(source);
+    const ImportedNetwork network = importNetwork(source.string());
+    EXPECT_EQ(network.changes.empty(), name.rfind("resco", 0) == 0) << name;
+    const std::string command =
+        "SUMO_HOME=/usr/share/sumo sumo --end 1 --no-step-log "
+        "--xml-validation never -n '" +
+        network.file.string() + "' > '" + (folder_ / "log").string() + "' 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << core::readFile(folder_ / "log", "log");
+  }
+}
+
+}  // namespace
+}  // namespace cdiff::map

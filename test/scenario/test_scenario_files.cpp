@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/planning/planner_factory.h"
+#include "e2e_cdiff/scenario/session_request.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+
+namespace cdiff::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ShippedScenario : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedScenario, LoadsWithNetworkRouteAndPlanners) {
+  const ScenarioOptions options = loadScenario(GetParam());
+  EXPECT_EQ(options.name, GetParam());
+  const SessionSetup setup(options);
+  EXPECT_GE(setup.egoRoute().length(), 80.0);
+  EXPECT_LE(setup.egoRoute().length(), 250.0);
+  EXPECT_NO_THROW(planning::makePlanner(options.ego_planner, {}, setup.planningContext()));
+  EXPECT_NO_THROW(planning::makePlanner(options.cbv_planner, {}, setup.planningContext()));
+}
+
+TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
+  const std::string text = core::dumpOptions(loadScenario(GetParam()));
+  ScenarioOptions again;
+  core::loadOptions({"dump", text}, again);
+  EXPECT_EQ(core::dumpOptions(again), text);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(shippedScenarios()),
+                         [](const auto& info) { return info.param; });
+
+TEST(ShippedScenarios, ThreeForEachOfFourNetworks) {
+  std::map<std::string, int> counts;
+  for (const std::string& name : shippedScenarios()) ++counts[loadScenario(name).network];
+  EXPECT_EQ(counts.size(), 4u);
+  for (const auto& [network, count] : counts) EXPECT_EQ(count, 3) << network;
+}
+
+TEST(ShippedScenarios, EveryFolderOfNetworksIsUsedAndImportsUnchanged) {
+  for (const auto& entry : fs::directory_iterator(core::shareFolder() / "networks")) {
+    if (!entry.is_directory()) continue;
+    const map::ImportedNetwork imported = map::importNetwork(entry.path().filename().string());
+    EXPECT_TRUE(imported.changes.empty()) << entry.path();
+  }
+}
+
+std::string errorOf(const SessionRequest& request) {
+  try {
+    const SessionSetup setup(resolveRequest(request));
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(SessionRequest, UnknownScenarioNamesTheNearest) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turns";
+  EXPECT_TRUE(mentions(errorOf(request), "nearest shipped one is 'crossing_left_turn'")) << errorOf(request);
+}
+
+TEST(SessionRequest, NothingToRun) { EXPECT_TRUE(mentions(errorOf({}), "nothing to run")); }
+
+TEST(SessionRequest, BadKeysAndValuesNameTheSource) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.set = {"max_cbvs=1"};
+  EXPECT_TRUE(mentions(errorOf(request), "--set: unknown key 'max_cbvs'; the nearest known key is 'max_cbv'"));
+  request.set = {"max_cbv=-1"};
+  EXPECT_TRUE(mentions(errorOf(request), "[0, 16]")) << errorOf(request);
+  request.set = {"decision_period=0.12"};
+  EXPECT_TRUE(mentions(errorOf(request), "multiple of simulation_step")) << errorOf(request);
+  request.set = {"network=nowhere"};
+  EXPECT_TRUE(mentions(errorOf(request), "nowhere")) << errorOf(request);
+  request.set = {"demand=missing.rou.xml"};
+  EXPECT_TRUE(mentions(errorOf(request), "missing.rou.xml")) << errorOf(request);
+  request.set = {"route.edges=[nothere]"};
+  EXPECT_TRUE(mentions(errorOf(request), "nothere")) << errorOf(request);
+}
+
+TEST(SessionRequest, ScenarioFileErrorsNameFileAndLine) {
+  const fs::path file = fs::temp_directory_path() / "cdiff_broken_scenario.yaml";
+  std::ofstream(file) << "network: roundabout\nroute:\n  edgess: [a]\n";
+  SessionRequest request;
+  request.scenario = file.string();
+  const std::string error = errorOf(request);
+  EXPECT_TRUE(mentions(error, file.string() + ":3")) << error;
+  EXPECT_TRUE(mentions(error, "'edges'")) << error;
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace cdiff::scenario
