@@ -7,5 +7,7 @@
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;
-  return cdiff::ros::runNode(argc, argv, cdiff::ros::kCbvIdentificationNode, [](StopSignal& stop) { return cdiff::ros::CbvIdentificationRos(stop).run(); });
+  return cdiff::ros::runNode(argc, argv, cdiff::ros::kCbvIdentificationNode, [](StopSignal& stop) {
+    return cdiff::ros::CbvIdentificationRos(stop).run();
+  });
 }

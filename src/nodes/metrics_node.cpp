@@ -7,5 +7,6 @@
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;
-  return cdiff::ros::runNode(argc, argv, cdiff::ros::kMetricsNode, [](StopSignal& stop) { return cdiff::ros::MetricsRos(stop).run(); });
+  return cdiff::ros::runNode(argc, argv, cdiff::ros::kMetricsNode,
+                             [](StopSignal& stop) { return cdiff::ros::MetricsRos(stop).run(); });
 }

@@ -6,5 +6,6 @@
 #include "e2e_cdiff/ros/traffic_simulator_ros.h"
 
 int main(int argc, char** argv) {
-  return cdiff::ros::runNode(argc, argv, cdiff::ros::kTrafficSimulatorNode, cdiff::ros::runTrafficSimulator);
+  return cdiff::ros::runNode(argc, argv, cdiff::ros::kTrafficSimulatorNode,
+                             cdiff::ros::runTrafficSimulator);
 }

@@ -28,7 +28,9 @@ void CbvLog::observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSel
   close(selection);
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
     CbvRecord& record = recordOf(assignment);
-    if (snapshot.find(assignment.vehicle_id) != nullptr) ++record.decisions_driven;
+    const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
+    const bool driven = vehicle != nullptr && vehicle->role == traffic::VehicleRole::kCbv;
+    if (driven) ++record.decisions_driven;
   }
   for (const cbv::RejectedCandidate& candidate : selection.rejected) ++rejected_[candidate.reason];
 }

@@ -11,22 +11,26 @@ void CbvIdentificationRos::begin(const msgs::SessionInfo& info) {
   network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
   graph_.emplace(*network_);
   selections_ = advertise<msgs::CbvSelection>(kSelectionTopic);
-  listen<nav_msgs::Path>(kEgoRouteTopic, [this](const nav_msgs::PathConstPtr& path) { takeRoute(*path); });
+  listen<nav_msgs::Path>(kEgoRouteTopic,
+                         [this](const nav_msgs::PathConstPtr& path) { takeRoute(*path); });
 }
 
 void CbvIdentificationRos::takeRoute(const nav_msgs::Path& path) {
-  if (selector_ || path.poses.empty()) return;  // an empty path means "no route"; the session's route never changes
+  if (selector_ || path.poses.empty())
+    return;  // an empty path means "no route"; the session's route never changes
   ego_route_ = map::matchRoute(*network_, fromMsg(path));
   selector_ = std::make_unique<cbv::CbvSelector>(options_, graph().max_cbv, *graph_, ego_route_);
 }
 
-std::string CbvIdentificationRos::waitingFor() const { return selector_ ? "" : "no ego route has come yet"; }
+std::string CbvIdentificationRos::waitingFor() const {
+  return selector_ ? "" : "no ego route has come yet";
+}
 
 bool CbvIdentificationRos::handle(const Snapshot& message, bool) {
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
   if (snapshot.decision_tick) {
-    selections_.publish(
-        boost::make_shared<const msgs::CbvSelection>(toMsg(selector_->update(snapshot), snapshot.time, *network_)));
+    selections_.publish(boost::make_shared<const msgs::CbvSelection>(
+        toMsg(selector_->update(snapshot), snapshot.time, *network_)));
   } else {
     selector_->observe(snapshot);
   }

@@ -58,7 +58,8 @@ Display::Display(::ros::NodeHandle& node)
 
 void Display::publish(const traffic::TrafficSnapshot& snapshot) const {
   const traffic::Vehicle* ego = snapshot.ego();
-  if (ego != nullptr && odometry_.getNumSubscribers() > 0) odometry_.publish(toOdometryMsg(*ego, snapshot.time));
+  if (ego != nullptr && odometry_.getNumSubscribers() > 0)
+    odometry_.publish(toOdometryMsg(*ego, snapshot.time));
   if (transforms_.getNumSubscribers() > 0) transforms_.publish(toTfMsg(snapshot));
 }
 

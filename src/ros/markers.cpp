@@ -94,10 +94,12 @@ Marker junctionMarker(const map::RoadNetwork& network) {
   return marker;
 }
 
-Marker routeMarker(const std::string& marker_namespace, int id, const map::Route& route, const Color& color) {
+Marker routeMarker(const std::string& marker_namespace, int id, const map::Route& route,
+                   const Color& color) {
   Marker marker = makeMarker(marker_namespace, id, Marker::LINE_STRIP, color);
   marker.scale.x = 0.4;
-  for (const Eigen::Vector3d& point : route.path().points()) marker.points.push_back(toPoint(point));
+  for (const Eigen::Vector3d& point : route.path().points())
+    marker.points.push_back(toPoint(point));
   return marker;
 }
 
@@ -160,8 +162,8 @@ visualization_msgs::MarkerArray SessionMarkers::build(const traffic::TrafficSnap
     for (const cbv::CbvAssignment& assignment : selection->assignments) {
       array.markers.push_back(conflictMarker(assignment));
       if (assignment.conflict_aware_route.empty()) continue;
-      array.markers.push_back(
-          routeMarker("conflict_aware_routes", assignment.slot, assignment.conflict_aware_route, kCbvColor));
+      array.markers.push_back(routeMarker("conflict_aware_routes", assignment.slot,
+                                          assignment.conflict_aware_route, kCbvColor));
     }
   }
   for (Marker& marker : array.markers) {

@@ -20,7 +20,8 @@ metrics::SessionMetricsOptions metricsOptions(const scenario::ScenarioOptions& o
 }
 
 /// The last state with the end that nobody told: as World::end would have made it.
-traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double step, Ending ending) {
+traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double step,
+                                    Ending ending) {
   traffic::TrafficSnapshot snapshot = last;
   snapshot.tick += 1;
   snapshot.time = static_cast<double>(snapshot.tick) * step;
@@ -29,20 +30,23 @@ traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double
   snapshot.removed.clear();
   const bool stopped = ending == Ending::kStopped;
   snapshot.status = stopped ? traffic::SessionStatus::kInterrupted : traffic::SessionStatus::kError;
-  snapshot.faults = {{last.tick, kTrafficSimulatorNode, stopped ? "interrupted; no last snapshot came" : "the node left the session"}};
+  snapshot.faults = {
+      {last.tick, kTrafficSimulatorNode,
+       stopped ? "interrupted; no last snapshot came" : "the node left the session"}};
   return snapshot;
 }
 
 }  // namespace
 
 void MetricsRos::begin(const msgs::SessionInfo& info) {
-  setup_ = std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info), routeFromMsg(info));
+  setup_ = std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
+                                                    routeFromMsg(info));
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   const report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
   results_ = info.results_folder;
   writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, results_);
-  metrics_ = std::make_unique<metrics::SessionMetrics>(metricsOptions(setup_->options()), setup_->drivableArea(),
-                                                       setup_->egoRoute());
+  metrics_ = std::make_unique<metrics::SessionMetrics>(metricsOptions(setup_->options()),
+                                                       setup_->drivableArea(), setup_->egoRoute());
   answers_ = TickAnswers(setup_->options().simulation_step);
   reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
@@ -55,10 +59,14 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
 }
 
 void MetricsRos::listenToAnswers() {
-  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) { answers_.add(message); });
-  listen<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) { answers_.addEgo(message); });
+  listen<msgs::CbvSelection>(kSelectionTopic,
+                             [this](const auto& message) { answers_.add(message); });
+  listen<msgs::ControlAction>(kEgoControlTopic,
+                              [this](const auto& message) { answers_.addEgo(message); });
   for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); });
+    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
+      answers_.addCbv(slot, message);
+    });
   }
 }
 
@@ -67,7 +75,8 @@ bool MetricsRos::handle(const Snapshot& message, bool superseded) {
   if (!begin_) begin_ = Clock::now();
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
   std::optional<cbv::CbvSelection> selection;
-  if (const auto answer = answers_.selection(message->tick)) selection = fromMsg(*answer, setup_->network());
+  if (const auto answer = answers_.selection(message->tick))
+    selection = fromMsg(*answer, setup_->network());
   observe(snapshot, selection ? &*selection : nullptr, answers_.answers(*message));
   acknowledge(message->tick);
   show(snapshot, selection ? &*selection : nullptr);
@@ -76,8 +85,8 @@ bool MetricsRos::handle(const Snapshot& message, bool superseded) {
   return true;
 }
 
-void MetricsRos::observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection,
-                         const std::vector<Answer>& answers) {
+void MetricsRos::observe(const traffic::TrafficSnapshot& snapshot,
+                         const cbv::CbvSelection* selection, const std::vector<Answer>& answers) {
   const std::vector<planning::PlannedAction> actions = actionsOf(answers);
   scenario::TickRecord record;
   record.snapshot = &snapshot;
@@ -95,7 +104,8 @@ void MetricsRos::observe(const traffic::TrafficSnapshot& snapshot, const cbv::Cb
   }
 }
 
-void MetricsRos::publishReport(const traffic::TrafficSnapshot& snapshot, const metrics::TickMeasures& measures) {
+void MetricsRos::publishReport(const traffic::TrafficSnapshot& snapshot,
+                               const metrics::TickMeasures& measures) {
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
   if (!snapshot.decision_tick && !final) return;
   msgs::MetricReport report = toMsg(measures, snapshot);
@@ -103,10 +113,12 @@ void MetricsRos::publishReport(const traffic::TrafficSnapshot& snapshot, const m
   reports_.publish(boost::make_shared<const msgs::MetricReport>(report));
 }
 
-void MetricsRos::show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection) {
+void MetricsRos::show(const traffic::TrafficSnapshot& snapshot,
+                      const cbv::CbvSelection* selection) {
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
   if (!snapshot.decision_tick && !final) return;
-  if (marker_output_.getNumSubscribers() > 0) marker_output_.publish(markers_.build(snapshot, selection));
+  if (marker_output_.getNumSubscribers() > 0)
+    marker_output_.publish(markers_.build(snapshot, selection));
   diagnostics_->update();
 }
 
@@ -127,7 +139,8 @@ double MetricsRos::wallSeconds() const {
 
 int MetricsRos::conclude(Ending ending) {
   if (ending != Ending::kFinalSnapshot) {
-    const traffic::TrafficSnapshot snapshot = endedAfter(last_, setup_->options().simulation_step, ending);
+    const traffic::TrafficSnapshot snapshot =
+        endedAfter(last_, setup_->options().simulation_step, ending);
     scenario::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);

@@ -30,10 +30,13 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
   StopSignal stop;
   ::ros::init(argc, argv, name, ::ros::init_options::NoSigintHandler);
   if (!::ros::master::check()) {
-    ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch", ::ros::master::getURI().c_str());
+    ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
+              ::ros::master::getURI().c_str());
     return 2;
   }
   ::ros::master::setRetryTimeout(::ros::WallDuration(kMasterPatience));
+  ::ros::start();  // else ROS would end with the last node handle, and an error after that would
+                   // not be told
   const int exit_code = runGuarded(body, stop);
   ::ros::shutdown();
   return exit_code;

@@ -31,7 +31,8 @@ std::vector<planning::PlannedAction> PacedAnswers::actions(const msgs::TrafficSn
 }
 
 TickAnswers::Selection PacedAnswers::nextSelection(const TickAnswers& answers) {
-  TickAnswers::Selection selection = any_selection_ ? answers.selectionAfter(last_selection_) : answers.selection(0);
+  TickAnswers::Selection selection =
+      any_selection_ ? answers.selectionAfter(last_selection_) : answers.selection(0);
   if (!selection && !any_selection_) selection = answers.selectionAfter(0);
   if (!selection) return nullptr;
   any_selection_ = true;
@@ -39,13 +40,14 @@ TickAnswers::Selection PacedAnswers::nextSelection(const TickAnswers& answers) {
   return selection;
 }
 
-std::string PacedAnswers::countLate(std::uint64_t tick, const std::vector<std::string>& missing_topics) {
+std::string PacedAnswers::countLate(std::uint64_t tick,
+                                    const std::vector<std::string>& missing_topics) {
   late_ += missing_topics.size();
   const bool begins = !missing_topics.empty() && !was_late_;
   was_late_ = !missing_topics.empty();
   if (!begins) return {};
-  return "no answer in time for tick " + std::to_string(tick) + " on " + core::joinText(missing_topics, ", ") +
-         "; the last action is held, full brake after 0.5 s";
+  return "no answer in time for tick " + std::to_string(tick) + " on " +
+         core::joinText(missing_topics, ", ") + "; the last action is held, full brake after 0.5 s";
 }
 
 }  // namespace cdiff::ros

@@ -40,7 +40,8 @@ Parameters Parameters::ofThisNode() {
 void Parameters::requireKnown(const std::vector<std::string>& known) const {
   for (const auto& [key, value] : values_) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw core::InputError("unknown parameter ~" + key + "; the nearest known one is ~" + core::nearestName(key, known));
+    throw core::InputError("unknown parameter ~" + key + "; the nearest known one is ~" +
+                           core::nearestName(key, known));
   }
 }
 
@@ -80,7 +81,8 @@ scenario::SessionRequest sessionRequest(const Parameters& parameters) {
   request.seed = parameters.text("seed");
   request.set = core::splitText(parameters.text("set"), ' ');
   request.set_source = "parameter ~set";
-  if (request.scenario.empty() && request.bench2drive.empty()) request.scenario = "crossing_left_turn";
+  if (request.scenario.empty() && request.bench2drive.empty())
+    request.scenario = "crossing_left_turn";
   return request;
 }
 

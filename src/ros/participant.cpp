@@ -11,17 +11,21 @@
 namespace cdiff::ros {
 namespace {
 
-constexpr double kPeriod = 0.1;        // [s] of wall time between looks at the signals, and between ready messages
-constexpr double kStopPatience = 6.0;  // [s] after a stop signal until a node leaves without a last snapshot
-constexpr double kFarewell = 3.0;      // [s] for the last messages to arrive
+constexpr double kPeriod =
+    0.1;  // [s] of wall time between looks at the signals, and between ready messages
+constexpr double kStopPatience =
+    6.0;  // [s] after a stop signal until a node leaves without a last snapshot
+constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
 
 void spin() { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(kPeriod)); }
 
 }  // namespace
 
-Participant::Participant(StopSignal& stop) : stop_(stop), name_(baseName(::ros::this_node::getName())) {
+Participant::Participant(StopSignal& stop)
+    : stop_(stop), name_(baseName(::ros::this_node::getName())) {
   acks_ = connections_.advertise<msgs::TickAck>(node_, kTickAckTopic, {kTrafficSimulatorNode});
-  session_input_ = subscribe<msgs::SessionInfo>(node_, kSessionTopic, [this](const auto& message) { session_ = message; });
+  session_input_ = subscribe<msgs::SessionInfo>(
+      node_, kSessionTopic, [this](const auto& message) { session_ = message; });
 }
 
 int Participant::run() {
@@ -47,7 +51,8 @@ bool Participant::waitForSession() {
 
 int Participant::runSession() {
   begin(*session_);
-  traffic_input_ = subscribe<msgs::TrafficSnapshot>(node_, kTrafficTopic, [this](const auto& message) { queue(message); });
+  traffic_input_ = subscribe<msgs::TrafficSnapshot>(
+      node_, kTrafficTopic, [this](const auto& message) { queue(message); });
   ::ros::WallTime stopped_at;
   ::ros::WallTime reported_at;
   while (!handleQueue()) {
@@ -55,7 +60,8 @@ int Participant::runSession() {
     if (simulatorGone()) return leave(Ending::kSimulatorGone);
     const ::ros::WallTime now = ::ros::WallTime::now();
     if (stop_.raised() && stopped_at.isZero()) stopped_at = now;
-    if (!stopped_at.isZero() && (now - stopped_at).toSec() > kStopPatience) return leave(Ending::kStopped);
+    if (!stopped_at.isZero() && (now - stopped_at).toSec() > kStopPatience)
+      return leave(Ending::kStopped);
     if (next_tick_ == 0 && (now - reported_at).toSec() >= kPeriod) {
       reportReady();
       reported_at = now;
@@ -96,7 +102,8 @@ int Participant::fail(const std::string& text) {
   while (::ros::ok() && !simulatorGone() && ::ros::WallTime::now() < limit) {
     tell(msgs::TickAck::ERROR, lastTick(), text);
     spin();
-    const bool told = !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
+    const bool told =
+        !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
     if (told) break;
   }
   return 2;
@@ -119,7 +126,8 @@ void Participant::reportReady() {
 std::string Participant::missing() const {
   std::vector<std::string> texts = connections_.missing();
   for (const ::ros::Subscriber& input : inputs_) {
-    if (input.getNumPublishers() == 0) texts.push_back("nobody publishes " + input.getTopic() + " yet");
+    if (input.getNumPublishers() == 0)
+      texts.push_back("nobody publishes " + input.getTopic() + " yet");
   }
   if (!waitingFor().empty()) texts.push_back(waitingFor());
   return core::joinText(texts, ", ");

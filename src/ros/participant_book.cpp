@@ -24,8 +24,12 @@ void ParticipantBook::note(const ::e2e_cdiff::TickAck& message) {
 
 std::vector<std::string> ParticipantBook::notReady() const {
   std::vector<std::string> texts;
-  for (const auto& [node, entry] : entries_) {
-    if (!entry.ready) texts.push_back(node + " is not ready (" + entry.waiting_for + ")");
+  for (const bool silent : {true, false}) {  // a node that never came is why others wait
+    for (const auto& [node, entry] : entries_) {
+      if (entry.ready || entry.waiting_for.empty() != silent) continue;
+      texts.push_back(node +
+                      (silent ? " has not started" : " is not ready (" + entry.waiting_for + ")"));
+    }
   }
   return texts;
 }
@@ -33,7 +37,8 @@ std::vector<std::string> ParticipantBook::notReady() const {
 std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) const {
   std::vector<std::string> nodes;
   for (const auto& [node, entry] : entries_) {
-    if (isObserver(node) && (!entry.acknowledged || *entry.acknowledged < tick)) nodes.push_back(node);
+    if (isObserver(node) && (!entry.acknowledged || *entry.acknowledged < tick))
+      nodes.push_back(node);
   }
   return nodes;
 }

@@ -10,10 +10,12 @@ namespace cdiff::ros {
 namespace {
 
 std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
-  return std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info), routeFromMsg(info));
+  return std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
+                                                  routeFromMsg(info));
 }
 
-std::unique_ptr<planning::Planner> makePlanner(const std::string& name, const scenario::SessionSetup& setup) {
+std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
+                                               const scenario::SessionSetup& setup) {
   const planning::PlannerOptions options{setup.options().pdm_lite, setup.options().vehicle};
   return planning::makePlanner(name, options, setup.planningContext());
 }
@@ -29,11 +31,14 @@ void EgoPlannerRos::begin(const msgs::SessionInfo& info) {
   planner_ = makePlanner(setup_->options().ego_planner, *setup_);
   controls_ = advertise<msgs::ControlAction>(kEgoControlTopic);
   listen<nav_msgs::Path>(kEgoRouteTopic, [this](const nav_msgs::PathConstPtr& path) {
-    if (route_.empty() && !path->poses.empty()) route_ = map::matchRoute(setup_->network(), fromMsg(*path));
+    if (route_.empty() && !path->poses.empty())
+      route_ = map::matchRoute(setup_->network(), fromMsg(*path));
   });
 }
 
-std::string EgoPlannerRos::waitingFor() const { return route_.empty() ? "no ego route has come yet" : ""; }
+std::string EgoPlannerRos::waitingFor() const {
+  return route_.empty() ? "no ego route has come yet" : "";
+}
 
 bool EgoPlannerRos::handle(const Snapshot& message, bool) {
   if (!message->decision_tick) return true;
@@ -41,8 +46,10 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool) {
   const auto tasks = scenario::egoTasks(snapshot, route_, setup_->options().target_speed);
   if (tasks.empty()) return true;
   ActionOrigin origin{"ego:" + setup_->options().ego_planner, 0.0, {}};
-  const auto actions = scenario::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
-  controls_.publish(boost::make_shared<const msgs::ControlAction>(toMsg(actions.front(), snapshot, origin)));
+  const auto actions =
+      scenario::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
+  controls_.publish(
+      boost::make_shared<const msgs::ControlAction>(toMsg(actions.front(), snapshot, origin)));
   warnOf(origin);
   return true;
 }
@@ -54,9 +61,10 @@ void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
     controls_.push_back(advertise<msgs::ControlAction>(cbvControlTopic(slot)));
     rollouts_.push_back(advertise<msgs::Rollout>(cbvRolloutTopic(slot)));
   }
-  listen<msgs::CbvSelection>(kSelectionTopic, [this](const msgs::CbvSelection::ConstPtr& selection) {
-    selections_.emplace(selection->tick, selection);
-  });
+  listen<msgs::CbvSelection>(kSelectionTopic,
+                             [this](const msgs::CbvSelection::ConstPtr& selection) {
+                               selections_.emplace(selection->tick, selection);
+                             });
 }
 
 bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {
@@ -68,7 +76,8 @@ bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {
   return true;
 }
 
-void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot, const msgs::CbvSelection& message) {
+void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
+                         const msgs::CbvSelection& message) {
   const cbv::CbvSelection selection = fromMsg(message, setup_->network());
   const auto tasks = scenario::cbvTasks(snapshot, selection, setup_->options().target_speed);
   if (tasks.empty()) return;
@@ -76,8 +85,10 @@ void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot, const msgs::C
   for (const planning::PlannedAction& action :
        scenario::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault)) {
     const auto slot = static_cast<std::size_t>(action.slot);
-    rollouts_.at(slot).publish(boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
-    controls_.at(slot).publish(boost::make_shared<const msgs::ControlAction>(toMsg(action, snapshot, origin)));
+    rollouts_.at(slot).publish(
+        boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
+    controls_.at(slot).publish(
+        boost::make_shared<const msgs::ControlAction>(toMsg(action, snapshot, origin)));
   }
   warnOf(origin);
 }

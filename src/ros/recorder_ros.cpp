@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kReportPatience = 2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
+constexpr double kReportPatience =
+    2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
 
 /// A bag takes no stamp of zero.
 ::ros::Time bagStamp(const ::ros::Time& stamp) { return std::max(stamp, ::ros::TIME_MIN); }
@@ -36,15 +37,21 @@ void RecorderRos::listenToAll() {
     if (!route_) bag_.write(bagTopic(kEgoRouteTopic), ::ros::TIME_MIN, path);
     route_ = path;
   });
-  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) { answers_.add(message); });
-  listen<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) { answers_.addEgo(message); });
+  listen<msgs::CbvSelection>(kSelectionTopic,
+                             [this](const auto& message) { answers_.add(message); });
+  listen<msgs::ControlAction>(kEgoControlTopic,
+                              [this](const auto& message) { answers_.addEgo(message); });
   for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); });
-    listen<msgs::Rollout>(cbvRolloutTopic(slot),
-                          [this, slot](const auto& message) { rollouts_[message->tick][slot] = message; });
+    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
+      answers_.addCbv(slot, message);
+    });
+    listen<msgs::Rollout>(cbvRolloutTopic(slot), [this, slot](const auto& message) {
+      rollouts_[message->tick][slot] = message;
+    });
   }
   if (!graph().has(kMetricsNode)) return;
-  listen<msgs::MetricReport>(kMetricsTopic, [this](const auto& message) { reports_[message->tick] = message; });
+  listen<msgs::MetricReport>(kMetricsTopic,
+                             [this](const auto& message) { reports_[message->tick] = message; });
 }
 
 std::string RecorderRos::waitingFor() const { return route_ ? "" : "no ego route has come yet"; }
@@ -58,7 +65,9 @@ bool RecorderRos::complete(const msgs::TrafficSnapshot& snapshot) {
     if (at_tick == rollouts_.end() || at_tick->second.count(answer.action.slot) == 0) return false;
   }
   const bool final = snapshot.status != msgs::TrafficSnapshot::RUNNING;
-  if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) || reports_.count(snapshot.tick) > 0) return true;
+  if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
+      reports_.count(snapshot.tick) > 0)
+    return true;
   if (waiting_since_.isZero()) waiting_since_ = ::ros::WallTime::now();
   return final && (::ros::WallTime::now() - waiting_since_).toSec() > kReportPatience;
 }
@@ -75,12 +84,16 @@ bool RecorderRos::handle(const Snapshot& snapshot, bool superseded) {
 void RecorderRos::write(const Snapshot& snapshot) {
   const ::ros::Time stamp = bagStamp(snapshot->header.stamp);
   bag_.write(bagTopic(kTrafficTopic), stamp, snapshot);
-  if (const auto selection = answers_.selection(snapshot->tick)) bag_.write(bagTopic(kSelectionTopic), stamp, selection);
-  if (const auto control = answers_.ego(snapshot->tick)) bag_.write(bagTopic(kEgoControlTopic), stamp, control);
+  if (const auto selection = answers_.selection(snapshot->tick))
+    bag_.write(bagTopic(kSelectionTopic), stamp, selection);
+  if (const auto control = answers_.ego(snapshot->tick))
+    bag_.write(bagTopic(kEgoControlTopic), stamp, control);
   for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    if (const auto control = answers_.cbv(slot, snapshot->tick)) bag_.write(bagTopic(cbvControlTopic(slot)), stamp, control);
+    if (const auto control = answers_.cbv(slot, snapshot->tick))
+      bag_.write(bagTopic(cbvControlTopic(slot)), stamp, control);
   }
-  for (const auto& [slot, rollout] : rollouts_[snapshot->tick]) bag_.write(bagTopic(cbvRolloutTopic(slot)), stamp, rollout);
+  for (const auto& [slot, rollout] : rollouts_[snapshot->tick])
+    bag_.write(bagTopic(cbvRolloutTopic(slot)), stamp, rollout);
   const auto report = reports_.find(snapshot->tick);
   if (report != reports_.end()) bag_.write(bagTopic(kMetricsTopic), stamp, report->second);
   if (snapshot->decision_tick) writeDisplay(*snapshot, stamp);

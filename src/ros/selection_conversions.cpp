@@ -14,7 +14,9 @@ geometry_msgs::Point toMsg(const Eigen::Vector3d& point) {
   return message;
 }
 
-Eigen::Vector3d fromMsg(const geometry_msgs::Point& message) { return {message.x, message.y, message.z}; }
+Eigen::Vector3d fromMsg(const geometry_msgs::Point& message) {
+  return {message.x, message.y, message.z};
+}
 
 msgs::CbvAssignment toMsg(const cbv::CbvAssignment& assignment, const map::RoadNetwork& network) {
   msgs::CbvAssignment message;
@@ -51,8 +53,9 @@ map::Route routeFromMsg(const msgs::CbvAssignment& message, const map::RoadNetwo
     }
   }
   if (lanes.size() != points.size()) {
-    throw core::InputError("the route of CBV '" + message.vehicle_id + "' has " + std::to_string(points.size()) +
-                           " points, but " + std::to_string(lanes.size()) + " lanes");
+    throw core::InputError("the route of CBV '" + message.vehicle_id + "' has " +
+                           std::to_string(points.size()) + " points, but " +
+                           std::to_string(lanes.size()) + " lanes");
   }
   return map::Route(network, points, lanes);
 }
@@ -63,15 +66,20 @@ cbv::CbvAssignment fromMsg(const msgs::CbvAssignment& message, const map::RoadNe
   assignment.vehicle_id = message.vehicle_id;
   assignment.interaction_score = message.interaction_score;
   assignment.selected_tick = message.selected_tick;
-  assignment.conflict_point = {fromMsg(message.conflict_point), message.ego_arc_length, message.ego_distance,
-                               message.cbv_distance,            message.ego_arrival,    message.cbv_arrival};
+  assignment.conflict_point = {fromMsg(message.conflict_point),
+                               message.ego_arc_length,
+                               message.ego_distance,
+                               message.cbv_distance,
+                               message.ego_arrival,
+                               message.cbv_arrival};
   assignment.conflict_aware_route = routeFromMsg(message, network);
   return assignment;
 }
 
 }  // namespace
 
-msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time, const map::RoadNetwork& network) {
+msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time,
+                         const map::RoadNetwork& network) {
   msgs::CbvSelection message;
   message.header.stamp = toStamp(time);
   message.header.frame_id = kMapFrame;
@@ -101,7 +109,8 @@ cbv::CbvSelection fromMsg(const msgs::CbvSelection& message, const map::RoadNetw
     selection.assignments.push_back(fromMsg(assignment, network));
   }
   for (const msgs::RejectedCandidate& candidate : message.rejected) {
-    selection.rejected.push_back({candidate.vehicle_id, candidate.reason, candidate.interaction_score});
+    selection.rejected.push_back(
+        {candidate.vehicle_id, candidate.reason, candidate.interaction_score});
   }
   for (const msgs::ReleasedCbv& released : message.released) {
     selection.released.push_back({released.slot, released.vehicle_id, released.reason});

@@ -63,7 +63,8 @@ map::ImportedNetwork importFromMsg(const msgs::SessionInfo& message) {
 
 std::vector<Eigen::Vector3d> routeFromMsg(const msgs::SessionInfo& message) {
   std::vector<Eigen::Vector3d> points;
-  for (const geometry_msgs::Point& point : message.ego_route) points.emplace_back(point.x, point.y, point.z);
+  for (const geometry_msgs::Point& point : message.ego_route)
+    points.emplace_back(point.x, point.y, point.z);
   return points;
 }
 
@@ -93,7 +94,8 @@ std::vector<Eigen::Vector3d> fromMsg(const nav_msgs::Path& message) {
   return points;
 }
 
-msgs::MetricReport toMsg(const metrics::TickMeasures& measures, const traffic::TrafficSnapshot& snapshot) {
+msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
+                         const traffic::TrafficSnapshot& snapshot) {
   constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
   msgs::MetricReport message;
   message.header.stamp = toStamp(snapshot.time);
@@ -127,7 +129,8 @@ std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
       toMsg("speed_shapiro_wilk", measures.speed_shapiro_wilk),
       toMsg("acceleration_shapiro_wilk", measures.acceleration_shapiro_wilk),
       toMsg("speed_wasserstein", measures.speed_wasserstein)};
-  for (const auto& [name, measure] : measures.rift_compat) all.push_back(toMsg("rift_compat/" + name, measure));
+  for (const auto& [name, measure] : measures.rift_compat)
+    all.push_back(toMsg("rift_compat/" + name, measure));
   return all;
 }
 

@@ -25,17 +25,22 @@ std::string timeText() {
 fs::path ownFolder(const scenario::ScenarioOptions& options) {
   const char* home = std::getenv("HOME");
   const fs::path base = home != nullptr ? fs::path(home) : fs::temp_directory_path();
-  return base / "e2e_cdiff_results" / (options.name + "_seed" + std::to_string(options.seed) + "_" + timeText());
+  return base / "e2e_cdiff_results" /
+         (options.name + "_seed" + std::to_string(options.seed) + "_" + timeText());
 }
 
 }  // namespace
 
 fs::path makeResultFolder(const std::string& given, const scenario::ScenarioOptions& options) {
-  const fs::path folder = fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
+  const fs::path folder =
+      fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw core::InputError("cannot make the result folder '" + folder.string() + "': " + error.message());
-  for (const char* name : {"session.bag", "session.bag.active", "exit_code"}) fs::remove(folder / name, error);
+  if (error)
+    throw core::InputError("cannot make the result folder '" + folder.string() +
+                           "': " + error.message());
+  for (const char* name : {"session.bag", "session.bag.active", "exit_code"})
+    fs::remove(folder / name, error);
   return folder;
 }
 
@@ -43,8 +48,8 @@ void writeExitCode(const fs::path& folder, int exit_code) {
   core::writeFileAtomically(folder / "exit_code", std::to_string(exit_code) + "\n");
 }
 
-void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last, const report::RunFacts& facts,
-                 const fs::path& folder, double wall_seconds) {
+void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last,
+                 const report::RunFacts& facts, const fs::path& folder, double wall_seconds) {
   report::ResultWriter writer(setup, facts, folder);
   scenario::TickRecord record;
   record.snapshot = &last;

@@ -12,8 +12,9 @@ namespace cdiff::ros {
 namespace {
 
 const msgs::Vehicle* findEgo(const msgs::TrafficSnapshot& snapshot) {
-  const auto found = std::find_if(snapshot.vehicles.begin(), snapshot.vehicles.end(),
-                                  [](const msgs::Vehicle& vehicle) { return vehicle.role == msgs::Vehicle::EGO; });
+  const auto found =
+      std::find_if(snapshot.vehicles.begin(), snapshot.vehicles.end(),
+                   [](const msgs::Vehicle& vehicle) { return vehicle.role == msgs::Vehicle::EGO; });
   return found == snapshot.vehicles.end() ? nullptr : &*found;
 }
 
@@ -51,19 +52,24 @@ bool contains(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_
                      [&](const msgs::Vehicle& vehicle) { return vehicle.id == vehicle_id; });
 }
 
-std::uint64_t TickAnswers::tickOf(const msgs::ControlAction& control, std::uint64_t otherwise) const {
+std::uint64_t TickAnswers::tickOf(const msgs::ControlAction& control,
+                                  std::uint64_t otherwise) const {
   if (control.tick != 0) return control.tick;
   if (control.header.stamp.isZero()) return otherwise;
   return static_cast<std::uint64_t>(std::llround(control.header.stamp.toSec() / simulation_step_));
 }
 
-void TickAnswers::add(const Selection& selection) { selections_.emplace(selection->tick, selection); }
+void TickAnswers::add(const Selection& selection) {
+  selections_.emplace(selection->tick, selection);
+}
 
 void TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
   controls_[tickOf(*control, otherwise)].emplace(kEgoSlot, control);
 }
 
-void TickAnswers::addCbv(int slot, const Control& control) { controls_[control->tick].emplace(slot, control); }
+void TickAnswers::addCbv(int slot, const Control& control) {
+  controls_[control->tick].emplace(slot, control);
+}
 
 std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
   std::vector<std::string> topics;
@@ -99,7 +105,8 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
   std::vector<Answer> answers;
   const msgs::Vehicle* ego_vehicle = findEgo(snapshot);
   const Control ego_control = ego(snapshot.tick);
-  if (ego_vehicle != nullptr && ego_control) answers.push_back(answerOf(*ego_control, kEgoSlot, ego_vehicle->id));
+  if (ego_vehicle != nullptr && ego_control)
+    answers.push_back(answerOf(*ego_control, kEgoSlot, ego_vehicle->id));
   const Selection chosen = selection(snapshot.tick);
   if (!chosen) return answers;
   for (const msgs::CbvAssignment& assignment : chosen->assignments) {
@@ -110,11 +117,13 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
   return answers;
 }
 
-TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehicle_id, std::uint64_t tick) const {
+TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehicle_id,
+                                              std::uint64_t tick) const {
   for (auto at_tick = controls_.rbegin(); at_tick != controls_.rend(); ++at_tick) {
     const auto found = at_tick->second.find(slot);
     if (at_tick->first > tick || found == at_tick->second.end()) continue;
-    if (slot == kEgoSlot || found->second->vehicle_id == vehicle_id) return {at_tick->first, found->second};
+    if (slot == kEgoSlot || found->second->vehicle_id == vehicle_id)
+      return {at_tick->first, found->second};
   }
   return {};
 }

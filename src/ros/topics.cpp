@@ -13,7 +13,8 @@ std::vector<std::string> possibleListeners(const std::string& topic, int max_cbv
     return {kCbvIdentificationNode, kEgoPlannerNode, kCbvPlannerNode, kMetricsNode, kRecorderNode};
   }
   if (topic == kEgoRouteTopic) return {kCbvIdentificationNode, kEgoPlannerNode, kRecorderNode};
-  if (topic == kSelectionTopic) return {kTrafficSimulatorNode, kCbvPlannerNode, kMetricsNode, kRecorderNode};
+  if (topic == kSelectionTopic)
+    return {kTrafficSimulatorNode, kCbvPlannerNode, kMetricsNode, kRecorderNode};
   if (topic == kEgoControlTopic) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
   if (topic == kTickAckTopic) return {kTrafficSimulatorNode};
   if (topic == kMetricsTopic) return {kRecorderNode};
@@ -43,7 +44,8 @@ std::vector<std::string> listeners(const std::string& topic, const SessionGraph&
 
 std::string answererOf(const std::string& topic, const SessionGraph& graph) {
   if (topic == kSelectionTopic) return kCbvIdentificationNode;
-  if (topic == kEgoControlTopic) return graph.external_ego ? "the external ego planner" : kEgoPlannerNode;
+  if (topic == kEgoControlTopic)
+    return graph.external_ego ? "the external ego planner" : kEgoPlannerNode;
   return kCbvPlannerNode;
 }
 

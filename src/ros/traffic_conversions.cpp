@@ -77,7 +77,8 @@ msgs::Vehicle toMsg(const traffic::Vehicle& vehicle) {
 
 traffic::Vehicle fromMsg(const msgs::Vehicle& message) {
   if (message.role > msgs::Vehicle::BACKGROUND) {
-    throw core::InputError("vehicle '" + message.id + "' has the unknown role " + std::to_string(message.role));
+    throw core::InputError("vehicle '" + message.id + "' has the unknown role " +
+                           std::to_string(message.role));
   }
   traffic::Vehicle vehicle;
   vehicle.id = message.id;
@@ -87,7 +88,8 @@ traffic::Vehicle fromMsg(const msgs::Vehicle& message) {
   vehicle.dimensions = {message.length, message.width, message.height};
   vehicle.acceleration = message.acceleration;
   vehicle.yaw_rate = message.yaw_rate;
-  if (message.driven) vehicle.applied_action = traffic::ControlAction{message.throttle, message.steer, message.brake};
+  if (message.driven)
+    vehicle.applied_action = traffic::ControlAction{message.throttle, message.steer, message.brake};
   vehicle.lane_id = message.lane_id;
   return vehicle;
 }
@@ -100,7 +102,8 @@ msgs::TrafficSnapshot toMsg(const traffic::TrafficSnapshot& snapshot) {
   message.decision_tick = snapshot.decision_tick;
   message.status = static_cast<std::uint8_t>(snapshot.status);
   message.vehicles.reserve(snapshot.vehicles.size());
-  for (const traffic::Vehicle& vehicle : snapshot.vehicles) message.vehicles.push_back(toMsg(vehicle));
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles)
+    message.vehicles.push_back(toMsg(vehicle));
   for (const traffic::SignalState& signal : snapshot.signals) {
     message.signals.emplace_back();
     message.signals.back().id = signal.id;
@@ -127,16 +130,20 @@ traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message) {
   snapshot.decision_tick = message.decision_tick != 0;
   snapshot.status = static_cast<SessionStatus>(message.status);
   snapshot.vehicles.reserve(message.vehicles.size());
-  for (const msgs::Vehicle& vehicle : message.vehicles) snapshot.vehicles.push_back(fromMsg(vehicle));
-  for (const msgs::SignalState& signal : message.signals) snapshot.signals.push_back({signal.id, signal.state});
-  for (const msgs::Contact& contact : message.contacts) snapshot.contacts.push_back({contact.first, contact.second});
+  for (const msgs::Vehicle& vehicle : message.vehicles)
+    snapshot.vehicles.push_back(fromMsg(vehicle));
+  for (const msgs::SignalState& signal : message.signals)
+    snapshot.signals.push_back({signal.id, signal.state});
+  for (const msgs::Contact& contact : message.contacts)
+    snapshot.contacts.push_back({contact.first, contact.second});
   snapshot.removed = message.removed;
-  for (const msgs::Fault& fault : message.faults) snapshot.faults.push_back({fault.tick, fault.source, fault.text});
+  for (const msgs::Fault& fault : message.faults)
+    snapshot.faults.push_back({fault.tick, fault.source, fault.text});
   return snapshot;
 }
 
-msgs::ControlAction toMsg(const planning::PlannedAction& action, const traffic::TrafficSnapshot& snapshot,
-                          const ActionOrigin& origin) {
+msgs::ControlAction toMsg(const planning::PlannedAction& action,
+                          const traffic::TrafficSnapshot& snapshot, const ActionOrigin& origin) {
   msgs::ControlAction message;
   message.header = headerOf(snapshot);
   message.tick = snapshot.tick;
@@ -155,7 +162,8 @@ planning::PlannedAction fromMsg(const msgs::ControlAction& message) {
   return {message.slot, message.vehicle_id, {message.throttle, message.steer, message.brake}, {}};
 }
 
-msgs::Rollout toRolloutMsg(const planning::PlannedAction& action, const traffic::TrafficSnapshot& snapshot) {
+msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
+                           const traffic::TrafficSnapshot& snapshot) {
   msgs::Rollout message;
   message.header = headerOf(snapshot);
   message.tick = snapshot.tick;

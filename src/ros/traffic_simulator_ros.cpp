@@ -2,14 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/traffic_simulator_ros.h"
 
-#include <thread>
-
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/session_files.h"
-#include "ros/callback_queue.h"
 #include "rosgraph_msgs/Clock.h"
+#include "spinning.h"
 
 namespace cdiff::ros {
 namespace {
@@ -17,18 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using traffic::SessionStatus;
 
-constexpr double kSpinPeriod = 0.05;     // [s] of wall time between looks at signals and limits
-constexpr double kSendAgainAfter = 1.0;  // [s] of wall time without an answer of an external ego planner
-
-double secondsSince(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-void spin(double seconds) { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(seconds)); }
-
 std::vector<std::string> knownParameters() {
-  return {"scenario", "bench2drive", "route",  "network",      "mode",          "ego_planner",   "cbv_planner", "seed",
-          "set",      "record",      "folder", "participants", "start_timeout", "answer_timeout", "results"};
+  return {"scenario",      "bench2drive",    "route",  "network", "mode",   "ego_planner",
+          "cbv_planner",   "seed",           "set",    "record",  "folder", "participants",
+          "start_timeout", "answer_timeout", "results"};
 }
 
 /// Relative paths in parameters are meant from where the user started the session.
@@ -59,7 +49,8 @@ SessionGraph graphOf(const Parameters& parameters, const scenario::ScenarioOptio
 TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSignal& stop)
     : stop_(stop), book_({}), paced_answers_(0.05), display_(node_) {
   parameters.requireKnown(knownParameters());
-  limits_ = {parameters.positive("start_timeout", 30.0), parameters.positive("answer_timeout", 30.0)};
+  limits_ = {parameters.positive("start_timeout", 30.0),
+             parameters.positive("answer_timeout", 30.0)};
   enterFolder(parameters.text("folder"));
   const scenario::ScenarioOptions options = scenario::resolveRequest(sessionRequest(parameters));
   setup_ = std::make_unique<scenario::SessionSetup>(options);
@@ -99,20 +90,27 @@ bool TrafficSimulatorRos::startWorld() {
 
 void TrafficSimulatorRos::advertise() {
   clock_ = node_.advertise<rosgraph_msgs::Clock>("/clock", 100);
-  session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic, listeners(kSessionTopic, graph_), true);
-  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic, listeners(kTrafficTopic, graph_), true);
-  route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic, listeners(kEgoRouteTopic, graph_), true);
+  session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
+                                                       listeners(kSessionTopic, graph_), true);
+  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
+                                                           listeners(kTrafficTopic, graph_), true);
+  route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
+                                                  listeners(kEgoRouteTopic, graph_), true);
 }
 
 void TrafficSimulatorRos::listen() {
-  inputs_.push_back(subscribe<msgs::TickAck>(node_, kTickAckTopic, [this](const auto& ack) { book_.note(*ack); }));
-  inputs_.push_back(subscribe<msgs::CbvSelection>(node_, kSelectionTopic, [this](const auto& message) { answers_.add(message); }));
-  inputs_.push_back(subscribe<msgs::ControlAction>(node_, kEgoControlTopic, [this](const auto& message) {
-    answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
-  }));
+  inputs_.push_back(subscribe<msgs::TickAck>(node_, kTickAckTopic,
+                                             [this](const auto& ack) { book_.note(*ack); }));
+  inputs_.push_back(subscribe<msgs::CbvSelection>(
+      node_, kSelectionTopic, [this](const auto& message) { answers_.add(message); }));
+  inputs_.push_back(
+      subscribe<msgs::ControlAction>(node_, kEgoControlTopic, [this](const auto& message) {
+        answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
+      }));
   for (int slot = 0; slot < graph_.max_cbv; ++slot) {
     inputs_.push_back(subscribe<msgs::ControlAction>(
-        node_, cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); }));
+        node_, cbvControlTopic(slot),
+        [this, slot](const auto& message) { answers_.addCbv(slot, message); }));
   }
 }
 
@@ -130,8 +128,10 @@ void TrafficSimulatorRos::publishSession() {
 
 std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingParticipants() const {
   std::vector<Missing> missing;
-  for (const std::string& text : book_.notReady()) missing.push_back({text.substr(0, text.find(' ')), text});
-  for (const std::string& text : connections_.missing()) missing.push_back({text.substr(0, text.find(' ')), text});
+  for (const std::string& text : book_.notReady())
+    missing.push_back({text.substr(0, text.find(' ')), text});
+  for (const std::string& text : connections_.missing())
+    missing.push_back({text.substr(0, text.find(' ')), text});
   return missing;
 }
 
@@ -139,7 +139,8 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForParticipa
   return waitFor([this] { return missingParticipants(); }, limits_.start);
 }
 
-TrafficSimulatorRos::Ending TrafficSimulatorRos::ending(SessionStatus status, const std::string& source,
+TrafficSimulatorRos::Ending TrafficSimulatorRos::ending(SessionStatus status,
+                                                        const std::string& source,
                                                         const std::string& text) const {
   return {status, {world_->snapshot().tick, source, text}};
 }
@@ -151,11 +152,13 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
   if (!connections_.left().empty()) {
     return ending(SessionStatus::kError, connections_.left().front(), "the node left the session");
   }
-  if (!::ros::ok()) return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");
+  if (!::ros::ok())
+    return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");
   return std::nullopt;
 }
 
-std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitFor(const MissingNow& missing_now, double seconds) {
+std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitFor(
+    const MissingNow& missing_now, double seconds) {
   const Clock::time_point begin = Clock::now();
   while (true) {
     if (const auto cause = disturbance()) return cause;
@@ -164,120 +167,13 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitFor(const Mi
     if (secondsSince(begin) > seconds) {
       std::vector<std::string> texts;
       for (const Missing& item : missing) texts.push_back(item.what);
-      return ending(SessionStatus::kError, missing.front().node,
-                    "nothing came for " + core::formatNumber(seconds) + " s: " + core::joinText(texts, "; "));
+      return ending(
+          SessionStatus::kError, missing.front().node,
+          "nothing came for " + core::formatNumber(seconds) + " s: " + core::joinText(texts, "; "));
     }
     sendAgainForLateListener();
     spin(kSpinPeriod);
   }
-}
-
-/// A node of the user may connect while the first snapshot is sent; it gets the same snapshot again.
-void TrafficSimulatorRos::sendAgainForLateListener() {
-  if (!graph_.external_ego || !published_ || secondsSince(published_at_) < kSendAgainAfter) return;
-  if (answers_.ego(published_->tick)) return;
-  traffic_.publish(published_);
-  published_at_ = Clock::now();
-}
-
-void TrafficSimulatorRos::runTicks() {
-  publishTick();
-  while (world_->snapshot().status == SessionStatus::kRunning) {
-    if (const auto ending = paced() ? waitUntilDue() : waitForTick()) {
-      ROS_ERROR_COND(ending->status == SessionStatus::kError, "%s: %s", ending->fault.source.c_str(),
-                     ending->fault.text.c_str());
-      world_->end(ending->status, ending->fault);
-    } else if (paced()) {
-      advancePaced();
-    } else {
-      advance();
-    }
-    publishTick();
-  }
-}
-
-void TrafficSimulatorRos::publishTick() {
-  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
-  msgs::TrafficSnapshot message = toMsg(snapshot);
-  message.late_answers = paced_answers_.late();
-  rosgraph_msgs::Clock clock;
-  clock.clock = message.header.stamp;
-  published_ = boost::make_shared<const msgs::TrafficSnapshot>(std::move(message));
-  clock_.publish(clock);
-  traffic_.publish(published_);
-  published_at_ = Clock::now();
-  display_.publish(snapshot);
-}
-
-std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() const {
-  std::vector<Missing> missing;
-  for (const std::string& topic : answers_.missing(*published_)) {
-    const std::string node = answererOf(topic, graph_);
-    missing.push_back({node, topic + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
-  }
-  for (const std::string& node : book_.notAcknowledged(published_->tick)) {
-    missing.push_back({node, node + "'s acknowledgement of tick " + std::to_string(published_->tick)});
-  }
-  return missing;
-}
-
-std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForTick() {
-  return waitFor([this] { return missingAtTick(); }, limits_.answer);
-}
-
-/// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
-std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
-  const scenario::ScenarioOptions& options = setup_->options();
-  const double due = (published_->time + options.simulation_step) / options.real_time_factor;
-  do {
-    if (const auto cause = disturbance()) return cause;
-    spin(std::clamp(due - secondsSince(begin_), 0.0, kSpinPeriod));
-  } while (secondsSince(begin_) < due);
-  const std::vector<std::string> behind = book_.notAcknowledged(published_->tick);
-  if (behind.empty() || published_->tick == 0) acknowledged_at_ = Clock::now();
-  if (secondsSince(acknowledged_at_) > limits_.answer) {
-    return ending(SessionStatus::kError, behind.front(),
-                  "no acknowledgement of a tick for " + core::formatNumber(limits_.answer) + " s");
-  }
-  return std::nullopt;
-}
-
-void TrafficSimulatorRos::recordFaults(const std::vector<Answer>& answers) {
-  std::string last;  // all CBVs share one planning call
-  for (const Answer& answer : answers) {
-    if (!answer.fault.empty() && answer.planner != last) world_->recordFault(answer.planner, answer.fault);
-    last = answer.planner;
-  }
-}
-
-void TrafficSimulatorRos::advance() {
-  if (!published_->decision_tick) {
-    world_->advance(nullptr, {});
-    return;
-  }
-  const std::vector<Answer> answers = answers_.answers(*published_);
-  recordFaults(answers);
-  const cbv::CbvSelection selection = fromMsg(*answers_.selection(published_->tick), setup_->network());
-  world_->advance(&selection, actionsOf(answers));
-  answers_.forgetBefore(published_->tick);
-}
-
-void TrafficSimulatorRos::advancePaced() {
-  if (published_->decision_tick) {
-    const std::string text = paced_answers_.countLate(published_->tick, answers_.missing(*published_));
-    if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
-  }
-  recordFaults(answers_.answers(*published_));
-  const TickAnswers::Selection message = paced_answers_.nextSelection(answers_);
-  const std::vector<planning::PlannedAction> actions = paced_answers_.actions(*published_, answers_);
-  if (message) {
-    const cbv::CbvSelection selection = fromMsg(*message, setup_->network());
-    world_->advance(&selection, actions);
-  } else {
-    world_->advance(nullptr, actions);
-  }
-  const auto kept = static_cast<std::uint64_t>(std::llround(2.0 / setup_->options().simulation_step));
-  if (published_->tick > kept) answers_.forgetBefore(published_->tick - kept);
 }
 
 void TrafficSimulatorRos::waitForObservers() {
@@ -297,7 +193,8 @@ void TrafficSimulatorRos::waitForObservers() {
 void TrafficSimulatorRos::writeResultAlone(const traffic::TrafficSnapshot& snapshot) {
   const std::string version = world_ ? world_->simulatorVersion() : "unknown";
   writeResult(*setup_, snapshot, {kDeployment, version, !paced()}, results_, secondsSince(begin_));
-  ROS_ERROR("The metrics node could not finish; a result with the last state alone is in %s", results_.c_str());
+  ROS_ERROR("The metrics node could not finish; a result with the last state alone is in %s",
+            results_.c_str());
 }
 
 int runTrafficSimulator(StopSignal& stop) {

@@ -5,11 +5,13 @@
 #include <libsumo/libtraci.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/simulation/driven_fleet.h"
+#include "e2e_cdiff/simulation/right_of_way.h"
 #include "e2e_cdiff/simulation/traffic_observer.h"
 
 namespace cdiff::simulation {
@@ -56,14 +58,17 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
                        "--time-to-teleport",
                        "-1",
                        "--lanechange.duration",
-                       getenv("LCD") ? getenv("LCD") : "3"};
-  if (getenv("LAT")) command.arguments.insert(command.arguments.end(), {"--lateral-resolution", getenv("LAT")});
+                       "3"};
   if (!session.demand_file.empty()) {
     command.arguments.insert(command.arguments.end(),
                              {"--route-files", session.demand_file.string()});
   }
   return command;
 }
+
+// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest deceleration, 8 right of way, 16 red lights.
+constexpr int kUsualSpeedMode = 31;
+constexpr int kDisregardRightOfWay = 23;
 
 }  // namespace
 
@@ -89,6 +94,7 @@ class SumoSimulator::Connection {
         link_(commandFor(options, session), options.step_timeout),
         fleet_(link_, graph_, options.match_threshold) {
     link_.guarded("start", [&] { observer_.start(session.lights_green); });
+    if (session.lights_green) right_of_way_.emplace(network, observer_.signals());
   }
 
   SumoLink& link() { return link_; }
@@ -138,6 +144,7 @@ class SumoSimulator::Connection {
       libtraci::Simulation::step();
       observer_.read();
       dropWaiting();
+      giveWay();
     });
     fresh_.clear();
   }
@@ -170,6 +177,22 @@ class SumoSimulator::Connection {
     if (observer_.find(vehicle.id) != nullptr) return;
     const traffic::VehicleDimensions dimensions = fleet_.dimensions(vehicle.id);
     addDriven(vehicle.id, dimensions, vehicle);
+  }
+
+  /// Where all lights are green, lets those go who would wait for each other for ever.
+  void giveWay() {
+    if (!right_of_way_) return;
+    const auto is_driven = [this](const std::string& id) { return fleet_.contains(id); };
+    const WayChanges changes = right_of_way_->update(observer_.vehicles(), is_driven, step_);
+    for (const WayChange& change : changes.vehicles) {
+      if (observer_.find(change.vehicle_id) == nullptr || fleet_.contains(change.vehicle_id)) continue;
+      libtraci::Vehicle::setSpeedMode(change.vehicle_id,
+                                      change.may_go ? kDisregardRightOfWay : kUsualSpeedMode);
+    }
+    for (const traffic::SignalState& signal : changes.signals) {
+      libtraci::TrafficLight::setRedYellowGreenState(signal.id, signal.state);
+      observer_.show(signal);
+    }
   }
 
   /// Background vehicles that found no room in the step just made are not tried again.
@@ -209,6 +232,7 @@ class SumoSimulator::Connection {
   SumoLink link_;
   TrafficObserver observer_;
   DrivenFleet fleet_;
+  std::optional<RightOfWay> right_of_way_;  ///< when all lights are green
   std::set<std::string> fresh_;       ///< added since the last step
   std::vector<std::string> waiting_;  ///< background vehicles added since the last step
   std::set<std::string> types_;

@@ -104,6 +104,12 @@ void TrafficObserver::read() {
   readSignals();
 }
 
+void TrafficObserver::show(const traffic::SignalState& changed) {
+  for (traffic::SignalState& signal : signals_) {
+    if (signal.id == changed.id) signal.state = changed.state;
+  }
+}
+
 void TrafficObserver::readSignals() {
   if (lights_green_) return;
   const libsumo::SubscriptionResults all = libtraci::TrafficLight::getAllSubscriptionResults();

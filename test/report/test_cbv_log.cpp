@@ -23,11 +23,13 @@ cbv::CbvSelection selection(std::uint64_t tick,
   return selection;
 }
 
-traffic::TrafficSnapshot snapshotWith(const std::vector<std::string>& ids) {
+traffic::TrafficSnapshot snapshotWith(const std::vector<std::string>& ids,
+                                      traffic::VehicleRole role = traffic::VehicleRole::kCbv) {
   traffic::TrafficSnapshot snapshot;
   for (const std::string& id : ids) {
     snapshot.vehicles.emplace_back();
     snapshot.vehicles.back().id = id;
+    snapshot.vehicles.back().role = role;
   }
   return snapshot;
 }
@@ -36,9 +38,10 @@ TEST(CbvLog, FollowsAStayFromSelectionToRelease) {
   CbvLog log;
   cbv::CbvAssignment a = assignment(0, "a", 2);
   a.conflict_point.ego_distance = 40.0;
-  log.observe(snapshotWith({"a"}), selection(2, {a}));
+  log.observe(snapshotWith({"a"}, traffic::VehicleRole::kBackground), selection(2, {a}));
   a.conflict_point.ego_distance = 30.0;  // as of a later decision: not recorded
   log.observe(snapshotWith({"a"}), selection(4, {a}));
+  log.observe(snapshotWith({"a"}), selection(5, {a}));
   log.observe(snapshotWith({}), selection(6, {a}));  // gone from the snapshot: not driven
   cbv::CbvSelection last = selection(8, {assignment(0, "b", 8)});
   last.released = {{0, "a", "contact"}};

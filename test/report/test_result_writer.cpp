@@ -85,7 +85,8 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   const Json& selection = summary["cbv"]["selections"][0];
   EXPECT_EQ(selection["vehicle_id"], "bg_1");
   EXPECT_DOUBLE_EQ(selection["selected_seconds"], 2.6);
-  EXPECT_EQ(selection["decisions_driven"], 35);  // ticks 52, 54 ... 120
+  EXPECT_EQ(selection["decisions_driven"], 34);  // ticks 54, 56 ... 120
+  EXPECT_EQ(summary["cbv"]["decisions"], 34);
   EXPECT_TRUE(selection["released_tick"].is_null());
   EXPECT_EQ(selection["release_reason"], "session_end");
   EXPECT_DOUBLE_EQ(selection["conflict_point"]["ego_distance_m"], 97.0 - 0.4 * 52.0);

@@ -25,7 +25,8 @@ struct CbvRecord {
   std::uint64_t selected_tick = 0;
   double interaction_score = 0.0;
   cbv::ConflictPoint conflict_point;  ///< as of the selection
-  std::size_t decisions_driven = 0;   ///< decisions at which it held the slot and was present
+  std::size_t decisions_driven =
+      0;  ///< decisions that found it driven as CBV: not yet that of its selection
   std::optional<std::uint64_t> released_tick;  ///< absent when the session ended first
   std::string release_reason = kSessionEnd;
   double route_length = 0.0;           ///< of the conflict-aware route [m]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick out.
+/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick
+/// out.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Which of the nodes that a publisher counts on are connected to it, by node name: `getNumSubscribers()` counts processes, whoever
-/// they are. Fed by roscpp's connection callbacks, in the thread that spins.
+/// Which of the nodes that a publisher counts on are connected to it, by node name:
+/// `getNumSubscribers()` counts processes, whoever they are. Fed by roscpp's connection callbacks,
+/// in the thread that spins.
 #pragma once
 
 #include <map>
@@ -33,8 +34,8 @@ class Connections {
 
   /// Advertises a topic and counts on `nodes` to listen. This object must outlive the publisher.
   template <class Message>
-  ::ros::Publisher advertise(::ros::NodeHandle& node_handle, const std::string& topic, const std::vector<std::string>& nodes,
-                             bool latch = false) {
+  ::ros::Publisher advertise(::ros::NodeHandle& node_handle, const std::string& topic,
+                             const std::vector<std::string>& nodes, bool latch = false) {
     expect(topic, nodes);
     const auto connect = [this, topic](const ::ros::SingleSubscriberPublisher& peer) {
       connected(topic, peer.getSubscriberName());
@@ -47,20 +48,23 @@ class Connections {
 
  private:
   static constexpr std::uint32_t kQueueSize = 1000;
-  std::map<std::pair<std::string, std::string>, int> counts_;  ///< connections per topic and node counted on
+  std::map<std::pair<std::string, std::string>, int>
+      counts_;  ///< connections per topic and node counted on
   std::vector<std::string> left_;
 };
 
 /// Name of a node without its namespace.
 std::string baseName(const std::string& node);
 
-/// Subscribes without delaying small messages (TCP_NODELAY); `callback` takes a shared pointer to a constant message.
+/// Subscribes without delaying small messages (TCP_NODELAY); `callback` takes a shared pointer to a
+/// constant message.
 template <class Message, class Callback>
-::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const std::string& topic, Callback callback) {
+::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const std::string& topic,
+                            Callback callback) {
   constexpr std::uint32_t kQueueSize = 1000;
   return node_handle.subscribe<Message>(
-      topic, kQueueSize, boost::function<void(const boost::shared_ptr<const Message>&)>(callback), {},
-      ::ros::TransportHints().tcpNoDelay());
+      topic, kQueueSize, boost::function<void(const boost::shared_ptr<const Message>&)>(callback),
+      {}, ::ros::TransportHints().tcpNoDelay());
 }
 
 }  // namespace cdiff::ros

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Between the core's value types and our messages, exact for every float64: `fromMsg(toMsg(x))` is x, bit by bit.
+/// Between the core's value types and our messages, exact for every float64: `fromMsg(toMsg(x))` is
+/// x, bit by bit.
 #pragma once
 
 #include <string>
@@ -40,21 +41,23 @@ traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message);
 
 /// How an action came about.
 struct ActionOrigin {
-  std::string planner;             ///< "ego:NAME" or "cbv:NAME"
-  double latency_ms = 0.0;         ///< wall time of the planning call [ms]
-  std::string fault;               ///< empty when none
+  std::string planner;      ///< "ego:NAME" or "cbv:NAME"
+  double latency_ms = 0.0;  ///< wall time of the planning call [ms]
+  std::string fault;        ///< empty when none
 };
 
 /// `snapshot` gives tick and stamp.
-msgs::ControlAction toMsg(const planning::PlannedAction& action, const traffic::TrafficSnapshot& snapshot,
-                          const ActionOrigin& origin);
+msgs::ControlAction toMsg(const planning::PlannedAction& action,
+                          const traffic::TrafficSnapshot& snapshot, const ActionOrigin& origin);
 /// Without rollout, which has a message of its own.
 planning::PlannedAction fromMsg(const msgs::ControlAction& message);
-msgs::Rollout toRolloutMsg(const planning::PlannedAction& action, const traffic::TrafficSnapshot& snapshot);
+msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
+                           const traffic::TrafficSnapshot& snapshot);
 std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message);
 
 /// Names lanes by their ids in `network`.
-msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time, const map::RoadNetwork& network);
+msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time,
+                         const map::RoadNetwork& network);
 /// Throws InputError for a lane that `network` does not have.
 cbv::CbvSelection fromMsg(const msgs::CbvSelection& message, const map::RoadNetwork& network);
 
@@ -69,7 +72,8 @@ std::vector<Eigen::Vector3d> routeFromMsg(const msgs::SessionInfo& message);
 nav_msgs::Path toPathMsg(const map::Route& route);
 std::vector<Eigen::Vector3d> fromMsg(const nav_msgs::Path& message);
 
-msgs::MetricReport toMsg(const metrics::TickMeasures& measures, const traffic::TrafficSnapshot& snapshot);
+msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
+                         const traffic::TrafficSnapshot& snapshot);
 /// All figures of a session, in a fixed order.
 std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures);
 

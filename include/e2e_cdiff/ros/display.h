@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What people and tools look at, besides the session's own messages: /ego/odometry and tf of ego and CBVs (`map` ->
-/// `<vehicle>/base_link`). Made only while somebody listens; nothing of the session is computed from it.
+/// What people and tools look at, besides the session's own messages: /ego/odometry and tf of ego
+/// and CBVs (`map` ->
+/// `<vehicle>/base_link`). Made only while somebody listens; nothing of the session is computed
+/// from it.
 #pragma once
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Metrics as a node: gathers each tick as one record, measures it live, and writes the result folder when the session ends. Shows the
-/// session in rviz and in /diagnostics on the side.
+/// Metrics as a node: gathers each tick as one record, measures it live, and writes the result
+/// folder when the session ends. Shows the session in rviz and in /diagnostics on the side.
 #pragma once
 
 #include <chrono>
@@ -30,8 +30,10 @@ class MetricsRos : public Participant {
  private:
   using Clock = std::chrono::steady_clock;
   void listenToAnswers();
-  void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection, const std::vector<Answer>& answers);
-  void publishReport(const traffic::TrafficSnapshot& snapshot, const metrics::TickMeasures& measures);
+  void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection,
+               const std::vector<Answer>& answers);
+  void publishReport(const traffic::TrafficSnapshot& snapshot,
+                     const metrics::TickMeasures& measures);
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
@@ -42,8 +44,8 @@ class MetricsRos : public Participant {
   std::unique_ptr<metrics::SessionMetrics> metrics_;
   TickAnswers answers_;
   SessionMarkers markers_;
-  traffic::TrafficSnapshot last_;               ///< last snapshot observed
-  std::optional<Clock::time_point> begin_;      ///< first snapshot
+  traffic::TrafficSnapshot last_;           ///< last snapshot observed
+  std::optional<Clock::time_point> begin_;  ///< first snapshot
   double slowest_planner_ms_ = 0.0;
   std::string slowest_planner_;
   ::ros::Publisher reports_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the main functions of the nodes share: signals, ROS, and errors as one line and an exit code (as `cdiff`: 2 run time, 3 bad input).
+/// What the main functions of the nodes share: signals, ROS, and errors as one line and an exit
+/// code (as `cdiff`: 2 run time, 3 bad input).
 #pragma once
 
 #include <functional>

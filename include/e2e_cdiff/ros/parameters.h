@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A node's private parameters as texts, through one gate: a parameter that the node does not know is an error, and an empty text
-/// means "not given".
+/// A node's private parameters as texts, through one gate: a parameter that the node does not know
+/// is an error, and an empty text means "not given".
 #pragma once
 
 #include <map>
@@ -15,7 +15,8 @@ namespace cdiff::ros {
 class Parameters {
  public:
   explicit Parameters(std::map<std::string, std::string> values) : values_(std::move(values)) {}
-  /// The private parameters of this node. Throws InputError for a parameter that is neither text, number nor flag.
+  /// The private parameters of this node. Throws InputError for a parameter that is neither text,
+  /// number nor flag.
   static Parameters ofThisNode();
 
   /// Throws InputError naming the unknown parameter and the nearest known one.
@@ -31,8 +32,8 @@ class Parameters {
   std::map<std::string, std::string> values_;
 };
 
-/// The session that the parameters scenario, bench2drive, route, network, mode, ego_planner, cbv_planner, seed and set ask for;
-/// crossing_left_turn when they name none.
+/// The session that the parameters scenario, bench2drive, route, network, mode, ego_planner,
+/// cbv_planner, seed and set ask for; crossing_left_turn when they name none.
 scenario::SessionRequest sessionRequest(const Parameters& parameters);
 
 }  // namespace cdiff::ros

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What every node but the traffic simulator has in common: it waits for the session, reports when it is connected both ways, handles
-/// snapshots tick by tick in one thread, and leaves in order with the last one, whoever ends the session.
+/// What every node but the traffic simulator has in common: it waits for the session, reports when
+/// it is connected both ways, handles snapshots tick by tick in one thread, and leaves in order
+/// with the last one, whoever ends the session.
 #pragma once
 
 #include <deque>
@@ -39,7 +40,8 @@ class Participant {
   virtual void begin(const ::e2e_cdiff::SessionInfo& info) = 0;
   /// What is missing besides connections before the first tick; empty when nothing is.
   virtual std::string waitingFor() const { return {}; }
-  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot is there, nothing more will come.
+  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
+  /// is there, nothing more will come.
   virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
   /// The session is over; answers the exit code.
   virtual int conclude(Ending ending) = 0;
@@ -81,7 +83,7 @@ class Participant {
   std::vector<::ros::Subscriber> inputs_;
   ::e2e_cdiff::SessionInfo::ConstPtr session_;
   std::deque<Snapshot> snapshots_;
-  std::uint64_t next_tick_ = 0;   ///< snapshots before it were seen
+  std::uint64_t next_tick_ = 0;  ///< snapshots before it were seen
   bool final_handled_ = false;
 };
 

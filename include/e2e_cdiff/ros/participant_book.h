@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last tick acknowledged, finished, in error.
+/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
+/// tick acknowledged, finished, in error.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,8 @@ class ParticipantBook {
   /// Messages of nodes that the session does not count on are ignored.
   void note(const ::e2e_cdiff::TickAck& message);
 
-  /// "node: what it waits for" for each node that is not ready.
+  /// A text for each node that is not ready, beginning with its name; those that were never heard
+  /// first.
   std::vector<std::string> notReady() const;
   /// Observers that have not acknowledged this tick.
   std::vector<std::string> notAcknowledged(std::uint64_t tick) const;
@@ -39,7 +41,7 @@ class ParticipantBook {
   struct Entry {
     bool ready = false;
     bool finished = false;
-    std::string waiting_for = "it has not started yet";
+    std::string waiting_for;  ///< empty until the node has been heard
     std::optional<std::uint64_t> acknowledged;
   };
   std::map<std::string, Entry> entries_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Planners as nodes: one for the ego, one for all CBVs, each asking its planner exactly as the closed loop in one process does.
+/// Planners as nodes: one for the ego, one for all CBVs, each asking its planner exactly as the
+/// closed loop in one process does.
 #pragma once
 
 #include <map>
@@ -32,7 +33,8 @@ class EgoPlannerRos : public Participant {
   ::ros::Publisher controls_;
 };
 
-/// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in, cbv_K/control and cbv_K/rollout out.
+/// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in,
+/// cbv_K/control and cbv_K/rollout out.
 class CbvPlannerRos : public Participant {
  public:
   using Participant::Participant;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The recorder as a node: takes part in the lockstep and writes every tick of the session, in a fixed order and with simulated stamps,
-/// to session.bag in the result folder. While it writes, the file is called session.bag.active.
+/// The recorder as a node: takes part in the lockstep and writes every tick of the session, in a
+/// fixed order and with simulated stamps, to session.bag in the result folder. While it writes, the
+/// file is called session.bag.active.
 #pragma once
 
 #include <filesystem>
@@ -37,8 +38,9 @@ class RecorderRos : public Participant {
   rosbag::Bag bag_;
   TickAnswers answers_;
   nav_msgs::Path::ConstPtr route_;
-  std::map<std::uint64_t, ::e2e_cdiff::MetricReport::ConstPtr> reports_;                 ///< by tick
-  std::map<std::uint64_t, std::map<int, ::e2e_cdiff::Rollout::ConstPtr>> rollouts_;      ///< by tick, then slot
+  std::map<std::uint64_t, ::e2e_cdiff::MetricReport::ConstPtr> reports_;  ///< by tick
+  std::map<std::uint64_t, std::map<int, ::e2e_cdiff::Rollout::ConstPtr>>
+      rollouts_;  ///< by tick, then slot
   ::ros::WallTime waiting_since_;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Collects what the other nodes answer to a tick (selection and controls), whatever the order of arrival, and says what is still
-/// missing. The traffic simulator, the metrics and the recorder wait by the same rule.
+/// Collects what the other nodes answer to a tick (selection and controls), whatever the order of
+/// arrival, and says what is still missing. The traffic simulator, the metrics and the recorder
+/// wait by the same rule.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +21,9 @@ namespace cdiff::ros {
 /// A planner's answer for one vehicle.
 struct Answer {
   planning::PlannedAction action;
-  std::string planner;        ///< "ego:NAME" or "cbv:NAME"
+  std::string planner;  ///< "ego:NAME" or "cbv:NAME"
   double latency_ms = 0.0;
-  std::string fault;          ///< empty when none
+  std::string fault;  ///< empty when none
 };
 
 /// The actions alone.
@@ -39,7 +40,8 @@ class TickAnswers {
   explicit TickAnswers(double simulation_step = 0.05) : simulation_step_(simulation_step) {}
 
   void add(const Selection& selection);
-  /// A control that carries a stamp but no tick counts for the tick of its stamp; one with neither for `otherwise`.
+  /// A control that carries a stamp but no tick counts for the tick of its stamp; one with neither
+  /// for `otherwise`.
   void addEgo(const Control& control, std::uint64_t otherwise = 0);
   void addCbv(int slot, const Control& control);
 
@@ -49,14 +51,16 @@ class TickAnswers {
   Selection selection(std::uint64_t tick) const;
   Control ego(std::uint64_t tick) const;
   Control cbv(int slot, std::uint64_t tick) const;
-  /// Answers of planners to a decision: the ego's, then those of assigned CBVs by slot; those that are missing are left out.
+  /// Answers of planners to a decision: the ego's, then those of assigned CBVs by slot; those that
+  /// are missing are left out.
   std::vector<Answer> answers(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   /// A control and the tick that it answers.
   struct TimedControl {
     std::uint64_t tick = 0;
     Control control;
   };
-  /// The newest control of a slot (-1: ego) for that vehicle, up to `tick`; without control when there is none.
+  /// The newest control of a slot (-1: ego) for that vehicle, up to `tick`; without control when
+  /// there is none.
   TimedControl newest(int slot, const std::string& vehicle_id, std::uint64_t tick) const;
   /// The oldest selection after a tick; nullptr when there is none.
   Selection selectionAfter(std::uint64_t tick) const;

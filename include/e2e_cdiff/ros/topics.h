@@ -17,16 +17,16 @@ inline constexpr const char* kMetricsNode = "metrics_node";
 inline constexpr const char* kRecorderNode = "recorder_node";
 
 // Topics, relative to the session's namespace.
-inline constexpr const char* kSessionTopic = "session";            ///< SessionInfo, latched
-inline constexpr const char* kTrafficTopic = "traffic";            ///< TrafficSnapshot, every tick
-inline constexpr const char* kEgoRouteTopic = "ego/route";         ///< nav_msgs/Path, latched
-inline constexpr const char* kEgoOdometryTopic = "ego/odometry";   ///< nav_msgs/Odometry
-inline constexpr const char* kEgoControlTopic = "ego/control";     ///< ControlAction
-inline constexpr const char* kSelectionTopic = "cbv/selection";    ///< CbvSelection
-inline constexpr const char* kMetricsTopic = "metrics";            ///< MetricReport
-inline constexpr const char* kTickAckTopic = "tick_ack";           ///< TickAck
-inline constexpr const char* kMarkersTopic = "markers";            ///< visualization_msgs/MarkerArray
-inline constexpr const char* kMapMarkersTopic = "markers/map";     ///< the same, latched
+inline constexpr const char* kSessionTopic = "session";           ///< SessionInfo, latched
+inline constexpr const char* kTrafficTopic = "traffic";           ///< TrafficSnapshot, every tick
+inline constexpr const char* kEgoRouteTopic = "ego/route";        ///< nav_msgs/Path, latched
+inline constexpr const char* kEgoOdometryTopic = "ego/odometry";  ///< nav_msgs/Odometry
+inline constexpr const char* kEgoControlTopic = "ego/control";    ///< ControlAction
+inline constexpr const char* kSelectionTopic = "cbv/selection";   ///< CbvSelection
+inline constexpr const char* kMetricsTopic = "metrics";           ///< MetricReport
+inline constexpr const char* kTickAckTopic = "tick_ack";          ///< TickAck
+inline constexpr const char* kMarkersTopic = "markers";         ///< visualization_msgs/MarkerArray
+inline constexpr const char* kMapMarkersTopic = "markers/map";  ///< the same, latched
 /// ControlAction of a slot.
 std::string cbvControlTopic(int slot);
 /// Rollout of a slot.
@@ -41,10 +41,12 @@ struct SessionGraph {
   bool has(const std::string& node) const;
 };
 
-/// Nodes that listen to a topic in this session, by name; a publisher waits for them before the first tick.
+/// Nodes that listen to a topic in this session, by name; a publisher waits for them before the
+/// first tick.
 std::vector<std::string> listeners(const std::string& topic, const SessionGraph& graph);
 
-/// Who answers on a topic, for messages to people: "cbv_planner_node", or the user's own ego planner.
+/// Who answers on a topic, for messages to people: "cbv_planner_node", or the user's own ego
+/// planner.
 std::string answererOf(const std::string& topic, const SessionGraph& graph);
 
 /// Whether a node acknowledges every tick (metrics and recorder do).

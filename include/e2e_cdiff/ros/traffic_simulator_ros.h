@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The traffic simulator as a node: owns the world and the clock, publishes each tick and waits for every answer and acknowledgement
-/// that the tick needs before the world goes on.
+/// The traffic simulator as a node: owns the world and the clock, publishes each tick and waits for
+/// every answer and acknowledgement that the tick needs before the world goes on.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,8 @@ namespace cdiff::ros {
 
 /// Wall-clock limits [s].
 struct SimulatorLimits {
-  double start = 30.0;    ///< until every node is connected both ways
-  double answer = 30.0;   ///< for the answers to a tick
+  double start = 30.0;   ///< until every node is connected both ways
+  double answer = 30.0;  ///< for the answers to a tick
 };
 
 class TrafficSimulatorRos {
@@ -64,7 +64,8 @@ class TrafficSimulatorRos {
   std::optional<Ending> waitUntilDue();
   std::optional<Ending> waitFor(const MissingNow& missing_now, double seconds);
   std::optional<Ending> disturbance();
-  Ending ending(traffic::SessionStatus status, const std::string& source, const std::string& text) const;
+  Ending ending(traffic::SessionStatus status, const std::string& source,
+                const std::string& text) const;
   void advance();
   void advancePaced();
   void recordFaults(const std::vector<Answer>& answers);
@@ -96,11 +97,11 @@ class TrafficSimulatorRos {
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
   Clock::time_point begin_;
   Clock::time_point published_at_;
-  Clock::time_point acknowledged_at_;   ///< last time that every observer was up to date
+  Clock::time_point acknowledged_at_;  ///< last time that every observer was up to date
 };
 
-/// Runs the session that the node's parameters ask for; bad input is told in one line, and in the exit code's file where the result
-/// folder was given.
+/// Runs the session that the node's parameters ask for; bad input is told in one line, and in the
+/// exit code's file where the result folder was given.
 int runTrafficSimulator(StopSignal& stop);
 
 }  // namespace cdiff::ros

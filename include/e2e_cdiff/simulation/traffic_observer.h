@@ -21,6 +21,8 @@ class TrafficObserver {
   /// Subscribes to a vehicle that SUMO does not report as departed: one that is moved from its
   /// first step on.
   void watch(const std::string& id) { waiting_.push_back(id); }
+  /// A light was changed by us.
+  void show(const traffic::SignalState& signal);
   /// Reads the results of the step that was made.
   void read();
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// The ticks of a session: publish, wait, advance.
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/traffic_simulator_ros.h"
+#include "rosgraph_msgs/Clock.h"
+#include "spinning.h"
+
+namespace cdiff::ros {
+namespace {
+
+using traffic::SessionStatus;
+
+constexpr double kSendAgainAfter =
+    1.0;  // [s] of wall time without an answer of an external ego planner
+
+}  // namespace
+
+/// A node of the user may connect while the first snapshot is sent; it gets the same snapshot
+/// again.
+void TrafficSimulatorRos::sendAgainForLateListener() {
+  if (!graph_.external_ego || !published_ || secondsSince(published_at_) < kSendAgainAfter) return;
+  if (answers_.ego(published_->tick)) return;
+  traffic_.publish(published_);
+  published_at_ = Clock::now();
+}
+
+void TrafficSimulatorRos::runTicks() {
+  publishTick();
+  while (world_->snapshot().status == SessionStatus::kRunning) {
+    if (const auto ending = paced() ? waitUntilDue() : waitForTick()) {
+      ROS_ERROR_COND(ending->status == SessionStatus::kError, "%s: %s",
+                     ending->fault.source.c_str(), ending->fault.text.c_str());
+      world_->end(ending->status, ending->fault);
+    } else if (paced()) {
+      advancePaced();
+    } else {
+      advance();
+    }
+    publishTick();
+  }
+}
+
+void TrafficSimulatorRos::publishTick() {
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  msgs::TrafficSnapshot message = toMsg(snapshot);
+  message.late_answers = paced_answers_.late();
+  rosgraph_msgs::Clock clock;
+  clock.clock = message.header.stamp;
+  published_ = boost::make_shared<const msgs::TrafficSnapshot>(std::move(message));
+  clock_.publish(clock);
+  traffic_.publish(published_);
+  published_at_ = Clock::now();
+  display_.publish(snapshot);
+}
+
+std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() const {
+  std::vector<Missing> missing;
+  for (const std::string& topic : answers_.missing(*published_)) {
+    const std::string node = answererOf(topic, graph_);
+    missing.push_back(
+        {node, topic + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
+  }
+  for (const std::string& node : book_.notAcknowledged(published_->tick)) {
+    missing.push_back(
+        {node, node + "'s acknowledgement of tick " + std::to_string(published_->tick)});
+  }
+  return missing;
+}
+
+std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForTick() {
+  return waitFor([this] { return missingAtTick(); }, limits_.answer);
+}
+
+/// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
+std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
+  const scenario::ScenarioOptions& options = setup_->options();
+  const double due = (published_->time + options.simulation_step) / options.real_time_factor;
+  do {
+    if (const auto cause = disturbance()) return cause;
+    spin(std::clamp(due - secondsSince(begin_), 0.0, kSpinPeriod));
+  } while (secondsSince(begin_) < due);
+  const std::vector<std::string> behind = book_.notAcknowledged(published_->tick);
+  if (behind.empty() || published_->tick == 0) acknowledged_at_ = Clock::now();
+  if (secondsSince(acknowledged_at_) > limits_.answer) {
+    return ending(SessionStatus::kError, behind.front(),
+                  "no acknowledgement of a tick for " + core::formatNumber(limits_.answer) + " s");
+  }
+  return std::nullopt;
+}
+
+void TrafficSimulatorRos::recordFaults(const std::vector<Answer>& answers) {
+  std::string last;  // all CBVs share one planning call
+  for (const Answer& answer : answers) {
+    if (!answer.fault.empty() && answer.planner != last)
+      world_->recordFault(answer.planner, answer.fault);
+    last = answer.planner;
+  }
+}
+
+void TrafficSimulatorRos::advance() {
+  if (!published_->decision_tick) {
+    world_->advance(nullptr, {});
+    return;
+  }
+  const std::vector<Answer> answers = answers_.answers(*published_);
+  recordFaults(answers);
+  const cbv::CbvSelection selection =
+      fromMsg(*answers_.selection(published_->tick), setup_->network());
+  world_->advance(&selection, actionsOf(answers));
+  answers_.forgetBefore(published_->tick);
+}
+
+void TrafficSimulatorRos::advancePaced() {
+  if (published_->decision_tick) {
+    const std::string text =
+        paced_answers_.countLate(published_->tick, answers_.missing(*published_));
+    if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
+  }
+  recordFaults(answers_.answers(*published_));
+  const TickAnswers::Selection message = paced_answers_.nextSelection(answers_);
+  const std::vector<planning::PlannedAction> actions =
+      paced_answers_.actions(*published_, answers_);
+  if (message) {
+    const cbv::CbvSelection selection = fromMsg(*message, setup_->network());
+    world_->advance(&selection, actions);
+  } else {
+    world_->advance(nullptr, actions);
+  }
+  const auto kept =
+      static_cast<std::uint64_t>(std::llround(2.0 / setup_->options().simulation_step));
+  if (published_->tick > kept) answers_.forgetBefore(published_->tick - kept);
+}
+
+}  // namespace cdiff::ros

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "fake_simulator.h"
+
+#include <algorithm>
+
+namespace cdiff::test {
+
+using namespace ros;  // NOLINT: a test of that layer
+
+FakeSimulator::FakeSimulator(const std::string& node, const std::filesystem::path& results)
+    : setup_(scenario::loadScenario("crossing_left_turn")),
+      graph_{{node}, static_cast<int>(setup_.options().max_cbv), false} {
+  listen();
+  answerForOthers(node);
+  publishSession(node, results);
+}
+
+void FakeSimulator::publishSession(const std::string& node, const std::filesystem::path& results) {
+  session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
+                                                       listeners(kSessionTopic, graph_), true);
+  route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
+                                                  listeners(kEgoRouteTopic, graph_), true);
+  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
+                                                           listeners(kTrafficTopic, graph_));
+  msgs::SessionInfo info = toMsg(setup_);
+  info.participants = {node};
+  info.results_folder = results.string();
+  info.deployment = "test";
+  info.simulator_version = "none";
+  session_.publish(info);
+  route_.publish(toPathMsg(setup_.egoRoute()));
+}
+
+void FakeSimulator::answerForOthers(const std::string& node) {
+  const auto offer = [this](const std::string& topic, auto message) {
+    others_[topic] =
+        connections_.advertise<decltype(message)>(node_, topic, listeners(topic, graph_));
+  };
+  if (node != kCbvIdentificationNode) offer(kSelectionTopic, msgs::CbvSelection());
+  if (node != kEgoPlannerNode) offer(kEgoControlTopic, msgs::ControlAction());
+  if (node == kCbvPlannerNode) return;
+  for (int slot = 0; slot < graph_.max_cbv; ++slot) {
+    offer(cbvControlTopic(slot), msgs::ControlAction());
+    offer(cbvRolloutTopic(slot), msgs::Rollout());
+  }
+}
+
+void FakeSimulator::listen() {
+  inputs_ = {subscribe<msgs::TickAck>(node_, kTickAckTopic,
+                                      [this](const auto& ack) { acks_.push_back(*ack); }),
+             subscribe<msgs::CbvSelection>(node_, kSelectionTopic,
+                                           [this](const auto& m) { selections[m->tick] = m; }),
+             subscribe<msgs::ControlAction>(node_, kEgoControlTopic,
+                                            [this](const auto& m) { ego_controls[m->tick] = m; }),
+             subscribe<msgs::ControlAction>(node_, cbvControlTopic(0),
+                                            [this](const auto& m) { cbv_controls[m->tick] = m; }),
+             subscribe<msgs::ControlAction>(node_, cbvControlTopic(1), [](const auto&) {}),
+             subscribe<msgs::Rollout>(node_, cbvRolloutTopic(0),
+                                      [this](const auto& m) { rollouts[m->tick] = m; }),
+             subscribe<msgs::MetricReport>(node_, kMetricsTopic,
+                                           [this](const auto& m) { reports[m->tick] = m; })};
+}
+
+bool FakeSimulator::ready() {
+  return until(
+      [this] { return connections_.missing().empty() && acknowledged(msgs::TickAck::READY, 0); });
+}
+
+bool FakeSimulator::acknowledged(std::uint8_t kind, std::uint64_t tick) const {
+  return std::any_of(acks_.begin(), acks_.end(), [&](const msgs::TickAck& ack) {
+    return ack.kind == kind && ack.tick == tick;
+  });
+}
+
+traffic::TrafficSnapshot FakeSimulator::snapshot(std::uint64_t tick) const {
+  const geometry::Polyline& path = setup_.egoRoute().path();
+  traffic::TrafficSnapshot snapshot;
+  snapshot.tick = tick;
+  snapshot.time = static_cast<double>(tick) * setup_.options().simulation_step;
+  snapshot.decision_tick = tick % setup_.ticksPerDecision() == 0;
+  for (const double arc_length : {0.0, 30.0}) {
+    const bool ego = arc_length == 0.0;
+    traffic::Vehicle vehicle;
+    vehicle.id = ego ? "ego" : "bg_0";
+    vehicle.role = ego ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kBackground;
+    vehicle.state = {path.positionAt(arc_length), path.pointAt(arc_length).z(),
+                     path.headingAt(arc_length), 5.0};
+    snapshot.vehicles.push_back(vehicle);
+  }
+  return snapshot;
+}
+
+cbv::CbvSelection FakeSimulator::selection(std::uint64_t tick) const {
+  cbv::CbvSelection selection;
+  selection.tick = tick;
+  selection.assignments.resize(1);
+  selection.assignments[0].vehicle_id = "bg_0";
+  selection.assignments[0].conflict_aware_route = setup_.egoRoute();
+  return selection;
+}
+
+void FakeSimulator::publishSelection(const traffic::TrafficSnapshot& snapshot) {
+  others_.at(kSelectionTopic)
+      .publish(toMsg(selection(snapshot.tick), snapshot.time, setup_.network()));
+}
+
+void FakeSimulator::answer(const traffic::TrafficSnapshot& snapshot) {
+  const planning::PlannedAction cbv{0, "bg_0", {0.2, 0.0, 0.0}, {}};
+  others_.at(cbvControlTopic(0)).publish(toMsg(cbv, snapshot, {"cbv:test", 2.0, {}}));
+  others_.at(cbvRolloutTopic(0)).publish(toRolloutMsg(cbv, snapshot));
+  others_.at(kEgoControlTopic)
+      .publish(toMsg(planning::PlannedAction{-1, "ego", {0.3, 0.0, 0.0}, {}}, snapshot,
+                     {"ego:test", 1.0, {}}));
+  publishSelection(snapshot);
+}
+
+}  // namespace cdiff::test

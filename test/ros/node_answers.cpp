@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// One test per node; each .test file starts that node and runs its test. What is expected is the
+// node's contract in the lockstep: an answer that carries the tick, and for observers an
+// acknowledgement of every tick and whole files at the end.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "e2e_cdiff/core/file.h"
+#include "fake_simulator.h"
+#include "rosbag/bag.h"
+#include "rosbag/view.h"
+
+namespace cdiff {
+namespace {
+
+namespace fs = std::filesystem;
+using ros::msgs::TickAck;
+using test::FakeSimulator;
+
+fs::path resultFolder() {
+  const fs::path folder =
+      fs::temp_directory_path() / ("e2e_cdiff_node_test_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  return folder;
+}
+
+/// Ticks 0, 1 and 2 as in lockstep, then the last snapshot, completed.
+void runObserver(FakeSimulator& simulator) {
+  ASSERT_TRUE(simulator.ready());
+  for (std::uint64_t tick = 0; tick < 4; ++tick) {
+    traffic::TrafficSnapshot snapshot = simulator.snapshot(tick);
+    if (tick == 3) snapshot.status = traffic::SessionStatus::kCompleted;
+    simulator.publish(snapshot);
+    if (snapshot.decision_tick) simulator.answer(snapshot);
+    // The recorder waits for the metrics node's report only where that node takes part; here it
+    // does not.
+    ASSERT_TRUE(simulator.until([&] {
+      return simulator.acknowledged(TickAck::ACKNOWLEDGED, tick);
+    })) << tick;
+  }
+  ASSERT_TRUE(simulator.until([&] { return simulator.acknowledged(TickAck::FINISHED, 3); }));
+}
+
+TEST(CbvIdentification, SelectsAtDecisionTicksOnly) {
+  FakeSimulator simulator(ros::kCbvIdentificationNode, resultFolder());
+  ASSERT_TRUE(simulator.ready());
+  for (std::uint64_t tick = 0; tick <= 2; ++tick) simulator.publish(simulator.snapshot(tick));
+  ASSERT_TRUE(simulator.until([&] { return simulator.selections.count(2) > 0; }));
+  EXPECT_EQ(simulator.selections.count(0), 1U);
+  EXPECT_EQ(simulator.selections.count(1), 0U);
+  EXPECT_EQ(simulator.selections.at(2)->header.stamp, ros::toStamp(0.1));
+}
+
+TEST(EgoPlanner, DrivesTheEgoAtDecisionTicks) {
+  FakeSimulator simulator(ros::kEgoPlannerNode, resultFolder());
+  ASSERT_TRUE(simulator.ready());
+  for (std::uint64_t tick = 0; tick <= 2; ++tick) simulator.publish(simulator.snapshot(tick));
+  ASSERT_TRUE(simulator.until([&] { return simulator.ego_controls.count(2) > 0; }));
+  EXPECT_EQ(simulator.ego_controls.count(1), 0U);
+  const ros::msgs::ControlAction& control = *simulator.ego_controls.at(2);
+  EXPECT_EQ(control.slot, -1);
+  EXPECT_EQ(control.vehicle_id, "ego");
+  EXPECT_EQ(control.planner, "ego:pdm_lite");
+  EXPECT_EQ(control.fault, "");
+  EXPECT_TRUE(ros::fromMsg(control).action.valid());
+}
+
+TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
+  FakeSimulator simulator(ros::kCbvPlannerNode, resultFolder());
+  ASSERT_TRUE(simulator.ready());
+  const traffic::TrafficSnapshot snapshot = simulator.snapshot(0);
+  simulator.publish(snapshot);
+  const ::ros::WallTime wait = ::ros::WallTime::now() + ::ros::WallDuration(0.3);
+  EXPECT_FALSE(simulator.until([&] { return ::ros::WallTime::now() > wait; }) &&
+               !simulator.cbv_controls.empty());
+  simulator.publishSelection(snapshot);
+  ASSERT_TRUE(simulator.until(
+      [&] { return !simulator.cbv_controls.empty() && !simulator.rollouts.empty(); }));
+  const ros::msgs::ControlAction& control = *simulator.cbv_controls.at(0);
+  EXPECT_EQ(control.slot, 0);
+  EXPECT_EQ(control.vehicle_id, "bg_0");
+  EXPECT_EQ(control.planner, "cbv:pdm_lite");
+  EXPECT_EQ(control.fault, "");
+  EXPECT_EQ(simulator.rollouts.at(0)->vehicle_id, "bg_0");
+}
+
+TEST(Metrics, AcknowledgesEveryTickAndWritesTheResult) {
+  const fs::path folder = resultFolder();
+  FakeSimulator simulator(ros::kMetricsNode, folder);
+  runObserver(simulator);
+  EXPECT_EQ(core::readFile(folder / "exit_code", "exit code"), "0\n");
+  const std::string summary = core::readFile(folder / "summary.json", "summary");
+  EXPECT_NE(summary.find("\"status\": \"completed\""), std::string::npos) << summary;
+  EXPECT_NE(summary.find("\"ego:test\""), std::string::npos) << summary;
+  const std::string trace = core::readFile(folder / "trace.csv", "trace");
+  EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'),
+            1 + 4 * 2);  // header, then two vehicles at four ticks
+  ASSERT_EQ(simulator.reports.count(3), 1U);
+  EXPECT_TRUE(simulator.reports.at(3)->final);
+  EXPECT_FALSE(simulator.reports.at(3)->measures.empty());
+}
+
+TEST(Recorder, BagHoldsEveryTickInOrder) {
+  const fs::path folder = resultFolder();
+  FakeSimulator simulator(ros::kRecorderNode, folder);
+  runObserver(simulator);
+  EXPECT_FALSE(fs::exists(folder / "session.bag.active"));
+  rosbag::Bag bag((folder / "session.bag").string(), rosbag::bagmode::Read);
+  std::map<std::string, int> counts;
+  std::uint64_t next_tick = 0;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    ++counts[message.getTopic()];
+    const auto snapshot = message.instantiate<ros::msgs::TrafficSnapshot>();
+    if (!snapshot) continue;
+    EXPECT_EQ(snapshot->tick, next_tick++);
+  }
+  // Decisions at ticks 0 and 2.
+  const std::map<std::string, int> expected = {
+      {"/session", 1},       {"/ego/route", 1},    {"/traffic", 4},
+      {"/cbv/selection", 2}, {"/ego/control", 2},  {"/cbv_0/control", 2},
+      {"/cbv_0/rollout", 2}, {"/ego/odometry", 2}, {"/tf", 2}};
+  EXPECT_EQ(counts, expected);
+}
+
+}  // namespace
+}  // namespace cdiff
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "traffic_simulator_node");
+  ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/paced_answers.h"
+#include "e2e_cdiff/ros/participant_book.h"
+#include "e2e_cdiff/ros/tick_answers.h"
+#include "e2e_cdiff/ros/topics.h"
+#include "sample_messages.h"
+
+namespace cdiff::ros {
+namespace {
+
+using Texts = std::vector<std::string>;
+using test::controlFor;
+using test::selectionFor;
+
+TEST(TickAnswers, NothingIsMissingBetweenDecisions) {
+  msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(3));
+  snapshot.decision_tick = false;
+  EXPECT_EQ(TickAnswers().missing(snapshot), Texts());
+}
+
+TEST(TickAnswers, WhatIsMissingDependsOnTheSelection) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  TickAnswers answers;
+  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv/selection"}));
+  answers.add(selectionFor(4, 1, "bg_7"));
+  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv_1/control"}));
+  answers.addCbv(1, controlFor(2, 1, "bg_7"));  // of another tick
+  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv_1/control"}));
+  answers.addCbv(1, controlFor(4, 1, "bg_7"));
+  answers.addEgo(controlFor(4, -1, "ego"));
+  EXPECT_EQ(answers.missing(snapshot), Texts());
+}
+
+TEST(TickAnswers, AssignedVehicleThatIsGoneIsNotWaitedFor) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  TickAnswers answers;
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add(selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(answers.missing(snapshot), Texts());
+}
+
+TEST(TickAnswers, EgoComesFirstWhateverTheOrderOfArrival) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  TickAnswers answers;
+  answers.addCbv(1, controlFor(4, 1, "bg_7"));
+  answers.add(selectionFor(4, 1, "bg_7"));
+  answers.addEgo(controlFor(4, -1, "ego"));
+  const std::vector<Answer> all = answers.answers(snapshot);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].action.vehicle_id, "ego");
+  EXPECT_EQ(all[1].action.vehicle_id, "bg_7");
+  const auto latencies = latenciesOf(all);
+  ASSERT_EQ(latencies.size(), 2U);
+  EXPECT_EQ(latencies[1].planner, "cbv:sample");
+}
+
+TEST(TickAnswers, ExternalEgoMayGiveItsStampAloneAndNoName) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  auto control = boost::make_shared<msgs::ControlAction>();
+  control->header.stamp = ::ros::Time(0.2);  // tick 4 of 0.05 s
+  control->throttle = 0.5;
+  TickAnswers answers;
+  answers.addEgo(control);
+  answers.add(selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(answers.missing(snapshot), Texts());
+  const std::vector<Answer> all = answers.answers(snapshot);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].action.slot, -1);
+  EXPECT_EQ(all[0].action.vehicle_id, "ego");
+  EXPECT_EQ(all[0].planner, "ego:external");
+}
+
+TEST(TickAnswers, ForgetsOlderTicksOnly) {
+  TickAnswers answers;
+  answers.addEgo(controlFor(2, -1, "ego"));
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.forgetBefore(4);
+  EXPECT_EQ(answers.ego(2), nullptr);
+  EXPECT_NE(answers.ego(4), nullptr);
+}
+
+TEST(PacedAnswers, HoldsTheNewestActionForHalfASecondThenBrakes) {
+  TickAnswers answers;
+  answers.addEgo(controlFor(4, -1, "ego"));
+  const PacedAnswers paced(0.05);
+  const auto at = [&](std::uint64_t tick) {
+    return paced.actions(toMsg(test::sampleSnapshot(tick)), answers);
+  };
+  ASSERT_EQ(at(14).size(), 1U);  // (14 - 4) x 0.05 s = 0.5 s old: still held
+  EXPECT_EQ(at(14)[0].action.throttle, 0.25);
+  ASSERT_EQ(at(15).size(), 1U);  // 0.55 s old
+  EXPECT_EQ(at(15)[0].action, traffic::ControlAction::failSafe());
+}
+
+TEST(PacedAnswers, GivesEverySelectionOutOnceInOrder) {
+  TickAnswers answers;
+  PacedAnswers paced(0.05);
+  EXPECT_EQ(paced.nextSelection(answers), nullptr);
+  answers.add(selectionFor(0, 0, "a"));
+  answers.add(selectionFor(2, 0, "b"));
+  EXPECT_EQ(paced.nextSelection(answers)->tick, 0U);
+  EXPECT_EQ(paced.nextSelection(answers)->tick, 2U);
+  EXPECT_EQ(paced.nextSelection(answers), nullptr);
+}
+
+TEST(PacedAnswers, CountsEveryLateAnswerAndTellsWhenLatenessBegins) {
+  PacedAnswers paced(0.05);
+  EXPECT_EQ(paced.countLate(0, {}), "");
+  EXPECT_NE(paced.countLate(2, {"ego/control", "cbv/selection"}).find("ego/control"),
+            std::string::npos);
+  EXPECT_EQ(paced.countLate(4, {"ego/control"}), "");
+  EXPECT_EQ(paced.late(), 3U);
+}
+
+msgs::TickAck ackOf(const std::string& node, std::uint8_t kind, std::uint64_t tick = 0,
+                    const std::string& text = "") {
+  msgs::TickAck ack;
+  ack.node = node;
+  ack.kind = kind;
+  ack.tick = tick;
+  ack.text = text;
+  return ack;
+}
+
+TEST(ParticipantBook, FollowsNodesFromWaitingToFinished) {
+  ParticipantBook book({kMetricsNode, kEgoPlannerNode});
+  EXPECT_EQ(book.notReady(),
+            (Texts{"ego_planner_node has not started", "metrics_node has not started"}));
+  book.note(ackOf(kMetricsNode, msgs::TickAck::WAITING, 0, "nobody publishes /ego/control yet"));
+  book.note(ackOf(kEgoPlannerNode, msgs::TickAck::READY));
+  EXPECT_EQ(book.notReady(),
+            Texts{"metrics_node is not ready (nobody publishes /ego/control yet)"});
+  book.note(ackOf(kMetricsNode, msgs::TickAck::READY));
+  EXPECT_EQ(book.notReady(), Texts());
+  EXPECT_EQ(book.notAcknowledged(0),
+            Texts{kMetricsNode});  // being ready is no acknowledgement; planners give none
+  book.note(ackOf(kMetricsNode, msgs::TickAck::ACKNOWLEDGED, 0));
+  EXPECT_EQ(book.notAcknowledged(0), Texts());
+  EXPECT_EQ(book.notAcknowledged(1), Texts{kMetricsNode});
+  EXPECT_EQ(book.notFinished(), Texts{kMetricsNode});
+  book.note(ackOf(kMetricsNode, msgs::TickAck::FINISHED, 1));
+  EXPECT_TRUE(book.finished(kMetricsNode));
+}
+
+TEST(ParticipantBook, KeepsTheFirstErrorAndIgnoresStrangers) {
+  ParticipantBook book({kMetricsNode});
+  book.note(ackOf("stranger", msgs::TickAck::ERROR, 0, "not ours"));
+  EXPECT_FALSE(book.error().has_value());
+  book.note(ackOf(kMetricsNode, msgs::TickAck::ERROR, 3, "disk full"));
+  book.note(ackOf(kMetricsNode, msgs::TickAck::ERROR, 3, "again"));
+  ASSERT_TRUE(book.error().has_value());
+  EXPECT_EQ(book.error()->text, "disk full");
+}
+
+TEST(Connections, CountsOnNamedNodesOnly) {
+  Connections connections;
+  connections.expect("traffic", {kMetricsNode});
+  EXPECT_EQ(connections.missing().size(), 1U);
+  connections.connected("traffic", "/rostopic_1234");
+  EXPECT_EQ(connections.missing().size(), 1U);
+  connections.connected("traffic", "/metrics_node");
+  EXPECT_TRUE(connections.missing().empty());
+  connections.disconnected("traffic", "/rostopic_1234");
+  EXPECT_TRUE(connections.left().empty());
+  connections.disconnected("traffic", "/metrics_node");
+  EXPECT_EQ(connections.left(), Texts{kMetricsNode});
+}
+
+TEST(Topics, ListenersAreThoseThatTakePart) {
+  const SessionGraph graph{{kCbvIdentificationNode, kMetricsNode}, 2, false};
+  EXPECT_EQ(listeners(kTrafficTopic, graph), (Texts{kCbvIdentificationNode, kMetricsNode}));
+  EXPECT_EQ(listeners("cbv_1/control", graph), (Texts{kTrafficSimulatorNode, kMetricsNode}));
+  EXPECT_EQ(listeners("cbv_2/control", graph), Texts());  // there is no slot 2
+  EXPECT_EQ(listeners(kTickAckTopic, graph), Texts{kTrafficSimulatorNode});
+}
+
+}  // namespace
+}  // namespace cdiff::ros

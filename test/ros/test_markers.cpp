@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/markers.h"
+#include "sample_messages.h"
+
+namespace cdiff::ros {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+int count(const MarkerArray& array, const std::string& marker_namespace) {
+  int found = 0;
+  for (const Marker& marker : array.markers)
+    found += marker.ns == marker_namespace && marker.action == Marker::ADD;
+  return found;
+}
+
+TEST(Markers, OnlyTheFirstArrayClearsAndEveryIdIsItsOwn) {
+  SessionMarkers markers;
+  const MarkerArray first = markers.build(test::sampleSnapshot(0), nullptr);
+  const MarkerArray second = markers.build(test::sampleSnapshot(2), nullptr);
+  EXPECT_EQ(first.markers.front().action, Marker::DELETEALL);
+  std::set<std::pair<std::string, int>> ids;
+  for (const Marker& marker : second.markers) {
+    EXPECT_EQ(marker.action, Marker::ADD);
+    EXPECT_EQ(marker.lifetime, ::ros::Duration(0.5));
+    EXPECT_EQ(marker.header.frame_id, "map");
+    EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
+  }
+  EXPECT_EQ(count(second, "vehicles"), 3);
+  EXPECT_EQ(count(second, "labels"), 2);  // ego and CBV
+}
+
+TEST(Markers, RolesHaveTheirColours) {
+  SessionMarkers markers;
+  const MarkerArray array = markers.build(test::sampleSnapshot(0), nullptr);
+  std::vector<Marker> vehicles;
+  for (const Marker& marker : array.markers) {
+    if (marker.ns == "vehicles") vehicles.push_back(marker);
+  }
+  ASSERT_EQ(vehicles.size(), 3U);                           // ego, CBV, background
+  EXPECT_GT(vehicles[0].color.r, 2 * vehicles[0].color.b);  // red
+  EXPECT_GT(vehicles[1].color.b, 2 * vehicles[1].color.g);  // purple: red and blue
+  EXPECT_GT(vehicles[1].color.r, 2 * vehicles[1].color.g);
+  EXPECT_GT(vehicles[2].color.b, 2 * vehicles[2].color.r);  // blue
+}
+
+TEST(Markers, SelectionShowsConflictPointAndRoute) {
+  const scenario::SessionSetup setup(scenario::loadScenario("crossing_left_turn"));
+  cbv::CbvSelection selection;
+  selection.assignments.resize(1);
+  selection.assignments[0].conflict_aware_route = setup.egoRoute();
+  const MarkerArray array = SessionMarkers().build(test::sampleSnapshot(0), &selection);
+  EXPECT_EQ(count(array, "conflict_points"), 1);
+  EXPECT_EQ(count(array, "conflict_aware_routes"), 1);
+  const MarkerArray map = mapMarkers(setup);
+  EXPECT_EQ(map.markers.front().action, Marker::DELETEALL);
+  EXPECT_EQ(count(map, "lanes"), 1);
+  EXPECT_EQ(map.markers.back().points.size(), setup.egoRoute().path().points().size());
+}
+
+TEST(Display, TransformsAreOfEgoAndCbvsOnly) {
+  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4));
+  ASSERT_EQ(message.transforms.size(), 2U);
+  EXPECT_EQ(message.transforms[0].child_frame_id, "ego/base_link");
+  EXPECT_EQ(message.transforms[1].child_frame_id, "bg_7/base_link");
+  EXPECT_EQ(message.transforms[0].header.stamp, ::ros::Time(0.2));
+}
+
+}  // namespace
+}  // namespace cdiff::ros

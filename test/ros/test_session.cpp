@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// Whole sessions through roslaunch with a real SUMO, each with a master of its own on a free port.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/scenario/closed_loop.h"
+#include "e2e_cdiff/scenario/session_request.h"
+#include "rosbag/bag.h"
+#include "rosbag/view.h"
+
+namespace cdiff {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Session : public testing::Test {
+ protected:
+  Session()
+      : folder_(fs::temp_directory_path() /
+                ("e2e_cdiff_session_test_" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Session() override { fs::remove_all(folder_); }
+
+  /// roslaunch of a launch file with arguments; answers its output. Results go to folder_ / "ros".
+  std::string launch(const std::string& file, const std::string& arguments) {
+    const std::string find_port =
+        "port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind((\"127.0.0.1\", "
+        "0)); print(s.getsockname()[1])')";
+    const std::string command =
+        find_port + "; export PATH=/usr/bin:$PATH ROS_IP=127.0.0.1 ROS_HOME=" + folder_.string() +
+        "/home ROS_MASTER_URI=http://127.0.0.1:$port; exec timeout -s INT 80 " E2E_CDIFF_DEVEL
+        "/env.sh roslaunch -p $port " +
+        file + " results:=" + results().string() + " " + arguments + " > " + log().string() +
+        " 2>&1";
+    EXPECT_EQ(std::system(("bash -c '" + escaped(command) + "'").c_str()), 0);
+    return core::readFile(log(), "log");
+  }
+
+  fs::path results() const { return folder_ / "ros"; }
+  fs::path log() const { return folder_ / "log"; }
+  nlohmann::json summary() const {
+    return nlohmann::json::parse(core::readFile(results() / "summary.json", "summary"));
+  }
+  std::string exitCode() const { return core::readFile(results() / "exit_code", "exit code"); }
+
+  fs::path folder_;
+
+ private:
+  static std::string escaped(const std::string& text) {
+    std::string result;
+    for (const char character : text)
+      result += character == '\'' ? std::string("'\\''") : std::string(1, character);
+    return result;
+  }
+};
+
+/// The trace of the same session in one process.
+std::string traceInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
+  const scenario::SessionSetup setup(scenario::resolveRequest(request));
+  scenario::ClosedLoop loop(setup);
+  report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
+  loop.addObserver(writer);
+  const std::atomic<bool> never{false};
+  loop.run(never);
+  writer.finish(1.0);
+  return core::sha256(core::readFile(folder / "trace.csv", "trace"));
+}
+
+TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
+  const std::string log =
+      launch("e2e_cdiff session.launch",
+             "scenario:=crossing_left_turn seed:=2 record:=true set:=protocol.time_limit=8");
+  ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
+  EXPECT_EQ(summary()["status"], "timed_out") << log;
+  EXPECT_EQ(exitCode(), "0\n");
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.set = {"protocol.time_limit=8"};
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  EXPECT_GT(summary()["cbv"]["count"], 0) << "the session shows no CBV; choose one that does";
+
+  rosbag::Bag bag((results() / "session.bag").string(), rosbag::bagmode::Read);
+  std::uint64_t ticks = 0;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag, rosbag::TopicQuery("/traffic"))) {
+    EXPECT_EQ(message.instantiate<::e2e_cdiff::TrafficSnapshot>()->tick, ticks++);
+  }
+  EXPECT_EQ(ticks, 161U);  // 8 s of 0.05 s, and tick 0
+}
+
+TEST_F(Session, ExternalEgoDrivesInLockstep) {
+  std::string file =
+      core::readFile(fs::path(E2E_CDIFF_TEST_FOLDER) / "external_ego.launch", "launch file");
+  ASSERT_FALSE(file.empty());
+  const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/external_ego.launch", "");
+  EXPECT_EQ(summary()["status"], "timed_out") << log;
+  EXPECT_EQ(summary()["ego_planner"], "external");
+  EXPECT_EQ(summary()["planner_latency_ms"]["ego:external"]["n"], 20)
+      << log;  // 2 s at 10 Hz; the last tick decides nothing
+  EXPECT_GT(summary()["ego"]["route_completion_percent"], 0.0);
+}
+
+TEST_F(Session, MissingNodeIsNamedAndAResultIsLeft) {
+  const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/missing_planner.launch", "");
+  EXPECT_EQ(exitCode(), "2\n") << log;
+  EXPECT_EQ(summary()["status"], "error");
+  EXPECT_EQ(summary()["faults"].back()["source"], "cbv_planner_node") << summary()["faults"];
+}
+
+TEST_F(Session, NodeThatDiesEndsTheSession) {
+  const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/dying_metrics.launch", "");
+  EXPECT_EQ(exitCode(), "2\n") << log;
+  EXPECT_EQ(summary()["status"], "error");
+  EXPECT_EQ(summary()["faults"].back()["source"], "metrics_node") << summary()["faults"];
+}
+
+TEST_F(Session, BadInputGivesItsExitCodeAndASentence) {
+  const std::string log = launch("e2e_cdiff session.launch", "scenario:=crossing_left_trun");
+  EXPECT_EQ(exitCode(), "3\n") << log;
+  EXPECT_NE(log.find("crossing_left_turn"), std::string::npos) << log;
+}
+
+}  // namespace
+}  // namespace cdiff
