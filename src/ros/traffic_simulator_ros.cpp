@@ -67,7 +67,7 @@ int TrafficSimulatorRos::run() {
   advertise();
   listen();
   publishSession();
-  if (const auto ending = waitForParticipants()) world_->end(ending->status, ending->fault);
+  if (const auto ending = waitForParticipants()) endSession(*ending);
   begin_ = Clock::now();
   runTicks();
   waitForObservers();
@@ -143,6 +143,12 @@ TrafficSimulatorRos::Ending TrafficSimulatorRos::ending(SessionStatus status,
                                                         const std::string& source,
                                                         const std::string& text) const {
   return {status, {world_->snapshot().tick, source, text}};
+}
+
+void TrafficSimulatorRos::endSession(const Ending& ending) {
+  ROS_ERROR_COND(ending.status == SessionStatus::kError, "%s: %s", ending.fault.source.c_str(),
+                 ending.fault.text.c_str());
+  world_->end(ending.status, ending.fault);
 }
 
 /// What ends a session at once.

@@ -33,9 +33,7 @@ void TrafficSimulatorRos::runTicks() {
   publishTick();
   while (world_->snapshot().status == SessionStatus::kRunning) {
     if (const auto ending = paced() ? waitUntilDue() : waitForTick()) {
-      ROS_ERROR_COND(ending->status == SessionStatus::kError, "%s: %s",
-                     ending->fault.source.c_str(), ending->fault.text.c_str());
-      world_->end(ending->status, ending->fault);
+      endSession(*ending);
     } else if (paced()) {
       advancePaced();
     } else {

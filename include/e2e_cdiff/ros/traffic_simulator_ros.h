@@ -64,6 +64,7 @@ class TrafficSimulatorRos {
   std::optional<Ending> waitUntilDue();
   std::optional<Ending> waitFor(const MissingNow& missing_now, double seconds);
   std::optional<Ending> disturbance();
+  void endSession(const Ending& ending);
   Ending ending(traffic::SessionStatus status, const std::string& source,
                 const std::string& text) const;
   void advance();
