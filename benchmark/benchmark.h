@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Benchmarks of the package: each prints figures as `figure value unit goal` and keeps them for a JSON file.
+/// Benchmarks of the package: each prints figures as `figure value unit goal` and keeps them for a
+/// JSON file.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@ struct Figure {
   std::string name;
   double value = 0.0;
   std::string unit;
-  std::string goal;   ///< "" when none
+  std::string goal;  ///< "" when none
 };
 
 using Figures = std::vector<Figure>;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <libsumo/libtraci.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
-
-#include <unistd.h>
 
 #include "benchmark.h"
 #include "e2e_cdiff/core/angle.h"
@@ -22,10 +21,11 @@ scenario::ScenarioOptions town05(std::int64_t seed) {
   const fs::path data = dataFolder();
   scenario::SessionRequest request;
   request.bench2drive = (data / "bench2drive" / "bench2drive220.xml").string();
-  request.route = "25381";
+  request.route = "25318";
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
   request.seed = std::to_string(seed);
-  request.set = {"traffic.density=50", "max_cbv=2", "protocol.blocked_time=1000", "protocol.time_limit=60"};
+  request.set = {"traffic.density=50", "traffic.forget_distance=160", "max_cbv=2",
+                 "protocol.blocked_time=1000", "protocol.time_limit=60"};
   return scenario::resolveRequest(request);
 }
 
@@ -35,7 +35,8 @@ class Census : public scenario::SessionObserver {
   void observe(const scenario::TickRecord& record) override {
     ++ticks;
     vehicles += record.snapshot->vehicles.size();
-    for (const traffic::Vehicle& vehicle : record.snapshot->vehicles) cbvs += vehicle.role == traffic::VehicleRole::kCbv;
+    for (const traffic::Vehicle& vehicle : record.snapshot->vehicles)
+      cbvs += vehicle.role == traffic::VehicleRole::kCbv;
   }
   std::size_t ticks = 0;
   std::size_t vehicles = 0;
@@ -47,7 +48,8 @@ struct LoopResult {
   Census census;
 };
 
-LoopResult runLoop(const scenario::SessionSetup& setup, bool write_results, const fs::path& folder) {
+LoopResult runLoop(const scenario::SessionSetup& setup, bool write_results,
+                   const fs::path& folder) {
   LoopResult result;
   scenario::ClosedLoop loop(setup);
   report::ResultWriter writer(setup, {"benchmark", loop.world().simulatorVersion(), true}, folder);
@@ -65,28 +67,34 @@ double bareLoop(const scenario::SessionSetup& setup, std::size_t ticks) {
   simulation::DemandOptions demand_options = setup.options().traffic;
   simulation::DemandGenerator demand(demand_options, setup.graph(), setup.egoRoute(), 1);
   const Eigen::Vector3d start = setup.egoRoute().path().pointAt(0.0);
-  Simulation::start({"sumo", "-n", setup.import().file.string(), "--step-length", "0.05", "--no-step-log", "--no-warnings",
-                     "--collision.action", "none", "--xml-validation", "never", "--time-to-teleport", "-1"});
-  const std::vector<int> variables = {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE, libsumo::VAR_SPEED, libsumo::VAR_ACCELERATION,
+  Simulation::start({"sumo", "-n", setup.import().file.string(), "--step-length", "0.05",
+                     "--no-step-log", "--no-warnings", "--collision.action", "none",
+                     "--xml-validation", "never", "--time-to-teleport", "-1"});
+  const std::vector<int> variables = {libsumo::VAR_POSITION3D, libsumo::VAR_ANGLE,
+                                      libsumo::VAR_SPEED, libsumo::VAR_ACCELERATION,
                                       libsumo::VAR_LANE_ID};
   std::vector<traffic::Vehicle> present;
   while (auto wanted = demand.next(present, start.head<2>(), start.z(), true)) {
     libtraci::Route::add("route_" + wanted->id, wanted->edges);
-    Vehicle::add(wanted->id, "route_" + wanted->id, "DEFAULT_VEHTYPE", "now", std::to_string(wanted->depart_lane),
-                 std::to_string(wanted->depart_position), std::to_string(wanted->depart_speed));
+    Vehicle::add(wanted->id, "route_" + wanted->id, "DEFAULT_VEHTYPE", "now",
+                 std::to_string(wanted->depart_lane), std::to_string(wanted->depart_position),
+                 std::to_string(wanted->depart_speed));
     Vehicle::subscribe(wanted->id, variables);
     const auto lanes = setup.network().lanesOfEdge(wanted->edges.front());
-    const auto& line = setup.network().lane(lanes[static_cast<std::size_t>(wanted->depart_lane)]).centerline;
+    const auto& line =
+        setup.network().lane(lanes[static_cast<std::size_t>(wanted->depart_lane)]).centerline;
     traffic::Vehicle placed;
     placed.id = wanted->id;
     const Eigen::Vector3d point = line.pointAt(wanted->depart_position);
-    placed.state = {point.head<2>(), point.z(), line.headingAt(wanted->depart_position), wanted->depart_speed};
+    placed.state = {point.head<2>(), point.z(), line.headingAt(wanted->depart_position),
+                    wanted->depart_speed};
     present.push_back(placed);
     if (present.size() >= 50) break;
   }
   Simulation::step();
   const std::vector<std::string> ids = Vehicle::getIDList();
-  const std::vector<std::string> moved(ids.begin(), ids.begin() + std::min<std::size_t>(3, ids.size()));
+  const std::vector<std::string> moved(ids.begin(),
+                                       ids.begin() + std::min<std::size_t>(3, ids.size()));
   std::vector<libsumo::TraCIPosition> places;
   std::vector<double> angles;
   for (const std::string& id : moved) {
@@ -95,7 +103,8 @@ double bareLoop(const scenario::SessionSetup& setup, std::size_t ticks) {
   }
   const double seconds = secondsOf([&] {
     for (std::size_t tick = 0; tick < ticks; ++tick) {
-      for (std::size_t i = 0; i < moved.size(); ++i) Vehicle::moveToXY(moved[i], "", -1, places[i].x, places[i].y, angles[i], 3, 20.0);
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        Vehicle::moveToXY(moved[i], "", -1, places[i].x, places[i].y, angles[i], 3, 20.0);
       Simulation::step();
       Vehicle::getAllSubscriptionResults();
     }
@@ -108,7 +117,8 @@ double bareLoop(const scenario::SessionSetup& setup, std::size_t ticks) {
 
 void benchmarkLoop(Figures& figures) {
   ::setenv("SUMO_HOME", "/usr/share/sumo", 0);
-  const fs::path folder = fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
+  const fs::path folder =
+      fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
   std::vector<double> full, without_results, bare, vehicles, cbvs;
   for (std::int64_t seed = 1; seed <= 5; ++seed) {
     const scenario::SessionSetup setup(town05(seed));

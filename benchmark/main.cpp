@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <map>
-
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "benchmark.h"
@@ -17,31 +16,37 @@ namespace cdiff::benchmark {
 
 std::filesystem::path dataFolder() {
   const char* given = std::getenv("E2E_CDIFF_DATA");
-  const std::filesystem::path folder = given ? given : core::shareFolder() / ".." / "shared" / "data";
+  const std::filesystem::path folder =
+      given ? given : core::shareFolder() / ".." / "shared" / "data";
   if (std::filesystem::is_directory(folder / "carla_towns")) return folder;
-  throw core::InputError("the real networks are not in '" + folder.string() +
-                         "'; set E2E_CDIFF_DATA to the folder that holds carla_towns and bench2drive");
+  throw core::InputError(
+      "the real networks are not in '" + folder.string() +
+      "'; set E2E_CDIFF_DATA to the folder that holds carla_towns and bench2drive");
 }
 
 namespace {
 
 void print(const Figures& figures) {
   for (const Figure& figure : figures) {
-    std::cout << figure.name << " " << core::formatFixed(figure.value, 3) << " " << figure.unit << " "
-              << (figure.goal.empty() ? "-" : figure.goal) << "\n";
+    std::cout << figure.name << " " << core::formatFixed(figure.value, 3) << " " << figure.unit
+              << " " << (figure.goal.empty() ? "-" : figure.goal) << "\n";
   }
 }
 
 void writeJson(const Figures& figures, const std::string& file) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Figure& figure : figures) {
-    list.push_back({{"figure", figure.name}, {"value", figure.value}, {"unit", figure.unit}, {"goal", figure.goal}});
+    list.push_back({{"figure", figure.name},
+                    {"value", figure.value},
+                    {"unit", figure.unit},
+                    {"goal", figure.goal}});
   }
   core::writeFileAtomically(file, list.dump(2) + "\n");
 }
 
 int run(const std::string& name, const std::string& json) {
-  const std::map<std::string, void (*)(Figures&)> known = {{"loop", benchmarkLoop}, {"map", benchmarkMap}};
+  const std::map<std::string, void (*)(Figures&)> known = {{"loop", benchmarkLoop},
+                                                           {"map", benchmarkMap}};
   if (!name.empty() && known.count(name) == 0) {
     std::vector<std::string> names;
     for (const auto& entry : known) names.push_back(entry.first);

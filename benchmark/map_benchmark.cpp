@@ -17,7 +17,8 @@ std::vector<Eigen::Vector3d> pointsNearRoads(const map::RoadNetwork& network, st
   std::vector<Eigen::Vector3d> points;
   for (std::uint32_t i = 0; points.size() < count; ++i) {
     const map::Lane& lane = network.lanes()[random.index({0, i, 0}, 0, network.lanes().size())];
-    Eigen::Vector3d point = lane.centerline.pointAt(random.uniform({0, i, 0}, 1, 0.0, lane.centerline.length()));
+    Eigen::Vector3d point =
+        lane.centerline.pointAt(random.uniform({0, i, 0}, 1, 0.0, lane.centerline.length()));
     point.x() += random.uniform({0, i, 0}, 2, -10.0, 10.0);
     point.y() += random.uniform({0, i, 0}, 3, -10.0, 10.0);
     points.push_back(point);
@@ -25,12 +26,14 @@ std::vector<Eigen::Vector3d> pointsNearRoads(const map::RoadNetwork& network, st
   return points;
 }
 
-double nanosecondsPerQuery(const map::DrivableArea& area, const std::vector<Eigen::Vector3d>& points) {
+double nanosecondsPerQuery(const map::DrivableArea& area,
+                           const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> rounds;
   double sum = 0.0;
   for (int round = 0; round < 5; ++round) {
     const double seconds = secondsOf([&] {
-      for (const Eigen::Vector3d& point : points) sum += area.signedDistanceWithGradient(point.head<2>(), point.z()).distance;
+      for (const Eigen::Vector3d& point : points)
+        sum += area.signedDistanceWithGradient(point.head<2>(), point.z()).distance;
     });
     rounds.push_back(1e9 * seconds / static_cast<double>(points.size()));
   }
@@ -44,12 +47,19 @@ void benchmarkMap(Figures& figures) {
   for (const std::string town : {"Town01", "Town04", "Town05"}) {
     const std::string file = (data / "carla_towns" / (town + ".net.xml")).string();
     map::ImportedNetwork imported = map::importNetwork(file);
-    figures.push_back({town + "_import_cached", 1e3 * secondsOf([&] { imported = map::importNetwork(file); }), "ms", ""});
+    figures.push_back({town + "_import_cached",
+                       1e3 * secondsOf([&] { imported = map::importNetwork(file); }), "ms", ""});
     std::optional<map::RoadNetwork> network;
-    figures.push_back({town + "_parse", 1e3 * secondsOf([&] { network.emplace(map::RoadNetwork::fromText(imported.text, town)); }), "ms", ""});
+    figures.push_back(
+        {town + "_parse",
+         1e3 * secondsOf([&] { network.emplace(map::RoadNetwork::fromText(imported.text, town)); }),
+         "ms", ""});
     std::optional<map::DrivableArea> area;
-    figures.push_back({town + "_drivable_area", 1e3 * secondsOf([&] { area.emplace(*network); }), "ms", ""});
-    figures.push_back({town + "_signed_distance", nanosecondsPerQuery(*area, pointsNearRoads(*network, 100000)), "ns/query", "<=1000"});
+    figures.push_back(
+        {town + "_drivable_area", 1e3 * secondsOf([&] { area.emplace(*network); }), "ms", ""});
+    figures.push_back({town + "_signed_distance",
+                       nanosecondsPerQuery(*area, pointsNearRoads(*network, 100000)), "ns/query",
+                       "<=1000"});
   }
 }
 

@@ -7,7 +7,13 @@
 
 namespace cdiff::cli {
 
-enum ExitCode : int { kPassed = 0, kVerdictFailed = 1, kRunTimeError = 2, kBadInput = 3, kInterrupted = 130 };
+enum ExitCode : int {
+  kPassed = 0,
+  kVerdictFailed = 1,
+  kRunTimeError = 2,
+  kBadInput = 3,
+  kInterrupted = 130
+};
 
 void addRunCommand(CLI::App& program, int& exit_code);
 void addEvaluateCommand(CLI::App& program, int& exit_code);

@@ -28,7 +28,8 @@ bool inPath(const std::string& program) {
   std::size_t begin = 0;
   while (begin <= path.size()) {
     const std::size_t end = std::min(path.find(':', begin), path.size());
-    if (::access((fs::path(path.substr(begin, end - begin)) / program).c_str(), X_OK) == 0) return true;
+    if (::access((fs::path(path.substr(begin, end - begin)) / program).c_str(), X_OK) == 0)
+      return true;
     begin = end + 1;
   }
   return false;
@@ -43,7 +44,8 @@ Finding folder(const std::string& subject, const std::function<fs::path()>& find
   try {
     const fs::path path = find();
     const bool writable = subject != "cache folder" || ::access(path.c_str(), W_OK) == 0;
-    return {writable, subject, path.string() + (writable ? "" : " is not writable: set E2E_CDIFF_CACHE")};
+    return {writable, subject,
+            path.string() + (writable ? "" : " is not writable: set E2E_CDIFF_CACHE")};
   } catch (const std::exception& error) {
     return {false, subject, error.what()};
   }
@@ -52,20 +54,26 @@ Finding folder(const std::string& subject, const std::function<fs::path()>& find
 Finding rosIp() {
   const char* ip = std::getenv("ROS_IP");
   const bool good = ip != nullptr && std::string(ip) == "127.0.0.1";
-  return {true, "ROS_IP", good ? "127.0.0.1" : "not 127.0.0.1: ROS nodes can be reached from the network; see scripts/isolated"};
+  return {true, "ROS_IP",
+          good ? "127.0.0.1"
+               : "not 127.0.0.1: ROS nodes can be reached from the network; see scripts/isolated"};
 }
 
 }  // namespace
 
 void addDoctorCommand(CLI::App& program_app, int& exit_code) {
-  CLI::App* command = program_app.add_subcommand("doctor", "Check what a session needs and say how to mend it");
+  CLI::App* command =
+      program_app.add_subcommand("doctor", "Check what a session needs and say how to mend it");
   command->callback([&exit_code] {
-    const std::vector<Finding> findings = {program("sumo", "sumo"), program("netconvert", "sumo"),
+    const std::vector<Finding> findings = {program("sumo", "sumo"),
+                                           program("netconvert", "sumo"),
                                            program("roslaunch", "python3-roslaunch"),
                                            folder("package share", core::shareFolder),
-                                           folder("cache folder", core::cacheFolder), rosIp()};
+                                           folder("cache folder", core::cacheFolder),
+                                           rosIp()};
     for (const Finding& finding : findings) {
-      std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text << "\n";
+      std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text
+                << "\n";
       if (!finding.good) exit_code = kRunTimeError;
     }
     std::cout << "shipped scenarios: " << scenario::shippedScenarios().size() << "\n";

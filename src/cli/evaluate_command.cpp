@@ -12,9 +12,8 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <vector>
-
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -52,21 +51,32 @@ std::vector<Run> planRuns(const EvaluateArguments& arguments) {
   std::vector<Run> runs;
   for (const map::Bench2DriveEntry& entry : map::listBench2DriveRoutes(arguments.bench2drive)) {
     const auto& wanted = arguments.routes;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end()) continue;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end())
+      continue;
     const fs::path network = fs::path(arguments.networks) / (entry.town + ".net.xml");
     if (!fs::exists(network)) continue;
-    runs.push_back({entry.id, entry.town, network, fs::path(arguments.results) / "runs" / entry.id});
+    runs.push_back(
+        {entry.id, entry.town, network, fs::path(arguments.results) / "runs" / entry.id});
   }
   if (runs.empty()) {
-    throw InputError("no route of '" + arguments.bench2drive + "' lies in a town whose TOWN.net.xml is in '" +
-                     arguments.networks + "'");
+    throw InputError("no route of '" + arguments.bench2drive +
+                     "' lies in a town whose TOWN.net.xml is in '" + arguments.networks + "'");
   }
   return runs;
 }
 
 void start(Run& run, const EvaluateArguments& arguments) {
-  std::vector<std::string> words = {"cdiff", "run", "--quiet", "--bench2drive", arguments.bench2drive, "--route", run.route,
-                                    "--network", run.network.string(), "--results", run.folder.string()};
+  std::vector<std::string> words = {"cdiff",
+                                    "run",
+                                    "--quiet",
+                                    "--bench2drive",
+                                    arguments.bench2drive,
+                                    "--route",
+                                    run.route,
+                                    "--network",
+                                    run.network.string(),
+                                    "--results",
+                                    run.folder.string()};
   for (const std::string& assignment : arguments.set) {
     words.push_back("--set");
     words.push_back(assignment);
@@ -76,8 +86,10 @@ void start(Run& run, const EvaluateArguments& arguments) {
   argv.push_back(nullptr);
   fs::create_directories(run.folder);
   fs::remove(run.folder / "summary.json");
-  const int failed = posix_spawn(&run.process, "/proc/self/exe", nullptr, nullptr, argv.data(), environ);
-  if (failed != 0) throw core::SimulatorError("cannot start a run: " + std::string(std::strerror(failed)));
+  const int failed =
+      posix_spawn(&run.process, "/proc/self/exe", nullptr, nullptr, argv.data(), environ);
+  if (failed != 0)
+    throw core::SimulatorError("cannot start a run: " + std::string(std::strerror(failed)));
 }
 
 void waitForOne(std::vector<Run>& runs, std::size_t& done) {
@@ -88,7 +100,8 @@ void waitForOne(std::vector<Run>& runs, std::size_t& done) {
     run.process = 0;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     ++done;
-    std::cerr << done << "/" << runs.size() << " route " << run.route << " exit code " << run.exit_code << "\n";
+    std::cerr << done << "/" << runs.size() << " route " << run.route << " exit code "
+              << run.exit_code << "\n";
   }
 }
 
@@ -97,8 +110,10 @@ void execute(std::vector<Run>& runs, const EvaluateArguments& arguments) {
   std::size_t done = 0;
   while (done < runs.size()) {
     const auto running = static_cast<int>(next - done);
-    if (next < runs.size() && running < arguments.jobs) start(runs[next++], arguments);
-    else waitForOne(runs, done);
+    if (next < runs.size() && running < arguments.jobs)
+      start(runs[next++], arguments);
+    else
+      waitForOne(runs, done);
   }
 }
 
@@ -108,7 +123,7 @@ struct Row {
   std::string completion = "-";
   std::string count = "0";
   int decisions = 0;
-  int longest = 0;               ///< most decisions that a single CBV was driven
+  int longest = 0;  ///< most decisions that a single CBV was driven
   bool conflict_at_junction = false;
   std::string conflict = "-";
   std::string contacts = "-";
@@ -118,7 +133,8 @@ struct Row {
 
 std::string rejections(const json& rejected) {
   std::vector<std::pair<int, std::string>> reasons;
-  for (const auto& [reason, count] : rejected.items()) reasons.emplace_back(-count.get<int>(), reason);
+  for (const auto& [reason, count] : rejected.items())
+    reasons.emplace_back(-count.get<int>(), reason);
   std::sort(reasons.begin(), reasons.end());
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, reasons.size()); ++i) {
@@ -146,7 +162,8 @@ Row readRow(const Run& run) {
     row.longest = std::max(row.longest, selection.at("decisions_driven").get<int>());
     if (point.at("in_junction_or_beyond").get<bool>()) row.conflict_at_junction = true;
     if (row.conflict == "-") {
-      row.conflict = core::formatFixed(point.at("x"), 1) + ", " + core::formatFixed(point.at("y"), 1);
+      row.conflict =
+          core::formatFixed(point.at("x"), 1) + ", " + core::formatFixed(point.at("y"), 1);
     }
   }
   return row;
@@ -154,7 +171,8 @@ Row readRow(const Run& run) {
 
 std::string table(const std::vector<Run>& runs) {
   std::string text =
-      "| route | town | status | RC % | ego contacts | CBVs | decisions | off-road % | first conflict point (x, y) | at or beyond a junction | "
+      "| route | town | status | RC % | ego contacts | CBVs | decisions | off-road % | first "
+      "conflict point (x, y) | at or beyond a junction | "
       "most frequent rejections |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   int errors = 0, completed = 0, driven = 0;
   for (const Run& run : runs) {
@@ -162,12 +180,14 @@ std::string table(const std::vector<Run>& runs) {
     errors += row.status == "error";
     completed += row.status == "completed";
     driven += row.decisions >= 30;
-    text += "| " + run.route + " | " + run.town + " | " + row.status + " | " + row.completion + " | " + row.contacts + " | " +
-            row.count + " | " + std::to_string(row.decisions) + " | " + row.off_road + " | " + row.conflict + " | " +
+    text += "| " + run.route + " | " + run.town + " | " + row.status + " | " + row.completion +
+            " | " + row.contacts + " | " + row.count + " | " + std::to_string(row.decisions) +
+            " | " + row.off_road + " | " + row.conflict + " | " +
             (row.conflict_at_junction ? "yes" : "no") + " | " + row.rejected + " |\n";
   }
-  text += "\n" + std::to_string(runs.size()) + " routes: " + std::to_string(errors) + " errors, " + std::to_string(completed) +
-          " completed, CBVs driven for at least 30 decisions on " + std::to_string(driven) + "\n";
+  text += "\n" + std::to_string(runs.size()) + " routes: " + std::to_string(errors) + " errors, " +
+          std::to_string(completed) + " completed, CBVs driven for at least 30 decisions on " +
+          std::to_string(driven) + "\n";
   return text;
 }
 
@@ -177,7 +197,8 @@ int evaluate(const EvaluateArguments& arguments) {
   const std::string text = table(runs);
   core::writeFileAtomically(fs::path(arguments.results) / "table.md", text);
   std::cout << text;
-  const bool failed = std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.exit_code >= 2; });
+  const bool failed =
+      std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.exit_code >= 2; });
   return failed ? kRunTimeError : kPassed;
 }
 
@@ -185,12 +206,19 @@ int evaluate(const EvaluateArguments& arguments) {
 
 void addEvaluateCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* command = program.add_subcommand("evaluate", "Run every Bench2Drive route whose town's network is at hand, and print a table");
-  command->add_option("--bench2drive", arguments->bench2drive, "Bench2Drive route file")->required();
-  command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files")->required();
-  command->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")->required();
+  CLI::App* command = program.add_subcommand(
+      "evaluate", "Run every Bench2Drive route whose town's network is at hand, and print a table");
+  command->add_option("--bench2drive", arguments->bench2drive, "Bench2Drive route file")
+      ->required();
+  command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files")
+      ->required();
+  command
+      ->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")
+      ->required();
   command->add_option("--routes", arguments->routes, "Only these route ids")->delimiter(',');
-  command->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")->allow_extra_args(false);
+  command
+      ->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }

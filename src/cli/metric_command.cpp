@@ -11,13 +11,15 @@ namespace cdiff::cli {
 void addMetricCommand(CLI::App& program, int& exit_code) {
   auto metric = std::make_shared<std::string>();
   auto file = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand("metric", "Compute one metric for the cases of a file, one line each");
+  CLI::App* command =
+      program.add_subcommand("metric", "Compute one metric for the cases of a file, one line each");
   command->add_option("metric", *metric, "ttc_2d, shapiro_wilk or wasserstein")
       ->required()
       ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein"}));
   command->add_option("file", *file, "Cases as CSV or JSON")->required();
   command->callback([metric, file, &exit_code] {
-    for (const std::string& line : report::evaluateMetricFile(*metric, *file)) std::cout << line << "\n";
+    for (const std::string& line : report::evaluateMetricFile(*metric, *file))
+      std::cout << line << "\n";
     exit_code = kPassed;
   });
 }

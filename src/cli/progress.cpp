@@ -20,7 +20,10 @@ double secondsBetween(Clock::time_point begin, Clock::time_point end) {
 }  // namespace
 
 Progress::Progress(double time_limit)
-    : time_limit_(time_limit), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()), last_(begin_) {}
+    : time_limit_(time_limit),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      begin_(Clock::now()),
+      last_(begin_) {}
 
 void Progress::observe(const scenario::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
@@ -33,9 +36,13 @@ void Progress::observe(const scenario::TickRecord& record) {
   const double factor = wall > 0.0 ? snapshot.time / wall : 0.0;
   const double left = factor > 0.0 ? (time_limit_ - snapshot.time) / factor : 0.0;
   std::cerr << (terminal_ ? "\r" : "") << core::formatFixed(snapshot.time, 1) << " s of "
-            << core::formatFixed(time_limit_, 0) << " s simulated, " << core::formatFixed(factor, 1) << " x real time, ";
-  if (ended) std::cerr << traffic::toText(snapshot.status) << "          \n";
-  else std::cerr << "at most " << core::formatFixed(left, 0) << " s left   " << (terminal_ ? "" : "\n");
+            << core::formatFixed(time_limit_, 0) << " s simulated, " << core::formatFixed(factor, 1)
+            << " x real time, ";
+  if (ended)
+    std::cerr << traffic::toText(snapshot.status) << "          \n";
+  else
+    std::cerr << "at most " << core::formatFixed(left, 0) << " s left   "
+              << (terminal_ ? "" : "\n");
   std::cerr.flush();
 }
 

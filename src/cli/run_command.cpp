@@ -28,9 +28,11 @@ std::string timeStamp() {
 
 int run(const RunArguments& arguments) {
   const scenario::ScenarioOptions options = scenario::resolveRequest(arguments.request);
-  const fs::path folder = arguments.results.empty()
-                              ? fs::path("results") / (options.name + "_seed" + std::to_string(options.seed) + "_" + timeStamp())
-                              : fs::path(arguments.results);
+  const fs::path folder =
+      arguments.results.empty()
+          ? fs::path("results") /
+                (options.name + "_seed" + std::to_string(options.seed) + "_" + timeStamp())
+          : fs::path(arguments.results);
   return runSession(options, folder, arguments.quiet);
 }
 
@@ -41,15 +43,18 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
   scenario::SessionRequest& request = arguments->request;
   command->add_option("scenario", request.scenario, "Shipped scenario or scenario file");
-  command->add_option("--bench2drive", request.bench2drive, "Bench2Drive route file, instead of a scenario");
+  command->add_option("--bench2drive", request.bench2drive,
+                      "Bench2Drive route file, instead of a scenario");
   command->add_option("--route", request.route, "Id of a route in that file");
   command->add_option("--network", request.network, "Network: shipped name, *.net.xml or *.xodr");
   command->add_option("--mode", request.mode, "naturalistic or safety_critical");
   command->add_option("--ego-planner", request.ego_planner, "Planner of the ego");
   command->add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
   command->add_option("--seed", request.seed, "Root seed");
-  command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")->allow_extra_args(false);
-  command->add_option("--results", arguments->results, "Result folder (default: results/SCENARIO_SEED_TIME)");
+  command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--results", arguments->results,
+                      "Result folder (default: results/SCENARIO_SEED_TIME)");
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -50,7 +50,8 @@ int finish(report::ResultWriter& writer, Clock::time_point begin, bool quiet) {
 
 }  // namespace
 
-int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder, bool quiet) {
+int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder,
+               bool quiet) {
   catchSignals();
   const scenario::SessionSetup setup(options);
   const Clock::time_point begin = Clock::now();
@@ -64,7 +65,8 @@ int runSession(const scenario::ScenarioOptions& options, const std::filesystem::
     return finish(writer, begin, quiet);
   }
   const bool deterministic = options.real_time_factor == 0.0;
-  report::ResultWriter writer(setup, {"cdiff run", loop->world().simulatorVersion(), deterministic}, folder);
+  report::ResultWriter writer(setup, {"cdiff run", loop->world().simulatorVersion(), deterministic},
+                              folder);
   Progress progress(options.protocol.time_limit);
   loop->addObserver(writer);
   if (!quiet) loop->addObserver(progress);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One session in this process: closed loop, result folder, progress, and what a signal or a lost simulator does to them.
+/// One session in this process: closed loop, result folder, progress, and what a signal or a lost
+/// simulator does to them.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +10,10 @@
 
 namespace cdiff::cli {
 
-/// Runs to the end and answers the exit code. SIGINT and SIGTERM end the session as interrupted. Throws InputError for a scenario
-/// that cannot be set up; a simulator that cannot start or is lost gives a result folder with status error.
-int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder, bool quiet);
+/// Runs to the end and answers the exit code. SIGINT and SIGTERM end the session as interrupted.
+/// Throws InputError for a scenario that cannot be set up; a simulator that cannot start or is lost
+/// gives a result folder with status error.
+int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder,
+               bool quiet);
 
 }  // namespace cdiff::cli

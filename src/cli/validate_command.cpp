@@ -23,8 +23,10 @@ bool validateOne(const std::string& scenario_name, bool print) {
     const scenario::SessionSetup setup(options);
     checkPlanner(options.ego_planner, setup);
     checkPlanner(options.cbv_planner, setup);
-    std::cout << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length()) << " m)\n";
-    for (const std::string& change : setup.import().changes) std::cout << "  network: " << change << "\n";
+    std::cout << scenario_name << ": valid (ego route "
+              << static_cast<int>(setup.egoRoute().length()) << " m)\n";
+    for (const std::string& change : setup.import().changes)
+      std::cout << "  network: " << change << "\n";
     if (print) std::cout << core::dumpOptions(options, true);
     return true;
   } catch (const core::InputError& error) {
@@ -39,7 +41,8 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
   auto scenarios = std::make_shared<std::vector<std::string>>();
   auto print = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("validate", "Check scenarios without running them");
-  command->add_option("scenarios", *scenarios, "Scenario files or names (default: all shipped ones)");
+  command->add_option("scenarios", *scenarios,
+                      "Scenario files or names (default: all shipped ones)");
   command->add_flag("--print", *print, "Print all keys with their values, meaning and range");
   command->callback([scenarios, print, &exit_code] {
     const auto names = scenarios->empty() ? scenario::shippedScenarios() : *scenarios;

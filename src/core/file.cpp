@@ -26,7 +26,8 @@ EVP_MD_CTX* digestContext(void* context) { return static_cast<EVP_MD_CTX*>(conte
 
 fs::path libraryFolder() {
   Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&sha256), &info) == 0 || info.dli_fname == nullptr) return {};
+  if (dladdr(reinterpret_cast<const void*>(&sha256), &info) == 0 || info.dli_fname == nullptr)
+    return {};
   return fs::absolute(info.dli_fname).parent_path();
 }
 
@@ -116,7 +117,8 @@ fs::path shareFolder() {
   for (const fs::path& candidate : candidates) {
     if (fs::is_directory(candidate / "config")) return fs::weakly_canonical(candidate);
   }
-  throw InputError("the package's config folder was not found; set E2E_CDIFF_SHARE to the folder that holds it");
+  throw InputError(
+      "the package's config folder was not found; set E2E_CDIFF_SHARE to the folder that holds it");
 }
 
 fs::path cacheFolder() {

@@ -2,11 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/core/options.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <optional>
 #include <set>
-
-#include <yaml-cpp/yaml.h>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
@@ -18,7 +18,8 @@ std::string rangeText(const std::string& low, const std::string& high, const cha
   return "[" + low + ", " + high + "]" + (*unit ? std::string(" ") + unit : std::string());
 }
 
-/// Takes values out of a YAML map and remembers which keys exist, so that unknown ones can be named.
+/// Takes values out of a YAML map and remembers which keys exist, so that unknown ones can be
+/// named.
 class LoadVisitor : public OptionsVisitor {
  public:
   LoadVisitor(std::string source, YAML::Node root) : source_(std::move(source)) {
@@ -67,8 +68,9 @@ class LoadVisitor : public OptionsVisitor {
     if (!node.IsScalar()) fail(node, info.key, "a text");
     const std::string given = node.Scalar();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
-      fail(node, info.key, "one of {" + joinText(choices, ", ") + "}; did you mean '" +
-                               nearestName(given, choices) + "'?");
+      fail(node, info.key,
+           "one of {" + joinText(choices, ", ") + "}; did you mean '" +
+               nearestName(given, choices) + "'?");
     }
     value = given;
   }
@@ -245,9 +247,13 @@ class DumpVisitor : public OptionsVisitor {
 class PathVisitor : public OptionsVisitor {
  public:
   void number(const FieldInfo& info, double&, double, double) override { add(info); }
-  void integer(const FieldInfo& info, std::int64_t&, std::int64_t, std::int64_t) override { add(info); }
+  void integer(const FieldInfo& info, std::int64_t&, std::int64_t, std::int64_t) override {
+    add(info);
+  }
   void flag(const FieldInfo& info, bool&) override { add(info); }
-  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override { add(info); }
+  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override {
+    add(info);
+  }
   void list(const FieldInfo& info, std::vector<std::string>&) override { add(info); }
   void points(const FieldInfo& info, std::vector<Eigen::Vector3d>&) override { add(info); }
   bool enter(const FieldInfo& info) override {
@@ -284,7 +290,8 @@ std::string resolvePath(const std::string& key, const std::vector<std::string>& 
                    nearestName(key, paths) + "'");
 }
 
-YAML::Node nested(const std::vector<std::string>& path, std::size_t depth, const YAML::Node& value) {
+YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
+                  const YAML::Node& value) {
   if (depth == path.size()) return value;
   YAML::Node node(YAML::NodeType::Map);
   node[path[depth]] = nested(path, depth + 1, value);

@@ -34,8 +34,8 @@ Counter philox(Counter counter, std::uint32_t key0, std::uint32_t key1) {
 double toUniform(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1.0p-53; }
 
 Counter draw(std::uint64_t stream_key, const RandomKey& key, std::uint32_t element) {
-  const std::uint64_t mixed_key =
-      stream_key ^ (key.vehicle * 0x9E3779B97F4A7C15ULL) ^ (std::uint64_t{key.diffusion_step} << 48);
+  const std::uint64_t mixed_key = stream_key ^ (key.vehicle * 0x9E3779B97F4A7C15ULL) ^
+                                  (std::uint64_t{key.diffusion_step} << 48);
   const Counter counter = {element, key.decision, static_cast<std::uint32_t>(key.vehicle),
                            static_cast<std::uint32_t>(key.vehicle >> 32) ^ key.diffusion_step};
   return philox(counter, static_cast<std::uint32_t>(mixed_key),
@@ -58,10 +58,9 @@ std::uint64_t hashText(std::string_view text) {
 
 RandomStream::RandomStream(std::uint64_t root_seed, std::string_view name) {
   const std::uint64_t name_hash = hashText(name);
-  const Counter mixed = philox({static_cast<std::uint32_t>(root_seed),
-                                static_cast<std::uint32_t>(root_seed >> 32), 0, 0},
-                               static_cast<std::uint32_t>(name_hash),
-                               static_cast<std::uint32_t>(name_hash >> 32));
+  const Counter mixed = philox(
+      {static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32), 0, 0},
+      static_cast<std::uint32_t>(name_hash), static_cast<std::uint32_t>(name_hash >> 32));
   key_ = join(mixed[0], mixed[1]);
 }
 

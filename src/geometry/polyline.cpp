@@ -13,8 +13,7 @@ Polyline::Polyline(const std::vector<Eigen::Vector3d>& points) {
   constexpr double kMergeDistance = 1e-3;
   for (const Eigen::Vector3d& point : points) {
     if (!point.allFinite()) throw core::InputError("a line has a non-finite coordinate");
-    const double step =
-        points_.empty() ? 0.0 : (point - points_.back()).head<2>().norm();
+    const double step = points_.empty() ? 0.0 : (point - points_.back()).head<2>().norm();
     if (!points_.empty() && step < kMergeDistance) continue;
     arc_lengths_.push_back(points_.empty() ? 0.0 : arc_lengths_.back() + step);
     points_.push_back(point);
@@ -88,7 +87,8 @@ Polyline Polyline::slice(double begin, double end) const {
 std::vector<Eigen::Vector3d> Polyline::resampled(double spacing) const {
   std::vector<Eigen::Vector3d> samples;
   const auto count = static_cast<std::size_t>(std::floor(length() / spacing + 1e-9));
-  for (std::size_t i = 0; i <= count; ++i) samples.push_back(pointAt(static_cast<double>(i) * spacing));
+  for (std::size_t i = 0; i <= count; ++i)
+    samples.push_back(pointAt(static_cast<double>(i) * spacing));
   if ((samples.back() - points_.back()).head<2>().norm() > 1e-3) samples.push_back(points_.back());
   return samples;
 }

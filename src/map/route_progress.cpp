@@ -6,8 +6,11 @@
 
 namespace cdiff::map {
 
-RouteProgress::RouteProgress(const Route& route, double completion_percent, double completion_distance)
-    : route_(&route), completion_percent_(completion_percent), completion_distance_(completion_distance),
+RouteProgress::RouteProgress(const Route& route, double completion_percent,
+                             double completion_distance)
+    : route_(&route),
+      completion_percent_(completion_percent),
+      completion_distance_(completion_distance),
       distance_to_end_(route.length()) {}
 
 void RouteProgress::update(const Eigen::Vector2d& position) {

@@ -30,7 +30,8 @@ std::vector<PlannedAction> failSafe(const std::vector<PlanningTask>& tasks) {
 bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<PlanningTask>& tasks) {
   if (actions.size() != tasks.size()) return false;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (actions[i].slot != tasks[i].slot || actions[i].vehicle_id != tasks[i].vehicle->id) return false;
+    if (actions[i].slot != tasks[i].slot || actions[i].vehicle_id != tasks[i].vehicle->id)
+      return false;
   }
   return true;
 }
@@ -44,8 +45,8 @@ void pace(Clock::time_point begin, double simulated_seconds, double real_time_fa
 
 }  // namespace
 
-std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection& selection,
-                                   double target_speed) {
+std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
+                                   const cbv::CbvSelection& selection, double target_speed) {
   std::vector<PlanningTask> tasks;
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
     const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
@@ -55,14 +56,15 @@ std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot, con
   return tasks;
 }
 
-std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot, const map::Route& route,
-                                   double target_speed) {
+std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
+                                   const map::Route& route, double target_speed) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego == nullptr) return {};
   return {{-1, ego, &route, target_speed}};
 }
 
-std::vector<PlannedAction> planTimed(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+std::vector<PlannedAction> planTimed(planning::Planner& planner,
+                                     const traffic::TrafficSnapshot& snapshot,
                                      const std::vector<PlanningTask>& tasks, double& milliseconds,
                                      std::string& fault) {
   const Clock::time_point begin = Clock::now();
@@ -70,7 +72,8 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner, const traffic::
   fault.clear();
   try {
     actions = planner.plan(snapshot, tasks);
-    if (!answersAll(actions, tasks)) fault = "the planner answered for other vehicles than it was asked for";
+    if (!answersAll(actions, tasks))
+      fault = "the planner answered for other vehicles than it was asked for";
   } catch (const std::exception& error) {
     fault = error.what();
   }
@@ -81,10 +84,12 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner, const traffic::
 ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
   const ScenarioOptions& options = setup.options();
   const planning::PlannerOptions planner_options{options.pdm_lite, options.vehicle};
-  ego_planner_ = planning::makePlanner(options.ego_planner, planner_options, setup.planningContext());
-  cbv_planner_ = planning::makePlanner(options.cbv_planner, planner_options, setup.planningContext());
-  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv), setup.graph(),
-                                                 setup.egoRoute());
+  ego_planner_ =
+      planning::makePlanner(options.ego_planner, planner_options, setup.planningContext());
+  cbv_planner_ =
+      planning::makePlanner(options.cbv_planner, planner_options, setup.planningContext());
+  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
+                                                 setup.graph(), setup.egoRoute());
   world_ = std::make_unique<World>(setup);
 }
 
@@ -101,7 +106,8 @@ ClosedLoop::Decision ClosedLoop::decide() {
   const ScenarioOptions& options = setup_.options();
   Decision decision;
   decision.selection = selector_->update(snapshot);
-  const auto ask = [&](planning::Planner& planner, const std::string& name, const std::vector<PlanningTask>& tasks) {
+  const auto ask = [&](planning::Planner& planner, const std::string& name,
+                       const std::vector<PlanningTask>& tasks) {
     if (tasks.empty()) return;
     PlannerLatency latency{name, 0.0};
     std::string fault;
@@ -111,8 +117,10 @@ ClosedLoop::Decision ClosedLoop::decide() {
     if (!fault.empty()) world_->recordFault(name, fault);
     decision.latencies.push_back(latency);
   };
-  ask(*ego_planner_, "ego:" + options.ego_planner, egoTasks(snapshot, setup_.egoRoute(), options.target_speed));
-  ask(*cbv_planner_, "cbv:" + options.cbv_planner, cbvTasks(snapshot, decision.selection, options.target_speed));
+  ask(*ego_planner_, "ego:" + options.ego_planner,
+      egoTasks(snapshot, setup_.egoRoute(), options.target_speed));
+  ask(*cbv_planner_, "cbv:" + options.cbv_planner,
+      cbvTasks(snapshot, decision.selection, options.target_speed));
   return decision;
 }
 

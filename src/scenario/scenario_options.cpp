@@ -25,8 +25,10 @@ fs::path findScenario(const std::string& name_or_file) {
   const fs::path shipped = scenarioFolder() / (name_or_file + ".yaml");
   if (fs::exists(shipped)) return shipped;
   const std::vector<std::string> known = shippedScenarios();
-  throw InputError("scenario '" + name_or_file + "' is neither a file nor a shipped scenario; the nearest shipped one is '" +
-                   core::nearestName(name_or_file, known) + "' (all: " + core::joinText(known, ", ") + ")");
+  throw InputError("scenario '" + name_or_file +
+                   "' is neither a file nor a shipped scenario; the nearest shipped one is '" +
+                   core::nearestName(name_or_file, known) +
+                   "' (all: " + core::joinText(known, ", ") + ")");
 }
 
 bool looksLikeFile(const std::string& text) {
@@ -34,9 +36,11 @@ bool looksLikeFile(const std::string& text) {
 }
 
 /// A file named in a scenario: beside the scenario file, else beside its network, else as given.
-std::string resolveFile(const std::string& file, const fs::path& scenario_folder, const std::string& network) {
+std::string resolveFile(const std::string& file, const fs::path& scenario_folder,
+                        const std::string& network) {
   if (file.empty() || fs::path(file).is_absolute()) return file;
-  const fs::path candidates[] = {scenario_folder / file, core::shareFolder() / "networks" / network / file,
+  const fs::path candidates[] = {scenario_folder / file,
+                                 core::shareFolder() / "networks" / network / file,
                                  fs::path(network).parent_path() / file};
   for (const fs::path& candidate : candidates) {
     if (fs::is_regular_file(candidate)) return fs::weakly_canonical(candidate).string();
@@ -52,22 +56,28 @@ bool isMultiple(double value, double unit) {
 }  // namespace
 
 void VerdictOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"minimum_route_completion", "%", "Least route completion of the ego."}, minimum_route_completion, 0.0, 100.0);
-  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego."}, maximum_ego_collisions, 0.0, kInfinite);
+  visitor.number({"minimum_route_completion", "%", "Least route completion of the ego."},
+                 minimum_route_completion, 0.0, 100.0);
+  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego."},
+                 maximum_ego_collisions, 0.0, kInfinite);
   visitor.number({"maximum_cbv_off_road_percent", "%", "Highest off-road rate of the CBVs."},
                  maximum_cbv_off_road_percent, 0.0, 100.0);
-  visitor.list({"statuses", "", "Final statuses that pass; empty: all but error and interrupted."}, statuses);
+  visitor.list({"statuses", "", "Final statuses that pass; empty: all but error and interrupted."},
+               statuses);
 }
 
 void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"schema_version", "", "Version of this format."}, schema_version, 1, 1);
   visitor.text({"name", "", "Name of the scenario in results."}, name, {});
-  visitor.text({"network", "", "Shipped network, SUMO network file or OpenDRIVE file."}, network, {});
+  visitor.text({"network", "", "Shipped network, SUMO network file or OpenDRIVE file."}, network,
+               {});
   visitor.group({"route", "", "Route of the ego."}, route);
   visitor.text({"demand", "", "Background traffic: generated, none, or a route file."}, demand, {});
   visitor.group({"traffic", "", "Generated demand."}, traffic);
-  visitor.number({"begin_time", "s", "SUMO's clock at the start, for demand files."}, begin_time, 0.0, 1e7);
-  visitor.text({"lights", "", "Traffic lights: all green with yielding, or the network's program."}, lights, {"green", "program"});
+  visitor.number({"begin_time", "s", "SUMO's clock at the start, for demand files."}, begin_time,
+                 0.0, 1e7);
+  visitor.text({"lights", "", "Traffic lights: all green with yielding, or the network's program."},
+               lights, {"green", "program"});
   visitor.text({"mode", "", "How CBVs behave."}, mode, {"naturalistic", "safety_critical"});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
@@ -78,29 +88,35 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
   visitor.group({"protocol", "", "When a session ends."}, protocol);
   visitor.group({"verdict", "", "When a session passes."}, verdict);
-  visitor.number({"target_speed", "m/s", "Speed that planners aim at, capped by the lane's limit."}, target_speed, 0.5, 40.0);
+  visitor.number({"target_speed", "m/s", "Speed that planners aim at, capped by the lane's limit."},
+                 target_speed, 0.5, 40.0);
   visitor.number({"simulation_step", "s", "Simulation step."}, simulation_step, 0.05, 0.1);
   visitor.number({"decision_period", "s", "Time between decisions."}, decision_period, 0.05, 1.0);
-  visitor.number({"real_time_factor", "", "Pace against wall time; 0 is as fast as possible."}, real_time_factor, 0.0, 100.0);
+  visitor.number({"real_time_factor", "", "Pace against wall time; 0 is as fast as possible."},
+                 real_time_factor, 0.0, 100.0);
   visitor.integer({"seed", "", "Root seed of every random draw."}, seed, 0, 2147483647);
 }
 
 void ScenarioOptions::validate() const {
-  if (network.empty()) throw InputError("key 'network' is missing; expected a shipped network or a file");
+  if (network.empty())
+    throw InputError("key 'network' is missing; expected a shipped network or a file");
   route.validate();
   cbv.validate();
   pdm_lite.validate();
   vehicle.validate();
   if (!isMultiple(simulation_step, 0.05)) {
-    throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) + " s; expected a multiple of 0.05 s");
+    throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) +
+                     " s; expected a multiple of 0.05 s");
   }
   if (!isMultiple(decision_period, simulation_step)) {
     throw InputError("key 'decision_period' is " + core::formatNumber(decision_period) +
-                     " s; expected a multiple of simulation_step (" + core::formatNumber(simulation_step) + " s)");
+                     " s; expected a multiple of simulation_step (" +
+                     core::formatNumber(simulation_step) + " s)");
   }
   const bool file = demand != "generated" && demand != "none";
   if (file && !fs::is_regular_file(demand)) {
-    throw InputError("key 'demand' is '" + demand + "'; expected generated, none, or a route file that exists");
+    throw InputError("key 'demand' is '" + demand +
+                     "'; expected generated, none, or a route file that exists");
   }
 }
 
@@ -114,7 +130,8 @@ ScenarioOptions loadScenario(const std::string& name_or_file) {
   if (options.demand != "generated" && options.demand != "none") {
     options.demand = resolveFile(options.demand, file.parent_path(), options.network);
   }
-  options.route.bench2drive_file = resolveFile(options.route.bench2drive_file, file.parent_path(), options.network);
+  options.route.bench2drive_file =
+      resolveFile(options.route.bench2drive_file, file.parent_path(), options.network);
   return options;
 }
 

@@ -14,9 +14,11 @@ using core::InputError;
 
 /// A scenario made of a Bench2Drive route alone, with generated demand.
 ScenarioOptions bench2DriveScenario(const SessionRequest& request) {
-  if (request.route.empty()) throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
+  if (request.route.empty())
+    throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
   if (request.network.empty()) {
-    throw InputError("route " + request.route + " lies in " + map::bench2DriveTown(request.bench2drive, request.route) +
+    throw InputError("route " + request.route + " lies in " +
+                     map::bench2DriveTown(request.bench2drive, request.route) +
                      "; give that town's network (--network NET.net.xml)");
   }
   ScenarioOptions options;
@@ -29,13 +31,16 @@ ScenarioOptions bench2DriveScenario(const SessionRequest& request) {
 ScenarioOptions baseScenario(const SessionRequest& request) {
   const bool bench2drive = !request.bench2drive.empty();
   if (bench2drive && !request.scenario.empty()) {
-    throw InputError("give either a scenario or a Bench2Drive file, not both ('" + request.scenario + "' and '" +
-                     request.bench2drive + "')");
+    throw InputError("give either a scenario or a Bench2Drive file, not both ('" +
+                     request.scenario + "' and '" + request.bench2drive + "')");
   }
   if (bench2drive) return bench2DriveScenario(request);
-  if (!request.route.empty()) throw InputError("--route " + request.route + " needs --bench2drive FILE");
+  if (!request.route.empty())
+    throw InputError("--route " + request.route + " needs --bench2drive FILE");
   if (request.scenario.empty()) {
-    throw InputError("nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID --network NET");
+    throw InputError(
+        "nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID "
+        "--network NET");
   }
   return loadScenario(request.scenario);
 }
@@ -45,7 +50,8 @@ ScenarioOptions baseScenario(const SessionRequest& request) {
 ScenarioOptions resolveRequest(const SessionRequest& request) {
   ScenarioOptions options = baseScenario(request);
   if (!request.network.empty()) {
-    options.network = fs::exists(request.network) ? fs::absolute(request.network).string() : request.network;
+    options.network =
+        fs::exists(request.network) ? fs::absolute(request.network).string() : request.network;
   }
   const auto apply = [&](const std::string& key, const std::string& value) {
     if (!value.empty()) core::overrideOption(key + "=" + value, "argument '" + key + "'", options);
@@ -54,7 +60,8 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   apply("ego_planner", request.ego_planner);
   apply("cbv_planner", request.cbv_planner);
   apply("seed", request.seed);
-  for (const std::string& assignment : request.set) core::overrideOption(assignment, request.set_source, options);
+  for (const std::string& assignment : request.set)
+    core::overrideOption(assignment, request.set_source, options);
   options.validate();
   return options;
 }

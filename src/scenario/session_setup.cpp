@@ -22,7 +22,8 @@ SessionSetup::SessionSetup(const ScenarioOptions& options)
       network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
       graph_(network_),
       drivable_area_(network_),
-      ego_route_(map::matchRoute(network_, map::makeRoute(graph_, options_.route).path().points())) {}
+      ego_route_(
+          map::matchRoute(network_, map::makeRoute(graph_, options_.route).path().points())) {}
 
 SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
                            const std::vector<Eigen::Vector3d>& ego_route_points)
@@ -34,12 +35,13 @@ SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork 
       ego_route_(map::matchRoute(network_, ego_route_points)) {}
 
 planning::PlanningContext SessionSetup::planningContext() const {
-  return {network_, drivable_area_, static_cast<std::uint64_t>(options_.seed), options_.simulation_step,
-          options_.decision_period};
+  return {network_, drivable_area_, static_cast<std::uint64_t>(options_.seed),
+          options_.simulation_step, options_.decision_period};
 }
 
 std::uint64_t SessionSetup::ticksPerDecision() const {
-  return static_cast<std::uint64_t>(std::llround(options_.decision_period / options_.simulation_step));
+  return static_cast<std::uint64_t>(
+      std::llround(options_.decision_period / options_.simulation_step));
 }
 
 }  // namespace cdiff::scenario

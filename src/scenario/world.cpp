@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -30,7 +31,7 @@ struct World::Driven {
   double yaw_rate = 0.0;
   std::optional<traffic::ControlAction> action;  ///< held; absent until the first decision
   map::Route route;
-  double arc_length = 0.0;                       ///< progress along the route [m]
+  double arc_length = 0.0;  ///< progress along the route [m]
 
   DrivenVehicle forSimulator() const { return {id, state, &route}; }
 };
@@ -41,7 +42,8 @@ simulation::SumoSession sumoSession(const SessionSetup& setup) {
   const ScenarioOptions& options = setup.options();
   simulation::SumoSession session;
   session.network_file = setup.import().file;
-  if (options.demand != "generated" && options.demand != "none") session.demand_file = options.demand;
+  if (options.demand != "generated" && options.demand != "none")
+    session.demand_file = options.demand;
   session.begin_time = options.begin_time;
   session.simulation_step = options.simulation_step;
   session.seed = static_cast<std::uint64_t>(options.seed);
@@ -59,24 +61,30 @@ Vehicle background(const SimulatedVehicle& simulated) {
   return vehicle;
 }
 
-const SimulatedVehicle* findSimulated(const std::vector<SimulatedVehicle>& vehicles, const std::string& id) {
-  const auto found = std::lower_bound(vehicles.begin(), vehicles.end(), id,
-                                      [](const SimulatedVehicle& vehicle, const std::string& key) { return vehicle.id < key; });
+const SimulatedVehicle* findSimulated(const std::vector<SimulatedVehicle>& vehicles,
+                                      const std::string& id) {
+  const auto found = std::lower_bound(
+      vehicles.begin(), vehicles.end(), id,
+      [](const SimulatedVehicle& vehicle, const std::string& key) { return vehicle.id < key; });
   return found != vehicles.end() && found->id == id ? &*found : nullptr;
 }
 
 /// Where a vehicle that was just added will appear.
-traffic::VehicleState placedState(const map::RoadNetwork& network, const simulation::DemandVehicle& added) {
+traffic::VehicleState placedState(const map::RoadNetwork& network,
+                                  const simulation::DemandVehicle& added) {
   const std::vector<map::LaneIndex> lanes = network.lanesOfEdge(added.edges.front());
-  const auto& centerline = network.lane(lanes[static_cast<std::size_t>(added.depart_lane)]).centerline;
+  const auto& centerline =
+      network.lane(lanes[static_cast<std::size_t>(added.depart_lane)]).centerline;
   const double center = added.depart_position - 0.5 * added.dimensions.length;
   const Eigen::Vector3d point = centerline.pointAt(center);
   return {point.head<2>(), point.z(), centerline.headingAt(center), added.depart_speed};
 }
 
-/// Whether a vehicle could not avoid an ego that suddenly stands at `start`: nearer than `clearance`, or approaching from behind
-/// along the ego's heading faster than it can comfortably brake.
-bool inTheWay(const traffic::VehicleState& state, const traffic::VehicleState& start, double clearance) {
+/// Whether a vehicle could not avoid an ego that suddenly stands at `start`: nearer than
+/// `clearance`, or approaching from behind along the ego's heading faster than it can comfortably
+/// brake.
+bool inTheWay(const traffic::VehicleState& state, const traffic::VehicleState& start,
+              double clearance) {
   constexpr double kComfortableBraking = 2.5;  // [m/s^2]
   constexpr double kLaneHalfWidth = 2.5;       // [m]
   const Eigen::Vector2d body = start.pose().toBody(state.position);
@@ -84,18 +92,22 @@ bool inTheWay(const traffic::VehicleState& state, const traffic::VehicleState& s
   const double closing = std::max(0.0, state.speed - start.speed);
   const double needed = clearance + closing * closing / (2.0 * kComfortableBraking);
   const bool same_direction = std::abs(core::angleDifference(state.heading, start.heading)) < 0.5;
-  return same_direction && body.x() < 0.0 && -body.x() < needed && std::abs(body.y()) < kLaneHalfWidth;
+  return same_direction && body.x() < 0.0 && -body.x() < needed &&
+         std::abs(body.y()) < kLaneHalfWidth;
 }
 
 }  // namespace
 
 World::World(const SessionSetup& setup)
-    : setup_(setup), dynamics_(setup.options().vehicle), monitor_(setup.options().protocol, setup.egoRoute()) {
+    : setup_(setup),
+      dynamics_(setup.options().vehicle),
+      monitor_(setup.options().protocol, setup.egoRoute()) {
   const ScenarioOptions& options = setup.options();
-  simulator_ = std::make_unique<simulation::SumoSimulator>(options.sumo, sumoSession(setup), setup.network());
+  simulator_ = std::make_unique<simulation::SumoSimulator>(options.sumo, sumoSession(setup),
+                                                           setup.network());
   if (options.demand == "generated") {
-    demand_ = std::make_unique<simulation::DemandGenerator>(options.traffic, setup.graph(), setup.egoRoute(),
-                                                            static_cast<std::uint64_t>(options.seed));
+    demand_ = std::make_unique<simulation::DemandGenerator>(
+        options.traffic, setup.graph(), setup.egoRoute(), static_cast<std::uint64_t>(options.seed));
   }
   warmUp();
   placeEgo();
@@ -111,7 +123,8 @@ int World::simulatorProcessId() const { return simulator_->processId(); }
 void World::warmUp() {
   const ScenarioOptions& options = setup_.options();
   if (options.demand == "none") return;
-  const auto steps = static_cast<int>(std::lround(options.traffic.warm_up / options.simulation_step));
+  const auto steps =
+      static_cast<int>(std::lround(options.traffic.warm_up / options.simulation_step));
   const auto steps_per_second = static_cast<int>(std::lround(1.0 / options.simulation_step));
   for (int i = 0; i < steps; ++i) {
     if (i % steps_per_second == 0) keepDensity(true);
@@ -119,23 +132,43 @@ void World::warmUp() {
   }
 }
 
+bool World::isOurs(const std::string& id) const {
+  return std::any_of(driven_.begin(), driven_.end(),
+                     [&](const std::unique_ptr<Driven>& vehicle) { return vehicle->id == id; });
+}
+
+/// Vehicles that SUMO drives and that are not too far from the ego; those that are leave.
+std::vector<Vehicle> World::presentTraffic(const Eigen::Vector2d& ego_position) {
+  std::vector<Vehicle> present;
+  for (const SimulatedVehicle& vehicle : simulator_->vehicles()) {
+    const double distance = (vehicle.state.position - ego_position).norm();
+    if (distance <= setup_.options().traffic.forget_distance || isOurs(vehicle.id))
+      present.push_back(background(vehicle));
+    else
+      simulator_->remove(vehicle.id);
+  }
+  for (const std::unique_ptr<Driven>& vehicle : driven_) {
+    for (Vehicle& other : present) {
+      if (other.id == vehicle->id) other = snapshotOf(*vehicle);
+    }
+  }
+  return present;
+}
+
 void World::keepDensity(bool warm_up) {
   if (!demand_) return;
   constexpr int kMostTries = 200;
-  std::vector<Vehicle> present = snapshot_.vehicles;
-  if (warm_up) {
-    present.clear();
-    for (const SimulatedVehicle& vehicle : simulator_->vehicles()) present.push_back(background(vehicle));
-  }
   const Eigen::Vector3d start = setup_.egoRoute().path().pointAt(0.0);
   const Vehicle* ego = snapshot_.ego();
   const Eigen::Vector2d center = ego ? ego->state.position : Eigen::Vector2d(start.head<2>());
   const double elevation = ego ? ego->state.elevation : start.z();
+  std::vector<Vehicle> present = presentTraffic(center);
   for (int i = 0; i < kMostTries; ++i) {
     const auto wanted = demand_->next(present, center, elevation, warm_up);
     if (!wanted) return;
-    const bool added = simulator_->addBackground(wanted->id, wanted->edges, wanted->depart_position, wanted->depart_lane,
-                                                 wanted->depart_speed, wanted->dimensions);
+    const bool added =
+        simulator_->addBackground(wanted->id, wanted->edges, wanted->depart_position,
+                                  wanted->depart_lane, wanted->depart_speed, wanted->dimensions);
     if (!added) continue;
     Vehicle placed;
     placed.id = wanted->id;
@@ -151,7 +184,8 @@ void World::placeEgo() {
   ego->role = VehicleRole::kEgo;
   ego->route = setup_.egoRoute();
   const Eigen::Vector3d start = ego->route.path().pointAt(0.0);
-  ego->state = {start.head<2>(), start.z(), ego->route.path().headingAt(0.0), setup_.options().route.start_speed};
+  ego->state = {start.head<2>(), start.z(), ego->route.path().headingAt(0.0),
+                setup_.options().route.start_speed};
   for (const SimulatedVehicle& vehicle : simulator_->vehicles()) {
     const bool same_level = std::abs(vehicle.state.elevation - ego->state.elevation) < 2.5;
     if (same_level && inTheWay(vehicle.state, ego->state, setup_.options().traffic.clear_start)) {
@@ -180,8 +214,10 @@ void World::end(SessionStatus status, const traffic::Fault& fault) {
   pending_faults_.clear();
 }
 
-void World::advance(const cbv::CbvSelection* selection, const std::vector<planning::PlannedAction>& actions) {
-  if (snapshot_.status != SessionStatus::kRunning) throw std::logic_error("the session has already ended");
+void World::advance(const cbv::CbvSelection* selection,
+                    const std::vector<planning::PlannedAction>& actions) {
+  if (snapshot_.status != SessionStatus::kRunning)
+    throw std::logic_error("the session has already ended");
   try {
     const std::vector<std::string> removed = std::move(to_remove_);
     to_remove_.clear();
@@ -189,7 +225,8 @@ void World::advance(const cbv::CbvSelection* selection, const std::vector<planni
     if (selection != nullptr) applySelection(*selection, removed);
     applyActions(actions);
     moveDriven();
-    const auto ticks_per_second = static_cast<std::uint64_t>(std::llround(1.0 / setup_.options().simulation_step));
+    const auto ticks_per_second =
+        static_cast<std::uint64_t>(std::llround(1.0 / setup_.options().simulation_step));
     if (snapshot_.tick % ticks_per_second == 0) keepDensity(false);
     stepSimulator();
     takeSnapshot();
@@ -206,15 +243,16 @@ void World::removeContacted(const std::vector<std::string>& removed) {
   }
 }
 
-void World::applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed) {
+void World::applySelection(const cbv::CbvSelection& selection,
+                           const std::vector<std::string>& removed) {
   for (const cbv::ReleasedCbv& released : selection.released) release(released.vehicle_id);
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
-    const auto is_it = [&](const std::unique_ptr<Driven>& vehicle) { return vehicle->id == assignment.vehicle_id; };
-    if (std::any_of(driven_.begin(), driven_.end(), is_it)) continue;
+    if (isOurs(assignment.vehicle_id)) continue;
     if (std::find(removed.begin(), removed.end(), assignment.vehicle_id) != removed.end()) continue;
     takeOver(assignment);
   }
-  const auto by_slot = [](const std::unique_ptr<Driven>& left, const std::unique_ptr<Driven>& right) {
+  const auto by_slot = [](const std::unique_ptr<Driven>& left,
+                          const std::unique_ptr<Driven>& right) {
     return left->slot < right->slot;
   };
   std::sort(driven_.begin(), driven_.end(), by_slot);
@@ -249,9 +287,11 @@ void World::applyActions(const std::vector<planning::PlannedAction>& actions) {
       vehicle->action = planned.action;
       if (planned.action.valid()) continue;
       vehicle->action = traffic::ControlAction::failSafe();
-      recordFault("command", "vehicle '" + vehicle->id + "' got throttle " + core::formatNumber(planned.action.throttle) +
-                                 ", steer " + core::formatNumber(planned.action.steer) + ", brake " +
-                                 core::formatNumber(planned.action.brake) + "; full braking instead");
+      recordFault("command", "vehicle '" + vehicle->id + "' got throttle " +
+                                 core::formatNumber(planned.action.throttle) + ", steer " +
+                                 core::formatNumber(planned.action.steer) + ", brake " +
+                                 core::formatNumber(planned.action.brake) +
+                                 "; full braking instead");
     }
   }
 }
@@ -265,8 +305,9 @@ void World::moveDriven() {
     vehicle->state = dynamics_.step(before, *vehicle->action, step);
     vehicle->acceleration = (vehicle->state.speed - before.speed) / step;
     vehicle->yaw_rate = core::angleDifference(vehicle->state.heading, before.heading) / step;
-    const auto near = vehicle->route.path().project(vehicle->state.position, std::max(0.0, vehicle->arc_length - kWindow),
-                                                    std::min(vehicle->route.length(), vehicle->arc_length + kWindow));
+    const auto near = vehicle->route.path().project(
+        vehicle->state.position, std::max(0.0, vehicle->arc_length - kWindow),
+        std::min(vehicle->route.length(), vehicle->arc_length + kWindow));
     vehicle->arc_length = near.arc_length;
     vehicle->state.elevation = near.elevation;
   }
@@ -296,19 +337,22 @@ Vehicle World::snapshotOf(const Driven& driven) const {
 void World::collectVehicles(const std::vector<Vehicle>& before) {
   std::unordered_map<std::string, double> headings;
   for (const Vehicle& vehicle : before) headings.emplace(vehicle.id, vehicle.state.heading);
-  for (const std::unique_ptr<Driven>& vehicle : driven_) snapshot_.vehicles.push_back(snapshotOf(*vehicle));
+  for (const std::unique_ptr<Driven>& vehicle : driven_)
+    snapshot_.vehicles.push_back(snapshotOf(*vehicle));
   for (const SimulatedVehicle& simulated : simulator_->vehicles()) {
-    const auto is_it = [&](const std::unique_ptr<Driven>& vehicle) { return vehicle->id == simulated.id; };
-    if (std::any_of(driven_.begin(), driven_.end(), is_it)) continue;
+    if (isOurs(simulated.id)) continue;
     Vehicle vehicle = background(simulated);
     const auto heading = headings.find(vehicle.id);
     if (heading != headings.end()) {
-      vehicle.yaw_rate = core::angleDifference(vehicle.state.heading, heading->second) / setup_.options().simulation_step;
+      vehicle.yaw_rate = core::angleDifference(vehicle.state.heading, heading->second) /
+                         setup_.options().simulation_step;
     }
     snapshot_.vehicles.push_back(std::move(vehicle));
   }
+  std::unordered_set<std::string> present;
+  for (const Vehicle& vehicle : snapshot_.vehicles) present.insert(vehicle.id);
   for (const Vehicle& vehicle : before) {
-    if (snapshot_.find(vehicle.id) == nullptr) snapshot_.removed.push_back(vehicle.id);
+    if (present.count(vehicle.id) == 0) snapshot_.removed.push_back(vehicle.id);
   }
 }
 
@@ -339,11 +383,13 @@ void World::findContacts() {
 
 void World::checkContact(const Vehicle& ours, const Vehicle& other) {
   constexpr double kCountAgainAfter = 5.0;  // [s]
-  const double reach = 0.5 * (ours.dimensions.length + ours.dimensions.width + other.dimensions.length +
-                              other.dimensions.width);
+  const double reach = 0.5 * (ours.dimensions.length + ours.dimensions.width +
+                              other.dimensions.length + other.dimensions.width);
   if ((ours.state.position - other.state.position).squaredNorm() > reach * reach) return;
-  if (traffic::onDifferentLevels(ours, other) || !geometry::overlap(ours.box(), other.box())) return;
-  const auto again = static_cast<std::uint64_t>(std::llround(kCountAgainAfter / setup_.options().simulation_step));
+  if (traffic::onDifferentLevels(ours, other) || !geometry::overlap(ours.box(), other.box()))
+    return;
+  const auto again =
+      static_cast<std::uint64_t>(std::llround(kCountAgainAfter / setup_.options().simulation_step));
   const std::pair<std::string, std::string> pair = std::minmax(ours.id, other.id);
   const auto [entry, is_new] = last_overlap_.try_emplace(pair, snapshot_.tick);
   const bool counts = is_new || snapshot_.tick - entry->second > again;

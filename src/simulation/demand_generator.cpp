@@ -48,6 +48,9 @@ void DemandOptions::describe(core::OptionsVisitor& visitor) {
                  0.0, 1000.0);
   visitor.number({"warm_up", "s", "Traffic is driven this long before the session begins."},
                  warm_up, 0.0, 3600.0);
+  visitor.number(
+      {"forget_distance", "m", "A generated vehicle farther from the ego leaves the simulation."},
+      forget_distance, 50.0, 1e6);
 }
 
 DemandGenerator::DemandGenerator(const DemandOptions& options, const map::LaneGraph& graph,

@@ -23,8 +23,8 @@ constexpr double kReleasedWayLength = 600.0;  ///< given at the release [m]
 constexpr double kReleaseHeading =
     core::kPi / 6.0;                      ///< between vehicle and lane at a release [rad]
 constexpr double kLaneChangePause = 3.0;  ///< without lane changes once settled [s]
-constexpr double kHardBraking = 9.0;          ///< SUMO's emergency braking [m/s^2]
-constexpr double kAcceleration = 2.6;         ///< SUMO's passenger car [m/s^2]
+constexpr double kHardBraking = 9.0;      ///< SUMO's emergency braking [m/s^2]
+constexpr double kAcceleration = 2.6;     ///< SUMO's passenger car [m/s^2]
 constexpr int kSpeedModeOff = 32;         ///< none of SUMO's checks
 constexpr int kSpeedModeDefault = 31;
 constexpr int kLaneChangeModeOff = 512;  ///< no lane change of its own
@@ -196,6 +196,7 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle, const std::string& repor
 void DrivenFleet::settle(const std::string& id, Released& released, double step) {
   if (released.motion.settled()) {
     released.settling = false;
+    SumoVehicle::setPreviousSpeed(id, released.motion.state().speed, 0.0);
     return;
   }
   // SUMO's wish answers the step before the last: its change of speed counts, not the speed.
@@ -209,6 +210,14 @@ void DrivenFleet::settle(const std::string& id, Released& released, double step)
   released.speed_before = last;
   const traffic::VehicleState& state = released.motion.advance(speed, step);
   moveFront(id, frontOf(state.pose(), released.motion.length()), state.heading, true);
+}
+
+std::map<std::string, double> DrivenFleet::settlingSpeeds() const {
+  std::map<std::string, double> speeds;
+  for (const auto& [id, released] : released_) {
+    if (released.settling) speeds.emplace(id, released.motion.state().speed);
+  }
+  return speeds;
 }
 
 void DrivenFleet::advance(double step) {

@@ -5,9 +5,10 @@
 namespace cdiff::simulation {
 namespace {
 
-constexpr double kStanding = 0.1;          ///< [m/s]
-constexpr double kMoving = 0.5;            ///< [m/s]
-constexpr double kStopLine = 8.0;          ///< a front bumper nearer to the lane's end waits at the stop line [m]
+constexpr double kStanding = 0.1;  ///< [m/s]
+constexpr double kMoving = 0.5;    ///< [m/s]
+constexpr double kStopLine =
+    8.0;  ///< a front bumper nearer to the lane's end waits at the stop line [m]
 constexpr double kApproaching = 20.0;      ///< a vehicle nearer than this to the stop line ... [m]
 constexpr double kApproachSpeed = 4.0;     ///< ... and faster than this is let through [m/s]
 constexpr double kOursApproaching = 50.0;  ///< the same for a vehicle that we drive [m]
@@ -15,8 +16,8 @@ constexpr double kOursNear = 20.0;         ///< front bumper of ours to the stop
 constexpr double kPatience = 1.0;          ///< wait before somebody goes first [s]
 constexpr double kLongestGrant = 5.0;      ///< [s]
 constexpr double kLongestStandingGrant = 1.5;  ///< of a vehicle that still stands: it cannot go [s]
-constexpr double kInsideFirst = 1e6;       ///< rank added inside a junction
-constexpr double kAheadOfOursFirst = 1e3;  ///< rank added ahead of a vehicle of ours
+constexpr double kInsideFirst = 1e6;           ///< rank added inside a junction
+constexpr double kAheadOfOursFirst = 1e3;      ///< rank added ahead of a vehicle of ours
 
 double toLaneEnd(const SimulatedVehicle& vehicle, const map::Lane& lane) {
   const Eigen::Vector2d end = lane.centerline.points().back().head<2>();
@@ -32,17 +33,20 @@ bool endsAtJunction(const map::RoadNetwork& network, const map::Lane& lane) {
 
 }  // namespace
 
-RightOfWay::RightOfWay(const map::RoadNetwork& network, const std::vector<traffic::SignalState>& signals)
+RightOfWay::RightOfWay(const map::RoadNetwork& network,
+                       const std::vector<traffic::SignalState>& signals)
     : network_(network) {
   for (const traffic::SignalState& signal : signals) all_yield_.emplace(signal.id, signal.state);
   std::map<std::string, int> known;
   for (const map::Lane& lane : network.lanes()) {
-    const bool counts = !lane.junction_id.empty() && (lane.internal || endsAtJunction(network, lane));
+    const bool counts =
+        !lane.junction_id.empty() && (lane.internal || endsAtJunction(network, lane));
     if (!counts) {
       junction_of_lane_.push_back(-1);
       continue;
     }
-    junction_of_lane_.push_back(known.emplace(lane.junction_id, static_cast<int>(known.size())).first->second);
+    junction_of_lane_.push_back(
+        known.emplace(lane.junction_id, static_cast<int>(known.size())).first->second);
   }
   junctions_.resize(known.size());
   for (std::size_t index = 0; index < junction_of_lane_.size(); ++index) {
@@ -57,8 +61,8 @@ RightOfWay::RightOfWay(const map::RoadNetwork& network, const std::vector<traffi
   }
 }
 
-WayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles, const IsDriven& is_driven,
-                                          double step) {
+WayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles,
+                              const IsDriven& is_driven, double step) {
   for (JunctionState& junction : junctions_) {
     junction.moving = junction.ours_coming = junction.ours_near = junction.ours_on_several = false;
     junction.queue_ahead_of_ours = false;
@@ -107,14 +111,16 @@ void RightOfWay::lookAtOurs(const SimulatedVehicle& vehicle, const Place& place)
   JunctionState& junction = place.junction;
   if (vehicle.state.speed > kMoving) junction.ours_coming = true;
   if (vehicle.state.speed > kMoving && place.to_end < kOursNear) junction.ours_near = true;
-  if (!junction.ours_edge.empty() && junction.ours_edge != place.lane.edge_id) junction.ours_on_several = true;
+  if (!junction.ours_edge.empty() && junction.ours_edge != place.lane.edge_id)
+    junction.ours_on_several = true;
   junction.ours_edge = place.lane.edge_id;
   junction.ours_to_end = place.to_end;
 }
 
 void RightOfWay::noteQueue(const Place& place) {
   JunctionState& junction = place.junction;
-  const bool ahead = place.lane.edge_id == junction.ours_edge && place.to_end < junction.ours_to_end;
+  const bool ahead =
+      place.lane.edge_id == junction.ours_edge && place.to_end < junction.ours_to_end;
   if (ahead && !place.lane.internal) junction.queue_ahead_of_ours = true;
 }
 

@@ -66,7 +66,8 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
   return command;
 }
 
-// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest deceleration, 8 right of way, 16 red lights.
+// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest deceleration, 8 right
+// of way, 16 red lights.
 constexpr int kUsualSpeedMode = 31;
 constexpr int kDisregardRightOfWay = 23;
 
@@ -143,6 +144,7 @@ class SumoSimulator::Connection {
       fleet_.advance(step_);
       libtraci::Simulation::step();
       observer_.read();
+      for (const auto& [id, speed] : fleet_.settlingSpeeds()) observer_.correctSpeed(id, speed);
       dropWaiting();
       giveWay();
     });
@@ -185,7 +187,8 @@ class SumoSimulator::Connection {
     const auto is_driven = [this](const std::string& id) { return fleet_.contains(id); };
     const WayChanges changes = right_of_way_->update(observer_.vehicles(), is_driven, step_);
     for (const WayChange& change : changes.vehicles) {
-      if (observer_.find(change.vehicle_id) == nullptr || fleet_.contains(change.vehicle_id)) continue;
+      if (observer_.find(change.vehicle_id) == nullptr || fleet_.contains(change.vehicle_id))
+        continue;
       libtraci::Vehicle::setSpeedMode(change.vehicle_id,
                                       change.may_go ? kDisregardRightOfWay : kUsualSpeedMode);
     }
@@ -233,8 +236,8 @@ class SumoSimulator::Connection {
   TrafficObserver observer_;
   DrivenFleet fleet_;
   std::optional<RightOfWay> right_of_way_;  ///< when all lights are green
-  std::set<std::string> fresh_;       ///< added since the last step
-  std::vector<std::string> waiting_;  ///< background vehicles added since the last step
+  std::set<std::string> fresh_;             ///< added since the last step
+  std::vector<std::string> waiting_;        ///< background vehicles added since the last step
   std::set<std::string> types_;
 };
 

@@ -110,6 +110,12 @@ void TrafficObserver::show(const traffic::SignalState& changed) {
   }
 }
 
+void TrafficObserver::correctSpeed(const std::string& id, double speed) {
+  for (SimulatedVehicle& vehicle : vehicles_) {
+    if (vehicle.id == id) vehicle.state.speed = speed;
+  }
+}
+
 void TrafficObserver::readSignals() {
   if (lights_green_) return;
   const libsumo::SubscriptionResults all = libtraci::TrafficLight::getAllSubscriptionResults();

@@ -26,7 +26,8 @@ const Vehicle* TrafficSnapshot::find(const std::string& id) const {
 }
 
 const Vehicle* TrafficSnapshot::ego() const {
-  return findVehicle(vehicles, [](const Vehicle& vehicle) { return vehicle.role == VehicleRole::kEgo; });
+  return findVehicle(vehicles,
+                     [](const Vehicle& vehicle) { return vehicle.role == VehicleRole::kEgo; });
 }
 
 const Vehicle* TrafficSnapshot::cbv(int slot) const {

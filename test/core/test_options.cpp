@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/options.h"
-
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/options.h"
 
 namespace cdiff::core {
 namespace {
@@ -45,11 +44,14 @@ std::string errorOf(const std::string& yaml) {
   return "";
 }
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool mentions(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST(Options, LoadKeepsWhatIsNotGiven) {
   OuterOptions options;
-  loadOptions({"file.yaml", "seed: 7\ninner:\n  radius: 12.5\npoints: [[1, 2], [3, 4, 5]]\n"}, options);
+  loadOptions({"file.yaml", "seed: 7\ninner:\n  radius: 12.5\npoints: [[1, 2], [3, 4, 5]]\n"},
+              options);
   EXPECT_EQ(options.seed, 7);
   EXPECT_EQ(options.inner.radius, 12.5);
   EXPECT_EQ(options.inner.ranking, "score");

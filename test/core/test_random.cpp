@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/random.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
+
+#include "e2e_cdiff/core/random.h"
 
 namespace cdiff::core {
 namespace {
@@ -30,7 +30,8 @@ TEST(Random, EveryCoordinateMatters) {
   EXPECT_EQ(draws.size(), 7u);
 }
 
-// Mean of n uniforms has standard deviation 1 / sqrt(12 n): 0.00091 for n = 100,000; five of them are 0.0046.
+// Mean of n uniforms has standard deviation 1 / sqrt(12 n): 0.00091 for n = 100,000; five of them
+// are 0.0046.
 TEST(Random, UniformMomentsAndRange) {
   const RandomStream stream(1, "test");
   double sum = 0.0;
@@ -43,7 +44,8 @@ TEST(Random, UniformMomentsAndRange) {
   EXPECT_NEAR(sum / 100000.0, 0.5, 0.0046);
 }
 
-// Standard errors for n = 100,000: mean 0.0032, variance sqrt(2 / n) = 0.0045, fourth moment sqrt(96 / n) = 0.031.
+// Standard errors for n = 100,000: mean 0.0032, variance sqrt(2 / n) = 0.0045, fourth moment
+// sqrt(96 / n) = 0.031.
 TEST(Random, NormalMoments) {
   const RandomStream stream(1, "test");
   double sum = 0.0, squares = 0.0, fourth = 0.0;

@@ -47,12 +47,15 @@ TEST(File, Sha256OfKnownText) {
 }
 
 TEST(File, AtomicWriteReplacesWholeFile) {
-  const auto folder = std::filesystem::temp_directory_path() / ("cdiff_file_" + std::to_string(std::rand()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("cdiff_file_" + std::to_string(std::rand()));
   std::filesystem::create_directories(folder);
   writeFileAtomically(folder / "a.txt", "one");
   writeFileAtomically(folder / "a.txt", "two");
   EXPECT_EQ(readFile(folder / "a.txt", "text"), "two");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()), 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder),
+                          std::filesystem::directory_iterator()),
+            1);
   EXPECT_THROW(readFile(folder, "text"), InputError);
   EXPECT_THROW(readFile(folder / "none", "text"), InputError);
   EXPECT_THROW(writeFileAtomically(folder / "none" / "a", "x"), InputError);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/geometry/oriented_box.h"
-
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/geometry/oriented_box.h"
 
 namespace cdiff::geometry {
 namespace {
@@ -34,7 +33,8 @@ TEST(OrientedBox, CornerTowardsEdge) {
   EXPECT_NEAR(distance(first, second), 0.5, 1e-12);
 }
 
-// The diagonal neighbours overlap in both axis projections of neither box: only the turned axes separate them.
+// The diagonal neighbours overlap in both axis projections of neither box: only the turned axes
+// separate them.
 TEST(OrientedBox, SeparatedOnlyByTurnedAxis) {
   const OrientedBox first{{0, 0}, 0.0, 2.0, 2.0};
   const OrientedBox second{{1.9, 1.9}, core::kPi / 4, 2.0, 2.0};

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/geometry/polyline.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/geometry/polyline.h"
 
 namespace cdiff::geometry {
 namespace {
@@ -56,7 +55,8 @@ TEST(Polyline, SliceAndResample) {
 TEST(Polyline, BadInput) {
   EXPECT_THROW(Polyline({{0, 0, 0}}), core::InputError);
   EXPECT_THROW(Polyline({{0, 0, 0}, {0, 0, 1}}), core::InputError);
-  EXPECT_THROW(Polyline({{0, 0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0, 1}}), core::InputError);
+  EXPECT_THROW(Polyline({{0, 0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0, 1}}),
+               core::InputError);
 }
 
 }  // namespace

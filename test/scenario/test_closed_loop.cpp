@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/scenario/closed_loop.h"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -13,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "support/real_data.h"
 
@@ -36,9 +35,11 @@ class Course : public SessionObserver {
     const traffic::TrafficSnapshot& snapshot = *record.snapshot;
     EXPECT_EQ(snapshot.tick, ticks_++);
     for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
-      text_ << snapshot.tick << vehicle.id << toText(vehicle.role) << core::formatNumber(vehicle.state.position.x())
-            << core::formatNumber(vehicle.state.position.y()) << core::formatNumber(vehicle.state.heading)
-            << core::formatNumber(vehicle.state.speed) << "\n";
+      text_ << snapshot.tick << vehicle.id << toText(vehicle.role)
+            << core::formatNumber(vehicle.state.position.x())
+            << core::formatNumber(vehicle.state.position.y())
+            << core::formatNumber(vehicle.state.heading) << core::formatNumber(vehicle.state.speed)
+            << "\n";
       cbv_ticks_ += vehicle.role == VehicleRole::kCbv;
     }
     for (const traffic::Fault& fault : snapshot.faults) faults_.push_back(fault);
@@ -76,7 +77,8 @@ TEST_P(Determinism, SameSeedSameCourseOtherSeedDiffers) {
   EXPECT_NE(first.hash(), other.hash());
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, Determinism, testing::Values("crossing_left_turn", "roundabout_entry"));
+INSTANTIATE_TEST_SUITE_P(Scenarios, Determinism,
+                         testing::Values("crossing_left_turn", "roundabout_entry"));
 
 TEST(ClosedLoop, DrivesCbvsAndCompletes) {
   const Course course = runScenario(scenarioWith("crossing_left_turn", {}));
@@ -115,7 +117,9 @@ class Saboteur : public SessionObserver {
     ::kill(world_.simulatorProcessId(), signal_);
     when_ = std::chrono::steady_clock::now();
   }
-  double secondsSince() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - when_).count(); }
+  double secondsSince() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - when_).count();
+  }
 
  private:
   const World& world_;
@@ -138,7 +142,9 @@ double secondsUntilErrorAfter(int signal, const std::vector<std::string>& set) {
   return seconds;
 }
 
-TEST(ClosedLoop, KilledSumoIsAnErrorWithinASecond) { EXPECT_LT(secondsUntilErrorAfter(SIGKILL, {}), 1.0); }
+TEST(ClosedLoop, KilledSumoIsAnErrorWithinASecond) {
+  EXPECT_LT(secondsUntilErrorAfter(SIGKILL, {}), 1.0);
+}
 
 TEST(ClosedLoop, FrozenSumoIsAnErrorAfterTheStepTimeout) {
   const double seconds = secondsUntilErrorAfter(SIGSTOP, {"sumo.step_timeout=2"});
@@ -148,7 +154,8 @@ TEST(ClosedLoop, FrozenSumoIsAnErrorAfterTheStepTimeout) {
 
 // A command that is not finite or out of range becomes full braking, and is told.
 TEST(World, InvalidCommandsBecomeFullBraking) {
-  const SessionSetup setup(scenarioWith("crossing_left_turn", {"max_cbv=0", "route.start_speed=5"}));
+  const SessionSetup setup(
+      scenarioWith("crossing_left_turn", {"max_cbv=0", "route.start_speed=5"}));
   World world(setup);
   planning::PlannedAction bad{-1, kEgoId, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, {}};
   const double before = world.snapshot().ego()->state.speed;
@@ -162,7 +169,8 @@ TEST(World, InvalidCommandsBecomeFullBraking) {
   EXPECT_EQ(world.snapshot().faults.size(), 1u);
 }
 
-// Full brake is at most 8 m/s^2: 0.4 m/s a tick; nothing moves farther than speed x 0.05 s (+ the hand-over's rounding).
+// Full brake is at most 8 m/s^2: 0.4 m/s a tick; nothing moves farther than speed x 0.05 s (+ the
+// hand-over's rounding).
 TEST(World, NoVehicleJumps) {
   const SessionSetup setup(scenarioWith("crossing_left_turn", {}));
   ClosedLoop loop(setup);
@@ -171,7 +179,9 @@ TEST(World, NoVehicleJumps) {
     void observe(const TickRecord& record) override {
       for (const traffic::Vehicle& vehicle : record.snapshot->vehicles) {
         const auto before = last_.find(vehicle.id);
-        if (before != nullptr && (vehicle.role != VehicleRole::kBackground || before->role != VehicleRole::kBackground)) check(*before, vehicle);
+        if (before != nullptr &&
+            (vehicle.role != VehicleRole::kBackground || before->role != VehicleRole::kBackground))
+          check(*before, vehicle);
       }
       last_ = *record.snapshot;
     }
@@ -179,7 +189,8 @@ TEST(World, NoVehicleJumps) {
       const double moved = (after.state.position - before.state.position).norm();
       const double speed = std::max(before.state.speed, after.state.speed);
       EXPECT_LT(moved, 0.05 * speed + 0.1) << after.id << " at tick " << last_.tick;
-      EXPECT_LT(std::abs(after.state.speed - before.state.speed), 0.6) << after.id << " at tick " << last_.tick;
+      EXPECT_LT(std::abs(after.state.speed - before.state.speed), 0.6)
+          << after.id << " at tick " << last_.tick;
     }
     traffic::TrafficSnapshot last_;
   } steps;

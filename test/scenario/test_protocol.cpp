@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/scenario/protocol.h"
-
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/scenario/protocol.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
 
@@ -15,7 +14,9 @@ using traffic::SessionStatus;
 /// A straight road of 100 m and a route along all of it.
 class Protocol : public testing::Test {
  protected:
-  static map::RoadNetwork makeNetwork() { return test::NetworkText().edge("a", {"0,0 100,0"}).network(); }
+  static map::RoadNetwork makeNetwork() {
+    return test::NetworkText().edge("a", {"0,0 100,0"}).network();
+  }
   static std::vector<Eigen::Vector3d> points() {
     std::vector<Eigen::Vector3d> points;
     for (int x = 0; x <= 100; ++x) points.emplace_back(x, 0.0, 0.0);

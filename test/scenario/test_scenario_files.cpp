@@ -62,12 +62,15 @@ std::string errorOf(const SessionRequest& request) {
   return "";
 }
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool mentions(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST(SessionRequest, UnknownScenarioNamesTheNearest) {
   SessionRequest request;
   request.scenario = "crossing_left_turns";
-  EXPECT_TRUE(mentions(errorOf(request), "nearest shipped one is 'crossing_left_turn'")) << errorOf(request);
+  EXPECT_TRUE(mentions(errorOf(request), "nearest shipped one is 'crossing_left_turn'"))
+      << errorOf(request);
 }
 
 TEST(SessionRequest, NothingToRun) { EXPECT_TRUE(mentions(errorOf({}), "nothing to run")); }
@@ -76,7 +79,8 @@ TEST(SessionRequest, BadKeysAndValuesNameTheSource) {
   SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.set = {"max_cbvs=1"};
-  EXPECT_TRUE(mentions(errorOf(request), "--set: unknown key 'max_cbvs'; the nearest known key is 'max_cbv'"));
+  EXPECT_TRUE(mentions(errorOf(request),
+                       "--set: unknown key 'max_cbvs'; the nearest known key is 'max_cbv'"));
   request.set = {"max_cbv=-1"};
   EXPECT_TRUE(mentions(errorOf(request), "[0, 16]")) << errorOf(request);
   request.set = {"decision_period=0.12"};

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/right_of_way.h"
-
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/simulation/right_of_way.h"
 #include "support/network_text.h"
 
 namespace cdiff::simulation {
@@ -26,11 +25,13 @@ map::RoadNetwork makeNetwork() {
 class RightOfWayTest : public testing::Test {
  protected:
   /// A vehicle of 4.5 m whose front bumper is `gap` metres before the stop line.
-  static SimulatedVehicle on(const std::string& id, const std::string& road, double gap, double speed) {
+  static SimulatedVehicle on(const std::string& id, const std::string& road, double gap,
+                             double speed) {
     SimulatedVehicle vehicle;
     vehicle.id = id;
     const double center = -5.0 - gap - 2.25;
-    vehicle.state.position = road == "west" ? Eigen::Vector2d(center, 0.0) : Eigen::Vector2d(0.0, center);
+    vehicle.state.position =
+        road == "west" ? Eigen::Vector2d(center, 0.0) : Eigen::Vector2d(0.0, center);
     vehicle.state.speed = speed;
     vehicle.lane_id = road + "_0";
     return vehicle;
@@ -43,10 +44,14 @@ class RightOfWayTest : public testing::Test {
     return vehicle;
   }
   /// Runs for some seconds; answers the last vehicle that was given way, "" when none.
-  std::string firstToGo(const std::vector<SimulatedVehicle>& vehicles, double seconds, const std::string& ours = "") {
+  std::string firstToGo(const std::vector<SimulatedVehicle>& vehicles, double seconds,
+                        const std::string& ours = "") {
     std::string granted;
     for (double time = 0.0; time < seconds - 1e-9; time += 0.05) {
-      for (const WayChange& change : row_.update(vehicles, [&](const std::string& id) { return id == ours; }, 0.05).vehicles) {
+      for (const WayChange& change :
+           row_.update(
+                   vehicles, [&](const std::string& id) { return id == ours; }, 0.05)
+               .vehicles) {
         granted = change.may_go ? change.vehicle_id : "";
       }
     }
@@ -59,7 +64,8 @@ class RightOfWayTest : public testing::Test {
 
 // Patience is 1 s: 20 updates of 0.05 s.
 TEST_F(RightOfWayTest, OneOfTwoThatWaitGoesAfterASecond) {
-  const std::vector<SimulatedVehicle> waiting = {on("a", "west", 1.0, 0.0), on("b", "south", 1.0, 0.0)};
+  const std::vector<SimulatedVehicle> waiting = {on("a", "west", 1.0, 0.0),
+                                                 on("b", "south", 1.0, 0.0)};
   EXPECT_EQ(firstToGo(waiting, 0.9), "");
   EXPECT_EQ(firstToGo(waiting, 0.2), "a") << "ties go to the first by id";
 }
@@ -88,19 +94,24 @@ TEST_F(RightOfWayTest, NobodyGoesBeforeOurs) {
 
 TEST_F(RightOfWayTest, AGrantEndsWhenOursArrives) {
   ASSERT_EQ(firstToGo({on("a", "west", 1.0, 0.0)}, 1.05), "a");
-  const auto changes = row_.update({on("a", "west", 0.5, 1.0), on("ego", "south", 15.0, 8.0)},
-                                   [](const std::string& id) { return id == "ego"; }, 0.05);
+  const auto changes = row_.update(
+      {on("a", "west", 0.5, 1.0), on("ego", "south", 15.0, 8.0)},
+      [](const std::string& id) { return id == "ego"; }, 0.05);
   ASSERT_EQ(changes.vehicles.size(), 1u);
   EXPECT_EQ(changes.vehicles[0].vehicle_id, "a");
   EXPECT_FALSE(changes.vehicles[0].may_go);
 }
 
 TEST_F(RightOfWayTest, TheQueueAheadOfOursGoes) {
-  EXPECT_EQ(firstToGo({on("a", "west", 1.0, 0.0), on("b", "south", 1.0, 0.0), on("ego", "south", 40.0, 8.0)}, 1.05, "ego"), "b");
+  EXPECT_EQ(firstToGo({on("a", "west", 1.0, 0.0), on("b", "south", 1.0, 0.0),
+                       on("ego", "south", 40.0, 8.0)},
+                      1.05, "ego"),
+            "b");
 }
 
 TEST_F(RightOfWayTest, WhoCannotGoLosesTheTurn) {
-  const std::vector<SimulatedVehicle> waiting = {on("a", "west", 1.0, 0.0), on("b", "south", 1.0, 0.0)};
+  const std::vector<SimulatedVehicle> waiting = {on("a", "west", 1.0, 0.0),
+                                                 on("b", "south", 1.0, 0.0)};
   ASSERT_EQ(firstToGo(waiting, 1.05), "a");
   // 1.5 s without moving: the turn ends, and b, who has waited longer by then, is next.
   EXPECT_EQ(firstToGo(waiting, 1.65), "b");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What CBV identification says at one decision: which vehicles are critical, where they conflict with the ego, and why
-/// every other vehicle is not (paper III-B).
+/// What CBV identification says at one decision: which vehicles are critical, where they conflict
+/// with the ego, and why every other vehicle is not (paper III-B).
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace cdiff::cbv {
 /// Where the ways of ego and CBV meet, with the distances along each.
 struct ConflictPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< map frame [m]
-  double ego_arc_length = 0.0;  ///< on the ego's route, from its start [m]
-  double ego_distance = 0.0;    ///< still to drive for the ego [m]
-  double cbv_distance = 0.0;    ///< still to drive for the CBV [m]
-  double ego_arrival = 0.0;     ///< [s] from now at its present speed (at least v_min)
-  double cbv_arrival = 0.0;     ///< [s]
+  double ego_arc_length = 0.0;                         ///< on the ego's route, from its start [m]
+  double ego_distance = 0.0;                           ///< still to drive for the ego [m]
+  double cbv_distance = 0.0;                           ///< still to drive for the CBV [m]
+  double ego_arrival = 0.0;  ///< [s] from now at its present speed (at least v_min)
+  double cbv_arrival = 0.0;  ///< [s]
   double arrivalTimeGap() const { return cbv_arrival - ego_arrival; }
 };
 
@@ -27,31 +27,32 @@ struct ConflictPoint {
 struct CbvAssignment {
   int slot = 0;
   std::string vehicle_id;
-  double interaction_score = 0.0;        ///< at selection, in [0, 1]
+  double interaction_score = 0.0;  ///< at selection, in [0, 1]
   std::uint64_t selected_tick = 0;
-  ConflictPoint conflict_point;          ///< position as selected, distances and times as of this decision
-  map::Route conflict_aware_route;       ///< from where it was selected, through the conflict point, and on
+  ConflictPoint conflict_point;  ///< position as selected, distances and times as of this decision
+  map::Route
+      conflict_aware_route;  ///< from where it was selected, through the conflict point, and on
 };
 
 /// A candidate that was not taken. Reasons are fixed words: see rejection_reason.h.
 struct RejectedCandidate {
   std::string vehicle_id;
   std::string reason;
-  double interaction_score = 0.0;        ///< 0 when rejected before scoring
+  double interaction_score = 0.0;  ///< 0 when rejected before scoring
 };
 
 /// A slot that became free at this decision.
 struct ReleasedCbv {
   int slot = 0;
   std::string vehicle_id;
-  std::string reason;                    ///< see held_cbv.h; or "outranked" (life cycle "reselect")
+  std::string reason;  ///< see held_cbv.h; or "outranked" (life cycle "reselect")
 };
 
 struct CbvSelection {
   std::uint64_t tick = 0;
-  std::vector<CbvAssignment> assignments;    ///< by slot
-  std::vector<RejectedCandidate> rejected;   ///< by id
-  std::vector<ReleasedCbv> released;         ///< by slot
+  std::vector<CbvAssignment> assignments;   ///< by slot
+  std::vector<RejectedCandidate> rejected;  ///< by id
+  std::vector<ReleasedCbv> released;        ///< by slot
 
   const CbvAssignment* find(int slot) const;
 };

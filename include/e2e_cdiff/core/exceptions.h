@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The error types of the project: each says who must act and carries the offending value in its text.
+/// The error types of the project: each says who must act and carries the offending value in its
+/// text.
 #pragma once
 
 #include <stdexcept>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Files: whole-file reads with clear errors, atomic writes, SHA-256, and where the package's own files lie.
+/// Files: whole-file reads with clear errors, atomic writes, SHA-256, and where the package's own
+/// files lie.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +13,8 @@ namespace cdiff::core {
 /// The whole file. Throws InputError naming `what` and the path when it cannot be read.
 std::string readFile(const std::filesystem::path& path, const std::string& what);
 
-/// Writes to a temporary file beside `path`, flushes it to the disk and renames it: the file is whole or absent.
-/// Throws InputError naming the path.
+/// Writes to a temporary file beside `path`, flushes it to the disk and renames it: the file is
+/// whole or absent. Throws InputError naming the path.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view content);
 
 /// SHA-256 of `content` as 64 lower-case hexadecimal digits.
@@ -34,12 +35,13 @@ class Sha256 {
   void* context_;
 };
 
-/// Folder that holds the package's config/, networks/ and launch/: E2E_CDIFF_SHARE, else the installed share folder
-/// beside this library, else the source tree. Throws InputError when none holds config/.
+/// Folder that holds the package's config/, networks/ and launch/: E2E_CDIFF_SHARE, else the
+/// installed share folder beside this library, else the source tree. Throws InputError when none
+/// holds config/.
 std::filesystem::path shareFolder();
 
-/// Cache folder: E2E_CDIFF_CACHE, else XDG_CACHE_HOME/e2e_cdiff, else HOME/.cache/e2e_cdiff, else the system's
-/// temporary folder; made when missing.
+/// Cache folder: E2E_CDIFF_CACHE, else XDG_CACHE_HOME/e2e_cdiff, else HOME/.cache/e2e_cdiff, else
+/// the system's temporary folder; made when missing.
 std::filesystem::path cacheFolder();
 
 }  // namespace cdiff::core

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options structs describe their fields once (key, unit, range, sentence); loading, checking, overriding and writing
-/// them all go through that description, whatever the values come from (YAML file, `--set`, ROS parameter).
+/// Options structs describe their fields once (key, unit, range, sentence); loading, checking,
+/// overriding and writing them all go through that description, whatever the values come from (YAML
+/// file, `--set`, ROS parameter).
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
-
 
 namespace cdiff::core {
 
@@ -20,7 +19,8 @@ struct FieldInfo {
   const char* text;  ///< one sentence: meaning
 };
 
-/// Visits the fields of an options struct. A struct offers `void describe(OptionsVisitor& visitor)`.
+/// Visits the fields of an options struct. A struct offers `void describe(OptionsVisitor&
+/// visitor)`.
 class OptionsVisitor {
  public:
   virtual ~OptionsVisitor() = default;
@@ -59,7 +59,8 @@ struct YamlSource {
 namespace detail {
 using Describe = void (*)(void* options, OptionsVisitor& visitor);
 void load(const YamlSource& source, void* options, Describe describe);
-void override_(const std::string& assignment, const std::string& source, void* options, Describe describe);
+void override_(const std::string& assignment, const std::string& source, void* options,
+               Describe describe);
 std::string dump(void* options, Describe describe, bool with_comments);
 template <class Options>
 void describeAs(void* options, OptionsVisitor& visitor) {
@@ -67,21 +68,23 @@ void describeAs(void* options, OptionsVisitor& visitor) {
 }
 }  // namespace detail
 
-/// Reads a YAML map into `options`; keys not given keep their value. Throws InputError with file, line, key, what was
-/// expected and the nearest known key for: broken YAML, unknown or repeated key, wrong type, value out of range.
+/// Reads a YAML map into `options`; keys not given keep their value. Throws InputError with file,
+/// line, key, what was expected and the nearest known key for: broken YAML, unknown or repeated
+/// key, wrong type, value out of range.
 template <class Options>
 void loadOptions(const YamlSource& source, Options& options) {
   detail::load(source, &options, &detail::describeAs<Options>);
 }
 
-/// Applies one "key=value". A nested key is written "group.key"; a leaf name alone will do where it is unique.
-/// Throws InputError that names `source`, the key and the nearest known key.
+/// Applies one "key=value". A nested key is written "group.key"; a leaf name alone will do where it
+/// is unique. Throws InputError that names `source`, the key and the nearest known key.
 template <class Options>
 void overrideOption(const std::string& assignment, const std::string& source, Options& options) {
   detail::override_(assignment, source, &options, &detail::describeAs<Options>);
 }
 
-/// The options as YAML that loadOptions reads back to the same values; with a comment above each key if asked.
+/// The options as YAML that loadOptions reads back to the same values; with a comment above each
+/// key if asked.
 template <class Options>
 std::string dumpOptions(Options options, bool with_comments = false) {
   return detail::dump(&options, &detail::describeAs<Options>, with_comments);

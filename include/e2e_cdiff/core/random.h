@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Counter-based random numbers (Philox4x32-10, Salmon et al. 2011): a draw is a pure function of
-/// (root seed, named stream, vehicle, decision, diffusion step, element), so no draw depends on the order of others.
+/// (root seed, named stream, vehicle, decision, diffusion step, element), so no draw depends on the
+/// order of others.
 #pragma once
 
 #include <cstddef>

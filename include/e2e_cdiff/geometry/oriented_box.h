@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Outline of a vehicle in the plane: a rectangle with centre [m], heading [rad], length and width [m].
+/// Outline of a vehicle in the plane: a rectangle with centre [m], heading [rad], length and width
+/// [m].
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A line through points (x, y, z) in the map frame [m], parametrised by its arc length in the plane [m].
+/// A line through points (x, y, z) in the map frame [m], parametrised by its arc length in the
+/// plane [m].
 #pragma once
 
 #include <cstddef>
@@ -12,18 +13,19 @@ namespace cdiff::geometry {
 
 /// Where a point lies relative to a polyline.
 struct Projection {
-  double arc_length = 0.0;      ///< of the nearest point [m]
-  double lateral_offset = 0.0;  ///< signed distance to the line's direction there, positive left [m]
-  double distance = 0.0;        ///< to the nearest point, in the plane [m]
-  double elevation = 0.0;       ///< of the nearest point [m]
-  double heading = 0.0;         ///< of the nearest segment [rad]
+  double arc_length = 0.0;  ///< of the nearest point [m]
+  double lateral_offset =
+      0.0;                 ///< signed distance to the line's direction there, positive left [m]
+  double distance = 0.0;   ///< to the nearest point, in the plane [m]
+  double elevation = 0.0;  ///< of the nearest point [m]
+  double heading = 0.0;    ///< of the nearest segment [rad]
 };
 
 class Polyline {
  public:
   Polyline() = default;
-  /// Neighbouring points nearer than 1 mm in the plane are merged. Throws InputError with fewer than two distinct points
-  /// or a non-finite coordinate.
+  /// Neighbouring points nearer than 1 mm in the plane are merged. Throws InputError with fewer
+  /// than two distinct points or a non-finite coordinate.
   explicit Polyline(const std::vector<Eigen::Vector3d>& points);
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }

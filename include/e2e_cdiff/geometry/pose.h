@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x [rad]).
+/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x
+/// [rad]).
 #pragma once
 
-#include <cmath>
-
 #include <Eigen/Core>
+#include <cmath>
 
 namespace cdiff::geometry {
 
@@ -13,7 +13,9 @@ namespace cdiff::geometry {
 inline Eigen::Vector2d direction(double heading) { return {std::cos(heading), std::sin(heading)}; }
 
 /// Vector turned by +90 degrees.
-inline Eigen::Vector2d leftNormal(const Eigen::Vector2d& vector) { return {-vector.y(), vector.x()}; }
+inline Eigen::Vector2d leftNormal(const Eigen::Vector2d& vector) {
+  return {-vector.y(), vector.x()};
+}
 
 /// z component of the cross product; positive when `second` lies left of `first`.
 inline double cross(const Eigen::Vector2d& first, const Eigen::Vector2d& second) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The drivable area: union of the outlines of lanes that allow cars and of junctions, in levels of elevation, with the
-/// signed distance to its border [m], positive inside, and its gradient.
+/// The drivable area: union of the outlines of lanes that allow cars and of junctions, in levels of
+/// elevation, with the signed distance to its border [m], positive inside, and its gradient.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,9 @@ namespace cdiff::map {
 
 /// Signed distance and its gradient in the plane.
 struct SignedDistance {
-  double distance = 0.0;                                ///< [m], positive inside, zero on the border
-  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();   ///< unit vector of steepest increase (towards the inside)
+  double distance = 0.0;  ///< [m], positive inside, zero on the border
+  Eigen::Vector2d gradient =
+      Eigen::Vector2d::Zero();  ///< unit vector of steepest increase (towards the inside)
 };
 
 class DrivableArea {
@@ -26,7 +27,8 @@ class DrivableArea {
 
   /// Exact distance to the border of the area on the level of `elevation` [m].
   double signedDistance(const Eigen::Vector2d& position, double elevation = 0.0) const;
-  SignedDistance signedDistanceWithGradient(const Eigen::Vector2d& position, double elevation = 0.0) const;
+  SignedDistance signedDistanceWithGradient(const Eigen::Vector2d& position,
+                                            double elevation = 0.0) const;
   /// Whether a point lies on the area.
   bool contains(const Eigen::Vector2d& position, double elevation = 0.0) const;
   /// Border rings of the level nearest to an elevation (outer rings and holes), for drawing.

@@ -7,12 +7,14 @@
 
 namespace cdiff::map {
 
-/// Farthest arc length reached by moving along the route (each update looks at most 15 m ahead of it).
+/// Farthest arc length reached by moving along the route (each update looks at most 15 m ahead of
+/// it).
 class RouteProgress {
  public:
-  /// `route` must outlive the object. 100 % when at least `completion_percent` of the length is behind and the position is within
-  /// `completion_distance` [m] of the end.
-  explicit RouteProgress(const Route& route, double completion_percent = 99.0, double completion_distance = 10.0);
+  /// `route` must outlive the object. 100 % when at least `completion_percent` of the length is
+  /// behind and the position is within `completion_distance` [m] of the end.
+  explicit RouteProgress(const Route& route, double completion_percent = 99.0,
+                         double completion_distance = 10.0);
   void update(const Eigen::Vector2d& position);
   /// Farthest arc length so far [m].
   double arcLength() const { return arc_length_; }

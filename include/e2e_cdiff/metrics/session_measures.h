@@ -12,10 +12,10 @@ namespace cdiff::metrics {
 
 /// One figure.
 struct Measure {
-  std::optional<double> value;   ///< absent when n is too small or the figure is undefined
-  std::size_t n = 0;             ///< samples it stands on
-  std::string unit;              ///< "m/s", "%", "s", "" ...
-  std::string reason;            ///< why the value is absent, or how its samples were thinned out; else empty
+  std::optional<double> value;  ///< absent when n is too small or the figure is undefined
+  std::size_t n = 0;            ///< samples it stands on
+  std::string unit;             ///< "m/s", "%", "s", "" ...
+  std::string reason;  ///< why the value is absent, or how its samples were thinned out; else empty
 };
 
 /// Mean, standard deviation (n - 1) and minimum of defined samples.
@@ -30,21 +30,24 @@ struct SessionMeasures {
   double route_completion_percent = 0.0;
   double driving_score = 0.0;
   std::size_t ego_collisions = 0;
-  Measure ego_off_road_percent;          ///< share of ticks with the ego's centre off the drivable area
+  Measure ego_off_road_percent;  ///< share of ticks with the ego's centre off the drivable area
   // CBVs, all slots together.
-  std::size_t cbv_count = 0;             ///< vehicles that were driven as CBV
-  std::size_t cbv_decisions = 0;         ///< decisions with a CBV driven, summed over CBVs
-  Measure cbv_off_road_rate_percent;     ///< paper's ORR: centre off the drivable area / time as CBV
-  std::size_t cbv_collisions = 0;        ///< contacts of CBVs with anyone
-  std::size_t cbv_ego_collisions = 0;    ///< of these, with the ego
-  Measure collisions_per_km;             ///< paper's CPK
+  std::size_t cbv_count = 0;           ///< vehicles that were driven as CBV
+  std::size_t cbv_decisions = 0;       ///< decisions with a CBV driven, summed over CBVs
+  Measure cbv_off_road_rate_percent;   ///< paper's ORR: centre off the drivable area / time as CBV
+  std::size_t cbv_collisions = 0;      ///< contacts of CBVs with anyone
+  std::size_t cbv_ego_collisions = 0;  ///< of these, with the ego
+  Measure collisions_per_km;           ///< paper's CPK
   double cbv_distance_m = 0.0;
   // Interaction.
-  DistributionMeasure ttc_2d;            ///< ego against every other vehicle, per-decision minimum over those where defined [s]
-  Measure speed_shapiro_wilk;            ///< W of CBV speeds
-  Measure acceleration_shapiro_wilk;     ///< W of CBV accelerations
-  Measure speed_wasserstein;             ///< W1 of CBV speeds to those of background vehicles of the same session [m/s]
-  /// The same by RIFT's definitions: ttc_2d_s, speed_shapiro_wilk, acceleration_shapiro_wilk, speed_wasserstein_mps ...
+  DistributionMeasure ttc_2d;  ///< ego against every other vehicle, per-decision minimum over those
+                               ///< where defined [s]
+  Measure speed_shapiro_wilk;  ///< W of CBV speeds
+  Measure acceleration_shapiro_wilk;  ///< W of CBV accelerations
+  Measure speed_wasserstein;  ///< W1 of CBV speeds to those of background vehicles of the same
+                              ///< session [m/s]
+  /// The same by RIFT's definitions: ttc_2d_s, speed_shapiro_wilk, acceleration_shapiro_wilk,
+  /// speed_wasserstein_mps ...
   std::map<std::string, Measure> rift_compat;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in one process.
+/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in
+/// one process.
 #pragma once
 
 #include <memory>
@@ -15,21 +16,21 @@
 namespace cdiff::metrics {
 
 struct SessionMetricsOptions {
-  double simulation_step = 0.05;         ///< [s]
-  double completion_percent = 99.0;      ///< of the protocol
-  double completion_distance = 10.0;     ///< of the protocol [m]
-  double ttc_radius = 60.0;              ///< vehicles considered for 2D-TTC [m]
-  double ttc_limit = 3600.0;             ///< a longer 2D-TTC counts as never [s]
+  double simulation_step = 0.05;      ///< [s]
+  double completion_percent = 99.0;   ///< of the protocol
+  double completion_distance = 10.0;  ///< of the protocol [m]
+  double ttc_radius = 60.0;           ///< vehicles considered for 2D-TTC [m]
+  double ttc_limit = 3600.0;          ///< a longer 2D-TTC counts as never [s]
 };
 
 /// Figures of one tick, for the live topic.
 struct TickMeasures {
-  std::optional<double> ttc_2d;          ///< minimum over vehicles near the ego [s]
-  std::optional<double> nearest_distance;///< ego's box to the nearest other box [m]
+  std::optional<double> ttc_2d;            ///< minimum over vehicles near the ego [s]
+  std::optional<double> nearest_distance;  ///< ego's box to the nearest other box [m]
   double route_completion_percent = 0.0;
   double ego_speed = 0.0;
   bool ego_off_road = false;
-  std::size_t cbv_off_road = 0;          ///< CBVs now off the drivable area
+  std::size_t cbv_off_road = 0;  ///< CBVs now off the drivable area
 };
 
 class SessionMetrics {
@@ -40,7 +41,8 @@ class SessionMetrics {
   ~SessionMetrics();
 
   /// One tick in order; `selection` at decision ticks, else nullptr.
-  TickMeasures observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
+  TickMeasures observe(const traffic::TrafficSnapshot& snapshot,
+                       const cbv::CbvSelection* selection);
   /// The figures so far.
   SessionMeasures measures() const;
 

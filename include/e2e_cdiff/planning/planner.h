@@ -25,13 +25,14 @@ struct PlanningContext {
 
 /// One vehicle to drive at this decision.
 struct PlanningTask {
-  int slot = -1;                            ///< slot of a CBV; -1 for the ego
+  int slot = -1;  ///< slot of a CBV; -1 for the ego
   const traffic::Vehicle* vehicle = nullptr;
-  const map::Route* route = nullptr;        ///< ego route, or the CBV's conflict-aware route
-  double target_speed = 8.0;                ///< v* before the lane's limit [m/s]
+  const map::Route* route = nullptr;  ///< ego route, or the CBV's conflict-aware route
+  double target_speed = 8.0;          ///< v* before the lane's limit [m/s]
 };
 
-/// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for display.
+/// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for
+/// display.
 struct RolloutPoint {
   traffic::VehicleState state;
   traffic::ControlAction action;
@@ -41,13 +42,14 @@ struct PlannedAction {
   int slot = -1;
   std::string vehicle_id;
   traffic::ControlAction action;
-  std::vector<RolloutPoint> rollout;        ///< may be empty
+  std::vector<RolloutPoint> rollout;  ///< may be empty
 };
 
 class Planner {
  public:
   virtual ~Planner() = default;
-  /// Actions for all tasks of a decision, in their order (slot order). Deterministic: same calls, same actions.
+  /// Actions for all tasks of a decision, in their order (slot order). Deterministic: same calls,
+  /// same actions.
   virtual std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
                                           const std::vector<PlanningTask>& tasks) = 0;
 };

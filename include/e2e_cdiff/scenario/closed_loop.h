@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The decision cycle of a session in one process, without ROS: it defines what the node graph does. At each decision tick: CBV identification,
-/// planners of ego and CBVs on the same snapshot, then the world advances.
+/// The decision cycle of a session in one process, without ROS: it defines what the node graph
+/// does. At each decision tick: CBV identification, planners of ego and CBVs on the same snapshot,
+/// then the world advances.
 #pragma once
 
 #include <atomic>
@@ -14,21 +15,25 @@
 
 namespace cdiff::scenario {
 
-/// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot, in slot order.
+/// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot,
+/// in slot order.
 std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
-                                             const cbv::CbvSelection& selection, double target_speed);
-/// Task of the ego planner; empty when the ego is gone.
-std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot, const map::Route& route,
+                                             const cbv::CbvSelection& selection,
                                              double target_speed);
-/// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields fail-safe actions; the text of the fault goes to
-/// `fault` (empty when none).
-std::vector<planning::PlannedAction> planTimed(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+/// Task of the ego planner; empty when the ego is gone.
+std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
+                                             const map::Route& route, double target_speed);
+/// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields
+/// fail-safe actions; the text of the fault goes to `fault` (empty when none).
+std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
+                                               const traffic::TrafficSnapshot& snapshot,
                                                const std::vector<planning::PlanningTask>& tasks,
                                                double& milliseconds, std::string& fault);
 
 class ClosedLoop {
  public:
-  /// `setup` must outlive the loop. Throws InputError for unknown planners and for the external ego, which needs the node graph.
+  /// `setup` must outlive the loop. Throws InputError for unknown planners and for the external
+  /// ego, which needs the node graph.
   explicit ClosedLoop(const SessionSetup& setup);
   ~ClosedLoop();
 

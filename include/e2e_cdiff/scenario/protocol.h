@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Protocol presets and the rules by which a session ends: completed, blocked, deviated, timed out, collided.
+/// Protocol presets and the rules by which a session ends: completed, blocked, deviated, timed out,
+/// collided.
 #pragma once
 
 #include <string>
@@ -13,14 +14,14 @@ namespace cdiff::scenario {
 
 /// Defaults: rift_dev10 (RIFT's protocol on Bench2Drive's ten development routes).
 struct ProtocolOptions {
-  std::string preset = "rift_dev10";    ///< name of the rules
-  double time_limit = 40.0;             ///< simulated [s]
-  double blocked_time = 3.0;            ///< slower than blocked_speed for this long ends the session [s]
-  double blocked_speed = 0.1;           ///< [m/s]
-  double deviation_distance = 30.0;     ///< from the ego route ends the session [m]
-  double completion_percent = 99.0;     ///< of the route's length ...
-  double completion_distance = 10.0;    ///< ... and this near its end counts as 100 % [m]
-  bool end_on_collision = false;        ///< the first contact of the ego ends the session
+  std::string preset = "rift_dev10";  ///< name of the rules
+  double time_limit = 40.0;           ///< simulated [s]
+  double blocked_time = 3.0;   ///< slower than blocked_speed for this long ends the session [s]
+  double blocked_speed = 0.1;  ///< [m/s]
+  double deviation_distance = 30.0;   ///< from the ego route ends the session [m]
+  double completion_percent = 99.0;   ///< of the route's length ...
+  double completion_distance = 10.0;  ///< ... and this near its end counts as 100 % [m]
+  bool end_on_collision = false;      ///< the first contact of the ego ends the session
 
   void describe(core::OptionsVisitor& visitor);
 };

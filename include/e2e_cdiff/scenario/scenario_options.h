@@ -19,10 +19,11 @@ namespace cdiff::scenario {
 
 /// When a session passes.
 struct VerdictOptions {
-  double minimum_route_completion = 0.0;       ///< of the ego [%]
+  double minimum_route_completion = 0.0;  ///< of the ego [%]
   double maximum_ego_collisions = 1e9;
-  double maximum_cbv_off_road_percent = 100.0; ///< [%]
-  std::vector<std::string> statuses;           ///< allowed final statuses; empty: all but error and interrupted
+  double maximum_cbv_off_road_percent = 100.0;  ///< [%]
+  std::vector<std::string>
+      statuses;  ///< allowed final statuses; empty: all but error and interrupted
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -30,13 +31,13 @@ struct VerdictOptions {
 struct ScenarioOptions {
   std::int64_t schema_version = 1;
   std::string name = "unnamed";
-  std::string network;                  ///< shipped name or file (*.net.xml, *.xodr)
-  map::RouteOptions route;              ///< of the ego
-  std::string demand = "generated";     ///< generated | none | a *.rou.xml file
-  simulation::DemandOptions traffic;    ///< of generated demand
-  double begin_time = 0.0;              ///< SUMO's clock at the start, for demand files [s]
-  std::string lights = "green";         ///< green | program
-  std::string mode = "naturalistic";    ///< naturalistic | safety_critical
+  std::string network;                ///< shipped name or file (*.net.xml, *.xodr)
+  map::RouteOptions route;            ///< of the ego
+  std::string demand = "generated";   ///< generated | none | a *.rou.xml file
+  simulation::DemandOptions traffic;  ///< of generated demand
+  double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
+  std::string lights = "green";       ///< green | program
+  std::string mode = "naturalistic";  ///< naturalistic | safety_critical
   std::string ego_planner = "pdm_lite";
   std::string cbv_planner = "pdm_lite";
   std::int64_t max_cbv = 2;
@@ -46,10 +47,10 @@ struct ScenarioOptions {
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
   VerdictOptions verdict;
-  double target_speed = 8.0;            ///< v* [m/s], capped by the lane's limit
-  double simulation_step = 0.05;        ///< [s]
-  double decision_period = 0.1;         ///< [s], a multiple of simulation_step
-  double real_time_factor = 0.0;        ///< 0: as fast as possible
+  double target_speed = 8.0;      ///< v* [m/s], capped by the lane's limit
+  double simulation_step = 0.05;  ///< [s]
+  double decision_period = 0.1;   ///< [s], a multiple of simulation_step
+  double real_time_factor = 0.0;  ///< 0: as fast as possible
   std::int64_t seed = 1;
 
   void describe(core::OptionsVisitor& visitor);
@@ -57,8 +58,9 @@ struct ScenarioOptions {
   void validate() const;
 };
 
-/// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside it are resolved against the
-/// file's folder. Throws InputError naming file, line and key, or the nearest shipped scenario.
+/// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside
+/// it are resolved against the file's folder. Throws InputError naming file, line and key, or the
+/// nearest shipped scenario.
 ScenarioOptions loadScenario(const std::string& name_or_file);
 
 /// Names of the shipped scenarios, sorted.

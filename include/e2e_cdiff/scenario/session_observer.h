@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a session shows to everything that records or measures it, tick by tick; the same whether one process or the node graph drives.
+/// What a session shows to everything that records or measures it, tick by tick; the same whether
+/// one process or the node graph drives.
 #pragma once
 
 #include <string>
@@ -14,15 +15,15 @@ namespace cdiff::scenario {
 
 /// Wall time that a planner took for one decision.
 struct PlannerLatency {
-  std::string planner;      ///< "ego:pdm_lite", "cbv:pdm_lite"
+  std::string planner;  ///< "ego:pdm_lite", "cbv:pdm_lite"
   double milliseconds = 0.0;
 };
 
 /// One tick. Selection, actions and latencies are there at decision ticks only.
 struct TickRecord {
   const traffic::TrafficSnapshot* snapshot = nullptr;
-  const cbv::CbvSelection* selection = nullptr;                  ///< nullptr between decisions
-  const std::vector<planning::PlannedAction>* actions = nullptr; ///< ego first, then CBVs by slot
+  const cbv::CbvSelection* selection = nullptr;                   ///< nullptr between decisions
+  const std::vector<planning::PlannedAction>* actions = nullptr;  ///< ego first, then CBVs by slot
   std::vector<PlannerLatency> latencies;
 };
 

@@ -12,10 +12,10 @@ namespace cdiff::scenario {
 
 /// Empty texts mean "not given".
 struct SessionRequest {
-  std::string scenario;              ///< shipped name or file
-  std::string bench2drive;           ///< Bench2Drive route file, instead of a scenario
-  std::string route;                 ///< id of a route in it
-  std::string network;               ///< network; replaces the scenario's
+  std::string scenario;     ///< shipped name or file
+  std::string bench2drive;  ///< Bench2Drive route file, instead of a scenario
+  std::string route;        ///< id of a route in it
+  std::string network;      ///< network; replaces the scenario's
   std::string mode;
   std::string ego_planner;
   std::string cbv_planner;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What every part of a session derives from its scenario: network, drivable area, lane graph, ego route. The same in every deployment.
+/// What every part of a session derives from its scenario: network, drivable area, lane graph, ego
+/// route. The same in every deployment.
 #pragma once
 
 #include <memory>
@@ -18,7 +19,8 @@ class SessionSetup {
  public:
   /// Imports the network that the scenario names and plans the ego route.
   explicit SessionSetup(const ScenarioOptions& options);
-  /// The same from an imported network's text and the ego route's points, as a recording or the session's topic holds them.
+  /// The same from an imported network's text and the ego route's points, as a recording or the
+  /// session's topic holds them.
   SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
                const std::vector<Eigen::Vector3d>& ego_route_points);
   SessionSetup(const SessionSetup&) = delete;

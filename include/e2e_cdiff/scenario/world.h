@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The world of a session: SUMO's traffic, the vehicles that we drive through our own dynamics, hand-over between the two, contacts, and the
-/// protocol's end rules. Advances tick by tick; decides nothing.
+/// The world of a session: SUMO's traffic, the vehicles that we drive through our own dynamics,
+/// hand-over between the two, contacts, and the protocol's end rules. Advances tick by tick;
+/// decides nothing.
 #pragma once
 
 #include <map>
@@ -23,19 +24,23 @@ inline constexpr const char* kEgoId = "ego";
 
 class World {
  public:
-  /// Starts SUMO, drives the warm-up and places the ego: afterwards `snapshot()` is tick 0. `setup` must outlive the world.
+  /// Starts SUMO, drives the warm-up and places the ego: afterwards `snapshot()` is tick 0. `setup`
+  /// must outlive the world.
   explicit World(const SessionSetup& setup);
   ~World();
 
   /// The world at the present tick.
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
-  /// Goes to the next tick. At a decision tick give the selection and the actions decided; between them nullptr and {}: the
-  /// last actions are held. Invalid actions become the fail-safe action, as a recorded fault. A lost simulator ends the session with
-  /// status kError in a last snapshot; it does not throw.
-  void advance(const cbv::CbvSelection* selection, const std::vector<planning::PlannedAction>& actions);
+  /// Goes to the next tick. At a decision tick give the selection and the actions decided; between
+  /// them nullptr and {}: the last actions are held. Invalid actions become the fail-safe action,
+  /// as a recorded fault. A lost simulator ends the session with status kError in a last snapshot;
+  /// it does not throw.
+  void advance(const cbv::CbvSelection* selection,
+               const std::vector<planning::PlannedAction>& actions);
 
-  /// Ends the session from outside (interrupted, a node that died): the next snapshot is the present one with this status and fault.
+  /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
+  /// present one with this status and fault.
   void end(traffic::SessionStatus status, const traffic::Fault& fault);
   /// Records a fault that was survived; shown in the next snapshot.
   void recordFault(const std::string& source, const std::string& text);
@@ -49,6 +54,8 @@ class World {
   struct Driven;
   void warmUp();
   void keepDensity(bool warm_up);
+  bool isOurs(const std::string& id) const;
+  std::vector<traffic::Vehicle> presentTraffic(const Eigen::Vector2d& ego_position);
   void placeEgo();
   void applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed);
   void takeOver(const cbv::CbvAssignment& assignment);
@@ -69,9 +76,10 @@ class World {
   std::unique_ptr<simulation::DemandGenerator> demand_;
   ProtocolMonitor monitor_;
   traffic::TrafficSnapshot snapshot_;
-  std::vector<std::unique_ptr<Driven>> driven_;   ///< ego first, then CBVs by slot
+  std::vector<std::unique_ptr<Driven>> driven_;  ///< ego first, then CBVs by slot
   std::vector<traffic::Fault> pending_faults_;
-  std::map<std::pair<std::string, std::string>, std::uint64_t> last_overlap_;  ///< tick of each pair's last overlap
+  std::map<std::pair<std::string, std::string>, std::uint64_t>
+      last_overlap_;                    ///< tick of each pair's last overlap
   std::vector<std::string> to_remove_;  ///< in contact at the present tick
 };
 

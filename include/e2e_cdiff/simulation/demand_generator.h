@@ -19,10 +19,11 @@
 namespace cdiff::simulation {
 
 struct DemandOptions {
-  std::int64_t density = 30;  ///< vehicles kept alive within `radius` of the ego
-  double radius = 150.0;      ///< of the ego route [m]
-  double clear_start = 10.0;  ///< none is placed nearer to the ego's start [m]
-  double warm_up = 30.0;      ///< driven before the session begins [s]
+  std::int64_t density = 30;       ///< vehicles kept alive within `radius` of the ego
+  double radius = 150.0;           ///< of the ego route [m]
+  double clear_start = 10.0;       ///< none is placed nearer to the ego's start [m]
+  double warm_up = 30.0;           ///< driven before the session begins [s]
+  double forget_distance = 300.0;  ///< a vehicle farther from the ego leaves the simulation [m]
 
   void describe(core::OptionsVisitor& visitor);
 };

@@ -43,6 +43,9 @@ class DrivenFleet {
   /// To be called once a step [s]: moves released vehicles into the middle of their lane, and later
   /// allows lane changes again.
   void advance(double step);
+  /// Speeds [m/s] of released vehicles that are still moved into their lane; SUMO's own figure for
+  /// them is a quotient of places on lanes.
+  std::map<std::string, double> settlingSpeeds() const;
 
  private:
   struct Moved {
@@ -57,10 +60,10 @@ class DrivenFleet {
   };
   struct Released {
     SettlingMotion motion;
-    bool settling = true;  ///< SUMO decides its speed, we its place
-    bool first = true;     ///< the step after the release
+    bool settling = true;       ///< SUMO decides its speed, we its place
+    bool first = true;          ///< the step after the release
     double speed_before = 0.0;  ///< a step before that of `motion` [m/s]
-    double left = 0.0;     ///< until lane changes are allowed again [s]
+    double left = 0.0;          ///< until lane changes are allowed again [s]
   };
   void moveFront(const std::string& id, const Eigen::Vector2d& front, double heading, bool on_way);
   void settle(const std::string& id, Released& released, double step);

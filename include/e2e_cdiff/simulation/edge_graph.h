@@ -50,7 +50,8 @@ class EdgeGraph {
   const std::vector<Link>& links(int edge) const { return at(edge).links; }
   bool connected(int from, int to) const;
   /// Adds edges at the end, straight on where it can, until they measure `length` [m] and are at
-  /// least two; fewer where the network ends. No edge twice: SUMO would take one pass for the other.
+  /// least two; fewer where the network ends. No edge twice: SUMO would take one pass for the
+  /// other.
   void extend(std::vector<int>& way, double length) const;
   std::vector<std::string> ids(const std::vector<int>& way) const;
 

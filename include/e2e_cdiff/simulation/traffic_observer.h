@@ -26,6 +26,9 @@ class TrafficObserver {
   /// Reads the results of the step that was made.
   void read();
 
+  /// The speed [m/s] of a vehicle is known better than SUMO knows it.
+  void correctSpeed(const std::string& id, double speed);
+
   /// By id.
   const std::vector<SimulatedVehicle>& vehicles() const { return vehicles_; }
   const SimulatedVehicle* find(const std::string& id) const;

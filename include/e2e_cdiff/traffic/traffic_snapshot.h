@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Everything that is true of the world at one tick; the one input of CBV identification, planners, metrics and records.
+/// Everything that is true of the world at one tick; the one input of CBV identification, planners,
+/// metrics and records.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@ struct SignalState {
   std::string state;
 };
 
-/// Two boxes that began to overlap at this tick (ids in ascending order). A pair counts again only 5 s after its last overlap.
+/// Two boxes that began to overlap at this tick (ids in ascending order). A pair counts again only
+/// 5 s after its last overlap.
 struct Contact {
   std::string first;
   std::string second;
@@ -31,21 +33,32 @@ struct Fault {
 };
 
 /// How a session stands. All but kRunning are final.
-enum class SessionStatus { kRunning, kCompleted, kBlocked, kDeviated, kTimedOut, kCollided, kInterrupted, kError };
+enum class SessionStatus {
+  kRunning,
+  kCompleted,
+  kBlocked,
+  kDeviated,
+  kTimedOut,
+  kCollided,
+  kInterrupted,
+  kError
+};
 
-/// "running", "completed", "blocked", "deviated", "timed_out", "collided", "interrupted" or "error".
+/// "running", "completed", "blocked", "deviated", "timed_out", "collided", "interrupted" or
+/// "error".
 const char* toText(SessionStatus status);
 
 struct TrafficSnapshot {
   std::uint64_t tick = 0;
-  double time = 0.0;           ///< tick x simulation step [s]
-  bool decision_tick = false;  ///< whether planners are asked at this tick
-  std::vector<Vehicle> vehicles;       ///< ego first, then CBVs by slot, then background by id
-  std::vector<SignalState> signals;    ///< by id
-  std::vector<Contact> contacts;       ///< that began at this tick
-  std::vector<std::string> removed;    ///< ids that left the simulation since the last tick (contact or end of route)
+  double time = 0.0;                 ///< tick x simulation step [s]
+  bool decision_tick = false;        ///< whether planners are asked at this tick
+  std::vector<Vehicle> vehicles;     ///< ego first, then CBVs by slot, then background by id
+  std::vector<SignalState> signals;  ///< by id
+  std::vector<Contact> contacts;     ///< that began at this tick
+  std::vector<std::string>
+      removed;  ///< ids that left the simulation since the last tick (contact or end of route)
   SessionStatus status = SessionStatus::kRunning;
-  std::vector<Fault> faults;           ///< recorded at this tick
+  std::vector<Fault> faults;  ///< recorded at this tick
 
   /// The vehicle with this id, or nullptr.
   const Vehicle* find(const std::string& id) const;

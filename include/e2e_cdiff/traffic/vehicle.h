@@ -50,15 +50,16 @@ const char* toText(VehicleRole role);
 
 /// One vehicle of a snapshot.
 struct Vehicle {
-  std::string id;                                ///< stable over the session
+  std::string id;  ///< stable over the session
   VehicleRole role = VehicleRole::kBackground;
-  int cbv_slot = -1;                             ///< slot of a CBV, else -1
+  int cbv_slot = -1;  ///< slot of a CBV, else -1
   VehicleState state;
   VehicleDimensions dimensions;
-  double acceleration = 0.0;                     ///< d speed / d t over the last tick [m/s^2]
-  double yaw_rate = 0.0;                         ///< d heading / d t over the last tick [rad/s]
-  std::optional<ControlAction> applied_action;   ///< held during the last tick; absent when SUMO drives it
-  std::string lane_id;                           ///< SUMO lane it is on; empty off the road
+  double acceleration = 0.0;  ///< d speed / d t over the last tick [m/s^2]
+  double yaw_rate = 0.0;      ///< d heading / d t over the last tick [rad/s]
+  std::optional<ControlAction>
+      applied_action;   ///< held during the last tick; absent when SUMO drives it
+  std::string lane_id;  ///< SUMO lane it is on; empty off the road
 
   geometry::OrientedBox box() const {
     return {state.position, state.heading, dimensions.length, dimensions.width};
@@ -67,7 +68,8 @@ struct Vehicle {
 
 /// Whether two vehicles are so far apart in height that their boxes cannot touch (bridges).
 inline bool onDifferentLevels(const Vehicle& first, const Vehicle& second) {
-  constexpr double kLevelHeight = 2.5;  // [m] lower than any bridge, higher than any slope within a vehicle's length
+  constexpr double kLevelHeight =
+      2.5;  // [m] lower than any bridge, higher than any slope within a vehicle's length
   return std::abs(first.state.elevation - second.state.elevation) > kLevelHeight;
 }
 
