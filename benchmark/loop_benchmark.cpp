@@ -5,9 +5,12 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "benchmark.h"
-#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
@@ -113,6 +116,34 @@ double bareLoop(const scenario::SessionSetup& setup, std::size_t ticks) {
   return seconds;
 }
 
+/// Ticks per second of the same session as a graph of ROS nodes; runs the script that
+/// E2E_CDIFF_SESSION names.
+std::vector<double> nodeGraphLoop(const fs::path& folder) {
+  const char* script = std::getenv("E2E_CDIFF_SESSION");
+  if (script == nullptr) {
+    std::cerr << "benchmark: the node graph is left out; scripts/benchmark runs it\n";
+    return {};
+  }
+  const fs::path data = dataFolder();
+  std::vector<double> rates;
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    const std::string command = std::string("'") + script + "' bench2drive:='" +
+                                (data / "bench2drive/bench2drive220.xml").string() +
+                                "' route:=25318 network:='" +
+                                (data / "carla_towns/Town05.net.xml").string() +
+                                "' set:='traffic.density=50 traffic.forget_distance=160 "
+                                "protocol.blocked_time=1000' seed:=1 "
+                                "record:=true results:='" +
+                                folder.string() + "' >/dev/null 2>&1";
+    if (std::system(command.c_str()) != 0)
+      throw core::SimulatorError("the session of the node graph failed: " + command);
+    const auto summary = nlohmann::json::parse(core::readFile(folder / "summary.json", "summary"));
+    rates.push_back(summary.at("simulated_seconds").get<double>() / 0.05 /
+                    summary.at("wall_seconds").get<double>());
+  }
+  return rates;
+}
+
 }  // namespace
 
 void benchmarkLoop(Figures& figures) {
@@ -131,11 +162,14 @@ void benchmarkLoop(Figures& figures) {
     vehicles.push_back(static_cast<double>(with.census.vehicles) / ticks);
     cbvs.push_back(static_cast<double>(with.census.cbvs) / ticks);
   }
+  const std::vector<double> node_graph = nodeGraphLoop(folder);
   fs::remove_all(folder);
   figures.push_back({"loop_with_results", median(full), "ticks/s", ">=1000"});
   figures.push_back({"loop_without_results", median(without_results), "ticks/s", ">=1000"});
   figures.push_back({"loop_bare_libtraci", median(bare), "ticks/s", ""});
   figures.push_back({"loop_share_of_bare", 100.0 * median(full) / median(bare), "%", ""});
+  if (!node_graph.empty())
+    figures.push_back({"loop_node_graph_recording", median(node_graph), "ticks/s", ""});
   figures.push_back({"loop_vehicles", median(vehicles), "vehicles", ""});
   figures.push_back({"loop_cbvs_driven", median(cbvs), "vehicles", ""});
 }

@@ -17,25 +17,15 @@ namespace {
 
 using SumoVehicle = libtraci::Vehicle;
 
-constexpr double kWayLength = 250.0;          ///< given ahead of the present edge [m]
-constexpr double kWayRefresh = 100.0;         ///< a new way is given when less is left [m]
-constexpr double kReleasedWayLength = 600.0;  ///< given at the release [m]
-constexpr double kReleaseHeading =
-    core::kPi / 6.0;                      ///< between vehicle and lane at a release [rad]
-constexpr double kLaneChangePause = 3.0;  ///< without lane changes once settled [s]
-constexpr double kHardBraking = 9.0;      ///< SUMO's emergency braking [m/s^2]
-constexpr double kAcceleration = 2.6;     ///< SUMO's passenger car [m/s^2]
-constexpr int kSpeedModeOff = 32;         ///< none of SUMO's checks
-constexpr int kSpeedModeDefault = 31;
-constexpr int kLaneChangeModeOff = 512;  ///< no lane change of its own
-constexpr int kLaneChangeModeDefault = 1621;
-constexpr int kKeepRouteExact = 3;  ///< keep the route, at the exact place
-constexpr int kAnywhere = 2;        ///< at the exact place, whatever lane is there
-
-void setModes(const std::string& id, int speed_mode) {
-  SumoVehicle::setSpeedMode(id, speed_mode);
-  SumoVehicle::setLaneChangeMode(id, kLaneChangeModeOff);
-}
+constexpr double kWayLength = 250.0;   ///< given ahead of the present edge [m]
+constexpr double kWayRefresh = 100.0;  ///< a new way is given when less is left [m]
+3.0;                                   ///< without lane changes once settled [s]
+constexpr double kFarOff = 3.0;        ///< SUMO's vehicle is put to its place beyond this [m]
+constexpr double kCatchUp = 4.0;       ///< share of the distance made up per second [1/s]
+constexpr double kCatchUpSpeed = 2.0;  ///< at most [m/s]
+constexpr double kStanding = 0.05;     ///< [m/s]
+constexpr int kKeepRouteExact = 3;     ///< keep the route, at the exact place
+constexpr int kAnywhere = 2;           ///< at the exact place, whatever lane is there
 
 /// Whether one way is the beginning of the other.
 bool agree(const std::vector<int>& first, const std::vector<int>& second) {
@@ -48,6 +38,15 @@ std::vector<int> restOf(const std::vector<int>& way, int current) {
   return {std::find(way.begin(), way.end(), current), way.end()};
 }
 
+/// Speed that brings SUMO's vehicle `ahead` metres on in this step, nearly: a
+/// difference to the vehicle's own speed is made up smoothly, because followers
+/// go by it.
+double commandedSpeed(double speed, double ahead, double step) {
+  const double behind = ahead - speed * step;
+  if (speed < kStanding && std::abs(behind) < 0.3) return 0.0;
+  return std::max(0.0, speed + std::clamp(kCatchUp * behind, -kCatchUpSpeed, kCatchUpSpeed));
+}
+
 }  // namespace
 
 int DrivenFleet::edgeOf(const std::string& lane_id) const {
@@ -56,9 +55,17 @@ int DrivenFleet::edgeOf(const std::string& lane_id) const {
   return lane == map::kNoLane ? kNoEdge : graph_.edgeOf(lane);
 }
 
+double DrivenFleet::sumoScale(map::LaneIndex index) {
+  const auto known = scales_.find(index);
+  if (known != scales_.end()) return known->second;
+  const map::Lane& lane = graph_.network().lane(index);
+  const double scale = libtraci::Lane::getLength(lane.id) / lane.centerline.length();
+  return scales_.emplace(index, scale).first->second;
+}
+
 void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensions& dimensions,
                       const std::string& type_id) {
-  Moved moved{DrivenWay(graph_, dimensions), {}, false, false, "", kNoEdge, false, map::kNoLane};
+  Moved moved(DrivenWay(graph_, dimensions));
   const FrontPlace place = moved.way.locate(start.state);
   moved.way.follow(start.route, place.position);
   int edge = moved.way.startEdge(place);
@@ -80,24 +87,9 @@ void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensio
   vehicles_.emplace(start.id, std::move(moved));
 }
 
-void DrivenFleet::takeOver(const std::string& id, const traffic::VehicleDimensions& dimensions) {
-  Moved moved{DrivenWay(graph_, dimensions), {}, true, true, "", kNoEdge, false, map::kNoLane};
-  for (const std::string& edge : SumoVehicle::getRoute(id))
-    moved.given.push_back(graph_.find(edge));
-  setModes(id, kSpeedModeOff);
-  forget(id);
-  vehicles_.emplace(id, std::move(moved));
-}
-
 void DrivenFleet::forget(const std::string& id) {
   vehicles_.erase(id);
   released_.erase(id);
-}
-
-void DrivenFleet::moveFront(const std::string& id, const Eigen::Vector2d& front, double heading,
-                            bool on_way) {
-  SumoVehicle::moveToXY(id, "", 0, front.x(), front.y(), angleFromHeading(heading),
-                        on_way ? kKeepRouteExact : kAnywhere, match_threshold_);
 }
 
 bool DrivenFleet::giveWay(const std::string& id, Moved& moved, const std::vector<int>& way) {
@@ -111,23 +103,10 @@ void DrivenFleet::loseWay(Moved& moved) {
   moved.refused_lane.clear();
 }
 
-void DrivenFleet::avoidBlindLane(Moved& moved, const FrontPlace& place,
-                                 const std::string& reported_lane) {
-  const auto blind = [&moved](const map::LaneMatch& match) {
-    return match.lane == moved.blind_lane;
-  };
-  if (std::none_of(place.lanes.begin(), place.lanes.end(), blind)) moved.blind_lane = map::kNoLane;
-  if (!moved.moved_on_way || !moved.on_way || !reported_lane.empty()) return;
-  loseWay(moved);
-  moved.blind_lane = place.lanes.front().lane;
-}
-
-void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlace& place,
-                            const std::string& reported_lane) {
+void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlace& place) {
   if (moved.on_way && !moved.way.onWay(place, moved.given, core::kPi)) loseWay(moved);
-  avoidBlindLane(moved, place, reported_lane);
-  const int current = edgeOf(reported_lane);
-  if (current == kNoEdge || moved.blind_lane != map::kNoLane) return;
+  const int current = edgeOf(moved.lane_id);
+  if (current == kNoEdge) return;
   const std::vector<int> rest = restOf(moved.given, current);
   if (moved.on_way && rest.empty()) loseWay(moved);  // SUMO placed it on another road
   double left = 0.0;
@@ -136,103 +115,103 @@ void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlac
   if (current != moved.last_edge) moved.outdated = true;
   moved.last_edge = current;
   if (moved.on_way && enough && !moved.outdated) return;
-  if (moved.refused_lane == reported_lane) return;
+  if (moved.refused_lane == moved.lane_id) return;
   const std::vector<int> way = moved.way.edgesFrom(current, kWayLength);
   const bool same = moved.on_way && (way == rest || (enough && agree(way, rest)));
   if (!same) {
     if (!moved.way.onWay(place, way, 0.5 * core::kPi)) return;
     if (!giveWay(id, moved, way)) {
-      moved.refused_lane = reported_lane;
+      moved.refused_lane = moved.lane_id;
       return;
     }
     moved.on_way = true;
   }
   moved.outdated = false;
-  moved.refused_lane = same ? reported_lane : "";
+  moved.refused_lane = same ? moved.lane_id : "";
 }
 
-void DrivenFleet::move(const DrivenVehicle& vehicle, const std::string& reported_lane) {
+double DrivenFleet::usableLength(map::LaneIndex lane, const Moved& moved) const {
+  constexpr double kBeforeTheEnd =
+      1.0;  // [m] at the very end of its route SUMO takes a vehicle out
+  const double length = graph_.network().lane(lane).centerline.length();
+  const bool last = graph_.edgeAfter(lane) == moved.given.back();
+  return last ? std::max(0.0, length - kBeforeTheEnd) : length;
+}
+
+bool DrivenFleet::putOnLane(const std::string& id, const LanePlace& place) {
+  const std::string& lane_id = graph_.network().lane(place.lane).id;
+  const double position = place.arc_length * sumoScale(place.lane);
+  return link_.attempt([&] { SumoVehicle::moveTo(id, lane_id, position); });
+}
+
+bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place) {
+  const LanePlace from = moved.along_lane ? moved.place : LanePlace{};
+  std::optional<LaneTarget> target =
+      laneTarget(graph_, place, moved.state.heading, moved.given, from);
+  if (!target) return false;
+  const double excess = target->place.arc_length - usableLength(target->place.lane, moved);
+  if (excess > 0.0) {
+    target->place.arc_length -= excess;
+    if (target->ahead) *target->ahead -= excess;
+  }
+  if (!target->ahead || std::abs(*target->ahead) > kFarOff) {
+    LanePlace before = target->place;
+    before.arc_length = std::max(0.0, before.arc_length - moved.state.speed * step_);
+    if (!putOnLane(id, before)) return false;
+    target->ahead = target->place.arc_length - before.arc_length;
+  }
+  double speed = commandedSpeed(moved.state.speed, *target->ahead, step_);
+  if (excess > 0.0) speed = std::clamp(*target->ahead / step_, 0.0, speed);
+  if (speed != moved.speed) SumoVehicle::setSpeed(id, speed);
+  moved.speed = speed;
+  moved.along_lane = true;
+  return true;
+}
+
+void DrivenFleet::moveFreely(const std::string& id, Moved& moved, const FrontPlace& place) {
+  // A named lane is taken for what it is; without one SUMO takes the nearest in
+  // the plane, be it that of a bridge.
+  std::string edge;
+  int index = 0;
+  if (!place.lanes.empty()) {
+    const map::Lane& lane = graph_.network().lane(place.lanes.front().lane);
+    edge = lane.edge_id;
+    index = lane.index;
+  }
+  const bool first = !moved.reported && moved.on_way;
+  SumoVehicle::moveToXY(id, edge, index, place.position.x(), place.position.y(),
+                        angleFromHeading(moved.state.heading), first ? kKeepRouteExact : kAnywhere,
+                        match_threshold_);
+  moved.along_lane = false;
+}
+
+void DrivenFleet::move(const DrivenVehicle& vehicle) {
   const auto found = vehicles_.find(vehicle.id);
   if (found == vehicles_.end()) {
     throw core::SimulatorError("vehicle '" + vehicle.id +
                                "' is moved but was neither added nor taken over");
   }
   Moved& moved = found->second;
+  moved.state = vehicle.state;
   const FrontPlace place = moved.way.locate(vehicle.state);
   if (moved.way.follow(vehicle.route, place.position)) {
     moved.outdated = true;
     moved.refused_lane.clear();
   }
-  updateWay(vehicle.id, moved, place, reported_lane);
-  moveFront(vehicle.id, place.position, vehicle.state.heading, moved.on_way);
-  moved.moved_on_way = moved.on_way;
+  updateWay(vehicle.id, moved, place);
+  if (moved.reported && moved.on_way && moveAlongLane(vehicle.id, moved, place)) return;
+  moveFreely(vehicle.id, moved, place);
 }
 
-bool DrivenFleet::release(const DrivenVehicle& vehicle, const std::string& reported_lane) {
-  Moved& moved = vehicles_.at(vehicle.id);
-  const FrontPlace place = moved.way.locate(vehicle.state);
-  moved.way.follow(vehicle.route, place.position);
-  const int current = edgeOf(reported_lane);
-  if (current == kNoEdge) return false;
-  const auto reported =
-      std::find_if(place.lanes.begin(), place.lanes.end(), [&](const map::LaneMatch& match) {
-        return graph_.network().lane(match.lane).id == reported_lane;
-      });
-  if (reported == place.lanes.end() || std::abs(reported->heading_difference) > kReleaseHeading)
-    return false;
-  const bool given = giveWay(vehicle.id, moved, moved.way.edgesFrom(current, kReleasedWayLength));
-  if (!given && !moved.on_way) return false;
-  setModes(vehicle.id, kSpeedModeDefault);
-  SumoVehicle::setPreviousSpeed(vehicle.id, vehicle.state.speed, 0.0);
-  SumoVehicle::setSpeed(vehicle.id, -1.0);
-  Released released{SettlingMotion(graph_, reported->lane, moved.given, vehicle.state,
-                                   moved.way.dimensions().length),
-                    true, true, vehicle.state.speed, kLaneChangePause};
-  forget(vehicle.id);
-  released_.emplace(vehicle.id, std::move(released));
-  return true;
-}
-
-void DrivenFleet::settle(const std::string& id, Released& released, double step) {
-  if (released.motion.settled()) {
-    released.settling = false;
-    SumoVehicle::setPreviousSpeed(id, released.motion.state().speed, 0.0);
-    return;
-  }
-  // SUMO's wish answers the step before the last: its change of speed counts, not the speed.
-  const double last = released.motion.state().speed;
-  double speed = last;
-  if (!released.first) {
-    const double wish = SumoVehicle::getSpeedWithoutTraCI(id) - released.speed_before;
-    speed = std::max(0.0, last + std::clamp(wish, -kHardBraking * step, kAcceleration * step));
-  }
-  released.first = false;
-  released.speed_before = last;
-  const traffic::VehicleState& state = released.motion.advance(speed, step);
-  moveFront(id, frontOf(state.pose(), released.motion.length()), state.heading, true);
-}
-
-std::map<std::string, double> DrivenFleet::settlingSpeeds() const {
-  std::map<std::string, double> speeds;
-  for (const auto& [id, released] : released_) {
-    if (released.settling) speeds.emplace(id, released.motion.state().speed);
-  }
-  return speeds;
-}
-
-void DrivenFleet::advance(double step) {
-  for (auto entry = released_.begin(); entry != released_.end();) {
-    const std::string& id = entry->first;
-    Released& released = entry->second;
-    bool present = true;
-    if (released.settling) present = link_.attempt([&] { settle(id, released, step); });
-    if (!released.settling) released.left -= step;
-    if (released.left <= 0.0) {
-      link_.attempt([&] { SumoVehicle::setLaneChangeMode(id, kLaneChangeModeDefault); });
-      present = false;
-    }
-    entry = present ? std::next(entry) : released_.erase(entry);
-  }
+void DrivenFleet::note(Moved& moved, const SimulatedVehicle& vehicle) const {
+  moved.reported = true;
+  moved.state = vehicle.state;
+  moved.lane_id = vehicle.lane_id;
+  moved.place = {};
+  const map::LaneIndex lane = graph_.network().findLane(vehicle.lane_id);
+  if (vehicle.lane_id.empty() || lane == map::kNoLane) return;
+  const Eigen::Vector2d front = frontOf(vehicle.state.pose(), vehicle.dimensions.length);
+  moved.place = {lane, graph_.network().lane(lane).centerline.project(front).arc_length};
 }
 
 }  // namespace cdiff::simulation

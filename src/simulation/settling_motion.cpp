@@ -12,83 +12,58 @@ namespace cdiff::simulation {
 
 namespace {
 
-constexpr double kPathLength = 150.0;      ///< ahead [m]
-constexpr double kShortestReach = 3.0;     ///< along which the offset decays [m]
-constexpr double kReachTime = 0.8;         ///< the same at speed [s]
-constexpr double kLargestCurvature = 0.2;  ///< of the vehicle against the path [1/m]
-constexpr double kSettledOffset = 0.02;    ///< [m]
-constexpr double kSettledHeading = 0.01;   ///< [rad]
+constexpr double kShortestReach =
+    3.0;                           ///< along which the differences decay [m]
+constexpr double kReachTime = 0.8; ///< the same at speed [s]
+constexpr double kLargestCurvature =
+    0.2; ///< of the vehicle against its lane [1/m]
+constexpr double kSettledOffset = 0.01;   ///< [m]
+constexpr double kSettledHeading = 0.005; ///< [rad]
 
-/// The lane that follows `lane` towards the next edge of the way; kNoLane where another lane is
-/// needed.
-map::LaneIndex nextLane(const EdgeGraph& graph, map::LaneIndex lane, const std::vector<int>& way) {
-  const auto here = std::find(way.begin(), way.end(), graph.edgeOf(lane));
-  if (here == way.end() || here + 1 == way.end()) return map::kNoLane;
-  for (const map::LaneLink& link : graph.network().lane(lane).next) {
-    if (graph.edgeAfter(link.to) == *(here + 1)) return link.to;
-  }
-  return map::kNoLane;
-}
+} // namespace
 
-geometry::Polyline pathFrom(const EdgeGraph& graph, map::LaneIndex lane,
-                            const std::vector<int>& way) {
-  const map::RoadNetwork& network = graph.network();
-  std::vector<Eigen::Vector3d> points;
-  if (!network.lane(lane).previous.empty()) {
-    points = network.lane(network.lane(lane).previous.front()).centerline.points();
-  }
-  double length = -network.lane(lane).centerline.length();
-  while (lane != map::kNoLane && length < kPathLength) {
-    const geometry::Polyline& line = network.lane(lane).centerline;
-    points.insert(points.end(), line.points().begin(), line.points().end());
-    length += line.length();
-    lane = nextLane(graph, lane, way);
-  }
-  return geometry::Polyline(points);
-}
-
-}  // namespace
-
-SettlingMotion::SettlingMotion(const EdgeGraph& graph, map::LaneIndex lane,
-                               const std::vector<int>& way, const traffic::VehicleState& state,
-                               double length)
-    : path_(pathFrom(graph, lane, way)), length_(length), state_(state) {
-  const geometry::Projection front = path_.project(frontOf(state.pose(), length));
-  arc_length_ = front.arc_length;
-  offset_ = front.lateral_offset;
-  heading_error_ = core::angleDifference(state.heading, headingAt(arc_length_));
-}
-
-double SettlingMotion::headingAt(double arc_length) const {
-  if (arc_length <= length_) return path_.headingAt(arc_length);
-  const Eigen::Vector2d chord =
-      path_.positionAt(arc_length) - path_.positionAt(arc_length - length_);
-  return std::atan2(chord.y(), chord.x());
-}
-
-const traffic::VehicleState& SettlingMotion::advance(double speed, double step) {
-  const double reach = std::max(kShortestReach, kReachTime * speed);
-  const double wanted = -offset_ / (reach * reach) - 2.0 * heading_error_ / reach;
-  const double curvature = std::clamp(wanted, -kLargestCurvature, kLargestCurvature);
-  heading_error_ += speed * step * curvature;
-  offset_ += speed * step * std::sin(heading_error_);
-  arc_length_ = std::min(arc_length_ + speed * step * std::cos(heading_error_), path_.length());
-  state_.speed = speed;
-  const Eigen::Vector3d point = path_.pointAt(arc_length_);
-  const double along = headingAt(arc_length_);
-  state_.heading = core::wrapAngle(along + heading_error_);
+void SettlingMotion::begin(const traffic::VehicleState &sumo, double step) {
+  // Straight on from the release at its speed; the differences to SUMO are what
+  // has to decay.
   const Eigen::Vector2d front =
-      point.head<2>() +
-      offset_ * geometry::leftNormal(geometry::direction(path_.headingAt(arc_length_)));
-  state_.position = centerBehind(front, state_.heading, length_);
-  state_.elevation = point.z();
+      frontOf(state_.pose(), length_) + state_.velocity() * step;
+  const geometry::Pose2d reference{frontOf(sumo.pose(), length_), sumo.heading};
+  const Eigen::Vector2d difference = reference.toBody(front);
+  along_ = difference.x();
+  offset_ = difference.y();
+  heading_error_ = core::angleDifference(state_.heading, sumo.heading);
+  begun_ = true;
+}
+
+void SettlingMotion::decay(double driven, double speed) {
+  const double reach = std::max(kShortestReach, kReachTime * speed);
+  const double wanted =
+      -offset_ / (reach * reach) - 2.0 * heading_error_ / reach;
+  heading_error_ +=
+      driven * std::clamp(wanted, -kLargestCurvature, kLargestCurvature);
+  offset_ += driven * std::sin(heading_error_);
+  along_ -= along_ * std::min(1.0, driven / reach);
+}
+
+const traffic::VehicleState &
+SettlingMotion::advance(const traffic::VehicleState &sumo, double step) {
+  if (begun_) {
+    decay(sumo.speed * step, sumo.speed);
+  } else {
+    begin(sumo, step);
+  }
+  const geometry::Pose2d reference{frontOf(sumo.pose(), length_), sumo.heading};
+  state_ = sumo;
+  state_.heading = core::wrapAngle(sumo.heading + heading_error_);
+  state_.position =
+      centerBehind(reference.toMap({along_, offset_}), state_.heading, length_);
   return state_;
 }
 
 bool SettlingMotion::settled() const {
-  const bool aligned =
-      std::abs(offset_) < kSettledOffset && std::abs(heading_error_) < kSettledHeading;
-  return aligned || arc_length_ >= path_.length() - 0.5;
+  return begun_ && std::abs(offset_) < kSettledOffset &&
+         std::abs(along_) < kSettledOffset &&
+         std::abs(heading_error_) < kSettledHeading;
 }
 
-}  // namespace cdiff::simulation
+} // namespace cdiff::simulation

@@ -66,8 +66,8 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
   return command;
 }
 
-// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest deceleration, 8 right
-// of way, 16 red lights.
+// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest
+// deceleration, 8 right of way, 16 red lights.
 constexpr int kUsualSpeedMode = 31;
 constexpr int kDisregardRightOfWay = 23;
 
@@ -85,7 +85,8 @@ void SumoOptions::describe(core::OptionsVisitor& visitor) {
                  match_threshold, 1.0, 1000.0);
 }
 
-/// Everything behind the simulator: the session with SUMO, what it reports and what we move.
+/// Everything behind the simulator: the session with SUMO, what it reports and
+/// what we move.
 class SumoSimulator::Connection {
  public:
   Connection(const SumoOptions& options, const SumoSession& session,
@@ -93,7 +94,7 @@ class SumoSimulator::Connection {
       : step_(session.simulation_step),
         graph_(network),
         link_(commandFor(options, session), options.step_timeout),
-        fleet_(link_, graph_, options.match_threshold) {
+        fleet_(link_, graph_, options.match_threshold, session.simulation_step) {
     link_.guarded("start", [&] { observer_.start(session.lights_green); });
     if (session.lights_green) right_of_way_.emplace(network, observer_.signals());
   }
@@ -115,8 +116,8 @@ class SumoSimulator::Connection {
     const SimulatedVehicle* vehicle = observer_.find(id);
     if (vehicle == nullptr)
       throw core::SimulatorError("SUMO has no vehicle '" + id + "' to take over");
-    const traffic::VehicleDimensions dimensions = vehicle->dimensions;
-    link_.guarded("taking over '" + id + "'", [&] { fleet_.takeOver(id, dimensions); });
+    const SimulatedVehicle taken = *vehicle;
+    link_.guarded("taking over '" + id + "'", [&] { fleet_.takeOver(taken); });
   }
 
   bool release(const DrivenVehicle& vehicle) {
@@ -124,9 +125,8 @@ class SumoSimulator::Connection {
       throw core::SimulatorError("vehicle '" + vehicle.id +
                                  "' is released but is not driven by us");
     }
-    const bool released = link_.guarded("releasing '" + vehicle.id + "'", [&] {
-      return fleet_.release(vehicle, reportedLane(vehicle.id));
-    });
+    const bool released =
+        link_.guarded("releasing '" + vehicle.id + "'", [&] { return fleet_.release(vehicle); });
     if (!released) remove(vehicle.id);
     return released;
   }
@@ -140,11 +140,10 @@ class SumoSimulator::Connection {
   void step(const std::vector<DrivenVehicle>& driven) {
     for (const DrivenVehicle& vehicle : driven) bringBack(vehicle);
     link_.guarded("step", [&] {
-      for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle, reportedLane(vehicle.id));
-      fleet_.advance(step_);
+      for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle);
       libtraci::Simulation::step();
       observer_.read();
-      for (const auto& [id, speed] : fleet_.settlingSpeeds()) observer_.correctSpeed(id, speed);
+      fleet_.report(observer_.correctable());
       dropWaiting();
       giveWay();
     });
@@ -168,12 +167,8 @@ class SumoSimulator::Connection {
   }
 
  private:
-  std::string reportedLane(const std::string& id) const {
-    const SimulatedVehicle* vehicle = observer_.find(id);
-    return vehicle != nullptr ? vehicle->lane_id : "";
-  }
-
-  /// SUMO takes a moved vehicle out when it believes that it has arrived; it goes on where we say.
+  /// SUMO takes a moved vehicle out when it believes that it has arrived; it
+  /// goes on where we say.
   void bringBack(const DrivenVehicle& vehicle) {
     if (!fleet_.contains(vehicle.id) || fresh_.count(vehicle.id) != 0) return;
     if (observer_.find(vehicle.id) != nullptr) return;
@@ -181,7 +176,8 @@ class SumoSimulator::Connection {
     addDriven(vehicle.id, dimensions, vehicle);
   }
 
-  /// Where all lights are green, lets those go who would wait for each other for ever.
+  /// Where all lights are green, lets those go who would wait for each other
+  /// for ever.
   void giveWay() {
     if (!right_of_way_) return;
     const auto is_driven = [this](const std::string& id) { return fleet_.contains(id); };
@@ -198,7 +194,8 @@ class SumoSimulator::Connection {
     }
   }
 
-  /// Background vehicles that found no room in the step just made are not tried again.
+  /// Background vehicles that found no room in the step just made are not tried
+  /// again.
   void dropWaiting() {
     for (const std::string& id : waiting_) {
       if (observer_.find(id) != nullptr) continue;
@@ -207,15 +204,17 @@ class SumoSimulator::Connection {
     waiting_.clear();
   }
 
-  /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first.
-  /// No error when it is gone already.
+  /// A subscription to a vehicle that is taken out makes SUMO's next step fail,
+  /// so it ends first. No error when it is gone already.
   void takeOut(const std::string& id) {
-    link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
+    if (observer_.find(id) != nullptr) {
+      link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
+    }
     link_.attempt([&] { libtraci::Vehicle::remove(id, libsumo::REMOVE_VAPORIZED); });
   }
 
-  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's
-  /// seeded speed factor.
+  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers
+  /// differ by SUMO's seeded speed factor.
   std::string typeFor(const traffic::VehicleDimensions& dimensions) {
     const std::string id = "car_" + core::formatNumber(dimensions.length) + "_" +
                            core::formatNumber(dimensions.width) + "_" +

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The vehicles that we move in SUMO (moveToXY): keeps each one's SUMO route leading beyond the
-/// next junction, so that other traffic yields to it, and hands vehicles over in both directions
-/// without a jump.
+/// The vehicles that we move. On the lanes of its way SUMO drives such a
+/// vehicle along them at the speed that brings it next to where we have it (all
+/// of SUMO's checks off), so that followers keep their gap and others yield to
+/// it as to any vehicle; elsewhere it is put to its place exactly (moveToXY).
+/// What the simulator reports of it is our state. Hands vehicles over in both
+/// directions without a jump.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/simulation/driven_way.h"
+#include "e2e_cdiff/simulation/lane_follower.h"
 #include "e2e_cdiff/simulation/settling_motion.h"
 #include "e2e_cdiff/simulation/sumo_link.h"
 
@@ -18,70 +21,72 @@ namespace cdiff::simulation {
 /// Its methods are called inside SumoLink::guarded.
 class DrivenFleet {
  public:
-  /// References must outlive the fleet. `match_threshold`: how far from a lane SUMO looks for one
-  /// [m].
-  DrivenFleet(SumoLink& link, const EdgeGraph& graph, double match_threshold)
-      : link_(link), graph_(graph), match_threshold_(match_threshold) {}
+  /// References must outlive the fleet. `match_threshold`: how far from a lane
+  /// SUMO looks for one [m]; `step`: of the simulation [s].
+  DrivenFleet(SumoLink& link, const EdgeGraph& graph, double match_threshold, double step)
+      : link_(link), graph_(graph), match_threshold_(match_threshold), step_(step) {}
 
   bool contains(const std::string& id) const { return vehicles_.count(id) != 0; }
   /// Adds a vehicle to SUMO that is moved from its first step on.
   void add(const DrivenVehicle& start, const traffic::VehicleDimensions& dimensions,
            const std::string& type_id);
   /// Takes over a vehicle that SUMO drives.
-  void takeOver(const std::string& id, const traffic::VehicleDimensions& dimensions);
-  /// Gives a vehicle back to SUMO; answers false, changing nothing, where it is on no lane of its
-  /// direction.
-  bool release(const DrivenVehicle& vehicle, const std::string& reported_lane);
+  void takeOver(const SimulatedVehicle& vehicle);
+  /// Gives a vehicle back to SUMO; answers false, changing nothing, where it is
+  /// on no lane of its direction.
+  bool release(const DrivenVehicle& vehicle);
   /// Forgets a vehicle without touching it.
   void forget(const std::string& id);
-  /// Says where a vehicle will be after the coming step. `reported_lane`: SUMO's lane after the
-  /// last step, empty off the road.
-  void move(const DrivenVehicle& vehicle, const std::string& reported_lane);
+  /// Says where a vehicle will be after the coming step.
+  void move(const DrivenVehicle& vehicle);
   const traffic::VehicleDimensions& dimensions(const std::string& id) const {
     return vehicles_.at(id).way.dimensions();
   }
-  /// To be called once a step [s]: moves released vehicles into the middle of their lane, and later
-  /// allows lane changes again.
-  void advance(double step);
-  /// Speeds [m/s] of released vehicles that are still moved into their lane; SUMO's own figure for
-  /// them is a quotient of places on lanes.
-  std::map<std::string, double> settlingSpeeds() const;
+  /// To be called after each step with what SUMO reports (by id): notes where
+  /// SUMO has our vehicles, and writes where they are; brings released vehicles
+  /// into the middle of their lane.
+  void report(std::vector<SimulatedVehicle>& vehicles);
 
  private:
   struct Moved {
+    explicit Moved(const DrivenWay& driven_way) : way(driven_way) {}
     DrivenWay way;
-    std::vector<int> given;     ///< edges of its SUMO route, from the edge where it was set
-    bool on_way = false;        ///< on the lanes of that route: SUMO keeps it (keepRoute 3)
-    bool outdated = false;      ///< a better way is to be given
-    std::string refused_lane;   ///< lane on which SUMO refused the last way
-    int last_edge = kNoEdge;    ///< SUMO's edge after the last step
-    bool moved_on_way = false;  ///< whether the last move kept the route
-    map::LaneIndex blind_lane = map::kNoLane;  ///< lane that SUMO does not find with the route kept
+    std::vector<int> given;       ///< edges of its SUMO route, from the edge where it was set
+    bool on_way = false;          ///< SUMO's route is `given` and the vehicle is on its lanes
+    bool outdated = false;        ///< a better way is to be given
+    std::string refused_lane;     ///< lane on which SUMO refused the last way
+    int last_edge = kNoEdge;      ///< SUMO's edge after the last step
+    bool reported = false;        ///< SUMO has it in the network
+    std::string lane_id;          ///< SUMO's lane after the last step; empty off the road
+    LanePlace place;              ///< the same, with the place on it
+    bool along_lane = false;      ///< SUMO drives it along the lane
+    double speed = -1.0;          ///< last commanded [m/s]
+    traffic::VehicleState state;  ///< ours, after the coming step
   };
   struct Released {
     SettlingMotion motion;
-    bool settling = true;       ///< SUMO decides its speed, we its place
-    bool first = true;          ///< the step after the release
-    double speed_before = 0.0;  ///< a step before that of `motion` [m/s]
-    double left = 0.0;          ///< until lane changes are allowed again [s]
+    bool settled = false;
+    double left = 0.0;  ///< until lane changes are allowed again [s]
   };
-  void moveFront(const std::string& id, const Eigen::Vector2d& front, double heading, bool on_way);
-  void settle(const std::string& id, Released& released, double step);
-  void updateWay(const std::string& id, Moved& moved, const FrontPlace& place,
-                 const std::string& reported_lane);
+  void note(Moved& moved, const SimulatedVehicle& vehicle) const;
   static void loseWay(Moved& moved);
-  /// Of several ways through a junction between the same two edges SUMO considers one when it keeps
-  /// the route: on the others the vehicle would be on no lane, seen by nobody.
-  static void avoidBlindLane(Moved& moved, const FrontPlace& place,
-                             const std::string& reported_lane);
+  void updateWay(const std::string& id, Moved& moved, const FrontPlace& place);
   bool giveWay(const std::string& id, Moved& moved, const std::vector<int>& way);
+  bool moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place);
+  bool putOnLane(const std::string& id, const LanePlace& place);
+  void moveFreely(const std::string& id, Moved& moved, const FrontPlace& place);
+  double usableLength(map::LaneIndex lane, const Moved& moved) const;
+  double sumoScale(map::LaneIndex lane);
   int edgeOf(const std::string& lane_id) const;
+  bool settle(SimulatedVehicle& vehicle, Released& released);
 
   SumoLink& link_;
   const EdgeGraph& graph_;
   double match_threshold_;
+  double step_;
   std::map<std::string, Moved> vehicles_;
   std::map<std::string, Released> released_;
+  std::map<map::LaneIndex, double> scales_;  ///< SUMO's length of a lane over its centre line's
   std::uint64_t added_ = 0;
 };
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// DrivenFleet: vehicles that change hands, and what is reported of ours.
+#include <libsumo/libtraci.h>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/simulation/driven_fleet.h"
+
+namespace cdiff::simulation {
+
+namespace {
+
+using SumoVehicle = libtraci::Vehicle;
+
+constexpr double kReleasedWayLength = 600.0;         ///< given at the release [m]
+constexpr double kReleaseHeading = core::kPi / 6.0;  ///< between vehicle and lane [rad]
+constexpr double kLaneChangePause = 3.0;             ///< without lane changes once settled [s]
+constexpr int kLaneChangeModeDefault = 1621;
+
+}  // namespace
+
+void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
+  Moved moved(DrivenWay(graph_, vehicle.dimensions));
+  moved.on_way = true;
+  moved.outdated = true;
+  for (const std::string& edge : SumoVehicle::getRoute(vehicle.id)) {
+    moved.given.push_back(graph_.find(edge));
+  }
+  note(moved, vehicle);
+  setModes(vehicle.id, kSpeedModeOff);
+  forget(vehicle.id);
+  vehicles_.emplace(vehicle.id, std::move(moved));
+}
+
+bool DrivenFleet::release(const DrivenVehicle& vehicle) {
+  Moved& moved = vehicles_.at(vehicle.id);
+  const FrontPlace place = moved.way.locate(vehicle.state);
+  moved.way.follow(vehicle.route, place.position);
+  const int current = edgeOf(moved.lane_id);
+  if (current == kNoEdge) return false;
+  const bool given = giveWay(vehicle.id, moved, moved.way.edgesFrom(current, kReleasedWayLength));
+  if (!given && !moved.on_way) return false;
+  const std::optional<LaneTarget> target =
+      laneTarget(graph_, place, vehicle.state.heading, moved.given, moved.place);
+  if (!target) return false;
+  const double length = moved.way.dimensions().length;
+  const geometry::Polyline& line = graph_.network().lane(target->place.lane).centerline;
+  const double turned =
+      core::angleDifference(vehicle.state.heading, line.headingAt(target->place.arc_length));
+  if (std::abs(turned) > kReleaseHeading || !putOnLane(vehicle.id, target->place)) return false;
+  setModes(vehicle.id, kSpeedModeDefault);
+  SumoVehicle::setPreviousSpeed(vehicle.id, vehicle.state.speed, 0.0);
+  SumoVehicle::setSpeed(vehicle.id, -1.0);
+  const Released released{SettlingMotion(vehicle.state, length), false, kLaneChangePause};
+  forget(vehicle.id);
+  released_.emplace(vehicle.id, released);
+  return true;
+}
+
+bool DrivenFleet::settle(SimulatedVehicle& vehicle, Released& released) {
+  if (!released.settled) {
+    vehicle.state = released.motion.advance(vehicle.state, step_);
+    released.settled = released.motion.settled();
+    return true;
+  }
+  released.left -= step_;
+  if (released.left > 0.0) return true;
+  link_.attempt([&] { SumoVehicle::setLaneChangeMode(vehicle.id, kLaneChangeModeDefault); });
+  return false;
+}
+
+void DrivenFleet::report(std::vector<SimulatedVehicle>& vehicles) {
+  for (auto& [id, moved] : vehicles_) moved.reported = false;
+  std::map<std::string, Released> still_released;
+  for (SimulatedVehicle& vehicle : vehicles) {
+    const auto moved = vehicles_.find(vehicle.id);
+    if (moved != vehicles_.end()) {
+      const traffic::VehicleState state = moved->second.state;
+      note(moved->second, vehicle);
+      moved->second.along_lane = moved->second.along_lane && !vehicle.lane_id.empty();
+      vehicle.state = state;
+    }
+    const auto released = released_.find(vehicle.id);
+    if (released != released_.end() && settle(vehicle, released->second)) {
+      still_released.insert(*released);
+    }
+  }
+  released_ = std::move(still_released);
+}
+
+}  // namespace cdiff::simulation
