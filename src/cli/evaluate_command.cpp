@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -47,22 +49,43 @@ struct Run {
   int exit_code = -1;
 };
 
+/// A route that was asked for by its id must be there, with its network; of all routes of a file
+/// those without are left out.
 std::vector<Run> planRuns(const EvaluateArguments& arguments) {
   std::vector<Run> runs;
+  std::vector<std::string> missing = arguments.routes;
   for (const map::Bench2DriveEntry& entry : map::listBench2DriveRoutes(arguments.bench2drive)) {
     const auto& wanted = arguments.routes;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end())
       continue;
     const fs::path network = fs::path(arguments.networks) / (entry.town + ".net.xml");
     if (!fs::exists(network)) continue;
+    missing.erase(std::remove(missing.begin(), missing.end(), entry.id), missing.end());
     runs.push_back(
         {entry.id, entry.town, network, fs::path(arguments.results) / "runs" / entry.id});
+  }
+  if (!missing.empty()) {
+    throw InputError("routes " + core::joinText(missing, ", ") + " are not in '" +
+                     arguments.bench2drive + "', or the network of their town is not in '" +
+                     arguments.networks + "'");
   }
   if (runs.empty()) {
     throw InputError("no route of '" + arguments.bench2drive +
                      "' lies in a town whose TOWN.net.xml is in '" + arguments.networks + "'");
   }
   return runs;
+}
+
+// A signal handler can reach nothing else.
+std::atomic<bool> stop_requested{false};
+
+void requestStop(int) { stop_requested = true; }
+
+void catchSignals() {
+  struct sigaction action {};
+  action.sa_handler = requestStop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
 void start(Run& run, const EvaluateArguments& arguments) {
@@ -95,8 +118,9 @@ void start(Run& run, const EvaluateArguments& arguments) {
 void waitForOne(std::vector<Run>& runs, std::size_t& done) {
   int status = 0;
   const pid_t process = ::waitpid(-1, &status, 0);
+  if (process < 0) return;  // a signal
   for (Run& run : runs) {
-    if (run.process != process || process <= 0) continue;
+    if (run.process != process) continue;
     run.process = 0;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     ++done;
@@ -105,15 +129,25 @@ void waitForOne(std::vector<Run>& runs, std::size_t& done) {
   }
 }
 
+/// Asks every run that is under way to end.
+void interruptRuns(const std::vector<Run>& runs) {
+  for (const Run& run : runs) {
+    if (run.process > 0) ::kill(run.process, SIGINT);
+  }
+}
+
 void execute(std::vector<Run>& runs, const EvaluateArguments& arguments) {
   std::size_t next = 0;
   std::size_t done = 0;
-  while (done < runs.size()) {
+  catchSignals();
+  while (done < (stop_requested ? next : runs.size())) {
     const auto running = static_cast<int>(next - done);
-    if (next < runs.size() && running < arguments.jobs)
+    if (stop_requested) interruptRuns(runs);
+    if (!stop_requested && next < runs.size() && running < arguments.jobs) {
       start(runs[next++], arguments);
-    else
+    } else {
       waitForOne(runs, done);
+    }
   }
 }
 
@@ -124,7 +158,8 @@ struct Row {
   std::string count = "0";
   int decisions = 0;
   int longest = 0;  ///< most decisions that a single CBV was driven
-  bool conflict_at_junction = false;
+  int longest_at_junction =
+      0;  ///< the same of CBVs whose conflict point lies at or beyond a junction
   std::string conflict = "-";
   std::string contacts = "-";
   std::string off_road = "-";
@@ -159,8 +194,11 @@ Row readRow(const Run& run) {
   row.rejected = rejections(cbv.at("rejected"));
   for (const json& selection : cbv.at("selections")) {
     const json& point = selection.at("conflict_point");
-    row.longest = std::max(row.longest, selection.at("decisions_driven").get<int>());
-    if (point.at("in_junction_or_beyond").get<bool>()) row.conflict_at_junction = true;
+    const int driven = selection.at("decisions_driven");
+    row.longest = std::max(row.longest, driven);
+    if (point.at("in_junction_or_beyond").get<bool>()) {
+      row.longest_at_junction = std::max(row.longest_at_junction, driven);
+    }
     if (row.conflict == "-") {
       row.conflict =
           core::formatFixed(point.at("x"), 1) + ", " + core::formatFixed(point.at("y"), 1);
@@ -169,26 +207,35 @@ Row readRow(const Run& run) {
   return row;
 }
 
+std::string tableLine(const Run& run, const Row& row) {
+  return "| " + run.route + " | " + run.town + " | " + row.status + " | " + row.completion + " | " +
+         row.contacts + " | " + row.count + " | " + std::to_string(row.decisions) + " | " +
+         std::to_string(row.longest) + " | " + std::to_string(row.longest_at_junction) + " | " +
+         row.off_road + " | " + row.conflict + " | " + row.rejected + " |\n";
+}
+
 std::string table(const std::vector<Run>& runs) {
+  constexpr int kDriven = 30;  // decisions of one CBV that count as driven
   std::string text =
-      "| route | town | status | RC % | ego contacts | CBVs | decisions | off-road % | first "
-      "conflict point (x, y) | at or beyond a junction | "
-      "most frequent rejections |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
-  int errors = 0, completed = 0, driven = 0;
+      "| route | town | status | RC % | ego contacts | CBVs | decisions | longest | longest with "
+      "conflict at or beyond a junction | off-road % | first conflict point (x, y) | most frequent "
+      "rejections |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  int errors = 0;
+  int completed = 0;
+  int driven = 0;
+  int at_junction = 0;
   for (const Run& run : runs) {
     const Row row = readRow(run);
     errors += row.status == "error";
     completed += row.status == "completed";
-    driven += row.decisions >= 30;
-    text += "| " + run.route + " | " + run.town + " | " + row.status + " | " + row.completion +
-            " | " + row.contacts + " | " + row.count + " | " + std::to_string(row.decisions) +
-            " | " + row.off_road + " | " + row.conflict + " | " +
-            (row.conflict_at_junction ? "yes" : "no") + " | " + row.rejected + " |\n";
+    driven += row.longest >= kDriven;
+    at_junction += row.longest_at_junction >= kDriven;
+    text += tableLine(run, row);
   }
-  text += "\n" + std::to_string(runs.size()) + " routes: " + std::to_string(errors) + " errors, " +
-          std::to_string(completed) + " completed, CBVs driven for at least 30 decisions on " +
-          std::to_string(driven) + "\n";
-  return text;
+  return text + "\n" + std::to_string(runs.size()) + " routes: " + std::to_string(errors) +
+         " errors, " + std::to_string(completed) + " completed; one CBV driven for at least " +
+         std::to_string(kDriven) + " decisions on " + std::to_string(driven) +
+         ", with a conflict point at or beyond a junction on " + std::to_string(at_junction) + "\n";
 }
 
 int evaluate(const EvaluateArguments& arguments) {
@@ -199,6 +246,7 @@ int evaluate(const EvaluateArguments& arguments) {
   std::cout << text;
   const bool failed =
       std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.exit_code >= 2; });
+  if (stop_requested) return kInterrupted;
   return failed ? kRunTimeError : kPassed;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "run_session.h"
 
@@ -30,8 +31,8 @@ int run(const RunArguments& arguments) {
   const scenario::ScenarioOptions options = scenario::resolveRequest(arguments.request);
   const fs::path folder =
       arguments.results.empty()
-          ? fs::path("results") /
-                (options.name + "_seed" + std::to_string(options.seed) + "_" + timeStamp())
+          ? fs::path("results") / (core::fileName(options.name) + "_seed" +
+                                   std::to_string(options.seed) + "_" + timeStamp())
           : fs::path(arguments.results);
   return runSession(options, folder, arguments.quiet);
 }

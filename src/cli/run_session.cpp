@@ -32,6 +32,14 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// What an earlier session of the node graph left in the folder.
+void removeEarlierSession(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"session.bag", "session.bag.active", "exit_code"}) {
+    std::filesystem::remove(folder / name, ignored);
+  }
+}
+
 /// The record of a session that never began.
 void recordFailedStart(report::ResultWriter& writer, const std::string& text) {
   traffic::TrafficSnapshot snapshot;
@@ -54,6 +62,7 @@ int runSession(const scenario::ScenarioOptions& options, const std::filesystem::
                bool quiet) {
   catchSignals();
   const scenario::SessionSetup setup(options);
+  removeEarlierSession(folder);
   const Clock::time_point begin = Clock::now();
   std::unique_ptr<scenario::ClosedLoop> loop;
   try {
@@ -70,8 +79,15 @@ int runSession(const scenario::ScenarioOptions& options, const std::filesystem::
   Progress progress(options.protocol.time_limit);
   loop->addObserver(writer);
   if (!quiet) loop->addObserver(progress);
-  loop->run(stop_requested);
-  return finish(writer, begin, quiet);
+  try {
+    loop->run(stop_requested);
+    return finish(writer, begin, quiet);
+  } catch (const std::exception& error) {
+    // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
+    // whatever its type.
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return kRunTimeError;
+  }
 }
 
 }  // namespace cdiff::cli

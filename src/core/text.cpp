@@ -58,6 +58,17 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
   });
 }
 
+std::string fileName(std::string text) {
+  for (char& letter : text) {
+    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                       (letter >= '0' && letter <= '9') || letter == '_' || letter == '-' ||
+                       letter == '.';
+    if (!plain) letter = '_';
+  }
+  text.erase(0, text.find_first_not_of('.'));
+  return text.empty() ? "unnamed" : text;
+}
+
 std::vector<std::string> splitText(std::string_view text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;

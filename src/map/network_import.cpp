@@ -38,7 +38,7 @@ std::vector<std::string> shippedNames(const fs::path& folder) {
 fs::path sourceFile(const std::string& source) {
   if (source.empty())
     throw core::InputError("no network was given; a file or a shipped name was expected");
-  if (fs::exists(source)) return source;
+  if (fs::is_regular_file(source)) return source;
   const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
                     endsWith(source, ".xodr");
   if (path) throw core::InputError("network file '" + source + "' does not exist");

@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::ros {
 namespace {
@@ -26,7 +27,7 @@ fs::path ownFolder(const scenario::ScenarioOptions& options) {
   const char* home = std::getenv("HOME");
   const fs::path base = home != nullptr ? fs::path(home) : fs::temp_directory_path();
   return base / "e2e_cdiff_results" /
-         (options.name + "_seed" + std::to_string(options.seed) + "_" + timeText());
+         (core::fileName(options.name) + "_seed" + std::to_string(options.seed) + "_" + timeText());
 }
 
 }  // namespace
@@ -48,14 +49,29 @@ void writeExitCode(const fs::path& folder, int exit_code) {
   core::writeFileAtomically(folder / "exit_code", std::to_string(exit_code) + "\n");
 }
 
-void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last,
-                 const report::RunFacts& facts, const fs::path& folder, double wall_seconds) {
-  report::ResultWriter writer(setup, facts, folder);
-  scenario::TickRecord record;
-  record.snapshot = &last;
-  writer.observe(record);
-  writer.finish(wall_seconds);
-  writeExitCode(folder, writer.exitCode());
+ReserveResult::ReserveResult(const scenario::SessionSetup& setup, const report::RunFacts& facts,
+                             const fs::path& results)
+    : results_(results),
+      folder_(results / ".reserve"),
+      writer_(std::make_unique<report::ResultWriter>(setup, facts, folder_)) {}
+
+ReserveResult::~ReserveResult() {
+  writer_.reset();
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+void ReserveResult::adopt(double wall_seconds) {
+  writer_->finish(wall_seconds);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(results_, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.find(".tmp.") != std::string::npos) fs::remove(entry.path(), ignored);
+  }
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    fs::rename(entry.path(), results_ / entry.path().filename());
+  }
+  writeExitCode(results_, writer_->exitCode());
 }
 
 }  // namespace cdiff::ros

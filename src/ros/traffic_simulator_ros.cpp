@@ -71,18 +71,21 @@ int TrafficSimulatorRos::run() {
   begin_ = Clock::now();
   runTicks();
   waitForObservers();
+  reserve_.reset();
   return exitCode();
 }
 
 bool TrafficSimulatorRos::startWorld() {
   try {
     world_ = std::make_unique<scenario::World>(*setup_);
+    reserve_ = makeReserve(world_->simulatorVersion());
     return true;
   } catch (const core::SimulatorError& error) {
     ROS_ERROR("%s", error.what());
     traffic::TrafficSnapshot snapshot;
     snapshot.status = SessionStatus::kError;
     snapshot.faults.push_back({0, "simulator", error.what()});
+    reserve_ = makeReserve("unknown");
     writeResultAlone(snapshot);
     return false;
   }
@@ -197,10 +200,17 @@ void TrafficSimulatorRos::waitForObservers() {
 }
 
 void TrafficSimulatorRos::writeResultAlone(const traffic::TrafficSnapshot& snapshot) {
-  const std::string version = world_ ? world_->simulatorVersion() : "unknown";
-  writeResult(*setup_, snapshot, {kDeployment, version, !paced()}, results_, secondsSince(begin_));
-  ROS_ERROR("The metrics node could not finish; a result with the last state alone is in %s",
-            results_.c_str());
+  scenario::TickRecord record;
+  record.snapshot = &snapshot;
+  reserve_->observe(record);
+  reserve_->adopt(secondsSince(begin_));
+  ROS_WARN("The metrics node did not finish; the result is the simulator's own, in %s",
+           results_.c_str());
+}
+
+std::unique_ptr<ReserveResult> TrafficSimulatorRos::makeReserve(const std::string& version) const {
+  return std::make_unique<ReserveResult>(*setup_, report::RunFacts{kDeployment, version, !paced()},
+                                         results_);
 }
 
 int runTrafficSimulator(StopSignal& stop) {

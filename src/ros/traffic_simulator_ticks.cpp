@@ -102,6 +102,7 @@ void TrafficSimulatorRos::recordFaults(const std::vector<Answer>& answers) {
 
 void TrafficSimulatorRos::advance() {
   if (!published_->decision_tick) {
+    keepInReserve(nullptr, {}, {});
     world_->advance(nullptr, {});
     return;
   }
@@ -109,8 +110,21 @@ void TrafficSimulatorRos::advance() {
   recordFaults(answers);
   const cbv::CbvSelection selection =
       fromMsg(*answers_.selection(published_->tick), setup_->network());
-  world_->advance(&selection, actionsOf(answers));
+  const std::vector<planning::PlannedAction> actions = actionsOf(answers);
+  keepInReserve(&selection, actions, answers);
+  world_->advance(&selection, actions);
   answers_.forgetBefore(published_->tick);
+}
+
+void TrafficSimulatorRos::keepInReserve(const cbv::CbvSelection* selection,
+                                        const std::vector<planning::PlannedAction>& actions,
+                                        const std::vector<Answer>& answers) {
+  scenario::TickRecord record;
+  record.snapshot = &world_->snapshot();
+  record.selection = selection;
+  if (selection != nullptr) record.actions = &actions;
+  record.latencies = latenciesOf(answers);
+  reserve_->observe(record);
 }
 
 void TrafficSimulatorRos::advancePaced() {
@@ -119,14 +133,17 @@ void TrafficSimulatorRos::advancePaced() {
         paced_answers_.countLate(published_->tick, answers_.missing(*published_));
     if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
   }
-  recordFaults(answers_.answers(*published_));
+  const std::vector<Answer> answers = answers_.answers(*published_);
+  recordFaults(answers);
   const TickAnswers::Selection message = paced_answers_.nextSelection(answers_);
   const std::vector<planning::PlannedAction> actions =
       paced_answers_.actions(*published_, answers_);
   if (message) {
     const cbv::CbvSelection selection = fromMsg(*message, setup_->network());
+    keepInReserve(&selection, actions, answers);
     world_->advance(&selection, actions);
   } else {
+    keepInReserve(nullptr, actions, answers);
     world_->advance(nullptr, actions);
   }
   const auto kept =

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/scenario/closed_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -36,11 +37,16 @@ bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<Pla
   return true;
 }
 
-/// Sleeps until the wall clock has come as far as the simulation asks for.
-void pace(Clock::time_point begin, double simulated_seconds, double real_time_factor) {
+/// Sleeps until the wall clock has come as far as the simulation asks for, or a stop is asked for.
+void pace(Clock::time_point begin, double simulated_seconds, double real_time_factor,
+          const std::atomic<bool>& stop) {
+  constexpr auto kSlice = std::chrono::milliseconds(50);
   if (real_time_factor <= 0.0) return;
   const std::chrono::duration<double> due(simulated_seconds / real_time_factor);
-  std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(due));
+  const Clock::time_point wake = begin + std::chrono::duration_cast<Clock::duration>(due);
+  while (!stop && Clock::now() < wake) {
+    std::this_thread::sleep_until(std::min(wake, Clock::now() + kSlice));
+  }
 }
 
 }  // namespace
@@ -132,7 +138,12 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
     record.snapshot = &snapshot;
     Decision decision;
     if (snapshot.decision_tick) {
-      decision = decide();
+      try {
+        decision = decide();
+      } catch (const std::exception& error) {
+        world_->end(SessionStatus::kError, {snapshot.tick, "cbv_identification", error.what()});
+        continue;
+      }
       record.selection = &decision.selection;
       record.actions = &decision.actions;
       record.latencies = decision.latencies;
@@ -145,7 +156,7 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       world_->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
       continue;
     }
-    pace(begin, snapshot.time, setup_.options().real_time_factor);
+    pace(begin, snapshot.time, setup_.options().real_time_factor, stop);
     world_->advance(record.selection, decision.actions);
   }
 }

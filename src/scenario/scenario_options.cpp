@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <pugixml.hpp>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
@@ -21,7 +22,7 @@ constexpr double kInfinite = 1e9;
 fs::path scenarioFolder() { return core::shareFolder() / "config" / "scenarios"; }
 
 fs::path findScenario(const std::string& name_or_file) {
-  if (fs::exists(name_or_file)) return fs::absolute(name_or_file);
+  if (fs::is_regular_file(name_or_file)) return fs::absolute(name_or_file);
   const fs::path shipped = scenarioFolder() / (name_or_file + ".yaml");
   if (fs::exists(shipped)) return shipped;
   const std::vector<std::string> known = shippedScenarios();
@@ -51,6 +52,40 @@ std::string resolveFile(const std::string& file, const fs::path& scenario_folder
 bool isMultiple(double value, double unit) {
   const double ratio = value / unit;
   return std::abs(ratio - std::round(ratio)) < 1e-6 && ratio > 0.5;
+}
+
+void checkStatuses(const std::vector<std::string>& statuses) {
+  using traffic::SessionStatus;
+  std::vector<std::string> known;
+  for (const SessionStatus status :
+       {SessionStatus::kCompleted, SessionStatus::kBlocked, SessionStatus::kDeviated,
+        SessionStatus::kTimedOut, SessionStatus::kCollided}) {
+    known.emplace_back(traffic::toText(status));
+  }
+  for (const std::string& status : statuses) {
+    if (std::find(known.begin(), known.end(), status) != known.end()) continue;
+    throw InputError("key 'verdict.statuses' holds '" + status + "'; expected some of {" +
+                     core::joinText(known, ", ") + "}; did you mean '" +
+                     core::nearestName(status, known) + "'?");
+  }
+}
+
+/// What SUMO would refuse only when the session runs.
+void checkDemandFile(const std::string& file) {
+  const std::string text = core::readFile(file, "demand file");
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  if (!parsed) {
+    throw InputError("demand file '" + file + "': not XML: " + parsed.description() +
+                     " at offset " + std::to_string(parsed.offset));
+  }
+  const pugi::xml_node routes = document.child("routes");
+  if (!routes) throw InputError("demand file '" + file + "': no <routes> element");
+  for (const pugi::xml_node& element : routes.children()) {
+    if (std::string(element.attribute("id").value()) != "ego") continue;
+    throw InputError("demand file '" + file + "': <" + element.name() +
+                     " id=\"ego\">: this id is the ego's; choose another");
+  }
 }
 
 }  // namespace
@@ -118,6 +153,8 @@ void ScenarioOptions::validate() const {
     throw InputError("key 'demand' is '" + demand +
                      "'; expected generated, none, or a route file that exists");
   }
+  if (file) checkDemandFile(demand);
+  checkStatuses(verdict.statuses);
 }
 
 ScenarioOptions loadScenario(const std::string& name_or_file) {

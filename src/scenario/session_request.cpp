@@ -50,8 +50,8 @@ ScenarioOptions baseScenario(const SessionRequest& request) {
 ScenarioOptions resolveRequest(const SessionRequest& request) {
   ScenarioOptions options = baseScenario(request);
   if (!request.network.empty()) {
-    options.network =
-        fs::exists(request.network) ? fs::absolute(request.network).string() : request.network;
+    options.network = fs::is_regular_file(request.network) ? fs::absolute(request.network).string()
+                                                           : request.network;
   }
   const auto apply = [&](const std::string& key, const std::string& value) {
     if (!value.empty()) core::overrideOption(key + "=" + value, "argument '" + key + "'", options);

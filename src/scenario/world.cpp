@@ -230,7 +230,7 @@ void World::advance(const cbv::CbvSelection* selection,
     if (snapshot_.tick % ticks_per_second == 0) keepDensity(false);
     stepSimulator();
     takeSnapshot();
-  } catch (const core::SimulatorError& error) {
+  } catch (const core::Error& error) {
     end(SessionStatus::kError, {snapshot_.tick, "simulator", error.what()});
   }
 }

@@ -19,7 +19,6 @@ using SumoVehicle = libtraci::Vehicle;
 
 constexpr double kWayLength = 250.0;   ///< given ahead of the present edge [m]
 constexpr double kWayRefresh = 100.0;  ///< a new way is given when less is left [m]
-3.0;                                   ///< without lane changes once settled [s]
 constexpr double kFarOff = 3.0;        ///< SUMO's vehicle is put to its place beyond this [m]
 constexpr double kCatchUp = 4.0;       ///< share of the distance made up per second [1/s]
 constexpr double kCatchUpSpeed = 2.0;  ///< at most [m/s]
@@ -48,6 +47,11 @@ double commandedSpeed(double speed, double ahead, double step) {
 }
 
 }  // namespace
+
+void DrivenFleet::setModes(const std::string& id, int speed_mode) {
+  SumoVehicle::setSpeedMode(id, speed_mode);
+  SumoVehicle::setLaneChangeMode(id, kLaneChangeModeOff);
+}
 
 int DrivenFleet::edgeOf(const std::string& lane_id) const {
   if (lane_id.empty()) return kNoEdge;
@@ -168,6 +172,26 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
   return true;
 }
 
+void DrivenFleet::followLaneChange(const std::string& id, Moved& moved, const FrontPlace& place) {
+  moved.changing -= step_;
+  const geometry::Polyline& line = graph_.network().lane(moved.place.lane).centerline;
+  const double ahead = line.project(place.position).arc_length - moved.place.arc_length;
+  moved.speed = commandedSpeed(moved.state.speed, ahead, step_);
+  SumoVehicle::setSpeed(id, moved.speed);
+}
+
+bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPlace& place) {
+  const auto same = std::find_if(
+      place.lanes.begin(), place.lanes.end(),
+      [&moved](const map::LaneMatch& match) { return match.lane == moved.place.lane; });
+  if (same == place.lanes.end() || same != place.lanes.begin()) return false;
+  if (!putOnLane(id, {same->lane, same->projection.arc_length})) return false;
+  if (moved.speed != 0.0) SumoVehicle::setSpeed(id, 0.0);
+  moved.speed = 0.0;
+  moved.along_lane = false;
+  return true;
+}
+
 void DrivenFleet::moveFreely(const std::string& id, Moved& moved, const FrontPlace& place) {
   // A named lane is taken for what it is; without one SUMO takes the nearest in
   // the plane, be it that of a bridge.
@@ -198,8 +222,13 @@ void DrivenFleet::move(const DrivenVehicle& vehicle) {
     moved.outdated = true;
     moved.refused_lane.clear();
   }
+  if (moved.changing > 0.0 && moved.place.lane != map::kNoLane) {
+    followLaneChange(vehicle.id, moved, place);
+    return;
+  }
   updateWay(vehicle.id, moved, place);
   if (moved.reported && moved.on_way && moveAlongLane(vehicle.id, moved, place)) return;
+  if (moved.reported && stayOnLane(vehicle.id, moved, place)) return;
   moveFreely(vehicle.id, moved, place);
 }
 

@@ -5,6 +5,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/simulation/driven_fleet.h"
+#include "e2e_cdiff/simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 
@@ -15,9 +16,19 @@ using SumoVehicle = libtraci::Vehicle;
 constexpr double kReleasedWayLength = 600.0;         ///< given at the release [m]
 constexpr double kReleaseHeading = core::kPi / 6.0;  ///< between vehicle and lane [rad]
 constexpr double kLaneChangePause = 3.0;             ///< without lane changes once settled [s]
+constexpr double kLaneChangeTime = 3.5;              ///< SUMO's lane change, and a little [s]
 constexpr int kLaneChangeModeDefault = 1621;
 
 }  // namespace
+
+/// SUMO 1.15 ends itself when a vehicle is put on another lane while it changes lanes.
+bool DrivenFleet::changesLane(const Moved& moved) const {
+  constexpr double kBesideTheMiddle = 0.02;  // [m]
+  if (moved.place.lane == map::kNoLane) return false;
+  const geometry::Polyline& line = graph_.network().lane(moved.place.lane).centerline;
+  const Eigen::Vector2d front = frontOf(moved.state.pose(), moved.way.dimensions().length);
+  return line.project(front).distance > kBesideTheMiddle;
+}
 
 void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
   Moved moved(DrivenWay(graph_, vehicle.dimensions));
@@ -27,6 +38,7 @@ void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
     moved.given.push_back(graph_.find(edge));
   }
   note(moved, vehicle);
+  if (changesLane(moved)) moved.changing = kLaneChangeTime;
   setModes(vehicle.id, kSpeedModeOff);
   forget(vehicle.id);
   vehicles_.emplace(vehicle.id, std::move(moved));
@@ -47,7 +59,8 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle) {
   const geometry::Polyline& line = graph_.network().lane(target->place.lane).centerline;
   const double turned =
       core::angleDifference(vehicle.state.heading, line.headingAt(target->place.arc_length));
-  if (std::abs(turned) > kReleaseHeading || !putOnLane(vehicle.id, target->place)) return false;
+  if (std::abs(turned) > kReleaseHeading) return false;
+  if (moved.changing <= 0.0 && !putOnLane(vehicle.id, target->place)) return false;
   setModes(vehicle.id, kSpeedModeDefault);
   SumoVehicle::setPreviousSpeed(vehicle.id, vehicle.state.speed, 0.0);
   SumoVehicle::setSpeed(vehicle.id, -1.0);

@@ -30,6 +30,12 @@ TEST(Text, SplitAndJoin) {
   EXPECT_TRUE(splitText("", ' ').empty());
 }
 
+TEST(Text, FileNamesStayInTheirFolder) {
+  EXPECT_EQ(fileName("../../evil one"), "_.._evil_one");
+  EXPECT_EQ(fileName("..."), "unnamed");
+  EXPECT_EQ(fileName("a-b_1.2"), "a-b_1.2");
+}
+
 // Edit distances to "pdm_lit": 1, 7, 6.
 TEST(Text, NearestName) {
   EXPECT_EQ(nearestName("pdm_lit", {"diffusion", "pdm_lite", "plant"}), "pdm_lite");

@@ -22,6 +22,10 @@ std::optional<double> parseNumber(std::string_view text);
 /// The known name with the smallest edit distance to `name`; empty when `known` is empty.
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
+/// `text` with every character that is not a letter, digit, '_', '-' or '.' replaced by '_', and no
+/// leading dots: safe as the name of a file.
+std::string fileName(std::string text);
+
 /// Parts of `text` between separators; runs of separators count as one, no empty parts.
 std::vector<std::string> splitText(std::string_view text, char separator);
 

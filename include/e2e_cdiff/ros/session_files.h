@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "e2e_cdiff/report/result_writer.h"
@@ -25,9 +26,26 @@ std::filesystem::path makeResultFolder(const std::string& given,
 /// exits with 0 whatever happened.
 void writeExitCode(const std::filesystem::path& folder, int exit_code);
 
-/// Writes a result folder, and the exit code, from the last snapshot alone.
-void writeResult(const scenario::SessionSetup& setup, const traffic::TrafficSnapshot& last,
-                 const report::RunFacts& facts, const std::filesystem::path& folder,
-                 double wall_seconds);
+/// The session's result as the simulator itself saw it, kept aside (RESULTS/.reserve) while the
+/// metrics node writes the real one; put in place when that node cannot finish.
+class ReserveResult {
+ public:
+  /// `setup` must outlive the object.
+  ReserveResult(const scenario::SessionSetup& setup, const report::RunFacts& facts,
+                const std::filesystem::path& results);
+  /// Takes the folder away.
+  ~ReserveResult();
+  ReserveResult(const ReserveResult&) = delete;
+  ReserveResult& operator=(const ReserveResult&) = delete;
+
+  void observe(const scenario::TickRecord& record) { writer_->observe(record); }
+  /// Finishes the result, moves its files into the result folder and writes the exit code.
+  void adopt(double wall_seconds);
+
+ private:
+  std::filesystem::path results_;
+  std::filesystem::path folder_;
+  std::unique_ptr<report::ResultWriter> writer_;
+};
 
 }  // namespace cdiff::ros

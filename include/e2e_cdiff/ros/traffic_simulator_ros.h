@@ -17,6 +17,7 @@
 #include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/parameters.h"
 #include "e2e_cdiff/ros/participant_book.h"
+#include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/stop_signal.h"
 #include "e2e_cdiff/ros/tick_answers.h"
 #include "e2e_cdiff/ros/topics.h"
@@ -72,6 +73,10 @@ class TrafficSimulatorRos {
   void recordFaults(const std::vector<Answer>& answers);
   void waitForObservers();
   void writeResultAlone(const traffic::TrafficSnapshot& snapshot);
+  std::unique_ptr<ReserveResult> makeReserve(const std::string& version) const;
+  void keepInReserve(const cbv::CbvSelection* selection,
+                     const std::vector<planning::PlannedAction>& actions,
+                     const std::vector<Answer>& answers);
   int exitCode() const;
   std::vector<Missing> missingParticipants() const;
   std::vector<Missing> missingAtTick() const;
@@ -95,6 +100,7 @@ class TrafficSimulatorRos {
   Display display_;
   std::vector<::ros::Subscriber> inputs_;
   std::unique_ptr<scenario::World> world_;
+  std::unique_ptr<ReserveResult> reserve_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
   Clock::time_point begin_;
   Clock::time_point published_at_;

@@ -48,6 +48,9 @@ class DrivenFleet {
   void report(std::vector<SimulatedVehicle>& vehicles);
 
  private:
+  static constexpr int kSpeedModeOff = 32;  ///< none of SUMO's checks
+  static constexpr int kSpeedModeDefault = 31;
+  static constexpr int kLaneChangeModeOff = 512;  ///< no lane change of its own
   struct Moved {
     explicit Moved(const DrivenWay& driven_way) : way(driven_way) {}
     DrivenWay way;
@@ -60,6 +63,7 @@ class DrivenFleet {
     std::string lane_id;          ///< SUMO's lane after the last step; empty off the road
     LanePlace place;              ///< the same, with the place on it
     bool along_lane = false;      ///< SUMO drives it along the lane
+    double changing = 0.0;        ///< until SUMO has ended a lane change of its own [s]
     double speed = -1.0;          ///< last commanded [m/s]
     traffic::VehicleState state;  ///< ours, after the coming step
   };
@@ -68,12 +72,17 @@ class DrivenFleet {
     bool settled = false;
     double left = 0.0;  ///< until lane changes are allowed again [s]
   };
+  static void setModes(const std::string& id, int speed_mode);
   void note(Moved& moved, const SimulatedVehicle& vehicle) const;
+  bool changesLane(const Moved& moved) const;
   static void loseWay(Moved& moved);
   void updateWay(const std::string& id, Moved& moved, const FrontPlace& place);
   bool giveWay(const std::string& id, Moved& moved, const std::vector<int>& way);
   bool moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place);
+  void followLaneChange(const std::string& id, Moved& moved, const FrontPlace& place);
   bool putOnLane(const std::string& id, const LanePlace& place);
+  /// Off its way but still next to the lane where SUMO has it: stays there, as an obstacle.
+  bool stayOnLane(const std::string& id, Moved& moved, const FrontPlace& place);
   void moveFreely(const std::string& id, Moved& moved, const FrontPlace& place);
   double usableLength(map::LaneIndex lane, const Moved& moved) const;
   double sumoScale(map::LaneIndex lane);

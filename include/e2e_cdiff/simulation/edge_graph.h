@@ -16,72 +16,65 @@ namespace cdiff::simulation {
 constexpr int kNoEdge = -1;
 
 class EdgeGraph {
-public:
+ public:
   /// A way from one edge to another, through a junction.
   struct Link {
     int to = kNoEdge;
-    map::LaneIndex from_lane = map::kNoLane; ///< lane to be on
-    map::LaneIndex to_lane = map::kNoLane;   ///< lane arrived on
-    double turn = 0.0;     ///< change of heading, absolute [rad]
-    bool routable = false; ///< both lanes are
+    map::LaneIndex from_lane = map::kNoLane;  ///< lane to be on
+    map::LaneIndex to_lane = map::kNoLane;    ///< lane arrived on
+    double turn = 0.0;                        ///< change of heading, absolute [rad]
+    bool routable = false;                    ///< both lanes are
   };
 
   /// Keeps a reference: the network must outlive the graph.
-  explicit EdgeGraph(const map::RoadNetwork &network);
+  explicit EdgeGraph(const map::RoadNetwork& network);
 
-  const map::RoadNetwork &network() const { return network_; }
+  const map::RoadNetwork& network() const { return network_; }
   /// Number of an edge by SUMO's id, or kNoEdge.
-  int find(const std::string &id) const;
+  int find(const std::string& id) const;
   /// The edge of a lane; of an internal lane the edge before its junction.
   /// kNoEdge when there is none.
-  int edgeOf(map::LaneIndex lane) const {
-    return edge_of_lane_[static_cast<std::size_t>(lane)];
-  }
+  int edgeOf(map::LaneIndex lane) const { return edge_of_lane_[static_cast<std::size_t>(lane)]; }
   /// The edge that an internal lane leads to; of any other lane its own.
   int edgeAfter(map::LaneIndex lane) const {
     return edge_after_lane_[static_cast<std::size_t>(lane)];
   }
-  const std::string &id(int edge) const {
+  const std::string& id(int edge) const {
     return network_.edgeIds()[static_cast<std::size_t>(edge)];
   }
   /// Of its first lane [m].
   double length(int edge) const { return at(edge).length; }
   /// Lanes from right to left.
-  const std::vector<map::LaneIndex> &lanes(int edge) const {
-    return at(edge).lanes;
-  }
+  const std::vector<map::LaneIndex>& lanes(int edge) const { return at(edge).lanes; }
   /// Ways on, by lane and then as the network lists them.
-  const std::vector<Link> &links(int edge) const { return at(edge).links; }
+  const std::vector<Link>& links(int edge) const { return at(edge).links; }
   bool connected(int from, int to) const;
   /// Whether a lane belongs to a way: to one of its edges, or between two that
   /// follow each other.
-  bool onWay(map::LaneIndex lane, const std::vector<int> &way) const;
+  bool onWay(map::LaneIndex lane, const std::vector<int>& way) const;
   /// The lane that follows `lane` on a way; kNoLane where the way needs another
   /// lane, or ends.
-  map::LaneIndex nextLane(map::LaneIndex lane,
-                          const std::vector<int> &way) const;
+  map::LaneIndex nextLane(map::LaneIndex lane, const std::vector<int>& way) const;
   /// Adds edges at the end, straight on where it can, until they measure
   /// `length` [m] and are at least two; fewer where the network ends. No edge
   /// twice: SUMO would take one pass for the other.
-  void extend(std::vector<int> &way, double length) const;
-  std::vector<std::string> ids(const std::vector<int> &way) const;
+  void extend(std::vector<int>& way, double length) const;
+  std::vector<std::string> ids(const std::vector<int>& way) const;
 
-private:
+ private:
   struct Edge {
     std::vector<map::LaneIndex> lanes;
     std::vector<Link> links;
     double length = 0.0;
   };
-  const Edge &at(int edge) const {
-    return edges_[static_cast<std::size_t>(edge)];
-  }
-  void addLinks(Edge &edge, map::LaneIndex from);
+  const Edge& at(int edge) const { return edges_[static_cast<std::size_t>(edge)]; }
+  void addLinks(Edge& edge, map::LaneIndex from);
 
-  const map::RoadNetwork &network_;
+  const map::RoadNetwork& network_;
   std::vector<Edge> edges_;
   std::vector<int> edge_of_lane_;
   std::vector<int> edge_after_lane_;
   std::unordered_map<std::string, int> edge_by_id_;
 };
 
-} // namespace cdiff::simulation
+}  // namespace cdiff::simulation

@@ -11,26 +11,25 @@
 namespace cdiff::simulation {
 
 class SettlingMotion {
-public:
+ public:
   /// Begins with the state at the release of a vehicle of this length [m].
-  SettlingMotion(const traffic::VehicleState &released, double length)
+  SettlingMotion(const traffic::VehicleState& released, double length)
       : state_(released), length_(length) {}
   /// Where the vehicle is `step` seconds later, when SUMO has it at `sumo`.
-  const traffic::VehicleState &advance(const traffic::VehicleState &sumo,
-                                       double step);
+  const traffic::VehicleState& advance(const traffic::VehicleState& sumo, double step);
   /// Where SUMO has it.
   bool settled() const;
 
-private:
-  void begin(const traffic::VehicleState &sumo, double step);
+ private:
+  void begin(const traffic::VehicleState& sumo, double step);
   void decay(double driven, double speed);
 
   traffic::VehicleState state_;
   double length_;
   bool begun_ = false;
-  double along_ = 0.0;         ///< [m]
-  double offset_ = 0.0;        ///< to the left [m]
-  double heading_error_ = 0.0; ///< [rad]
+  double along_ = 0.0;          ///< [m]
+  double offset_ = 0.0;         ///< to the left [m]
+  double heading_error_ = 0.0;  ///< [rad]
 };
 
-} // namespace cdiff::simulation
+}  // namespace cdiff::simulation
