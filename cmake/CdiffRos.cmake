@@ -4,8 +4,8 @@ find_package(catkin REQUIRED COMPONENTS
   diagnostic_msgs diagnostic_updater geometry_msgs message_generation nav_msgs rosbag roscpp
   rosgraph_msgs std_msgs tf2_msgs visualization_msgs)
 
-file(GLOB CDIFF_MESSAGES RELATIVE ${CMAKE_SOURCE_DIR}/msg CONFIGURE_DEPENDS
-     ${CMAKE_SOURCE_DIR}/msg/*.msg)
+file(GLOB CDIFF_MESSAGES RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS
+     ${PROJECT_SOURCE_DIR}/msg/*.msg)
 add_message_files(DIRECTORY msg FILES ${CDIFF_MESSAGES})
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
@@ -19,9 +19,9 @@ target_link_libraries(e2e_cdiff_messages INTERFACE ${catkin_LIBRARIES})
 add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
 
 foreach(folder config launch networks rviz)
-  if(EXISTS ${CMAKE_SOURCE_DIR}/${folder})
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
   endif()
 endforeach()
-file(GLOB CDIFF_SCRIPTS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/scripts/*)
+file(GLOB CDIFF_SCRIPTS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scripts/*)
 install(PROGRAMS ${CDIFF_SCRIPTS} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)

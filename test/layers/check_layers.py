@@ -43,9 +43,10 @@ def records_of_make(build):
 
 
 def layer_of(record):
-    found = re.search(r"^(?:src|examples)/?([a-z_]*)", record)
-    if record.startswith("examples/"):
+    """Layer of an object file; in a catkin workspace its path begins with the package's folder."""
+    if "examples/" in record:
         return "examples"
+    found = re.search(r"(?:^|/)src/([a-z_]+)/CMakeFiles/", record)
     return found.group(1) if found else None
 
 
@@ -64,7 +65,7 @@ def main():
     build, source, result = sys.argv[1:4]
     source = str(Path(source).resolve())
     records = list(records_of_ninja(build) if (Path(build) / "build.ninja").exists() else records_of_make(build))
-    checked = [(record, headers) for record, headers in records if record.startswith(("src/", "examples/"))]
+    checked = [(record, headers) for record, headers in records if layer_of(record)]
     cases = []
     for record, headers in checked:
         found = sorted(set(violations(layer_of(record), headers, source, build)))
