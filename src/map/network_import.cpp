@@ -41,6 +41,9 @@ fs::path sourceFile(const std::string& source) {
   if (fs::is_regular_file(source)) return source;
   const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
                     endsWith(source, ".xodr");
+  if (path && fs::is_directory(source)) {
+    throw core::InputError("network '" + source + "' is a folder; a file was expected");
+  }
   if (path) throw core::InputError("network file '" + source + "' does not exist");
   const fs::path folder = core::shareFolder() / "networks";
   const fs::path file = folder / source / (source + ".net.xml");
