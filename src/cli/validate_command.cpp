@@ -23,10 +23,10 @@ bool validateOne(const std::string& scenario_name, bool print) {
     const scenario::SessionSetup setup(options);
     checkPlanner(options.ego_planner, setup);
     checkPlanner(options.cbv_planner, setup);
-    std::cout << scenario_name << ": valid (ego route "
-              << static_cast<int>(setup.egoRoute().length()) << " m)\n";
-    for (const std::string& change : setup.import().changes)
-      std::cout << "  network: " << change << "\n";
+    std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
+    out << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())
+        << " m)\n";
+    for (const std::string& change : setup.import().changes) out << "  network: " << change << "\n";
     if (print) std::cout << core::dumpOptions(options, true);
     return true;
   } catch (const core::InputError& error) {

@@ -22,7 +22,9 @@ std::string rangeText(const std::string& low, const std::string& high, const cha
 /// named.
 class LoadVisitor : public OptionsVisitor {
  public:
-  LoadVisitor(std::string source, YAML::Node root) : source_(std::move(source)) {
+  /// `lines`: errors name the line of the source.
+  LoadVisitor(std::string source, YAML::Node root, bool lines)
+      : source_(std::move(source)), lines_(lines) {
     push("", std::move(root));
   }
 
@@ -151,7 +153,7 @@ class LoadVisitor : public OptionsVisitor {
 
   std::string place(const YAML::Node& node) const {
     const YAML::Mark mark = node.Mark();
-    return mark.line < 0 ? source_ : source_ + ":" + std::to_string(mark.line + 1);
+    return mark.line < 0 || !lines_ ? source_ : source_ + ":" + std::to_string(mark.line + 1);
   }
 
   [[noreturn]] void fail(const YAML::Node& node, const std::string& key,
@@ -174,6 +176,7 @@ class LoadVisitor : public OptionsVisitor {
   }
 
   std::string source_;
+  bool lines_;
   std::vector<Level> levels_;
 };
 
@@ -313,7 +316,7 @@ void load(const YamlSource& source, void* options, Describe describe) {
   YAML::Node root = parse(source);
   if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
   if (!root.IsMap()) throw InputError(source.name + ":1: expected a map of keys");
-  LoadVisitor visitor(source.name, root);
+  LoadVisitor visitor(source.name, root, true);
   describe(options, visitor);
   visitor.checkUnknownKeys();
 }
@@ -329,7 +332,7 @@ void override_(const std::string& assignment, const std::string& source, void* o
   const std::string path = resolvePath(assignment.substr(0, equals), paths.paths(), source);
   const std::string value_text = assignment.substr(equals + 1);
   const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
-  LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value));
+  LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value), false);
   describe(options, visitor);
 }
 

@@ -106,10 +106,10 @@ void TrafficSimulatorRos::listen() {
                                              [this](const auto& ack) { book_.note(*ack); }));
   inputs_.push_back(subscribe<msgs::CbvSelection>(
       node_, kSelectionTopic, [this](const auto& message) { answers_.add(message); }));
-  inputs_.push_back(
+  ego_control_ =
       subscribe<msgs::ControlAction>(node_, kEgoControlTopic, [this](const auto& message) {
         answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
-      }));
+      });
   for (int slot = 0; slot < graph_.max_cbv; ++slot) {
     inputs_.push_back(subscribe<msgs::ControlAction>(
         node_, cbvControlTopic(slot),
@@ -160,6 +160,11 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
   if (book_.error()) return ending(SessionStatus::kError, book_.error()->node, book_.error()->text);
   if (!connections_.left().empty()) {
     return ending(SessionStatus::kError, connections_.left().front(), "the node left the session");
+  }
+  const bool ego_gone = graph_.external_ego && published_ && ego_control_.getNumPublishers() == 0;
+  if (ego_gone) {
+    return ending(SessionStatus::kError, "the external ego planner",
+                  "no node publishes on ego/control any more");
   }
   if (!::ros::ok())
     return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");

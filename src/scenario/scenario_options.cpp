@@ -148,6 +148,11 @@ void ScenarioOptions::validate() const {
                      " s; expected a multiple of simulation_step (" +
                      core::formatNumber(simulation_step) + " s)");
   }
+  if (mode == "safety_critical" && cbv_planner == "pdm_lite") {
+    throw InputError(
+        "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner "
+        "'pdm_lite' drives by rules, naturalistic only");
+  }
   const bool file = demand != "generated" && demand != "none";
   if (file && !fs::is_regular_file(demand)) {
     throw InputError("key 'demand' is '" + demand +

@@ -99,6 +99,16 @@ TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
   EXPECT_EQ(ticks, 161U);  // 8 s of 0.05 s, and tick 0
 }
 
+TEST_F(Session, WholeRoundaboutHasTheTraceOfTheClosedLoop) {
+  const std::string log = launch("e2e_cdiff session.launch", "scenario:=roundabout_cross seed:=1");
+  ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
+  scenario::SessionRequest request;
+  request.scenario = "roundabout_cross";
+  request.seed = "1";
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  EXPECT_GE(summary()["cbv"]["count"], 2) << "the session shows fewer than two CBVs";
+}
+
 TEST_F(Session, ExternalEgoDrivesInLockstep) {
   std::string file =
       core::readFile(fs::path(E2E_CDIFF_TEST_FOLDER) / "external_ego.launch", "launch file");

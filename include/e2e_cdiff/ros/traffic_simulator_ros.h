@@ -99,6 +99,7 @@ class TrafficSimulatorRos {
   ::ros::Publisher route_;
   Display display_;
   std::vector<::ros::Subscriber> inputs_;
+  ::ros::Subscriber ego_control_;
   std::unique_ptr<scenario::World> world_;
   std::unique_ptr<ReserveResult> reserve_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
