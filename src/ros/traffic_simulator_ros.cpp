@@ -131,6 +131,11 @@ void TrafficSimulatorRos::publishSession() {
 
 std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingParticipants() const {
   std::vector<Missing> missing;
+  if (graph_.external_ego && ego_control_.getNumPublishers() == 0) {
+    missing.push_back({"the external ego planner",
+                       "no node publishes ego/control yet; start yours (external_ego_node is an "
+                       "example)"});
+  }
   for (const std::string& text : book_.notReady())
     missing.push_back({text.substr(0, text.find(' ')), text});
   for (const std::string& text : connections_.missing())
