@@ -149,7 +149,9 @@ bool DrivenFleet::putOnLane(const std::string& id, const LanePlace& place) {
 }
 
 bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place) {
-  const LanePlace from = moved.along_lane ? moved.place : LanePlace{};
+  const bool known =
+      moved.place.lane != map::kNoLane && graph_.onWay(moved.place.lane, moved.given);
+  const LanePlace from = known ? moved.place : LanePlace{};
   std::optional<LaneTarget> target =
       laneTarget(graph_, place, moved.state.heading, moved.given, from);
   if (!target) return false;
@@ -161,7 +163,7 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
   if (!target->ahead || std::abs(*target->ahead) > kFarOff) {
     LanePlace before = target->place;
     before.arc_length = std::max(0.0, before.arc_length - moved.state.speed * step_);
-    if (!putOnLane(id, before)) return false;
+    if (!mayJump(moved) || !putOnLane(id, before)) return false;
     target->ahead = target->place.arc_length - before.arc_length;
   }
   double speed = commandedSpeed(moved.state.speed, *target->ahead, step_);
@@ -172,20 +174,36 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
   return true;
 }
 
-void DrivenFleet::followLaneChange(const std::string& id, Moved& moved, const FrontPlace& place) {
-  moved.changing -= step_;
+bool DrivenFleet::mayJump(const Moved& moved) const {
+  constexpr double kClear = 0.1;  // [m]
+  if (moved.changing > 0.0) return false;
+  const double needed = moved.way.dimensions().length + kClear;
+  return moved.place.lane == map::kNoLane || moved.place.arc_length > needed;
+}
+
+void DrivenFleet::keepToLane(const std::string& id, Moved& moved, const FrontPlace& place) {
   const geometry::Polyline& line = graph_.network().lane(moved.place.lane).centerline;
   const double ahead = line.project(place.position).arc_length - moved.place.arc_length;
   moved.speed = commandedSpeed(moved.state.speed, ahead, step_);
   SumoVehicle::setSpeed(id, moved.speed);
 }
 
+bool DrivenFleet::onAnotherLane(const FrontPlace& place, map::LaneIndex lane) const {
+  constexpr double kInside = 0.1;  // [m]
+  if (place.lanes.empty() || place.lanes.front().lane == lane) return false;
+  const map::LaneMatch& nearest = place.lanes.front();
+  const double half_width = 0.5 * graph_.network().lane(nearest.lane).width;
+  return nearest.projection.distance < half_width - kInside;
+}
+
 bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPlace& place) {
-  const auto same = std::find_if(
-      place.lanes.begin(), place.lanes.end(),
-      [&moved](const map::LaneMatch& match) { return match.lane == moved.place.lane; });
-  if (same == place.lanes.end() || same != place.lanes.begin()) return false;
-  if (!putOnLane(id, {same->lane, same->projection.arc_length})) return false;
+  constexpr double kReachMargin = 0.3;  // [m] beyond which SUMO surely has it on no lane
+  if (moved.place.lane == map::kNoLane) return false;
+  const map::Lane& lane = graph_.network().lane(moved.place.lane);
+  const geometry::Projection here = lane.centerline.project(place.position);
+  const double reach = 0.5 * (lane.width + moved.way.dimensions().width) + kReachMargin;
+  if (here.distance > reach || onAnotherLane(place, moved.place.lane)) return false;
+  if (!putOnLane(id, {moved.place.lane, here.arc_length})) return false;
   if (moved.speed != 0.0) SumoVehicle::setSpeed(id, 0.0);
   moved.speed = 0.0;
   moved.along_lane = false;
@@ -222,12 +240,13 @@ void DrivenFleet::move(const DrivenVehicle& vehicle) {
     moved.outdated = true;
     moved.refused_lane.clear();
   }
-  if (moved.changing > 0.0 && moved.place.lane != map::kNoLane) {
-    followLaneChange(vehicle.id, moved, place);
-    return;
-  }
+  moved.changing -= step_;
   updateWay(vehicle.id, moved, place);
   if (moved.reported && moved.on_way && moveAlongLane(vehicle.id, moved, place)) return;
+  if (moved.reported && !mayJump(moved)) {
+    if (moved.place.lane != map::kNoLane) keepToLane(vehicle.id, moved, place);
+    return;
+  }
   if (moved.reported && stayOnLane(vehicle.id, moved, place)) return;
   moveFreely(vehicle.id, moved, place);
 }

@@ -60,7 +60,7 @@ bool DrivenFleet::release(const DrivenVehicle& vehicle) {
   const double turned =
       core::angleDifference(vehicle.state.heading, line.headingAt(target->place.arc_length));
   if (std::abs(turned) > kReleaseHeading) return false;
-  if (moved.changing <= 0.0 && !putOnLane(vehicle.id, target->place)) return false;
+  if (mayJump(moved) && !putOnLane(vehicle.id, target->place)) return false;
   setModes(vehicle.id, kSpeedModeDefault);
   SumoVehicle::setPreviousSpeed(vehicle.id, vehicle.state.speed, 0.0);
   SumoVehicle::setSpeed(vehicle.id, -1.0);

@@ -79,7 +79,13 @@ class DrivenFleet {
   void updateWay(const std::string& id, Moved& moved, const FrontPlace& place);
   bool giveWay(const std::string& id, Moved& moved, const std::vector<int>& way);
   bool moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place);
-  void followLaneChange(const std::string& id, Moved& moved, const FrontPlace& place);
+  /// Whether SUMO 1.15 survives that the vehicle is put elsewhere: only when it is wholly on one
+  /// lane and not changing lanes; else followers find it on lanes that it has left, and SUMO ends
+  /// itself.
+  bool mayJump(const Moved& moved) const;
+  /// Lets SUMO drive it on where it is, beside where we have it, until it may jump.
+  void keepToLane(const std::string& id, Moved& moved, const FrontPlace& place);
+  bool onAnotherLane(const FrontPlace& place, map::LaneIndex lane) const;
   bool putOnLane(const std::string& id, const LanePlace& place);
   /// Off its way but still next to the lane where SUMO has it: stays there, as an obstacle.
   bool stayOnLane(const std::string& id, Moved& moved, const FrontPlace& place);

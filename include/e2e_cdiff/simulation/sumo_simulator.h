@@ -56,7 +56,8 @@ class SumoSimulator : public TrafficSimulator {
   /// Process id of SUMO, for tests of its loss.
   int processId() const;
   /// Adds a background vehicle that SUMO drives along edges, departing now; used by generated
-  /// demand. Answers false when SUMO finds no room.
+  /// demand. Answers false when SUMO refuses it; one that finds no room in the next step is
+  /// dropped.
   bool addBackground(const std::string& id, const std::vector<std::string>& edges,
                      double depart_position, int depart_lane, double depart_speed,
                      const traffic::VehicleDimensions& dimensions);
