@@ -63,8 +63,10 @@ void FakeSimulator::listen() {
 }
 
 bool FakeSimulator::ready() {
-  return until(
-      [this] { return connections_.missing().empty() && acknowledged(msgs::TickAck::READY, 0); });
+  return until([this] {
+    const bool reported = !graph_.has(kMetricsNode) || inputs_.back().getNumPublishers() > 0;
+    return reported && connections_.missing().empty() && acknowledged(msgs::TickAck::READY, 0);
+  });
 }
 
 bool FakeSimulator::acknowledged(std::uint8_t kind, std::uint64_t tick) const {
