@@ -20,7 +20,6 @@ class BorderIndex {
 
   /// Positive on the area. On the border the gradient is the normal towards the area.
   SignedDistance query(const Eigen::Vector2d& point) const;
-  std::size_t segmentCount() const { return segments_.size(); }
 
  private:
   using SegmentIndex = std::uint32_t;

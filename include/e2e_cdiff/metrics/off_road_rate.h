@@ -15,7 +15,6 @@ class OffRoadRate {
  public:
   void add(bool off_road);
   std::size_t ticks() const { return ticks_; }
-  std::size_t offRoadTicks() const { return off_road_ticks_; }
   /// In percent with n = ticks; without any tick absent with `reason_when_empty`.
   Measure measure(const std::string& reason_when_empty) const;
 
