@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/scenario/world.h"
 
 namespace cdiff::scenario {
 namespace {
@@ -82,7 +83,7 @@ void checkDemandFile(const std::string& file) {
   const pugi::xml_node routes = document.child("routes");
   if (!routes) throw InputError("demand file '" + file + "': no <routes> element");
   for (const pugi::xml_node& element : routes.children()) {
-    if (std::string(element.attribute("id").value()) != "ego") continue;
+    if (std::string(element.attribute("id").value()) != kEgoId) continue;
     throw InputError("demand file '" + file + "': <" + element.name() +
                      " id=\"ego\">: this id is the ego's; choose another");
   }
