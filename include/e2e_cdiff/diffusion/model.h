@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The trained planner as it comes from disk: encoder.safetensors and denoiser.safetensors in one
+/// folder, with architecture, normaliser and spread in the metadata of each.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "e2e_cdiff/diffusion/normalizer.h"
+#include "e2e_cdiff/diffusion/safetensors.h"
+
+namespace cdiff::diffusion {
+
+struct Model {
+  std::string name;       ///< for records: folder name
+  std::string sha256;     ///< of both data sections
+  Architecture architecture;
+  Normalizer normalizer;
+  traffic::Rollout spread;  ///< [T, 7] sd of the clean trajectory given its context, normalised
+  std::map<std::string, Tensor> encoder;
+  std::map<std::string, Tensor> denoiser;
+};
+
+/// Reads a folder, or the name of a shipped model (share folder, weights/NAME). Throws InputError:
+/// see readSafetensors; also when the two files disagree about the architecture, or the metadata
+/// keys "format" ("e2e_cdiff.encoder.1", "e2e_cdiff.denoiser.1"), "architecture", "normalizer",
+/// "spread" are missing or malformed.
+Model loadModel(const std::string& name_or_folder);
+
+/// Writes both files into `folder`.
+void saveModel(const Model& model, const std::filesystem::path& folder, TensorType type,
+               const std::map<std::string, std::string>& training_facts);
+
+}  // namespace cdiff::diffusion

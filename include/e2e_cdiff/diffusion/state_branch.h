@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// States from actions: the learned state head (paper) or the exact rollout of the vehicle dynamics,
+/// with the vector-Jacobian product of each. Normalised, float32, [B, T, .] row-major.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "e2e_cdiff/diffusion/denoiser.h"
+#include "e2e_cdiff/diffusion/normalizer.h"
+#include "e2e_cdiff/dynamics/action_rollout.h"
+
+namespace cdiff::diffusion {
+
+class StateBranch {
+ public:
+  virtual ~StateBranch() = default;
+  /// states [B, T, 4] of actions [B, T, 3] at diffusion step k.
+  virtual void predict(const float* actions, int k, float* states) = 0;
+  /// action_gradient [B, T, 3] = (d states / d actions)^T state_gradient [B, T, 4], at the last
+  /// predict.
+  virtual void pullBack(const float* state_gradient, float* action_gradient) = 0;
+};
+
+/// The denoiser's state head.
+class LearnedStateBranch : public StateBranch {
+ public:
+  explicit LearnedStateBranch(Denoiser& denoiser) : denoiser_(denoiser) {}
+  void predict(const float* actions, int k, float* states) override;
+  void pullBack(const float* state_gradient, float* action_gradient) override;
+
+ private:
+  Denoiser& denoiser_;
+};
+
+/// ActionRollout through the normaliser; `speeds` [m/s] of the batch.
+class ExactStateBranch : public StateBranch {
+ public:
+  ExactStateBranch(const dynamics::BicycleModelOptions& vehicle, const Normalizer& normalizer,
+                   std::vector<double> speeds);
+  void predict(const float* actions, int k, float* states) override;
+  void pullBack(const float* state_gradient, float* action_gradient) override;
+
+ private:
+  dynamics::ActionRollout rollout_;
+  const Normalizer& normalizer_;
+  std::vector<double> speeds_;
+  std::vector<traffic::Rollout> last_;
+};
+
+}  // namespace cdiff::diffusion

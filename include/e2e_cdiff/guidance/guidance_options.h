@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Guidance of a session: every objective with weight, window and cap; J_total = sum_i w_i J_i
+/// (paper III-D2). Profiles are YAML files of it in config/guidance.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/guidance/objective.h"
+
+namespace cdiff::guidance {
+
+/// An objective as a profile uses it.
+struct WeightedObjective {
+  std::string name;
+  double weight = 0.0;           ///< w_i; 0 switches it off
+  std::int64_t first_step = 0;   ///< acts at diffusion steps k <= first_step; 0: from K on
+  std::int64_t last_step = 1;    ///< and k >= last_step
+  double gradient_cap = 0.0;     ///< largest norm of w_i dJ_i per sample, normalised units; 0: none
+  std::unique_ptr<Objective> objective;
+
+  bool actsAt(int diffusion_step) const {
+    return weight > 0.0 && diffusion_step >= last_step &&
+           (first_step == 0 || diffusion_step <= first_step);
+  }
+  void describe(core::OptionsVisitor& visitor);
+};
+
+/// Copyable (deep). Holds one entry per known objective, all off by default.
+struct GuidanceOptions {
+  GuidanceOptions();
+  GuidanceOptions(const GuidanceOptions& other);
+  GuidanceOptions(GuidanceOptions&&) noexcept = default;
+  GuidanceOptions& operator=(const GuidanceOptions& other);
+  GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;
+
+  std::vector<WeightedObjective> objectives;  ///< in the factory's order
+
+  /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
+  WeightedObjective& find(const std::string& name);
+  void describe(core::OptionsVisitor& visitor);
+  void validate() const;
+};
+
+/// Reads a profile by file name, or by the name of one in config/guidance. Throws InputError naming
+/// file, line and key, or the nearest shipped profile.
+GuidanceOptions loadProfile(const std::string& name_or_file);
+
+/// Names of the shipped profiles, sorted.
+std::vector<std::string> shippedProfiles();
+
+}  // namespace cdiff::guidance

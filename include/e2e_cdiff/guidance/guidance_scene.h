@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
+/// frame, SI units).
+#pragma once
+
+#include <vector>
+
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
+
+namespace cdiff::guidance {
+
+/// The vehicle that collision objectives are about (the ego, for a CBV) over the horizon.
+struct OtherMotion {
+  traffic::VehicleState now;
+  traffic::VehicleDimensions dimensions;
+  std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
+};
+
+struct GuidanceScene {
+  traffic::VehicleState state;  ///< of the planned vehicle: the body frame of rollouts
+  traffic::VehicleDimensions dimensions;
+  double target_speed = 8.0;                          ///< v* after the lane's limit [m/s]
+  const map::DrivableArea* drivable_area = nullptr;   ///< never null
+  const map::Route* route = nullptr;                  ///< null: no route
+  double route_arc_length = 0.0;                      ///< of the vehicle on it [m]
+  const OtherMotion* other = nullptr;                 ///< null: nobody to avoid or seek
+};
+
+/// Map-frame position of a rollout row.
+inline Eigen::Vector2d positionOnMap(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                                     Eigen::Index row) {
+  return scene.state.pose().toMap(
+      {rollout(row, traffic::kRolloutX), rollout(row, traffic::kRolloutY)});
+}
+
+}  // namespace cdiff::guidance
