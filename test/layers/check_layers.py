@@ -15,13 +15,14 @@ from xml.sax.saxutils import quoteattr
 RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
-    "torch": (r"^/usr/include/(torch|ATen|c10)/", {"diffusion", "guidance", "planning", "training"}),
+    "torch": (r"^/usr/include/(torch|ATen|c10)/", {"training"}),
+    "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
     "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "report", "ros"}),
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
-ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics planning simulation", "scenario", "report",
-         "ros", "nodes cli"]
+ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance diffusion rendering simulation",
+         "planning training", "scenario", "report", "ros", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 

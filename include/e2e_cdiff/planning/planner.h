@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/guidance/guidance_report.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::planning {
@@ -29,6 +31,7 @@ struct PlanningTask {
   const traffic::Vehicle* vehicle = nullptr;
   const map::Route* route = nullptr;  ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;          ///< v* before the lane's limit [m/s]
+  const traffic::CameraImage* image = nullptr;  ///< its front view, for planners that see
 };
 
 /// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for
@@ -43,6 +46,10 @@ struct PlannedAction {
   std::string vehicle_id;
   traffic::ControlAction action;
   std::vector<RolloutPoint> rollout;  ///< may be empty
+  std::string fault{};                ///< why `action` is the fail-safe action; empty when none
+  guidance::GuidanceReport guidance{};  ///< of planners with guidance
+  double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
+                                ///< with the planned actions [m]
 };
 
 class Planner {
@@ -52,6 +59,8 @@ class Planner {
   /// same actions.
   virtual std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
                                           const std::vector<PlanningTask>& tasks) = 0;
+  /// Whether its tasks must come with images.
+  virtual bool needsImages() const { return false; }
 };
 
 }  // namespace cdiff::planning

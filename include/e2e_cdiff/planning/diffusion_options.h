@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Options of the planner `diffusion` (paper III): model, what it sees, sampler, state branch.
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/diffusion/sampler.h"
+
+namespace cdiff::planning {
+
+struct DiffusionOptions {
+  std::string model = "default";             ///< shipped model or folder of the weight files
+  std::string conditioning = "image_route";  ///< image_route | image (the paper's)
+  std::string state_branch = "learned";      ///< learned | exact
+  std::int64_t candidates = 1;               ///< samples per vehicle
+  double hysteresis = 0.1;            ///< a new mode must be better by this share of the score
+  double frozen_image_time = 1.0;     ///< the same image for so long while moving is a fault [s]
+  diffusion::SamplerOptions sampler;
+
+  void describe(core::OptionsVisitor& visitor);
+  void validate() const;
+};
+
+}  // namespace cdiff::planning
