@@ -38,8 +38,11 @@ map::RoadNetwork mirrorableNetwork(double sign) {
                "-40," + text(3.5) + " 45," + text(3.5)) +
           pair("west", "45," + text(10.5) + " -40," + text(10.5),
                "45," + text(7) + " -40," + text(7)) +
-          pair("bend", "45," + text(0) + " 60," + text(4) + ",0.5 70," + text(12) + ",1",
-               "45," + text(3.5) + " 58," + text(7) + ",0.5 67," + text(14) + ",1") +
+          "<edge id=\"bend\" from=\"b\" to=\"e\"><lane id=\"bend_0\" index=\"0\" width=\"7\" "
+          "speed=\"14\" "
+          "shape=\"45," +
+          text(1.75) + " 60," + text(4) + ",0.5 70," + text(12) +
+          ",1\"/></edge>"
           "<edge id=\"bridge\" from=\"c\" to=\"d\"><lane id=\"bridge_0\" index=\"0\" width=\"4\" "
           "speed=\"14\" shape=\"30," +
           text(-60) + ",6 35," + text(60) + ",6.5\"/></edge></net>",
