@@ -101,10 +101,24 @@ void RoadScene::drawSurface(const Surface& surface, const View& view, Canvas& ca
   canvas.fill(corners, surface.count, {from_above ? surface.color : kUnderside, surface.rank, 1.0});
 }
 
+void RoadScene::sortMarkings(const View& view) {
+  by_distance_.clear();
+  for (const int i : visible_) {
+    const Marking& marking = markings_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d offset = 0.5 * (marking.begin + marking.end) - view.eye();
+    const double distance = offset.x() * offset.x() + offset.y() * offset.y();
+    by_distance_.emplace_back(-distance, i);
+  }
+  std::sort(by_distance_.begin(), by_distance_.end());
+  std::transform(by_distance_.begin(), by_distance_.end(), visible_.begin(),
+                 [](const auto& entry) { return entry.second; });
+}
+
 void RoadScene::draw(const View& view, Canvas& canvas) {
   surface_grid_.visible(view, visible_);
   for (const int i : visible_) drawSurface(surfaces_[static_cast<std::size_t>(i)], view, canvas);
   marking_grid_.visible(view, visible_);
+  sortMarkings(view);
   for (const int i : visible_) {
     drawMarking(markings_[static_cast<std::size_t>(i)], rank::kMarking, view, canvas);
   }
