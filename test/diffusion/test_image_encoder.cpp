@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
@@ -260,6 +262,25 @@ TEST(ImageEncoder, RepeatsItsBytes) {
   EXPECT_EQ(second.encode(image), features);
   ImageEncoder moved(std::move(first));
   EXPECT_EQ(moved.encode(image), features);
+}
+
+TEST(ImageEncoder, EncodersOfTwoThreadsDoNotDisturbEachOther) {
+  const Model model = randomModel(64, 32);
+  const std::vector<traffic::CameraImage> images = {randomImage(64, 32), plainImage(64, 32, 200)};
+  std::vector<std::vector<float>> expected;
+  for (const traffic::CameraImage& image : images)
+    expected.push_back(ImageEncoder(model).encode(image));
+  std::array<int, 2> wrong{};
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < 2; ++i) {
+    threads.emplace_back([&, i] {
+      ImageEncoder encoder(model);
+      for (int round = 0; round < 20; ++round) wrong[i] += encoder.encode(images[i]) != expected[i];
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong[0], 0);
+  EXPECT_EQ(wrong[1], 0);
 }
 
 TEST(ImageEncoder, TellsBlackFromWhite) {
