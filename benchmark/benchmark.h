@@ -39,6 +39,7 @@ inline double median(std::vector<double> values) {
 std::filesystem::path dataFolder();
 
 void benchmarkEncoder(Figures& figures);
+void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 
