@@ -46,6 +46,7 @@ void writeJson(const Figures& figures, const std::string& file) {
 
 int run(const std::string& name, const std::string& json) {
   const std::map<std::string, void (*)(Figures&)> known = {
+      {"camera", benchmarkCamera},
       {"denoiser", benchmarkDenoiser},
       {"encoder", benchmarkEncoder},
       {"loop", benchmarkLoop},

@@ -158,6 +158,21 @@ TEST(FrontCameraScenes, BridgeHidesTheRoadBelowIt) {
   EXPECT_NE(camera.render(snapshotOf({ego, ahead}), ego).rgb, empty.rgb);
 }
 
+TEST(FrontCameraScenes, HighRoadsHaveSlopesOrADecksSide) {
+  const auto middle = [](double low_y, double eye_y, int row) {
+    const std::string text =
+        "<net>" + straightEdge("low", low_y, 0.0) + straightEdge("high", 0.0, 6.0) + "</net>";
+    FrontCamera camera(levelCamera(), map::RoadNetwork::fromText(text, "two levels"));
+    const traffic::Vehicle ego = vehicleAt("ego", 0.0, eye_y - 0.5, 0.5 * 3.14159265358979323846);
+    return pixelAt(camera.render(snapshotOf({ego}), ego), 79, row);
+  };
+  // The low road is 28 m away: grass from (y, z) = (-2.2, 6) down to (-11.2, 0). Half-way, 22.8 m
+  // ahead and 1.6 m above the eye: row 47.5 - 80 * 1.6 / 22.8 = 41.9.
+  EXPECT_EQ(middle(-30.0, -29.5, 42), (Pixel{104, 136, 78}));
+  // The low road is 8 m away: the deck's side, 5.1 to 6 m high and 17.3 m ahead, rows 26.2 to 30.4.
+  EXPECT_EQ(middle(-10.0, -19.5, 28), (Pixel{166, 166, 160}));
+}
+
 TEST(FrontCameraScenes, MarkingsAreWhereTheLanesEnd) {
   FrontCamera camera(levelCamera(), mirrorableNetwork(1.0));
   traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
