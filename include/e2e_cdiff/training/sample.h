@@ -25,17 +25,18 @@ struct Sample {
   std::uint8_t maneuver = 0;   ///< of the collector: 0 straight on, 1 left, 2 right, 3 other
   std::uint8_t stop_reason =
       0;  ///< of the collector: 0 none, 1 light, 2 leader, 3 yielding, 4 other
-  std::vector<float> auxiliary;  ///< further targets, as the schema names them; NaN: not known
+  std::vector<float> auxiliary;  ///< targets that the schema names, of order 1; NaN: not known
 };
 
 /// What every sample of a data set has in common.
 struct SampleSchema {
-  std::int64_t horizon = 32;           ///< T
-  std::int64_t image_width = 160;      ///< [px]
-  std::int64_t image_height = 96;      ///< [px]
-  std::int64_t route_points = 16;      ///< tokens
-  double route_spacing = 3.0;          ///< [m]
-  std::vector<std::string> auxiliary;  ///< names of the auxiliary targets, may be empty
+  std::int64_t horizon = 32;       ///< T
+  std::int64_t image_width = 160;  ///< [px]
+  std::int64_t image_height = 96;  ///< [px]
+  std::int64_t route_points = 16;  ///< tokens
+  double route_spacing = 3.0;      ///< [m]
+  std::vector<std::string>
+      auxiliary;  ///< names of the auxiliary targets; "..._left" changes sign in a mirror
 
   /// Throws InputError naming the first field of `sample` that does not fit or is not finite.
   void check(const Sample& sample) const;
