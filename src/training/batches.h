@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Batches of a stage: which samples come at which step, how each is changed, and the noise of the
+/// diffusion loss. All of it is a function of (seed, stage, step), so that a resumed run goes on as
+/// if it had never stopped.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/training/dataset.h"
+#include "e2e_cdiff/training/trainer.h"
+#include "networks.h"
+
+namespace cdiff::training {
+
+/// Features of every sample; the mirrored ones of training samples only, if any.
+struct FeatureCache {
+  at::Tensor original;  ///< [samples, image_features]
+  at::Tensor mirrored;
+};
+
+struct TrainingBatch {
+  std::vector<std::size_t> samples;
+  at::Tensor images;           ///< [B, 3, H, W] scaled; undefined on cached features
+  ContextBatch context;        ///< without features where there are images
+  at::Tensor rollouts;         ///< [B, T, 7] normalised
+  at::Tensor auxiliary;        ///< [B, A], 0 where not known
+  at::Tensor auxiliary_known;  ///< [B, A], 0 or 1
+  at::Tensor k;                ///< [B] int64 in 1..K
+  at::Tensor noise;            ///< [B, T, 7]
+};
+
+/// How a stage changes its samples.
+struct BatchOptions {
+  std::string stage;
+  std::int64_t batch = 32;
+  double image_scale = 1.0;
+  double route_drop = 0.2;
+  bool mirror = true;
+  bool change_light = true;
+  std::int64_t diffusion_steps = 100;
+  std::uint64_t seed = 1;
+};
+
+class BatchMaker {
+ public:
+  BatchMaker(const Dataset& dataset, const diffusion::Normalizer& normalizer,
+             const BatchOptions& options, const at::Device& device);
+
+  /// Training batch of a step, with images, or with features where a cache is given.
+  TrainingBatch training(std::int64_t step, const FeatureCache* cache = nullptr);
+  /// These samples as they are, with route; images only if asked.
+  TrainingBatch plain(const std::vector<std::size_t>& samples, bool with_images) const;
+  /// Indices of a step.
+  std::vector<std::size_t> order(std::int64_t step);
+
+ private:
+  Sample changedSample(std::size_t index, const core::RandomKey& key, bool mirrored,
+                       bool with_image) const;
+  void addNoise(std::int64_t step, TrainingBatch& batch) const;
+  TrainingBatch pack(const std::vector<Sample>& samples, const std::vector<float>& has_route) const;
+
+  const Dataset& dataset_;
+  diffusion::Normalizer normalizer_;
+  BatchOptions options_;
+  at::Device device_;
+  core::RandomStream order_;
+  core::RandomStream change_;
+  core::RandomStream noise_;
+  std::optional<std::int64_t> epoch_;
+  std::vector<std::size_t> permutation_;
+};
+
+/// Images [B, 3, H, W], (value / 255 - 0.5) / 0.25, area-averaged to half size for scale 0.5.
+at::Tensor imageTensor(const std::vector<const traffic::CameraImage*>& images, double scale,
+                       const at::Device& device);
+
+}  // namespace cdiff::training

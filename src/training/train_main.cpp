@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+
+#include "e2e_cdiff/training/trainer.h"
+
+namespace {
+
+enum ExitCode : int { kPassed = 0, kRunTimeError = 2, kBadInput = 3, kInterrupted = 130 };
+
+// A signal handler can reach nothing else.
+std::atomic<bool> stop_requested{false};
+
+void requestStop(int) { stop_requested = true; }
+
+void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
+  program.add_option("--stage", options.stage,
+                     "encoder | fine_tune | denoiser | joint | export | all");
+  program.add_option("--data", options.data, "Folder with *.shard")->required();
+  program.add_option("--output", options.output, "Folder for checkpoints and the model")
+      ->required();
+  program.add_option("--init", options.init, "Model to start from where no checkpoint is");
+  program.add_option("--steps", options.steps, "Steps of the stage");
+  program.add_option("--batch", options.batch,
+                     "Samples per step (0: 32 on images, 128 on features)");
+  program.add_option("--threads", options.threads);
+  program.add_option("--seed", options.seed);
+  program.add_option("--time-limit", options.time_limit, "Of the stage, resumptions included [s]");
+  program.add_flag("--anneal-by-time", options.anneal_by_time,
+                   "The learning rate falls to 0 at the time limit");
+  program.add_flag("--resume", options.resume, "Go on from the stage's checkpoint if there is one");
+  program.add_option("--device", options.device, "auto | cpu | cuda");
+  program.add_option("--image-scale", options.image_scale, "Of stage encoder: 1 or 0.5");
+  program.add_option("--learning-rate", options.learning_rate);
+  program.add_option("--weight-decay", options.weight_decay);
+  program.add_option("--warm-up", options.warm_up, "Steps");
+  program.add_option("--clip", options.clip, "Norm of the gradient");
+  program.add_option("--route-drop", options.route_drop, "Share of samples without route");
+  program.add_flag("!--no-mirror", options.mirror, "Do not mirror samples");
+  program.add_flag("!--no-light", options.change_light, "Do not change the light of images");
+  program.add_option("--validation-share", options.validation_share, "Of the sessions");
+  program.add_option("--validation-samples", options.validation_samples);
+  program.add_option("--validation-every", options.validation_every, "Steps");
+  program.add_option("--checkpoint-every", options.checkpoint_every, "Seconds");
+  program.add_option("--report-every", options.report_every, "Seconds");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"cdiff_train: train the diffusion planner on collected shards"};
+  cdiff::training::TrainingOptions options;
+  addOptions(program, options);
+  try {
+    program.parse(argc, argv);
+    std::signal(SIGINT, requestStop);
+    std::signal(SIGTERM, requestStop);
+    cdiff::training::train(options, stop_requested, std::cout);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kPassed : kBadInput;
+  } catch (const cdiff::core::InputError& error) {
+    std::cerr << "cdiff_train: " << error.what() << "\n";
+    return kBadInput;
+  } catch (const cdiff::core::Interrupted& error) {
+    std::cerr << "cdiff_train: " << error.what() << "\n";
+    return kInterrupted;
+  } catch (const std::exception& error) {
+    std::cerr << "cdiff_train: " << error.what() << "\n";
+    return kRunTimeError;
+  }
+  return kPassed;
+}

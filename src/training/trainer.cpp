@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/training/trainer.h"
+
+#include <ATen/Context.h>
+#include <ATen/Parallel.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <ostream>
+
+#include "e2e_cdiff/diffusion/model.h"
+#include "export.h"
+#include "feature_cache.h"
+#include "stage_runner.h"
+
+namespace cdiff::training {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+at::Device chooseDevice(const std::string& name) {
+  if (name == "cuda" && !at::hasCUDA())
+    throw InputError("training: device is 'cuda', but libtorch finds none");
+  return at::Device(name != "cpu" && at::hasCUDA() ? at::kCUDA : at::kCPU);
+}
+
+diffusion::Architecture architectureOf(const TrainingOptions& options, const SampleSchema& schema) {
+  diffusion::Architecture architecture = options.architecture;
+  architecture.horizon = schema.horizon;
+  architecture.image_width = schema.image_width;
+  architecture.image_height = schema.image_height;
+  architecture.route_points = schema.route_points;
+  architecture.route_spacing = schema.route_spacing;
+  architecture.validate();
+  return architecture;
+}
+
+/// Up to `count` of the validation samples, evenly spaced.
+std::vector<std::size_t> chooseHeldOut(const Dataset& dataset, std::size_t count) {
+  const std::vector<std::size_t>& all = dataset.validation();
+  if (all.size() <= count) return all;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
+}
+
+class Trainer {
+ public:
+  Trainer(const TrainingOptions& options, const Dataset& dataset, const std::atomic<bool>& stop,
+          std::ostream& log)
+      : options_(options),
+        stop_(stop),
+        log_(log),
+        architecture_(architectureOf(options, dataset.schema())),
+        device_(chooseDevice(options.device)),
+        normalizer_(fitNormalizer(dataset, options.mirror)),
+        state_{dataset,
+               options_,
+               architecture_,
+               normalizer_,
+               device_,
+               ImageEncoderNet(architecture_, seed()),
+               RegressionHead(architecture_, auxiliary(dataset), seed()),
+               DenoiserNet(architecture_, seed()),
+               DiffusionTask(architecture_, normalizer_, device_),
+               chooseHeldOut(dataset, static_cast<std::size_t>(options.validation_samples))} {
+    loadInitial();
+    state_.encoder.parameters().moveTo(device_);
+    state_.head.parameters().moveTo(device_);
+    state_.denoiser.moveTo(device_);
+  }
+
+  void run() {
+    const bool all = options_.stage == "all";
+    if (all || options_.stage == "encoder") trainEncoder("encoder", options_.image_scale);
+    if (options_.stage == "fine_tune" || (all && options_.image_scale != 1.0))
+      trainEncoder("fine_tune", 1.0);
+    if (all || options_.stage == "denoiser") trainDenoiser();
+    if (options_.stage == "joint") trainJoint();
+    if (options_.stage == "export") {
+      loadEncoder({"joint", "fine_tune", "encoder"});
+      load({"joint", "denoiser"}, {"denoiser", &state_.denoiser.parameters()});
+    }
+    if (options_.stage == "encoder" || options_.stage == "fine_tune") return;
+    gatherResults();
+    exportModel(state_, results_);
+    log_ << "model written to " << options_.output << std::endl;
+  }
+
+ private:
+  std::uint64_t seed() const { return static_cast<std::uint64_t>(options_.seed); }
+  static std::int64_t auxiliary(const Dataset& dataset) {
+    return static_cast<std::int64_t>(dataset.schema().auxiliary.size());
+  }
+
+  void loadInitial() {
+    if (options_.init.empty()) return;
+    const diffusion::Model model = diffusion::loadModel(options_.init);
+    if (!(model.architecture == architecture_))
+      throw InputError("training: the architecture of '" + options_.init + "' is " +
+                       model.architecture.toJson() + ", this run has " + architecture_.toJson());
+    state_.encoder.parameters().load(model.encoder, options_.init);
+    state_.denoiser.parameters().load(model.denoiser, options_.init);
+  }
+
+  /// Loads a part from the first of the stages' checkpoints that exists; false if none does.
+  bool load(const std::vector<std::string>& stages, const TrainedPart& part) {
+    for (const std::string& stage : stages) {
+      const fs::path path = StageRunner::pathOf(options_.output, stage);
+      if (!fs::exists(path)) continue;
+      StageRunner::loadAverage(path, part);
+      log_ << part.name << " starts from " << path.string() << std::endl;
+      return true;
+    }
+    return false;
+  }
+
+  void loadEncoder(const std::vector<std::string>& stages) {
+    if (load(stages, {"encoder", &state_.encoder.parameters()}) || !options_.init.empty()) return;
+    throw InputError("training: '" + options_.output +
+                     "' holds no checkpoint of an encoder; train stage 'encoder' first, or give a "
+                     "model with init");
+  }
+
+  void runStage(Stage& stage) {
+    StageRunner runner(stage, options_, state_.dataset.sha256(), stop_, log_);
+    results_[stage.name()] = runner.run();
+  }
+
+  void trainEncoder(const std::string& name, double scale) {
+    if (name == "fine_tune") {
+      loadEncoder({"encoder"});
+      load({"encoder"}, {"head", &state_.head.parameters()});
+    }
+    const std::unique_ptr<Stage> stage = makeEncoderStage(state_, name, scale);
+    runStage(*stage);
+  }
+
+  void trainDenoiser() {
+    loadEncoder({"fine_tune", "encoder"});
+    const FeatureCache cache = computeFeatures(state_, stop_, log_);
+    const std::unique_ptr<Stage> stage = makeDiffusionStage(state_, "denoiser", &cache);
+    runStage(*stage);
+  }
+
+  void trainJoint() {
+    loadEncoder({"fine_tune", "encoder"});
+    load({"denoiser"}, {"denoiser", &state_.denoiser.parameters()});
+    const std::unique_ptr<Stage> stage = makeDiffusionStage(state_, "joint", nullptr);
+    runStage(*stage);
+  }
+
+  /// What earlier runs left in checkpoints.
+  void gatherResults() {
+    for (const char* name : {"encoder", "fine_tune", "denoiser", "joint"}) {
+      const fs::path path = StageRunner::pathOf(options_.output, name);
+      if (results_.count(name) != 0 || !fs::exists(path)) continue;
+      const nlohmann::json facts = readCheckpoint(path).facts;
+      results_[name] = {facts.at("steps"), facts.at("seconds"), facts.at("loss"),
+                        facts.at("held_out").get<Figures>()};
+    }
+  }
+
+  const TrainingOptions options_;
+  const std::atomic<bool>& stop_;
+  std::ostream& log_;
+  diffusion::Architecture architecture_;
+  at::Device device_;
+  diffusion::Normalizer normalizer_;
+  TrainingState state_;
+  std::map<std::string, StageResult> results_;
+};
+
+}  // namespace
+
+void train(const TrainingOptions& options, const std::atomic<bool>& stop, std::ostream& log) {
+  options.validate();
+  at::set_num_threads(static_cast<int>(options.threads));
+  std::error_code error;
+  fs::create_directories(options.output, error);
+  if (error) throw InputError("output folder '" + options.output + "': " + error.message());
+  const Dataset dataset(options.data, options.validation_share);
+  log << "data: " << dataset.training().size() << " training samples, "
+      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"
+      << std::endl;
+  Trainer(options, dataset, stop, log).run();
+}
+
+}  // namespace cdiff::training
