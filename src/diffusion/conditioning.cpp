@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "conditioning.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>

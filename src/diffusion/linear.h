@@ -15,6 +15,7 @@ inline Convolution linearNamed(const DenoiserKernels& kernels, const Tensors& te
                      &tensorNamed(tensors, name + ".bias"));
 }
 
+/// The pull-back of a linear layer, or of some of its columns.
 inline Convolution reversedLinear(const DenoiserKernels& kernels, const Filter& filter) {
   return Convolution(kernels, filter.transposed(), Spacing{});
 }

@@ -3,6 +3,7 @@
 #include "unet.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "e2e_cdiff/traffic/rollout.h"
 
