@@ -60,25 +60,31 @@ constexpr int kPeakRounds = 1000000;
 /// Fused multiply-adds that wait for no other; returns something that depends on all.
 __attribute__((target("avx512f"))) float fuseAvx512() {
   const __m512 factor = _mm512_set1_ps(0.5f);
-  __m512 sums[12];
-  for (__m512& sum : sums) sum = factor;
+  const __m512 term = _mm512_set1_ps(0.25f);
+  __m512 sums[8];
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) sums[i] = _mm512_set1_ps(static_cast<float>(i));
   for (int round = 0; round < kPeakRounds; ++round) {
-#pragma GCC unroll 12
-    for (int i = 0; i < 12; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, factor);
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, term);
   }
-  for (int i = 1; i < 12; ++i) sums[0] = _mm512_add_ps(sums[0], sums[i]);
+#pragma GCC unroll 8
+  for (int i = 1; i < 8; ++i) sums[0] = _mm512_add_ps(sums[0], sums[i]);
   return _mm512_cvtss_f32(sums[0]);
 }
 
 __attribute__((target("avx2,fma"))) float fuseAvx2() {
   const __m256 factor = _mm256_set1_ps(0.5f);
-  __m256 sums[12];
-  for (__m256& sum : sums) sum = factor;
+  const __m256 term = _mm256_set1_ps(0.25f);
+  __m256 sums[8];
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) sums[i] = _mm256_set1_ps(static_cast<float>(i));
   for (int round = 0; round < kPeakRounds; ++round) {
-#pragma GCC unroll 12
-    for (int i = 0; i < 12; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, factor);
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, term);
   }
-  for (int i = 1; i < 12; ++i) sums[0] = _mm256_add_ps(sums[0], sums[i]);
+#pragma GCC unroll 8
+  for (int i = 1; i < 8; ++i) sums[0] = _mm256_add_ps(sums[0], sums[i]);
   return _mm256_cvtss_f32(sums[0]);
 }
 
@@ -91,7 +97,7 @@ double peakOf(CpuDenoiser::InstructionSet set) {
   for (int round = 0; round < 9; ++round) {
     seconds.push_back(secondsOf([&] { result += wide ? fuseAvx512() : fuseAvx2(); }));
   }
-  return result == 0.0f ? 0.0 : 12.0 * kPeakRounds * (wide ? 32.0 : 16.0) / median(seconds);
+  return result == 0.0f ? 0.0 : 8.0 * kPeakRounds * (wide ? 32.0 : 16.0) / median(seconds);
 }
 #else
 double peakOf(CpuDenoiser::InstructionSet) { return 0.0; }

@@ -58,9 +58,11 @@ class Activation {
 
   /// Sets everything to zero.
   void resize(std::int64_t samples) { values_ = AlignedFloats(samples * sampleSize()); }
-  View view(std::int64_t channel = 0) const {
-    return {values_.data() + halo_ * channels_ + channel, channels_, sampleSize()};
+  View view(std::int64_t sample = 0, std::int64_t channel = 0) const {
+    return {values_.data() + sample * sampleSize() + halo_ * channels_ + channel, channels_};
   }
+  /// Of a matrix.
+  float* row(std::int64_t index) const { return view().data + index * channels_; }
   std::int64_t rows() const { return rows_; }
   std::int64_t channels() const { return channels_; }
 
@@ -73,33 +75,22 @@ class Activation {
   AlignedFloats values_;
 };
 
-/// Rows of a matrix [rows, layout] without halo.
+/// A matrix of zeros.
 inline Activation matrix(std::int64_t columns, std::int64_t rows) {
   Activation result({columns, 1}, rows, 0);
   result.resize(1);
   return result;
 }
 
-/// Extent of the rows that copyIn and copyOut move.
-struct RowExtent {
-  std::int64_t channels = 0;
-  std::int64_t rows = 0;
-  std::int64_t samples = 0;
-};
-
-/// Dense [samples, rows, channels] into a view, and back.
-inline void copyIn(const float* from, const RowExtent& extent, const View& to) {
-  for (std::int64_t sample = 0; sample < extent.samples; ++sample) {
-    for (std::int64_t row = 0; row < extent.rows; ++row, from += extent.channels) {
-      std::copy_n(from, extent.channels, to.data + sample * to.sample + row * to.row);
-    }
+/// Dense [rows, channels] into a view, and back.
+inline void copyIn(const float* from, std::int64_t rows, std::int64_t channels, const View& to) {
+  for (std::int64_t r = 0; r < rows; ++r) {
+    std::copy_n(from + r * channels, channels, to.data + r * to.row);
   }
 }
-inline void copyOut(const View& from, const RowExtent& extent, float* to) {
-  for (std::int64_t sample = 0; sample < extent.samples; ++sample) {
-    for (std::int64_t row = 0; row < extent.rows; ++row, to += extent.channels) {
-      std::copy_n(from.data + sample * from.sample + row * from.row, extent.channels, to);
-    }
+inline void copyOut(const View& from, std::int64_t rows, std::int64_t channels, float* to) {
+  for (std::int64_t r = 0; r < rows; ++r) {
+    std::copy_n(from.data + r * from.row, channels, to + r * channels);
   }
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "conditioning.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -19,7 +20,7 @@ Activation sinusoids(std::int64_t steps, std::int64_t width) {
   Activation result = matrix(width, steps + 1);
   const std::int64_t half = width / 2;
   for (std::int64_t k = 0; k <= steps; ++k) {
-    float* row = rowOf(result, k);
+    float* row = result.row(k);
     for (std::int64_t i = 0; i < half; ++i) {
       const double frequency = std::exp(-std::log(kLongestPeriod) * static_cast<double>(i) /
                                         static_cast<double>(half - 1));
@@ -69,7 +70,7 @@ void Conditioning::buildInjections(const Tensors& tensors,
     const Filter context_columns =
         Filter::ofLinear(weight, architecture_.time_width, architecture_.context_width);
     Convolution(*kernels_, time_columns, Spacing{}, &tensorNamed(tensors, injection.name + ".bias"))
-        .apply(time.view(), time_part_.view(injection.first), time.rows(), 1);
+        .apply(time.view(), time_part_.view(0, injection.first), time.rows());
     context_injections_.push_back(
         {injection.first, Convolution(*kernels_, context_columns, Spacing{})});
   }
@@ -88,7 +89,7 @@ Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) con
   Activation tokens = matrix(2 * architecture_.route_points, rows);
   for (std::int64_t b = 0; b < rows; ++b) {
     const std::vector<float>& route = contexts[static_cast<std::size_t>(b)].route;
-    std::copy(route.begin(), route.end(), rowOf(tokens, b));
+    std::copy(route.begin(), route.end(), tokens.row(b));
   }
   Activation hidden = matrix(layers_.route0.outputs(), rows);
   layers_.route0.applyToRows(tokens, hidden);
@@ -96,7 +97,7 @@ Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) con
   layers_.route2.applyToRows(mished(hidden), result);
   for (std::int64_t b = 0; b < rows; ++b) {
     if (!contexts[static_cast<std::size_t>(b)].route.empty()) continue;
-    std::copy(no_route_.begin(), no_route_.end(), rowOf(result, b));
+    std::copy(no_route_.begin(), no_route_.end(), result.row(b));
   }
   return result;
 }
@@ -104,8 +105,7 @@ Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) con
 Activation Conditioning::speedFeatures(const std::vector<Context>& contexts) const {
   Activation speed = matrix(1, static_cast<std::int64_t>(contexts.size()));
   for (std::size_t b = 0; b < contexts.size(); ++b) {
-    *rowOf(speed, static_cast<std::int64_t>(b)) =
-        static_cast<float>(contexts[b].speed / kSpeedScale);
+    *speed.row(static_cast<std::int64_t>(b)) = static_cast<float>(contexts[b].speed / kSpeedScale);
   }
   Activation result = matrix(architecture_.speed_features, speed.rows());
   layers_.speed0.applyToRows(speed, result);
@@ -129,9 +129,9 @@ void Conditioning::setContexts(const std::vector<Context>& contexts) {
       rows);
   for (std::int64_t b = 0; b < rows; ++b) {
     const std::vector<float>& image = contexts[static_cast<std::size_t>(b)].image_features;
-    float* to = std::copy(image.begin(), image.end(), rowOf(joined, b));
-    to = std::copy_n(rowOf(route, b), architecture_.route_features, to);
-    std::copy_n(rowOf(speed, b), architecture_.speed_features, to);
+    float* to = std::copy(image.begin(), image.end(), joined.row(b));
+    to = std::copy_n(route.row(b), architecture_.route_features, to);
+    std::copy_n(speed.row(b), architecture_.speed_features, to);
   }
   Activation context = matrix(architecture_.context_width, rows);
   layers_.context0.applyToRows(joined, context);
@@ -139,18 +139,18 @@ void Conditioning::setContexts(const std::vector<Context>& contexts) {
   context_part_ = matrix(time_part_.channels(), rows);
   injection_ = matrix(time_part_.channels(), rows);
   for (const ContextInjection& part : context_injections_) {
-    part.layer.apply(injected.view(), context_part_.view(part.first), rows, 1);
+    part.layer.apply(injected.view(), context_part_.view(0, part.first), rows);
   }
 }
 
-View Conditioning::injection(int k) {
-  const float* time = rowOf(time_part_, k);
+const Activation& Conditioning::injection(int k) {
+  const float* time = time_part_.row(k);
   for (std::int64_t b = 0; b < injection_.rows(); ++b) {
-    const float* context = rowOf(context_part_, b);
-    float* to = rowOf(injection_, b);
+    const float* context = context_part_.row(b);
+    float* to = injection_.row(b);
     for (std::int64_t c = 0; c < injection_.channels(); ++c) to[c] = time[c] + context[c];
   }
-  return {injection_.view().data, 0, injection_.channels()};
+  return injection_;
 }
 
 }  // namespace cdiff::diffusion

@@ -21,7 +21,7 @@ class Conditioning {
   /// Throws std::invalid_argument for features or tokens of another size.
   void setContexts(const std::vector<Context>& contexts);
   /// A row for each sample at step k = 1..K; valid until the next call.
-  View injection(int k);
+  const Activation& injection(int k);
   /// [K + 1, time_width].
   const Activation& timeEmbeddings() const { return time_; }
 

@@ -71,13 +71,12 @@ AlignedFloats Convolution::pack(const Filter& filter, const std::vector<std::int
 }
 
 void Convolution::apply(const View& input, const View& output, std::int64_t rows,
-                        std::int64_t samples, bool accumulate) const {
+                        bool accumulate) const {
   ConvolutionCall call;
   call.bias = bias_.data();
   call.inputs = inputs_;
   call.outputs = outputs_;
   call.tap = input.row;
-  call.samples = samples;
   call.accumulate = accumulate;
   const auto phases = static_cast<std::int64_t>(phases_.size());
   for (std::int64_t p = 0; p < phases; ++p) {
@@ -85,8 +84,8 @@ void Convolution::apply(const View& input, const View& output, std::int64_t rows
     call.weights = phase.weights.data();
     call.taps = phase.taps;
     call.input = {input.data + phase.first * input.row,
-                  spacing_.spread ? input.row : spacing_.stride * input.row, input.sample};
-    call.output = {output.data + p * output.row, phases * output.row, output.sample};
+                  spacing_.spread ? input.row : spacing_.stride * input.row};
+    call.output = {output.data + p * output.row, phases * output.row};
     call.rows = rows / phases;
     kernels_->convolve(call);
   }
@@ -94,7 +93,7 @@ void Convolution::apply(const View& input, const View& output, std::int64_t rows
 
 void Convolution::applyToRows(const Activation& input, const Activation& output,
                               bool accumulate) const {
-  apply(input.view(), output.view(), output.rows(), 1, accumulate);
+  apply(input.view(), output.view(), output.rows(), accumulate);
 }
 
 }  // namespace cdiff::diffusion

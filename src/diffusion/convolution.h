@@ -47,7 +47,7 @@ class Convolution {
               const Tensor* bias = nullptr);
 
   /// The input has rows / stride (spreading) or rows x stride rows.
-  void apply(const View& input, const View& output, std::int64_t rows, std::int64_t samples,
+  void apply(const View& input, const View& output, std::int64_t rows,
              bool accumulate = false) const;
   /// Of matrices: every row by itself.
   void applyToRows(const Activation& input, const Activation& output,

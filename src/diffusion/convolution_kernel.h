@@ -58,23 +58,21 @@ void convolveRest(const ConvolutionCall& call, const ConvolutionTile& tile, std:
   }
 }
 
-/// One block of outputs for all samples, so that its weights stay in the cache.
+/// One block of outputs for all rows.
 template <class V, int kVectors>
 void convolveBlock(const ConvolutionCall& call, std::int64_t first_output) {
   ConvolutionTile tile;
   tile.weights = call.weights + first_output * call.taps * call.inputs;
   tile.bias = call.bias + first_output;
-  for (std::int64_t sample = 0; sample < call.samples; ++sample) {
-    tile.input = call.input.data + sample * call.input.sample;
-    tile.output = call.output.data + sample * call.output.sample + first_output;
-    std::int64_t row = 0;
-    for (; row + V::kTileRows <= call.rows; row += V::kTileRows) {
-      convolveTile<V, V::kTileRows, kVectors>(call, tile);
-      tile.input += V::kTileRows * call.input.row;
-      tile.output += V::kTileRows * call.output.row;
-    }
-    convolveRest<V, V::kTileRows - 1, kVectors>(call, tile, call.rows - row);
+  tile.input = call.input.data;
+  tile.output = call.output.data + first_output;
+  std::int64_t row = 0;
+  for (; row + V::kTileRows <= call.rows; row += V::kTileRows) {
+    convolveTile<V, V::kTileRows, kVectors>(call, tile);
+    tile.input += V::kTileRows * call.input.row;
+    tile.output += V::kTileRows * call.output.row;
   }
+  convolveRest<V, V::kTileRows - 1, kVectors>(call, tile, call.rows - row);
 }
 
 template <class V>

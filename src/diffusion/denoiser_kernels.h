@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The arithmetic of the denoiser's layers for one instruction set: float32, activations stored
-/// [sample][time][channel]. The order of operations of an output element is fixed, so it depends
-/// neither on the batch nor on how rows are tiled.
+/// The arithmetic of the denoiser's layers for one instruction set, one sample at a time: float32,
+/// activations stored [time][channel]. The order of operations of an output element is fixed and
+/// does not depend on how rows are tiled.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,10 @@ namespace cdiff::diffusion {
 /// Channels of every activation are padded with zeros to a multiple of this.
 inline constexpr std::int64_t kChannelMultiple = 16;
 
-/// Rows of channels in memory; strides in floats.
+/// Rows of channels in memory.
 struct View {
   float* data = nullptr;
-  std::int64_t row = 0;     ///< from one time step to the next
-  std::int64_t sample = 0;  ///< from one sample to the next
+  std::int64_t row = 0;  ///< floats from one row to the next
 };
 
 /// output[r, o] = bias[o] (or, accumulating, output[r, o]) + sum over taps j and inputs i of
@@ -31,7 +30,6 @@ struct ConvolutionCall {
   std::int64_t tap = 0;      ///< floats from one tap to the next
   View output;
   std::int64_t rows = 0;
-  std::int64_t samples = 0;
   bool accumulate = false;
 };
 
@@ -41,7 +39,6 @@ struct NormalizationShape {
   std::int64_t groups = 0;
   std::int64_t group_channels = 0;
   std::int64_t rows = 0;
-  std::int64_t samples = 0;
   float* scratch = nullptr;  ///< [3, channels]
 };
 
@@ -52,7 +49,7 @@ struct NormalizationCall {
   const float* shift = nullptr;        ///< [channels], 0 in the padding
   View normalized;                     ///< x, replaced by n
   View slope;                          ///< result: Mish'(scale n + shift) scale
-  float* inverse_deviation = nullptr;  ///< result: [samples, channels]
+  float* inverse_deviation = nullptr;  ///< result: [channels]
   View added;
   View output;
 };
@@ -62,7 +59,7 @@ struct NormalizationGradientCall {
   NormalizationShape shape;
   View normalized;
   View slope;
-  const float* inverse_deviation = nullptr;
+  const float* inverse_deviation = nullptr;  ///< [channels]
   View output_gradient;
   View input_gradient;
 };

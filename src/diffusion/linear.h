@@ -9,17 +9,13 @@
 
 namespace cdiff::diffusion {
 
-inline float* rowOf(const Activation& matrix, std::int64_t row) {
-  return matrix.view().data + row * matrix.channels();
-}
-
 inline Convolution linearNamed(const DenoiserKernels& kernels, const Tensors& tensors,
                                const std::string& name) {
   return Convolution(kernels, Filter::ofLinear(tensorNamed(tensors, name + ".weight")), Spacing{},
                      &tensorNamed(tensors, name + ".bias"));
 }
 
-/// The pull-back of the columns first .. first + inputs - 1 of a linear layer.
+/// The pull-back of a linear layer, or of some of its columns.
 inline Convolution reversedLinear(const DenoiserKernels& kernels, const Filter& filter) {
   return Convolution(kernels, filter.transposed(), Spacing{});
 }

@@ -39,12 +39,13 @@ struct MishValue {
 /// 0 in float32; below -87 both are.
 template <class V>
 MishValue<V> mishOf(V x) {
-  const V e = exponential(V::min(V::max(x, V::broadcast(-87.0f)), V::broadcast(20.0f)));
+  const V bounded = V::min(V::max(x, V::broadcast(-87.0f)), V::broadcast(20.0f));
+  const V e = exponential(bounded);
   const V n = V::fma(e, e, e + e);
   const V inverse = V::broadcast(1.0f) / (n + V::broadcast(2.0f));
   const V tangent = n * inverse;
   const V bell = V::fma(e, e, e) * V::broadcast(4.0f) * inverse * inverse;
-  return {x * tangent, V::fma(x, bell, tangent)};
+  return {x * tangent, V::fma(bounded, bell, tangent)};
 }
 
 template <class V>

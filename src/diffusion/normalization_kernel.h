@@ -41,7 +41,7 @@ void sumRows(const NormalizationShape& shape, float* sums, const Term& term) {
   }
 }
 
-/// Means and inverse deviations of one sample's channels.
+/// Mean and inverse deviation at every channel.
 template <class V>
 void groupMoments(const NormalizationShape& shape, const float* x, std::int64_t stride,
                   float* means, float* inverse_deviation) {
@@ -62,14 +62,14 @@ void groupMoments(const NormalizationShape& shape, const float* x, std::int64_t 
 }
 
 template <class V>
-void normalizeSample(const NormalizationCall& call, std::int64_t sample) {
+void normalize(const NormalizationCall& call) {
   const NormalizationShape& shape = call.shape;
-  float* x = call.normalized.data + sample * call.normalized.sample;
-  float* slope = call.slope.data + sample * call.slope.sample;
-  const float* added = call.added.data + sample * call.added.sample;
-  float* output = call.output.data + sample * call.output.sample;
+  float* x = call.normalized.data;
+  float* slope = call.slope.data;
+  const float* added = call.added.data;
+  float* output = call.output.data;
   float* means = shape.scratch + shape.channels;
-  float* inverse_deviation = call.inverse_deviation + sample * shape.channels;
+  float* inverse_deviation = call.inverse_deviation;
   groupMoments<V>(shape, x, call.normalized.row, means, inverse_deviation);
   for (std::int64_t c = 0; c < shape.channels; c += V::kWidth) {
     const V mean = V::load(means + c);
@@ -87,21 +87,14 @@ void normalizeSample(const NormalizationCall& call, std::int64_t sample) {
   }
 }
 
-template <class V>
-void normalize(const NormalizationCall& call) {
-  for (std::int64_t sample = 0; sample < call.shape.samples; ++sample) {
-    normalizeSample<V>(call, sample);
-  }
-}
-
 /// With h = output_gradient x slope: input_gradient = (h - mean(h) - n mean(h n)) / deviation.
 template <class V>
-void pullBackNormalizeSample(const NormalizationGradientCall& call, std::int64_t sample) {
+void pullBackNormalize(const NormalizationGradientCall& call) {
   const NormalizationShape& shape = call.shape;
-  const float* n = call.normalized.data + sample * call.normalized.sample;
-  const float* slope = call.slope.data + sample * call.slope.sample;
-  const float* from = call.output_gradient.data + sample * call.output_gradient.sample;
-  float* to = call.input_gradient.data + sample * call.input_gradient.sample;
+  const float* n = call.normalized.data;
+  const float* slope = call.slope.data;
+  const float* from = call.output_gradient.data;
+  float* to = call.input_gradient.data;
   const auto normalized = [&](std::int64_t row, std::int64_t c) {
     return V::load(n + row * call.normalized.row + c);
   };
@@ -119,18 +112,11 @@ void pullBackNormalizeSample(const NormalizationGradientCall& call, std::int64_t
   for (std::int64_t c = 0; c < shape.channels; c += V::kWidth) {
     const V mean = V::load(means + c);
     const V product = V::load(products + c);
-    const V inverse = V::load(call.inverse_deviation + sample * shape.channels + c);
+    const V inverse = V::load(call.inverse_deviation + c);
     for (std::int64_t row = 0; row < shape.rows; ++row) {
       const V centred = pulled(row, c) - mean - normalized(row, c) * product;
       (centred * inverse).store(to + row * call.input_gradient.row + c);
     }
-  }
-}
-
-template <class V>
-void pullBackNormalize(const NormalizationGradientCall& call) {
-  for (std::int64_t sample = 0; sample < call.shape.samples; ++sample) {
-    pullBackNormalizeSample<V>(call, sample);
   }
 }
 

@@ -55,8 +55,7 @@ void StateHead::setContexts(const std::vector<Context>& contexts) {
   const auto rows = static_cast<std::int64_t>(contexts.size());
   Activation speeds = matrix(1, rows);
   for (std::int64_t b = 0; b < rows; ++b) {
-    *rowOf(speeds, b) =
-        static_cast<float>(contexts[static_cast<std::size_t>(b)].speed / kSpeedScale);
+    *speeds.row(b) = static_cast<float>(contexts[static_cast<std::size_t>(b)].speed / kSpeedScale);
   }
   speed_part_ = matrix(width_, rows);
   speed_.applyToRows(speeds, speed_part_);
@@ -72,30 +71,30 @@ void StateHead::mish(Hidden& hidden) const {
 
 void StateHead::forward(const float* actions, int k, float* states) {
   const std::int64_t rows = action_rows_.rows();
-  const float* time = rowOf(time_part_, k);
+  const float* time = time_part_.row(k);
   for (std::int64_t b = 0; b < rows; ++b) {
-    const float* speed = rowOf(speed_part_, b);
-    float* to = rowOf(hidden_[0].input, b);
+    const float* speed = speed_part_.row(b);
+    float* to = hidden_[0].input.row(b);
     for (std::int64_t c = 0; c < width_; ++c) to[c] = time[c] + speed[c];
   }
-  copyIn(actions, {action_values_, rows, 1}, action_rows_.view());
+  copyIn(actions, rows, action_values_, action_rows_.view());
   actions_.applyToRows(action_rows_, hidden_[0].input, true);
   mish(hidden_[0]);
   middle_.applyToRows(hidden_[0].value, hidden_[1].input);
   mish(hidden_[1]);
   out_.applyToRows(hidden_[1].value, state_rows_);
-  copyOut(state_rows_.view(), {state_values_, rows, 1}, states);
+  copyOut(state_rows_.view(), rows, state_values_, states);
 }
 
 void StateHead::pullBack(const float* state_gradient, float* action_gradient) {
   const std::int64_t rows = action_rows_.rows();
-  copyIn(state_gradient, {state_values_, rows, 1}, state_rows_.view());
+  copyIn(state_gradient, rows, state_values_, state_rows_.view());
   out_reversed_.applyToRows(state_rows_, hidden_[1].gradient);
   multiply(hidden_[1].gradient, hidden_[1].slope);
   middle_reversed_.applyToRows(hidden_[1].gradient, hidden_[0].gradient);
   multiply(hidden_[0].gradient, hidden_[0].slope);
   actions_reversed_.applyToRows(hidden_[0].gradient, action_rows_);
-  copyOut(action_rows_.view(), {action_values_, rows, 1}, action_gradient);
+  copyOut(action_rows_.view(), rows, action_values_, action_gradient);
 }
 
 }  // namespace cdiff::diffusion

@@ -3,55 +3,81 @@
 #include "unet.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::diffusion {
 
-UNet::UNet(const DenoiserKernels& kernels, const Architecture& architecture, const Tensors& tensors)
-    : source_{kernels, tensors, architecture.groups,
-              std::max<std::int64_t>(architecture.kernel, 4) / 2},
-      horizon_(architecture.horizon) {
-  addLevels(architecture);
-  addHead({architecture.channels.front()});
+/// Joins layers and signals as docs/network.md draws them.
+class UNetBuilder {
+ public:
+  UNetBuilder(const DenoiserKernels& kernels, const Architecture& architecture,
+              const Tensors& tensors)
+      : source_{kernels, tensors, architecture.groups,
+                std::max<std::int64_t>(architecture.kernel, 4) / 2},
+        horizon_(architecture.horizon) {
+    addLevels(architecture);
+    addHead({architecture.channels.front()});
+  }
+  UNet::Parts take() { return std::move(parts_); }
+
+ private:
+  const Signal* addSignal(const ChannelLayout& layout, std::int64_t rows);
+  void addBlock(const std::string& name, const ChannelLayout& inputs, const Connection& connection);
+  /// R(inputs -> channels) from `connection.input`, R(channels -> channels) to `connection.output`.
+  void addBlockPair(const std::string& name, const ChannelLayout& inputs,
+                    const Connection& connection);
+  void addLevels(const Architecture& architecture);
+  /// Sampling down after a level, or up.
+  void addSampling(const std::string& name, const Connection& connection, bool up);
+  void addHead(const ChannelLayout& layout);
+
+  LayerSource source_;
+  std::int64_t horizon_;
+  const Signal* head_input_ = nullptr;
+  UNet::Parts parts_;
+};
+
+const Signal* UNetBuilder::addSignal(const ChannelLayout& layout, std::int64_t rows) {
+  parts_.signals.push_back(std::make_unique<Signal>(layout, rows, source_.halo));
+  return parts_.signals.back().get();
 }
 
-const Signal* UNet::addSignal(const ChannelLayout& layout, std::int64_t rows) {
-  signals_.push_back(std::make_unique<Signal>(layout, rows, source_.halo));
-  return signals_.back().get();
-}
-
-void UNet::addBlock(const std::string& name, const ChannelLayout& inputs,
-                    const Connection& connection) {
+void UNetBuilder::addBlock(const std::string& name, const ChannelLayout& inputs,
+                           const Connection& connection) {
   const Tensor& bias = tensorNamed(source_.tensors, name + ".inject.bias");
   const ChannelLayout layout{bias.shape[0]};
   const std::int64_t first =
-      injections_.empty() ? 0 : injections_.back().first + injections_.back().layout.padded();
-  injections_.push_back({name + ".inject", layout, first});
-  layers_.push_back(std::make_unique<ResidualBlock>(source_, name, inputs, connection, first));
+      parts_.injections.empty()
+          ? 0
+          : parts_.injections.back().first + parts_.injections.back().layout.padded();
+  parts_.injections.push_back({name + ".inject", layout, first});
+  parts_.layers.push_back(
+      std::make_unique<ResidualBlock>(source_, name, inputs, connection, first));
 }
 
-void UNet::addBlockPair(const std::string& name, const ChannelLayout& inputs,
-                        const Connection& connection) {
+void UNetBuilder::addBlockPair(const std::string& name, const ChannelLayout& inputs,
+                               const Connection& connection) {
   const ChannelLayout layout{tensorNamed(source_.tensors, name + ".a.inject.bias").shape[0]};
   const Port between{addSignal(layout, connection.output.signal->value.rows())};
   addBlock(name + ".a", inputs, {connection.input, between, connection.shared_input});
   addBlock(name + ".b", layout, {between, connection.output});
 }
 
-void UNet::addSampling(const std::string& name, const Connection& connection, bool up) {
-  layers_.push_back(
+void UNetBuilder::addSampling(const std::string& name, const Connection& connection, bool up) {
+  parts_.layers.push_back(
       std::make_unique<PlainConvolution>(source_, name, Spacing{2, 1, up}, connection));
 }
 
 /// The output of level l > 0 lies in the right half of the input of the up level that joins it, so
 /// that nothing is copied; the left half comes from below.
-void UNet::addLevels(const Architecture& architecture) {
+void UNetBuilder::addLevels(const Architecture& architecture) {
   const std::vector<std::int64_t>& channels = architecture.channels;
   const std::size_t levels = channels.size();
   std::vector<Port> level_outputs(levels);
   ChannelLayout inputs{traffic::kRolloutColumns};
-  Port input{noisy_ = addSignal(inputs, horizon_)};
+  Port input{parts_.noisy = addSignal(inputs, horizon_)};
   for (std::size_t l = 0; l < levels; ++l) {
     const std::string name = "down." + std::to_string(l);
     const std::int64_t rows = horizon_ >> l;
@@ -76,33 +102,53 @@ void UNet::addLevels(const Architecture& architecture) {
   }
 }
 
-void UNet::addHead(const ChannelLayout& layout) {
+void UNetBuilder::addHead(const ChannelLayout& layout) {
   const Signal* block = addSignal(layout, horizon_);
-  actions_ = addSignal({traffic::kActionColumns}, horizon_);
-  layers_.push_back(std::make_unique<HeadBlock>(source_, "head.block", layout,
-                                                Connection{{head_input_}, {block}}));
-  layers_.push_back(std::make_unique<PlainConvolution>(source_, "head.out", Spacing{},
-                                                       Connection{{block}, {actions_}}));
+  parts_.actions = addSignal({traffic::kActionColumns}, horizon_);
+  parts_.layers.push_back(std::make_unique<HeadBlock>(source_, "head.block", layout,
+                                                      Connection{{head_input_}, {block}}));
+  parts_.layers.push_back(std::make_unique<PlainConvolution>(
+      source_, "head.out", Spacing{}, Connection{{block}, {parts_.actions}}));
 }
+
+UNet::UNet(const DenoiserKernels& kernels, const Architecture& architecture, const Tensors& tensors)
+    : horizon_(architecture.horizon), parts_(UNetBuilder(kernels, architecture, tensors).take()) {}
 
 void UNet::resize(std::int64_t samples) {
   samples_ = samples;
-  for (const auto& signal : signals_) signal->resize(samples);
-  for (const auto& layer : layers_) layer->resize(samples);
+  for (const auto& signal : parts_.signals) signal->resize(samples);
+  for (const auto& layer : parts_.layers) layer->resize(samples);
 }
 
-void UNet::forward(const float* noisy, const View& injection, float* actions) {
-  copyIn(noisy, {traffic::kRolloutColumns, horizon_, samples_}, noisy_->value.view());
-  for (const auto& layer : layers_) layer->forward({samples_, injection});
-  copyOut(actions_->value.view(), {traffic::kActionColumns, horizon_, samples_}, actions);
+void UNet::forward(const float* noisy, const Activation& injection, float* actions) {
+  const std::int64_t columns = traffic::kRolloutColumns;
+  for (std::int64_t b = 0; b < samples_; ++b) {
+    copyIn(noisy + b * horizon_ * columns, horizon_, columns, parts_.noisy->value.view(b));
+  }
+  // Layer by layer: its weights stay in the cache for all samples.
+  for (const auto& layer : parts_.layers) {
+    for (std::int64_t b = 0; b < samples_; ++b) layer->forward(b, injection.row(b));
+  }
+  const std::int64_t results = traffic::kActionColumns;
+  for (std::int64_t b = 0; b < samples_; ++b) {
+    copyOut(parts_.actions->value.view(b), horizon_, results, actions + b * horizon_ * results);
+  }
 }
 
 void UNet::pullBack(const float* action_gradient, float* noisy_gradient) {
-  copyIn(action_gradient, {traffic::kActionColumns, horizon_, samples_}, actions_->gradient.view());
-  for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
-    (*layer)->pullBack({samples_, {}});
+  const std::int64_t columns = traffic::kActionColumns;
+  for (std::int64_t b = 0; b < samples_; ++b) {
+    copyIn(action_gradient + b * horizon_ * columns, horizon_, columns,
+           parts_.actions->gradient.view(b));
   }
-  copyOut(noisy_->gradient.view(), {traffic::kRolloutColumns, horizon_, samples_}, noisy_gradient);
+  for (auto layer = parts_.layers.rbegin(); layer != parts_.layers.rend(); ++layer) {
+    for (std::int64_t b = 0; b < samples_; ++b) (*layer)->pullBack(b);
+  }
+  const std::int64_t results = traffic::kRolloutColumns;
+  for (std::int64_t b = 0; b < samples_; ++b) {
+    copyOut(parts_.noisy->gradient.view(b), horizon_, results,
+            noisy_gradient + b * horizon_ * results);
+  }
 }
 
 }  // namespace cdiff::diffusion

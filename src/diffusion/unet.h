@@ -25,32 +25,25 @@ class UNet {
   UNet(const DenoiserKernels& kernels, const Architecture& architecture, const Tensors& tensors);
 
   /// In the order of their channels.
-  const std::vector<Injection>& injections() const { return injections_; }
+  const std::vector<Injection>& injections() const { return parts_.injections; }
   void resize(std::int64_t samples);
   /// `injection`: a row of injections for each sample.
-  void forward(const float* noisy, const View& injection, float* actions);
+  void forward(const float* noisy, const Activation& injection, float* actions);
   void pullBack(const float* action_gradient, float* noisy_gradient);
 
  private:
-  const Signal* addSignal(const ChannelLayout& layout, std::int64_t rows);
-  void addBlock(const std::string& name, const ChannelLayout& inputs, const Connection& connection);
-  /// R(inputs -> channels) from `connection.input`, R(channels -> channels) to `connection.output`.
-  void addBlockPair(const std::string& name, const ChannelLayout& inputs,
-                    const Connection& connection);
-  void addLevels(const Architecture& architecture);
-  /// Sampling down after a level, or up.
-  void addSampling(const std::string& name, const Connection& connection, bool up);
-  void addHead(const ChannelLayout& layout);
+  friend class UNetBuilder;
+  struct Parts {
+    std::vector<std::unique_ptr<Signal>> signals;
+    std::vector<std::unique_ptr<Layer>> layers;  ///< in the order of the forward pass
+    std::vector<Injection> injections;
+    const Signal* noisy = nullptr;
+    const Signal* actions = nullptr;
+  };
 
-  LayerSource source_;
   std::int64_t horizon_;
   std::int64_t samples_ = 0;
-  std::vector<std::unique_ptr<Signal>> signals_;
-  std::vector<std::unique_ptr<Layer>> layers_;
-  std::vector<Injection> injections_;
-  const Signal* noisy_ = nullptr;
-  const Signal* actions_ = nullptr;
-  const Signal* head_input_ = nullptr;
+  Parts parts_;
 };
 
 }  // namespace cdiff::diffusion

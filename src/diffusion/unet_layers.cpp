@@ -16,13 +16,11 @@ AlignedFloats padded(const Tensor& tensor, const ChannelLayout& layout) {
 }
 
 /// to += from.
-void addRows(const View& from, const View& to, const RowExtent& extent) {
-  for (std::int64_t sample = 0; sample < extent.samples; ++sample) {
-    for (std::int64_t row = 0; row < extent.rows; ++row) {
-      const float* source = from.data + sample * from.sample + row * from.row;
-      float* target = to.data + sample * to.sample + row * to.row;
-      for (std::int64_t c = 0; c < extent.channels; ++c) target[c] += source[c];
-    }
+void addRows(const View& from, const View& to, std::int64_t rows, std::int64_t channels) {
+  for (std::int64_t row = 0; row < rows; ++row) {
+    const float* source = from.data + row * from.row;
+    float* target = to.data + row * to.row;
+    for (std::int64_t c = 0; c < channels; ++c) target[c] += source[c];
   }
 }
 
@@ -51,31 +49,32 @@ NormalizedConvolution::NormalizedConvolution(const LayerSource& source, const st
   normalized_ = Activation(outputs_, rows, 0);
   slope_ = Activation(outputs_, rows, 0);
   gradient_ = Activation(outputs_, rows, source.halo);
+  gradient_.resize(1);
 }
 
 void NormalizedConvolution::resize(std::int64_t samples) {
-  inverse_deviation_ = AlignedFloats(samples * outputs_.padded());
+  inverse_deviation_ = matrix(outputs_.padded(), samples);
   normalized_.resize(samples);
   slope_.resize(samples);
-  gradient_.resize(samples);
 }
 
-NormalizationShape NormalizedConvolution::shape(std::int64_t samples) const {
-  return {outputs_.padded(), groups_, outputs_.channels / groups_, rows_, samples, scratch_.data()};
+NormalizationShape NormalizedConvolution::shape() const {
+  return {outputs_.padded(), groups_, outputs_.channels / groups_, rows_, scratch_.data()};
 }
 
-void NormalizedConvolution::forward(const View& input, const View& added, const View& output,
-                                    std::int64_t samples) {
-  convolution_->apply(input, normalized_.view(), rows_, samples);
-  kernels_->normalize({shape(samples), scale_.data(), shift_.data(), normalized_.view(),
-                       slope_.view(), inverse_deviation_.data(), added, output});
+void NormalizedConvolution::forward(std::int64_t sample, const View& input, const View& added,
+                                    const View& output) {
+  const View normalized = normalized_.view(sample);
+  convolution_->apply(input, normalized, rows_);
+  kernels_->normalize({shape(), scale_.data(), shift_.data(), normalized, slope_.view(sample),
+                       inverse_deviation_.row(sample), added, output});
 }
 
-void NormalizedConvolution::pullBack(const View& output_gradient, const View& input_gradient,
-                                     std::int64_t samples, bool accumulate) {
-  kernels_->pullBackNormalize({shape(samples), normalized_.view(), slope_.view(),
-                               inverse_deviation_.data(), output_gradient, gradient_.view()});
-  reversed_->apply(gradient_.view(), input_gradient, rows_, samples, accumulate);
+void NormalizedConvolution::pullBack(std::int64_t sample, const View& output_gradient,
+                                     const View& input_gradient, bool accumulate) {
+  kernels_->pullBackNormalize({shape(), normalized_.view(sample), slope_.view(sample),
+                               inverse_deviation_.row(sample), output_gradient, gradient_.view()});
+  reversed_->apply(gradient_.view(), input_gradient, rows_, accumulate);
 }
 
 ResidualBlock::ResidualBlock(const LayerSource& source, const std::string& name,
@@ -87,6 +86,7 @@ ResidualBlock::ResidualBlock(const LayerSource& source, const std::string& name,
       first_(source, name + ".block1", inputs, rows_),
       second_(source, name + ".block2", first_.outputs(), rows_),
       hidden_(first_.outputs(), rows_, source.halo) {
+  hidden_.resize(1);
   buildSkip(source, name, inputs);
 }
 
@@ -113,28 +113,28 @@ void ResidualBlock::buildSkip(const LayerSource& source, const std::string& name
 void ResidualBlock::resize(std::int64_t samples) {
   first_.resize(samples);
   second_.resize(samples);
-  hidden_.resize(samples);
 }
 
-void ResidualBlock::forward(const Pass& pass) {
-  const View input = connection_.input.value();
-  const View output = connection_.output.value();
-  const View injected{pass.injection.data + injection_, 0, pass.injection.sample};
-  first_.forward(input, injected, hidden_.value.view(), pass.samples);
-  if (skip_) skip_->apply(input, output, rows_, pass.samples);
-  second_.forward(hidden_.value.view(), skip_ ? output : input, output, pass.samples);
+void ResidualBlock::forward(std::int64_t sample, const float* injection) {
+  const View input = connection_.input.value(sample);
+  const View output = connection_.output.value(sample);
+  const View hidden = hidden_.value.view();
+  // Rows of stride 0: the same injection at every time step.
+  first_.forward(sample, input, {const_cast<float*>(injection) + injection_, 0}, hidden);
+  if (skip_) skip_->apply(input, output, rows_);
+  second_.forward(sample, hidden, skip_ ? output : input, output);
 }
 
-void ResidualBlock::pullBack(const Pass& pass) {
-  const View input = connection_.input.gradient();
-  const View output = connection_.output.gradient();
+void ResidualBlock::pullBack(std::int64_t sample) {
+  const View input = connection_.input.gradient(sample);
+  const View output = connection_.output.gradient(sample);
   const View hidden = hidden_.gradient.view();
-  second_.pullBack(output, hidden, pass.samples, false);
-  first_.pullBack(hidden, input, pass.samples, connection_.shared_input);
+  second_.pullBack(sample, output, hidden, false);
+  first_.pullBack(sample, hidden, input, connection_.shared_input);
   if (skip_reversed_) {
-    skip_reversed_->apply(output, input, rows_, pass.samples, true);
+    skip_reversed_->apply(output, input, rows_, true);
   } else {
-    addRows(output, input, {first_.outputs().padded(), rows_, pass.samples});
+    addRows(output, input, rows_, first_.outputs().padded());
   }
 }
 
@@ -151,14 +151,14 @@ PlainConvolution::PlainConvolution(const LayerSource& source, const std::string&
 
 void PlainConvolution::resize(std::int64_t) {}
 
-void PlainConvolution::forward(const Pass& pass) {
-  convolution_->apply(connection_.input.value(), connection_.output.value(),
-                      connection_.output.signal->value.rows(), pass.samples);
+void PlainConvolution::forward(std::int64_t sample, const float*) {
+  convolution_->apply(connection_.input.value(sample), connection_.output.value(sample),
+                      connection_.output.signal->value.rows());
 }
 
-void PlainConvolution::pullBack(const Pass& pass) {
-  reversed_->apply(connection_.output.gradient(), connection_.input.gradient(),
-                   connection_.input.signal->value.rows(), pass.samples, connection_.shared_input);
+void PlainConvolution::pullBack(std::int64_t sample) {
+  reversed_->apply(connection_.output.gradient(sample), connection_.input.gradient(sample),
+                   connection_.input.signal->value.rows(), connection_.shared_input);
 }
 
 HeadBlock::HeadBlock(const LayerSource& source, const std::string& name,
@@ -169,13 +169,14 @@ HeadBlock::HeadBlock(const LayerSource& source, const std::string& name,
 
 void HeadBlock::resize(std::int64_t samples) { block_.resize(samples); }
 
-void HeadBlock::forward(const Pass& pass) {
-  block_.forward(connection_.input.value(), {zeros_.data(), 0, 0}, connection_.output.value(),
-                 pass.samples);
+void HeadBlock::forward(std::int64_t sample, const float*) {
+  block_.forward(sample, connection_.input.value(sample), {zeros_.data(), 0},
+                 connection_.output.value(sample));
 }
 
-void HeadBlock::pullBack(const Pass& pass) {
-  block_.pullBack(connection_.output.gradient(), connection_.input.gradient(), pass.samples, false);
+void HeadBlock::pullBack(std::int64_t sample) {
+  block_.pullBack(sample, connection_.output.gradient(sample), connection_.input.gradient(sample),
+                  false);
 }
 
 }  // namespace cdiff::diffusion

@@ -37,8 +37,8 @@ struct Port {
   const Signal* signal = nullptr;
   std::int64_t channel = 0;
 
-  View value() const { return signal->value.view(channel); }
-  View gradient() const { return signal->gradient.view(channel); }
+  View value(std::int64_t sample) const { return signal->value.view(sample, channel); }
+  View gradient(std::int64_t sample) const { return signal->gradient.view(sample, channel); }
 };
 
 /// What all layers are built from.
@@ -49,19 +49,15 @@ struct LayerSource {
   std::int64_t halo;
 };
 
-struct Pass {
-  std::int64_t samples = 0;
-  View injection;  ///< one row per sample
-};
-
 class Layer {
  public:
   virtual ~Layer() = default;
   /// Makes room for a batch.
   virtual void resize(std::int64_t samples) = 0;
-  virtual void forward(const Pass& pass) = 0;
+  /// `injection`: the sample's row of injections.
+  virtual void forward(std::int64_t sample, const float* injection) = 0;
   /// From the gradient at the output to that at the input, at the last forward.
-  virtual void pullBack(const Pass& pass) = 0;
+  virtual void pullBack(std::int64_t sample) = 0;
 };
 
 /// Between which signals a layer stands.
@@ -79,13 +75,13 @@ class NormalizedConvolution {
                         const ChannelLayout& inputs, std::int64_t rows);
 
   void resize(std::int64_t samples);
-  void forward(const View& input, const View& added, const View& output, std::int64_t samples);
-  void pullBack(const View& output_gradient, const View& input_gradient, std::int64_t samples,
+  void forward(std::int64_t sample, const View& input, const View& added, const View& output);
+  void pullBack(std::int64_t sample, const View& output_gradient, const View& input_gradient,
                 bool accumulate);
   const ChannelLayout& outputs() const { return outputs_; }
 
  private:
-  NormalizationShape shape(std::int64_t samples) const;
+  NormalizationShape shape() const;
 
   const DenoiserKernels* kernels_;
   ChannelLayout outputs_;
@@ -96,22 +92,22 @@ class NormalizedConvolution {
   AlignedFloats scale_;
   AlignedFloats shift_;
   AlignedFloats scratch_;
-  AlignedFloats inverse_deviation_;
+  Activation inverse_deviation_;  ///< [B, channels]
   Activation normalized_;
   Activation slope_;
-  Activation gradient_;
+  Activation gradient_;  ///< at the convolution's output, of one sample
 };
 
 /// Two normalised convolutions, the injection after the first, plus the input.
 class ResidualBlock : public Layer {
  public:
-  /// `injection`: its first channel in the pass's injection.
+  /// `injection`: its first channel in a row of injections.
   ResidualBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,
                 const Connection& connection, std::int64_t injection);
 
   void resize(std::int64_t samples) override;
-  void forward(const Pass& pass) override;
-  void pullBack(const Pass& pass) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
 
  private:
   void buildSkip(const LayerSource& source, const std::string& name, const ChannelLayout& inputs);
@@ -123,7 +119,7 @@ class ResidualBlock : public Layer {
   NormalizedConvolution second_;
   std::optional<Convolution> skip_;
   std::optional<Convolution> skip_reversed_;
-  Signal hidden_;
+  Signal hidden_;  ///< of one sample
 };
 
 /// A convolution alone: changes of resolution and the head's output.
@@ -133,8 +129,8 @@ class PlainConvolution : public Layer {
                    const Connection& connection);
 
   void resize(std::int64_t samples) override;
-  void forward(const Pass& pass) override;
-  void pullBack(const Pass& pass) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
 
  private:
   Connection connection_;
@@ -149,8 +145,8 @@ class HeadBlock : public Layer {
             const Connection& connection);
 
   void resize(std::int64_t samples) override;
-  void forward(const Pass& pass) override;
-  void pullBack(const Pass& pass) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
 
  private:
   Connection connection_;
