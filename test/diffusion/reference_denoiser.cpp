@@ -96,13 +96,12 @@ Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const Tensor& we
   const std::int64_t size = input.channels / groups;
   for (std::int64_t first = 0; first < input.channels; first += size) {
     const auto count = static_cast<double>(size * input.rows);
+    const double* group = input.values.data() + first * input.rows;
     double mean = 0.0;
     double variance = 0.0;
-    for (std::int64_t i = 0; i < size * input.rows; ++i)
-      mean += (&input.values[0])[first * input.rows + i] / count;
+    for (std::int64_t i = 0; i < size * input.rows; ++i) mean += group[i] / count;
     for (std::int64_t i = 0; i < size * input.rows; ++i) {
-      const double distance = (&input.values[0])[first * input.rows + i] - mean;
-      variance += distance * distance / count;
+      variance += (group[i] - mean) * (group[i] - mean) / count;
     }
     for (std::int64_t c = first; c < first + size; ++c) {
       for (std::int64_t t = 0; t < input.rows; ++t) {
