@@ -37,27 +37,26 @@ json factsOf(const TrainingState& state, const std::map<std::string, StageResult
                     {"loss", result.loss},
                     {"held_out", result.held_out}};
   }
-  return {
-      {"schema_version", 1},
-      {"data",
-       {{"sha256", dataset.sha256()},
-        {"samples", dataset.size()},
-        {"training_samples", dataset.training().size()},
-        {"validation_samples", dataset.validation().size()},
-        {"judged_samples", state.held_out.size()},
-        {"sessions", dataset.sessions()},
-        {"validation_sessions", dataset.validationSessions()}}},
-      {"stages", stages},
-      {"held_out", held_out},
-      {"seed", state.options.seed},
-      {"learning_rate", state.options.learning_rate},
-      {"weight_decay", state.options.weight_decay},
-      {"route_drop", state.options.route_drop},
-      {"mirror", state.options.mirror},
-      {"machine", processorName()},
-      {"threads", state.options.threads},
-      {"device", state.device.str()},
-      {"torch", E2E_CDIFF_TORCH_VERSION}};
+  return {{"schema_version", 1},
+          {"data",
+           {{"sha256", dataset.sha256()},
+            {"samples", dataset.size()},
+            {"training_samples", dataset.training().size()},
+            {"validation_samples", dataset.validation().size()},
+            {"judged_samples", state.held_out.size()},
+            {"sessions", dataset.sessions()},
+            {"validation_sessions", dataset.validationSessions()}}},
+          {"stages", stages},
+          {"held_out", held_out},
+          {"seed", state.options.seed},
+          {"learning_rate", state.options.learning_rate},
+          {"weight_decay", state.options.weight_decay},
+          {"route_drop", state.options.route_drop},
+          {"mirror", state.options.mirror},
+          {"machine", processorName()},
+          {"threads", state.options.threads},
+          {"device", state.device.str()},
+          {"torch", E2E_CDIFF_TORCH_VERSION}};
 }
 
 std::string figureRow(const std::string& label, const std::string& prefix, const Figures& figures) {

@@ -26,7 +26,6 @@ void ParameterSet::declare(const std::string& name, const std::vector<std::int64
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto element = static_cast<std::uint32_t>(i);
     double value = start.value;
-    if (start.kind == Start::Kind::kNormal) value *= start_.normal(key, element);
     if (start.kind == Start::Kind::kUniform)
       value = start_.uniform(key, element, -start.value, start.value);
     values[i] = static_cast<float>(value);
@@ -47,7 +46,7 @@ void ParameterSet::declareLayer(const std::string& name, const std::vector<std::
 void ParameterSet::declareConvolution(const std::string& name,
                                       const std::vector<std::int64_t>& shape) {
   const auto outputs = static_cast<double>(shape[0] * productFrom(shape, 2));
-  declare(name + ".weight", shape, {Start::Kind::kNormal, std::sqrt(2.0 / outputs)});
+  declare(name + ".weight", shape, {Start::Kind::kUniform, std::sqrt(6.0 / outputs)});
 }
 
 void ParameterSet::declareNorm(const std::string& name, std::int64_t channels, double weight) {

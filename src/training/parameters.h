@@ -16,9 +16,9 @@ namespace cdiff::training {
 
 /// How a tensor starts.
 struct Start {
-  enum class Kind { kConstant, kNormal, kUniform };
+  enum class Kind { kConstant, kUniform };
   Kind kind = Kind::kConstant;
-  double value = 0.0;  ///< the constant, the standard deviation or the bound
+  double value = 0.0;  ///< the constant, or the bound of the absolute value
 };
 
 class ParameterSet {
@@ -30,7 +30,7 @@ class ParameterSet {
   /// in).
   void declareLayer(const std::string& name, const std::vector<std::int64_t>& shape,
                     bool transposed = false);
-  /// NAME.weight [out, in, kernel, kernel], normal with variance 2 / fan out, no bias.
+  /// NAME.weight [out, in, kernel, kernel], uniform with variance 2 / fan out, no bias.
   void declareConvolution(const std::string& name, const std::vector<std::int64_t>& shape);
   /// NAME.weight = `weight` and NAME.bias = 0.
   void declareNorm(const std::string& name, std::int64_t channels, double weight = 1.0);

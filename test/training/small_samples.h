@@ -10,7 +10,8 @@
 #include <string>
 
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/training/sample.h"
+#include "e2e_cdiff/diffusion/architecture.h"
+#include "e2e_cdiff/training/shard.h"
 
 namespace cdiff::test {
 
@@ -76,6 +77,32 @@ inline training::Sample smallSample(std::size_t index, std::uint64_t session) {
   sample.recovering = index % 2 == 1;
   sample.maneuver = static_cast<std::uint8_t>(index % 4);
   return sample;
+}
+
+/// Networks that fit the small samples (the image encoder stays what it is).
+inline diffusion::Architecture smallArchitecture() {
+  diffusion::Architecture architecture;
+  architecture.horizon = 8;
+  architecture.diffusion_steps = 10;
+  architecture.channels = {8, 16, 16};
+  architecture.groups = 4;
+  architecture.time_width = 8;
+  architecture.image_width = 64;
+  architecture.image_height = 64;
+  architecture.image_features = 16;
+  architecture.route_points = 4;
+  architecture.route_features = 8;
+  architecture.speed_features = 4;
+  architecture.context_width = 16;
+  architecture.state_hidden = 32;
+  return architecture;
+}
+
+/// The first `count` samples, all of session 1, as one shard.
+inline void writeShard(const std::filesystem::path& path, std::size_t count) {
+  training::ShardWriter writer(smallSchema());
+  for (std::size_t i = 0; i < count; ++i) writer.append(smallSample(i, 1));
+  writer.write(path);
 }
 
 }  // namespace cdiff::test

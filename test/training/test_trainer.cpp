@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "checkpoint.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/diffusion/model.h"
+#include "e2e_cdiff/training/trainer.h"
+#include "training/small_samples.h"
+
+namespace cdiff::training {
+namespace {
+
+/// Eight samples, small networks, every sample in every batch.
+class TrainerTest : public testing::Test {
+ protected:
+  TrainerTest() {
+    std::filesystem::create_directories(folder_.path() / "data");
+    test::writeShard(folder_.path() / "data" / "a.shard", 8);
+    options_.data = (folder_.path() / "data").string();
+    options_.output = (folder_.path() / "model").string();
+    options_.architecture = test::smallArchitecture();
+    options_.validation_share = 0.0;
+    options_.batch = 8;
+    options_.device = "cpu";
+    options_.warm_up = 5;
+    options_.learning_rate = 2e-3;
+    options_.validation_every = 100000;
+    options_.report_every = 0.0;
+  }
+
+  void run(const std::string& stage, std::int64_t steps) {
+    options_.stage = stage;
+    options_.steps = steps;
+    train(options_, stop_, log_);
+  }
+
+  test::ScratchFolder folder_;
+  TrainingOptions options_;
+  std::atomic<bool> stop_{false};
+  std::ostringstream log_;
+};
+
+TEST_F(TrainerTest, AllStagesMakeAModelThatFitsEightSamples) {
+  options_.image_scale = 0.5;
+  options_.mirror = false;
+  run("encoder", 3);
+  run("fine_tune", 1);
+  run("denoiser", 300);
+  const auto training =
+      nlohmann::json::parse(core::readFile(folder_.path() / "model" / "training.json", "record"));
+  EXPECT_EQ(training.at("data").at("samples"), 8);
+  EXPECT_EQ(training.at("stages").at("denoiser").at("steps"), 300);
+  EXPECT_EQ(training.at("stages").at("encoder").at("steps"), 3);
+  // The mean prediction would have a loss near E[w] 3/7... of unit variance; fitted samples do not.
+  EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.4);
+  EXPECT_LT(training.at("held_out").at("sample_ade_m").get<double>(), 0.5);
+  const diffusion::Model model = diffusion::loadModel((folder_.path() / "model").string());
+  EXPECT_EQ(model.spread.rows(), 8);
+  EXPECT_GT(model.spread.minCoeff(), 0.0);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "model" / "model_card.md"));
+}
+
+/// Sets a flag when a line with `text` is logged.
+class StoppingBuffer : public std::stringbuf {
+ public:
+  StoppingBuffer(std::atomic<bool>& stop, std::string text) : stop_(stop), text_(std::move(text)) {}
+
+ protected:
+  int sync() override {
+    if (str().find(text_) != std::string::npos) stop_ = true;
+    return 0;
+  }
+
+ private:
+  std::atomic<bool>& stop_;
+  std::string text_;
+};
+
+TEST_F(TrainerTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
+  run("encoder", 4);
+  const std::filesystem::path path = folder_.path() / "model" / "encoder.checkpoint";
+  const Checkpoint expected = readCheckpoint(path);
+  StoppingBuffer buffer(stop_, "encoder step 2/4");
+  std::ostream log(&buffer);
+  options_.stage = "encoder";
+  EXPECT_THROW(train(options_, stop_, log), core::Interrupted);
+  EXPECT_EQ(readCheckpoint(path).facts.at("steps"), 2);
+  stop_ = false;
+  options_.resume = true;
+  run("encoder", 4);
+  const Checkpoint found = readCheckpoint(path);
+  ASSERT_EQ(found.tensors.size(), expected.tensors.size());
+  for (const auto& [name, tensor] : expected.tensors)
+    EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
+}
+
+TEST_F(TrainerTest, SaysWhatIsMissing) {
+  EXPECT_THROW(run("denoiser", 1), core::InputError);
+  EXPECT_THROW(run("export", 1), core::InputError);
+  EXPECT_THROW(run("decoder", 1), core::InputError);
+  options_.data = folder_.path() / "nothing";
+  EXPECT_THROW(run("encoder", 1), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::training
