@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What the planner learns from: one vehicle at one planning time with what it saw, knew and then
+/// did.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/rollout.h"
+
+namespace cdiff::training {
+
+struct Sample {
+  traffic::CameraImage image;  ///< rgb8; its tick is not stored apart from `tick`
+  double speed = 0.0;          ///< own speed at planning time [m/s]
+  traffic::Rollout rollout;    ///< [T, 7] metric, body frame at planning time; stored as float32
+  std::vector<float> route;    ///< [route_points, 2] tokens (diffusion/route_tokens.h)
+  std::uint64_t session = 0;   ///< core::hashText of the session's name; splits are by session
+  std::string vehicle;         ///< id
+  std::uint64_t tick = 0;      ///< planning time
+  bool recovering = false;     ///< shortly (about 2 s) after a disturbance
+  std::uint8_t maneuver = 0;   ///< of the collector: 0 straight on, 1 left, 2 right, 3 other
+  std::uint8_t stop_reason =
+      0;  ///< of the collector: 0 none, 1 light, 2 leader, 3 yielding, 4 other
+  std::vector<float> auxiliary;  ///< further targets, as the schema names them; NaN: not known
+};
+
+/// What every sample of a data set has in common.
+struct SampleSchema {
+  std::int64_t horizon = 32;           ///< T
+  std::int64_t image_width = 160;      ///< [px]
+  std::int64_t image_height = 96;      ///< [px]
+  std::int64_t route_points = 16;      ///< tokens
+  double route_spacing = 3.0;          ///< [m]
+  std::vector<std::string> auxiliary;  ///< names of the auxiliary targets, may be empty
+
+  /// Throws InputError naming the first field of `sample` that does not fit or is not finite.
+  void check(const Sample& sample) const;
+  /// As JSON text and back; throws InputError naming `source` and the key that is missing or wrong.
+  std::string toJson() const;
+  static SampleSchema fromJson(const std::string& text, const std::string& source);
+};
+
+bool operator==(const SampleSchema& left, const SampleSchema& right);
+
+}  // namespace cdiff::training

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Small samples made by rule, for tests.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/training/sample.h"
+
+namespace cdiff::test {
+
+/// A folder of its own for a test, removed with it.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "cdiff_training_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder " + name);
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline training::SampleSchema smallSchema() {
+  training::SampleSchema schema;
+  schema.horizon = 8;
+  schema.image_width = 64;
+  schema.image_height = 64;
+  schema.route_points = 4;
+  return schema;
+}
+
+/// Sample `index` of session `session`: a vehicle that keeps its speed of 5 + index m/s straight
+/// on; the image is grey noise with a bright column that tells the index.
+inline training::Sample smallSample(std::size_t index, std::uint64_t session) {
+  const training::SampleSchema schema = smallSchema();
+  const core::RandomStream noise(7, "test image");
+  training::Sample sample;
+  sample.image.width = static_cast<int>(schema.image_width);
+  sample.image.height = static_cast<int>(schema.image_height);
+  sample.image.rgb.resize(static_cast<std::size_t>(schema.image_width * schema.image_height * 3));
+  for (std::size_t i = 0; i < sample.image.rgb.size(); ++i) {
+    const bool bright = (i / 3) % 64 / 8 == index % 8;
+    sample.image.rgb[i] = static_cast<std::uint8_t>(
+        bright ? 255 : noise.index({index}, static_cast<std::uint32_t>(i), 128));
+  }
+  sample.speed = 5.0 + static_cast<double>(index);
+  sample.rollout.setZero(schema.horizon, traffic::kRolloutColumns);
+  for (Eigen::Index t = 0; t < schema.horizon; ++t) {
+    sample.rollout(t, traffic::kRolloutX) = sample.speed * 0.1 * static_cast<double>(t + 1);
+    sample.rollout(t, traffic::kRolloutSpeed) = sample.speed;
+    sample.rollout(t, traffic::kRolloutThrottle) = 0.25;
+    sample.rollout(t, traffic::kRolloutSteer) = index % 2 == 0 ? 0.5 : -0.5;
+  }
+  for (std::int64_t i = 0; i < schema.route_points; ++i) {
+    sample.route.push_back(0.15F * static_cast<float>(i));
+    sample.route.push_back(index % 2 == 0 ? 0.25F : -0.25F);
+  }
+  sample.session = session;
+  sample.vehicle = "v" + std::to_string(index);
+  sample.tick = 10 * index;
+  sample.recovering = index % 2 == 1;
+  sample.maneuver = static_cast<std::uint8_t>(index % 4);
+  return sample;
+}
+
+}  // namespace cdiff::test
