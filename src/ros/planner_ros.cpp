@@ -16,8 +16,7 @@ std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
 
 std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
                                                const scenario::SessionSetup& setup) {
-  const planning::PlannerOptions options{setup.options().pdm_lite, setup.options().vehicle};
-  return planning::makePlanner(name, options, setup.planningContext());
+  return planning::makePlanner(name, setup.options().plannerOptions(), setup.planningContext());
 }
 
 void warnOf(const ActionOrigin& origin) {
