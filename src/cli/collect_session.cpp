@@ -3,8 +3,6 @@
 #include "collect_session.h"
 
 #include <atomic>
-#include <chrono>
-#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,7 +11,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/rendering/front_camera.h"
 #include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/scenario/collection_loop.h"
 #include "e2e_cdiff/training/shard.h"
@@ -36,47 +33,12 @@ void catchSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/// Images of the driven vehicles, those of different slots at different decisions.
-class CameraRecorder : public scenario::SessionObserver {
- public:
-  CameraRecorder(const scenario::SessionSetup& setup, double image_period, ros::SessionBag& bag)
-      : camera_(rendering::CameraOptions(), setup.network()),
-        bag_(bag),
-        ticks_(setup.ticksPerDecision()),
-        every_(std::max<std::int64_t>(
-            1, std::llround(image_period / setup.options().decision_period))) {}
-
-  void observe(const scenario::TickRecord& record) override {
-    if (record.actions == nullptr) return;
-    const auto decision = static_cast<std::int64_t>(record.snapshot->tick / ticks_);
-    for (const planning::PlannedAction& action : *record.actions) {
-      if ((decision + action.slot + 1) % every_ != 0) continue;
-      const traffic::Vehicle* vehicle = record.snapshot->find(action.vehicle_id);
-      if (vehicle == nullptr || !vehicle->applied_action) continue;
-      traffic::CameraImage image = camera_.render(*record.snapshot, *vehicle);
-      image.tick = record.snapshot->tick;
-      bag_.writeImage(action.slot, image);
-    }
-  }
-
- private:
-  rendering::FrontCamera camera_;
-  ros::SessionBag& bag_;
-  std::uint64_t ticks_;
-  std::int64_t every_;
-};
-
 void record(const CollectRequest& request, const CollectSettings& settings, const fs::path& file) {
   const auto setup = scenario::collectionSetup(settings.scenario, settings.collection);
-  scenario::CollectionLoop loop(*setup, settings.collection);
+  scenario::CollectionLoop loop(*setup, settings.collection, request.images);
   ros::SessionBag bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
   bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
   loop.addObserver(bag);
-  std::unique_ptr<CameraRecorder> camera;
-  if (request.images) {
-    camera = std::make_unique<CameraRecorder>(*setup, settings.collection.image_period, bag);
-    loop.addObserver(*camera);
-  }
   const traffic::SessionStatus status = loop.run(stop_requested);
   if (status == traffic::SessionStatus::kInterrupted) throw core::Interrupted("interrupted");
   if (status == traffic::SessionStatus::kError)

@@ -82,6 +82,9 @@ void SessionBag::observe(const scenario::TickRecord& record) {
     if (record.actions != nullptr) {
       for (const planning::PlannedAction& action : *record.actions) writeAction(action, record);
     }
+    if (record.images != nullptr) {
+      for (const scenario::SlotImage& seen : *record.images) writeImage(seen);
+    }
     if (!snapshot.decision_tick) return;
     bag_.write("/tf", stamp, toTfMsg(snapshot));
     if (const traffic::Vehicle* ego = snapshot.ego())
@@ -108,12 +111,10 @@ void SessionBag::writeAction(const planning::PlannedAction& action,
     bag_.write(bagTopic(cbvRolloutTopic(action.slot)), stamp, toRolloutMsg(action, snapshot));
 }
 
-void SessionBag::writeImage(int slot, const traffic::CameraImage& image) {
-  const double time = static_cast<double>(image.tick) * setup_.options().simulation_step;
-  write([&] {
-    bag_.write(bagTopic(cameraImageTopic(slot)), bagStamp(toStamp(time)),
-               toImageMsg(image, time, slot));
-  });
+void SessionBag::writeImage(const scenario::SlotImage& seen) {
+  const double time = static_cast<double>(seen.image.tick) * setup_.options().simulation_step;
+  bag_.write(bagTopic(cameraImageTopic(seen.slot)), bagStamp(toStamp(time)),
+             toImageMsg(seen.image, time, seen.slot));
 }
 
 void SessionBag::finish() {

@@ -57,16 +57,19 @@ std::unique_ptr<SessionSetup> collectionSetup(const ScenarioOptions& scenario,
 struct CollectionLoop::Decision {
   cbv::CbvSelection selection;
   std::vector<PlannedAction> actions;
+  std::vector<SlotImage> images;
   std::vector<PlannerLatency> latencies;
 };
 
-CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOptions& options)
+CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOptions& options,
+                               bool images)
     : setup_(setup),
       options_(options),
       seed_(static_cast<std::uint64_t>(setup.options().seed)),
       driver_(options, setup.graph(), setup.drivableArea(), seed_) {
   ego_planner_ = perturbedPlanner(setup.options().ego_planner);
   cbv_planner_ = perturbedPlanner(setup.options().cbv_planner);
+  if (images) camera_.emplace(setup.options().camera, setup.network());
   world_ = std::make_unique<World>(setup);
   world_->setTakeOverDisturbance(
       [this](const std::string& id, const traffic::VehicleState& state) {
@@ -77,9 +80,8 @@ CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOption
 CollectionLoop::~CollectionLoop() = default;
 
 std::unique_ptr<PerturbedPlanner> CollectionLoop::perturbedPlanner(const std::string& name) const {
-  const ScenarioOptions& options = setup_.options();
-  const planning::PlannerOptions planner_options{options.pdm_lite, options.vehicle};
-  auto planner = planning::makePlanner(name, planner_options, setup_.planningContext());
+  auto planner =
+      planning::makePlanner(name, setup_.options().plannerOptions(), setup_.planningContext());
   if (planner->needsImages())
     throw core::InputError("planner '" + name + "' needs images; data are collected with planners "
                            "that do not, such as 'pdm_lite'");
@@ -111,7 +113,23 @@ CollectionLoop::Decision CollectionLoop::decide() {
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed));
   ask(*cbv_planner_, "cbv:" + options.cbv_planner,
       cbvTasks(snapshot, decision.selection, options.target_speed));
+  if (camera_) render(decision);
   return decision;
+}
+
+/// Images of the driven vehicles whose turn it is; the first one after the take-over, so that no
+/// jump lies between image and motion.
+void CollectionLoop::render(Decision& decision) {
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const double period = setup_.options().decision_period;
+  const auto every = std::max(1LL, std::llround(options_.image_period / period));
+  const auto count = static_cast<long long>(snapshot.tick / setup_.ticksPerDecision());
+  for (const PlannedAction& action : decision.actions) {
+    if ((count + action.slot + 1) % every != 0) continue;
+    const traffic::Vehicle* vehicle = snapshot.find(action.vehicle_id);
+    if (vehicle == nullptr || !vehicle->applied_action) continue;
+    decision.images.push_back({action.slot, camera_->render(snapshot, *vehicle)});
+  }
 }
 
 SessionStatus CollectionLoop::run(const std::atomic<bool>& stop) {
@@ -124,6 +142,7 @@ SessionStatus CollectionLoop::run(const std::atomic<bool>& stop) {
       decision = decide();
       record.selection = &decision.selection;
       record.actions = &decision.actions;
+      record.images = &decision.images;
       record.latencies = decision.latencies;
     } else {
       driver_.observe(snapshot);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The bag of a session that one process drives: the same topics, stamps and order as the
-/// recorder's, and camera images where they are given. While it writes, the file is called
+/// recorder's, and the images that planners or records were given. While it writes, the file is called
 /// FILE.active.
 #pragma once
 
@@ -11,7 +11,6 @@
 
 #include "e2e_cdiff/scenario/session_observer.h"
 #include "e2e_cdiff/scenario/session_setup.h"
-#include "e2e_cdiff/traffic/camera_image.h"
 #include "rosbag/bag.h"
 
 namespace cdiff::ros {
@@ -40,13 +39,12 @@ class SessionBag : public scenario::SessionObserver {
     noisy_ = std::move(query);
   }
   void observe(const scenario::TickRecord& record) override;
-  /// The image that a slot (the ego: -1) saw at `image.tick`.
-  void writeImage(int slot, const traffic::CameraImage& image);
   /// Gives the file its name. Without this call it stays FILE.active.
   void finish();
 
  private:
   void open(const BagOrigin& origin);
+  void writeImage(const scenario::SlotImage& seen);
   void writeAction(const planning::PlannedAction& action, const scenario::TickRecord& record);
   void write(const std::function<void()>& writing);
 

@@ -6,9 +6,11 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/rendering/front_camera.h"
 #include "e2e_cdiff/scenario/perturbed_planner.h"
 #include "e2e_cdiff/scenario/session_observer.h"
 #include "e2e_cdiff/scenario/traffic_driver.h"
@@ -27,9 +29,10 @@ std::unique_ptr<SessionSetup> collectionSetup(const ScenarioOptions& scenario,
 
 class CollectionLoop {
  public:
-  /// `setup` must outlive the loop. Throws InputError for unknown planners and planners that need
-  /// images.
-  CollectionLoop(const SessionSetup& setup, const CollectionOptions& options);
+  /// `setup` must outlive the loop. `images`: whether records hold what vehicles see, every
+  /// image_period, those of different slots at different decisions. Throws InputError for unknown
+  /// planners and planners that need images.
+  CollectionLoop(const SessionSetup& setup, const CollectionOptions& options, bool images);
   ~CollectionLoop();
 
   /// Observers are called in the order added and must outlive the run.
@@ -43,6 +46,7 @@ class CollectionLoop {
  private:
   struct Decision;
   Decision decide();
+  void render(Decision& decision);
   std::unique_ptr<PerturbedPlanner> perturbedPlanner(const std::string& name) const;
 
   const SessionSetup& setup_;
@@ -52,6 +56,7 @@ class CollectionLoop {
   TrafficDriver driver_;
   std::unique_ptr<PerturbedPlanner> ego_planner_;
   std::unique_ptr<PerturbedPlanner> cbv_planner_;
+  std::optional<rendering::FrontCamera> camera_;
   std::vector<SessionObserver*> observers_;
 };
 
