@@ -38,6 +38,9 @@ inline double median(std::vector<double> values) {
 /// Folder with the real networks and routes; throws InputError saying how to name it.
 std::filesystem::path dataFolder();
 
+void benchmarkCamera(Figures& figures);
+void benchmarkEncoder(Figures& figures);
+void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 

@@ -13,6 +13,7 @@ namespace {
 constexpr int kMaxDepth = 8;
 constexpr std::size_t kMaxElements = 65536;
 constexpr std::size_t kMaxKey = 256;
+constexpr std::size_t kMaxRun = 1u << 20;
 constexpr std::size_t kExcerpt = 100;
 
 /// Watches the parser's events; the keys of every object that is open.
@@ -46,9 +47,30 @@ class Watcher {
   std::vector<std::set<std::string>> open_;
 };
 
+/// Refuses a string, or text between two strings, of more than kMaxRun bytes: the parser would keep
+/// several copies of it.
+void requireShortRuns(std::string_view text, const std::string& source) {
+  bool inside = false;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    if (i == text.size() || text[i] == '"') {
+      if (i - begin > kMaxRun) {
+        throw core::InputError(source + ": the JSON has a fault: " +
+                               (inside ? "a string" : "a stretch without strings") + " of " +
+                               std::to_string(i - begin) + " bytes");
+      }
+      inside = !inside;
+      begin = i + 1;
+    } else if (inside && text[i] == '\\' && i + 1 < text.size()) {
+      ++i;
+    }
+  }
+}
+
 }  // namespace
 
 Json parseStrictJson(std::string_view text, const std::string& source) {
+  requireShortRuns(text, source);
   Watcher watcher(source);
   const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
     watcher.see(depth, event, parsed);

@@ -13,7 +13,8 @@ namespace cdiff::diffusion {
 using Json = nlohmann::json;
 
 /// Throws InputError that begins with `source` when `text` is not JSON, repeats a key of an object,
-/// nests deeper than 8, holds more than 65536 values and keys or a key of more than 256 bytes.
+/// nests deeper than 8, holds more than 65536 values and keys, a key of more than 256 bytes or a
+/// string (or a stretch without strings) of more than 1 MiB.
 Json parseStrictJson(std::string_view text, const std::string& source);
 
 /// What kind of value it is, for errors: "a string", "an array" ...

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr double kThinnest = 0.5;   // [samples] half the width of a drawn line
+constexpr double kShortest = 1e-6;  // [samples] shorter lines are left out
 constexpr double kFaintest = 0.02;  // less opaque lines are left out
 constexpr double kEdgeOn = 1e-9;    // [m] distance of the eye from a plane seen edge-on
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -111,35 +112,40 @@ void Canvas::fill(const Eigen::Vector3d* points, int count, const Paint& paint) 
   scan(projected, corners, plane, paint);
 }
 
+Canvas::LineEnd Canvas::lineEnd(const Eigen::Vector3d& point, const Eigen::Vector3d& side,
+                                const Eigen::Vector2d& across) const {
+  const Eigen::Vector2d axis = project(point);
+  // How far `side` moves the point in the picture: the derivative of the projection along it.
+  const Eigen::Vector2d moved = (focal_length_ * side.head<2>() - axis * side.z()) / point.z();
+  const double half_width = std::abs(moved.dot(across));
+  LineEnd line_end;
+  Eigen::Vector2d offset = moved;
+  if (half_width < kThinnest) {
+    offset = kThinnest * across;
+    line_end.opacity = half_width / kThinnest;
+  }
+  const double sign = offset.dot(across) < 0.0 ? -1.0 : 1.0;
+  line_end.first = axis + sign * offset;
+  line_end.second = axis - sign * offset;
+  return line_end;
+}
+
 void Canvas::line(const Eigen::Vector3d& begin, const Eigen::Vector3d& end,
                   const Eigen::Vector3d& side, const Paint& paint) {
-  Eigen::Vector3d ends[2] = {begin, end};
   if (begin.z() < kNearPlane && end.z() < kNearPlane) return;
   DepthPlane plane;
   if (!depthPlane((end - begin).cross(side), begin, plane)) return;
-  if (begin.z() < kNearPlane) ends[0] = nearCrossing(begin, end);
-  if (end.z() < kNearPlane) ends[1] = nearCrossing(begin, end);
-  const Eigen::Vector2d axis[2] = {project(ends[0]), project(ends[1])};
-  const Eigen::Vector2d along = axis[1] - axis[0];
+  const Eigen::Vector3d from = begin.z() < kNearPlane ? nearCrossing(begin, end) : begin;
+  const Eigen::Vector3d to = end.z() < kNearPlane ? nearCrossing(begin, end) : end;
+  const Eigen::Vector2d along = project(to) - project(from);
   const double length = along.norm();
-  if (length < 1e-6) return;
+  if (length < kShortest) return;
   const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()) / length;
-  Eigen::Vector2d corners[4];
-  double opacity = 0.0;
-  for (int i = 0; i < 2; ++i) {
-    // How far `side` moves the point in the picture: the derivative of the projection along it.
-    const double depth = ends[i].z();
-    const Eigen::Vector2d moved = (focal_length_ * side.head<2>() - axis[i] * side.z()) / depth;
-    const double half_width = std::abs(moved.dot(across));
-    const bool thin = half_width < kThinnest;
-    const Eigen::Vector2d offset = thin ? Eigen::Vector2d(kThinnest * across) : moved;
-    const double sign = offset.dot(across) < 0.0 ? -1.0 : 1.0;
-    opacity += 0.5 * (thin ? half_width / kThinnest : 1.0);
-    corners[i == 0 ? 0 : 3] = axis[i] + sign * offset;
-    corners[i == 0 ? 1 : 2] = axis[i] - sign * offset;
-  }
+  const LineEnd first = lineEnd(from, side, across);
+  const LineEnd last = lineEnd(to, side, across);
+  const Eigen::Vector2d corners[4] = {first.first, first.second, last.second, last.first};
   Paint thinned = paint;
-  thinned.opacity *= opacity;
+  thinned.opacity *= 0.5 * (first.opacity + last.opacity);
   if (thinned.opacity >= kFaintest) scan(corners, 4, plane, thinned);
 }
 

@@ -55,6 +55,12 @@ class Canvas {
     double down = 0.0;
     double middle = 0.0;
   };
+  /// One end of a line in the picture: its corners on both sides.
+  struct LineEnd {
+    Eigen::Vector2d first = Eigen::Vector2d::Zero();
+    Eigen::Vector2d second = Eigen::Vector2d::Zero();
+    double opacity = 1.0;
+  };
   struct RowRange {
     int first = 0;
     int last = -1;
@@ -64,6 +70,9 @@ class Canvas {
   Eigen::Vector2d project(const Eigen::Vector3d& point) const {
     return {focal_length_ * point.x() / point.z(), focal_length_ * point.y() / point.z()};
   }
+  /// `across`: unit, perpendicular to the line in the picture.
+  LineEnd lineEnd(const Eigen::Vector3d& point, const Eigen::Vector3d& side,
+                  const Eigen::Vector2d& across) const;
   void scan(const Eigen::Vector2d* corners, int count, const DepthPlane& plane, const Paint& paint);
   RowRange spanRows(const Eigen::Vector2d* corners, int count);
   void spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& second);

@@ -40,6 +40,7 @@ constexpr Color kSkyTop = rgb(92, 142, 204);
 constexpr Color kSkyHorizon = rgb(205, 221, 235);
 constexpr Color kGrassHorizon = rgb(142, 162, 120);
 constexpr Color kGrassNear = rgb(84, 120, 58);
+constexpr Color kGrassSlope = rgb(104, 136, 78);
 constexpr Color kAsphalt = rgb(84, 86, 90);
 constexpr Color kPavement = rgb(150, 146, 138);
 constexpr Color kUnderside = rgb(58, 60, 64);

@@ -20,26 +20,6 @@ constexpr double kInside = 0.4;        // [m] a border this far inside another l
 constexpr double kOpposite = 2.4;      // [rad] smallest heading difference of opposite lanes
 constexpr double kShortestLane = 0.5;  // [m]
 
-enum class Border { kEdge, kCenter, kNone };
-
-/// What a piece of a lane's outer border is: the road's edge, the centre line to the lanes of the
-/// other direction, or nothing (it lies on another lane).
-Border borderAt(const map::RoadNetwork& network, const map::Lane& lane,
-                const Eigen::Vector3d& point, double heading) {
-  Border border = Border::kEdge;
-  for (const map::LaneMatch& match :
-       network.lanesNear(point.head<2>(), point.z(), 4.0, heading, 1.5)) {
-    const map::Lane& other = network.lane(match.lane);
-    if (other.edge_id == lane.edge_id) continue;
-    const double gap = match.projection.distance - 0.5 * other.width;
-    if (gap < -kInside) return Border::kNone;
-    if (!other.internal && gap < kOppositeGap && std::abs(match.heading_difference) > kOpposite) {
-      border = Border::kCenter;
-    }
-  }
-  return border;
-}
-
 void paintPiece(const CrossSection& begin, const CrossSection& end, double lateral, Color color,
                 std::vector<Marking>& markings) {
   markings.push_back(markingBetween(begin.at(lateral), end.at(lateral), kLineWidth, color));
@@ -73,6 +53,22 @@ void paintBorder(const map::RoadNetwork& network, const map::Lane& lane, double 
 }
 
 }  // namespace
+
+Border borderAt(const map::RoadNetwork& network, const map::Lane& lane,
+                const Eigen::Vector3d& point, double heading) {
+  Border border = Border::kEdge;
+  for (const map::LaneMatch& match :
+       network.lanesNear(point.head<2>(), point.z(), 4.0, heading, 1.5)) {
+    const map::Lane& other = network.lane(match.lane);
+    if (other.edge_id == lane.edge_id) continue;
+    const double gap = match.projection.distance - 0.5 * other.width;
+    if (gap < -kInside) return Border::kNone;
+    if (!other.internal && gap < kOppositeGap && std::abs(match.heading_difference) > kOpposite) {
+      border = Border::kCenter;
+    }
+  }
+  return border;
+}
 
 std::vector<Marking> laneMarkings(const map::RoadNetwork& network) {
   std::vector<Marking> markings;

@@ -6,6 +6,7 @@
 
 #include "lane_markings.h"
 #include "lane_surface.h"
+#include "road_sides.h"
 #include "triangulation.h"
 
 namespace cdiff::rendering {
@@ -53,6 +54,8 @@ std::vector<Surface> surfacesOf(const map::RoadNetwork& network) {
     // Crossings and walking areas lie on the junction's area.
     if (!lane.internal || lane.allows_cars) addLane(lane, surfaces);
   }
+  const std::vector<Surface> sides = roadSides(network);
+  surfaces.insert(surfaces.end(), sides.begin(), sides.end());
   return surfaces;
 }
 
@@ -97,14 +100,29 @@ void RoadScene::drawSurface(const Surface& surface, const View& view, Canvas& ca
   for (int i = 0; i < surface.count; ++i) {
     corners[i] = view.toCamera(surface.corners[static_cast<std::size_t>(i)]);
   }
-  const bool from_above = surface.up.dot(view.eye() - surface.corners[0]) > 0.0;
+  const bool from_above =
+      surface.two_sided || surface.up.dot(view.eye() - surface.corners[0]) > 0.0;
   canvas.fill(corners, surface.count, {from_above ? surface.color : kUnderside, surface.rank, 1.0});
+}
+
+void RoadScene::sortMarkings(const View& view) {
+  by_distance_.clear();
+  for (const int i : visible_) {
+    const Marking& marking = markings_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d offset = 0.5 * (marking.begin + marking.end) - view.eye();
+    const double distance = offset.x() * offset.x() + offset.y() * offset.y();
+    by_distance_.emplace_back(-distance, i);
+  }
+  std::sort(by_distance_.begin(), by_distance_.end());
+  std::transform(by_distance_.begin(), by_distance_.end(), visible_.begin(),
+                 [](const auto& entry) { return entry.second; });
 }
 
 void RoadScene::draw(const View& view, Canvas& canvas) {
   surface_grid_.visible(view, visible_);
   for (const int i : visible_) drawSurface(surfaces_[static_cast<std::size_t>(i)], view, canvas);
   marking_grid_.visible(view, visible_);
+  sortMarkings(view);
   for (const int i : visible_) {
     drawMarking(markings_[static_cast<std::size_t>(i)], rank::kMarking, view, canvas);
   }

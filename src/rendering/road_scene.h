@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "canvas.h"
@@ -20,6 +21,7 @@ struct Surface {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< normal, not of unit length
   Color color = kAsphalt;
   double rank = rank::kRoad;
+  bool two_sided = false;  ///< the same colour from below
 };
 
 /// A painted line (map frame [m]).
@@ -38,11 +40,15 @@ class RoadScene {
  private:
   void drawSurface(const Surface& surface, const View& view, Canvas& canvas) const;
 
+  /// Farthest first: thin lines are transparent.
+  void sortMarkings(const View& view);
+
   std::vector<Surface> surfaces_;
   std::vector<Marking> markings_;
   SpatialGrid surface_grid_;
   SpatialGrid marking_grid_;
-  std::vector<int> visible_;  ///< buffer of draw
+  std::vector<int> visible_;                         ///< buffer of draw
+  std::vector<std::pair<double, int>> by_distance_;  ///< buffer of sortMarkings
 };
 
 /// Draws a painted line if it is seen from above.

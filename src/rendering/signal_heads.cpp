@@ -49,6 +49,37 @@ Eigen::Vector2d endDirection(const map::Lane& lane) {
   return (points.back() - points[points.size() - 2]).head<2>().normalized();
 }
 
+/// Middle and directions of a lamp's face (optical frame).
+struct LampFrame {
+  Eigen::Vector3d middle;
+  Eigen::Vector3d left;
+  Eigen::Vector3d up;
+
+  Eigen::Vector3d at(double left_offset, double up_offset) const {
+    return middle + left * left_offset + up * up_offset;
+  }
+};
+
+void paintHousing(const LampFrame& frame, Canvas& canvas) {
+  const Eigen::Vector3d corners[4] = {frame.at(kHousingHalfWidth, kHousingHalfHeight),
+                                      frame.at(-kHousingHalfWidth, kHousingHalfHeight),
+                                      frame.at(-kHousingHalfWidth, -kHousingHalfHeight),
+                                      frame.at(kHousingHalfWidth, -kHousingHalfHeight)};
+  canvas.fill(corners, 4, {kHousing, rank::kBody, 1.0});
+}
+
+/// An octagon.
+void paintBulb(const LampFrame& frame, double height, Color color, Canvas& canvas) {
+  static constexpr double kCut = 0.41421356237309503;  // tan(22.5 deg)
+  static constexpr double kOctagon[8][2] = {{1, kCut},   {kCut, 1},   {-kCut, 1}, {-1, kCut},
+                                            {-1, -kCut}, {-kCut, -1}, {kCut, -1}, {1, -kCut}};
+  Eigen::Vector3d corners[8];
+  for (int i = 0; i < 8; ++i) {
+    corners[i] = frame.at(kBulbRadius * kOctagon[i][0], height + kBulbRadius * kOctagon[i][1]);
+  }
+  canvas.fill(corners, 8, {color, rank::kBodyDetail, 1.0});
+}
+
 }  // namespace
 
 LampColor lampColorOf(char letter) {
@@ -168,30 +199,14 @@ void SignalHeads::drawLamps(const View& view, Canvas& canvas) const {
 
 void SignalHeads::drawLamp(const SignalHead& head, const View& view, Canvas& canvas) const {
   const Eigen::Vector2d foot = head.stop.head<2>() + (kStopLineBack + kBehindLine) * head.forward;
-  const Eigen::Vector3d middle = view.toCamera(lift(foot, head.stop.z() + kLampHeight));
-  const Eigen::Vector3d left =
-      view.directionToCamera(lift(geometry::leftNormal(head.forward), 0.0));
-  const Eigen::Vector3d up = view.directionToCamera({0.0, 0.0, 1.0});
-  const auto ring = [&](const Eigen::Vector3d& center, double wide, double high, int corners,
-                        const Paint& paint) {
-    // Corners of a square, or of an octagon (a square with its corners cut).
-    static constexpr double kCut = 0.41421356237309503;
-    static constexpr double kOctagon[8][2] = {{1, kCut},   {kCut, 1},   {-kCut, 1}, {-1, kCut},
-                                              {-1, -kCut}, {-kCut, -1}, {kCut, -1}, {1, -kCut}};
-    static constexpr double kSquare[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-    Eigen::Vector3d points[8];
-    for (int i = 0; i < corners; ++i) {
-      const double* at = corners == 4 ? kSquare[i] : kOctagon[i];
-      points[i] = center + left * (wide * at[0]) + up * (high * at[1]);
-    }
-    canvas.fill(points, corners, paint);
-  };
-  ring(middle, kHousingHalfWidth, kHousingHalfHeight, 4, {kHousing, rank::kBody, 1.0});
+  const LampFrame frame = {view.toCamera(lift(foot, head.stop.z() + kLampHeight)),
+                           view.directionToCamera(lift(geometry::leftNormal(head.forward), 0.0)),
+                           view.directionToCamera({0.0, 0.0, 1.0})};
+  paintHousing(frame, canvas);
   if (head.forward.dot(view.eye().head<2>() - foot) >= 0.0) return;  // seen from behind
   const int lit = static_cast<int>(colorOf(head)) - 1;
   for (int i = 0; i < 3; ++i) {
-    ring(middle + up * (kBulbSpacing * (1 - i)), kBulbRadius, kBulbRadius, 8,
-         {i == lit ? kLit[i] : kUnlit[i], rank::kBodyDetail, 1.0});
+    paintBulb(frame, kBulbSpacing * (1 - i), i == lit ? kLit[i] : kUnlit[i], canvas);
   }
 }
 

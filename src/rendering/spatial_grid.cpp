@@ -11,6 +11,10 @@ namespace {
 
 constexpr double kCellSize = 25.0;  // [m]
 
+int cellIndex(double offset, int count) {
+  return offset > 0.0 ? static_cast<int>(std::min(offset, count - 1.0)) : 0;
+}
+
 }  // namespace
 
 Bound boundOf(const Eigen::Vector3d* points, int count) {
@@ -33,6 +37,11 @@ SpatialGrid::SpatialGrid(std::vector<Bound> bounds) : bounds_(std::move(bounds))
   }
   columns_ = static_cast<int>((end.x() - origin_.x()) / kCellSize) + 1;
   rows_ = static_cast<int>((end.y() - origin_.y()) / kCellSize) + 1;
+  sortIntoCells();
+  boundCells();
+}
+
+void SpatialGrid::sortIntoCells() {
   items_.resize(bounds_.size());
   std::iota(items_.begin(), items_.end(), 0);
   const auto cell_of = [&](int item) {
@@ -44,7 +53,10 @@ SpatialGrid::SpatialGrid(std::vector<Bound> bounds) : bounds_(std::move(bounds))
   cell_begin_.assign(cells + 1, 0);
   for (const int item : items_) ++cell_begin_[cell_of(item) + 1];
   std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
-  for (std::size_t cell = 0; cell < cells; ++cell) {
+}
+
+void SpatialGrid::boundCells() {
+  for (std::size_t cell = 0; cell + 1 < cell_begin_.size(); ++cell) {
     std::vector<Eigen::Vector3d> corners;
     for (std::size_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
       const Bound& bound = bounds_[static_cast<std::size_t>(items_[i])];
@@ -64,14 +76,14 @@ std::size_t SpatialGrid::cellOf(const Eigen::Vector3d& point) const {
 
 void SpatialGrid::visible(const View& view, std::vector<int>& found) const {
   found.clear();
-  // A thing reaches beyond its cell; cells know how far, so the ring of one cell around is
-  // searched.
+  if (bounds_.empty()) return;
+  // Things and cells reach less than two cells beyond the cell of their centre.
   const Eigen::Vector2d offset = (view.eye().head<2>() - origin_) / kCellSize;
   const double reach = view.farDistance() / kCellSize + 2.0;
-  const int first_column = std::max(0, static_cast<int>(std::floor(offset.x() - reach)));
-  const int last_column = std::min(columns_ - 1, static_cast<int>(std::floor(offset.x() + reach)));
-  const int first_row = std::max(0, static_cast<int>(std::floor(offset.y() - reach)));
-  const int last_row = std::min(rows_ - 1, static_cast<int>(std::floor(offset.y() + reach)));
+  const int first_column = cellIndex(offset.x() - reach, columns_);
+  const int last_column = cellIndex(offset.x() + reach, columns_);
+  const int first_row = cellIndex(offset.y() - reach, rows_);
+  const int last_row = cellIndex(offset.y() + reach, rows_);
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +

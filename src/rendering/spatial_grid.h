@@ -27,6 +27,8 @@ class SpatialGrid {
   void visible(const View& view, std::vector<int>& found) const;
 
  private:
+  void sortIntoCells();
+  void boundCells();
   std::size_t cellOf(const Eigen::Vector3d& point) const;
   std::vector<Bound> bounds_;
   std::vector<int> items_;               ///< by cell

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "vehicle_body.h"
 
+#include <algorithm>
 #include <array>
 
 namespace cdiff::rendering {
@@ -22,7 +23,8 @@ constexpr Color kPalette[] = {rgb(206, 208, 212), rgb(60, 104, 170), rgb(150, 15
                               rgb(108, 84, 130),  rgb(70, 78, 92)};
 /// Light from above and a little from +x of the map; its part along y is 0, so that a scene
 /// mirrored in y looks the same.
-const Eigen::Vector3d kLight(0.35, 0.0, 0.75);
+constexpr double kLightX = 0.35;
+constexpr double kLightZ = 0.75;
 
 /// A block whose upper rectangle may be smaller; x forward, y left of the vehicle's centre, z above
 /// the road [m].
@@ -42,17 +44,20 @@ class Painter {
         origin_(vehicle.state.position.x(), vehicle.state.position.y(), vehicle.state.elevation) {}
 
   /// A face given counter-clockwise seen from outside (vehicle frame); hidden when turned away.
-  void face(const std::array<Eigen::Vector3d, 4>& corners, Color color, double rank) {
-    Eigen::Vector3d seen[4];
-    for (std::size_t i = 0; i < 4; ++i) seen[i] = view_.toCamera(toMap(corners[i]));
-    const Eigen::Vector3d outwards = (seen[1] - seen[0]).cross(seen[3] - seen[0]);
-    if (outwards.dot(seen[0]) < 0.0) canvas_.fill(seen, 4, {color, rank, 1.0});
+  template <std::size_t kCorners>
+  void face(const std::array<Eigen::Vector3d, kCorners>& corners, Color color, double rank) {
+    Eigen::Vector3d seen[kCorners];
+    for (std::size_t i = 0; i < kCorners; ++i) seen[i] = view_.toCamera(toMap(corners[i]));
+    const Eigen::Vector3d outwards = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
+    if (outwards.dot(seen[0]) < 0.0) {
+      canvas_.fill(seen, static_cast<int>(kCorners), {color, rank, 1.0});
+    }
   }
 
   /// Brightness of a face with this outward normal (vehicle frame, unit).
   double brightness(const Eigen::Vector3d& normal) const {
     const double map_x = forward_.x() * normal.x() - forward_.y() * normal.y();
-    const double light = kLight.x() * map_x + kLight.z() * normal.z();
+    const double light = kLightX * map_x + kLightZ * normal.z();
     // A rear is darker than sides and front, whatever the light.
     return 0.62 + 0.45 * light - 0.1 * std::max(0.0, -normal.x());
   }
@@ -133,16 +138,28 @@ void paintLights(double x, double inner, double outer, double low, double high, 
   }
 }
 
+/// An octagon on the left (`y` positive) or right side.
+std::array<Eigen::Vector3d, 8> wheelOf(double x, double y, double radius) {
+  static constexpr double kCut = 0.41421356237309503;  // tan(22.5 deg)
+  // Clockwise seen from the right side, so counter-clockwise seen from the left one.
+  static constexpr double kOctagon[8][2] = {{1, kCut},   {1, -kCut}, {kCut, -1}, {-kCut, -1},
+                                            {-1, -kCut}, {-1, kCut}, {-kCut, 1}, {kCut, 1}};
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double* at = kOctagon[y > 0.0 ? i : 7 - i];
+    corners[i] = {x + radius * at[0], y, radius + radius * at[1]};
+  }
+  return corners;
+}
+
 void paintWheels(const traffic::VehicleDimensions& size, Painter& painter) {
   const double half = 0.5 * size.width;
-  const double radius = 0.32;
+  const double radius = std::clamp(0.21 * size.height, 0.28, 0.5);
   for (const double x : {-0.31 * size.length, 0.31 * size.length}) {
-    const Block wheel = {x - radius, x - 0.7 * radius, x + radius, x + 0.7 * radius, half, half,
-                         0.0,        2.0 * radius};
-    painter.face(leftOf(wheel), kTyre, rank::kBodyDetail);
-    painter.face(rightOf(wheel), kTyre, rank::kBodyDetail);
+    painter.face(wheelOf(x, half, radius), kTyre, rank::kBodyDetail);
+    painter.face(wheelOf(x, -half, radius), kTyre, rank::kBodyDetail);
     const Block tread = {x - radius, x - radius, x + radius, x + radius,
-                         half,       half,       0.0,        kClearance + 0.05};
+                         half,       half,       0.0,        kClearance};
     painter.face(rearOf(tread), kTyre, rank::kBody);
     painter.face(frontOf(tread), kTyre, rank::kBody);
   }

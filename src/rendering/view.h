@@ -4,6 +4,7 @@
 /// image plane (u right, v down from the principal point).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "e2e_cdiff/rendering/camera_options.h"
