@@ -36,7 +36,8 @@ pid_t start(const ChildProcess& child) {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t process = 0;
-  const int failed = posix_spawn(&process, "/proc/self/exe", nullptr, nullptr, argv.data(), environ);
+  const int failed =
+      posix_spawn(&process, "/proc/self/exe", nullptr, nullptr, argv.data(), environ);
   if (failed != 0) {
     throw core::SimulatorError("cannot start '" + child.name + "': " + std::strerror(failed));
   }

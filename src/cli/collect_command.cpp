@@ -64,8 +64,8 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 void addRows(std::string& text, const std::string& kind,
              const std::map<std::string, std::uint64_t>& counts, std::uint64_t whole) {
   for (const auto& [name, count] : counts) {
-    text += "| " + kind + name + " | " + std::to_string(count) + " | " + percent(count, whole) +
-            " |\n";
+    text +=
+        "| " + kind + name + " | " + std::to_string(count) + " | " + percent(count, whole) + " |\n";
   }
 }
 
@@ -80,8 +80,9 @@ std::string table(const ros::DatasetStatistics& statistics) {
   addRows(text, "", statistics.kinds, statistics.samples);
   for (std::size_t i = 0; i < statistics.speeds.size(); ++i) {
     const bool last = i + 1 == statistics.speeds.size();
-    text += "| speed " + std::to_string(2 * i) + (last ? " and more" : " to " +
-            std::to_string(2 * i + 2)) + " m/s | " + std::to_string(statistics.speeds[i]) + " | " +
+    text += "| speed " + std::to_string(2 * i) +
+            (last ? " and more" : " to " + std::to_string(2 * i + 2)) + " m/s | " +
+            std::to_string(statistics.speeds[i]) + " | " +
             percent(statistics.speeds[i], statistics.samples) + " |\n";
   }
   const double samples = static_cast<double>(std::max<std::uint64_t>(1, statistics.samples));
@@ -140,8 +141,9 @@ void addCommonOptions(CLI::App& command, CollectRequest& request) {
       ->check(CLI::Range(1.0, 3600.0));
   command.add_flag("--keep-bags", request.keep_bag, "Keep the bags that the shards are made of");
   command.add_flag("!--no-images", request.images, "Record bags without images, and no shards");
-  command.add_option("--set", request.set,
-                     "Any key of the scenario or of the group collection as key=value")
+  command
+      .add_option("--set", request.set,
+                  "Any key of the scenario or of the group collection as key=value")
       ->allow_extra_args(false);
 }
 
@@ -151,8 +153,9 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<CollectArguments>();
   CLI::App* command = program.add_subcommand(
       "collect", "Drive and record many vehicles, and make training samples of it");
-  command->add_option("--scenarios", arguments->scenarios,
-                      "Scenarios, names or files (default: all that are shipped)")
+  command
+      ->add_option("--scenarios", arguments->scenarios,
+                   "Scenarios, names or files (default: all that are shipped)")
       ->delimiter(',');
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
       ->check(CLI::Range(1, 100000));

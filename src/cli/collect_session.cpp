@@ -64,8 +64,7 @@ ros::DatasetStatistics writeShard(const CollectRequest& request, const CollectSe
 }
 
 void override(CollectSettings& settings, const std::vector<std::string>& set) {
-  for (const std::string& assignment : set)
-    core::overrideOption(assignment, "--set", settings);
+  for (const std::string& assignment : set) core::overrideOption(assignment, "--set", settings);
 }
 
 }  // namespace
@@ -117,11 +116,16 @@ int collectSession(const CollectRequest& request) {
 }
 
 std::string toJson(const ros::DatasetStatistics& statistics) {
-  json text = {{"images", statistics.images},         {"samples", statistics.samples},
-               {"dropped", statistics.dropped},       {"maneuvers", statistics.maneuvers},
-               {"stop_reasons", statistics.stop_reasons}, {"kinds", statistics.kinds},
-               {"speeds_2_mps", statistics.speeds},   {"steer_sum", statistics.steer_sum},
-               {"contacts", statistics.contacts},     {"seconds", statistics.seconds}};
+  json text = {{"images", statistics.images},
+               {"samples", statistics.samples},
+               {"dropped", statistics.dropped},
+               {"maneuvers", statistics.maneuvers},
+               {"stop_reasons", statistics.stop_reasons},
+               {"kinds", statistics.kinds},
+               {"speeds_2_mps", statistics.speeds},
+               {"steer_sum", statistics.steer_sum},
+               {"contacts", statistics.contacts},
+               {"seconds", statistics.seconds}};
   const auto samples = static_cast<double>(statistics.samples);
   if (statistics.samples > 0) text["mean_absolute_steer"] = statistics.steer_sum / samples;
   return text.dump(2) + "\n";

@@ -18,7 +18,7 @@ struct CollectRequest {
   std::string scenario;  ///< shipped name or file
   std::int64_t seed = 1;
   std::filesystem::path results;
-  double duration = 60.0;        ///< [s]
+  double duration = 60.0;  ///< [s]
   bool keep_bag = false;
   bool images = true;            ///< without: the bag alone
   std::vector<std::string> set;  ///< key=value each

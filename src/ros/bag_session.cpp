@@ -38,8 +38,8 @@ traffic::CameraImage toImage(const sensor_msgs::Image& message, std::uint64_t ti
   if (message.encoding != "rgb8" || message.step != 3 * message.width ||
       message.data.size() != size) {
     throw InputError("an image of tick " + std::to_string(tick) + " is '" + message.encoding +
-                     "' with " + std::to_string(message.data.size()) + " bytes; expected rgb8 with " +
-                     std::to_string(size));
+                     "' with " + std::to_string(message.data.size()) +
+                     " bytes; expected rgb8 with " + std::to_string(size));
   }
   traffic::CameraImage image;
   image.width = static_cast<int>(message.width);

@@ -30,8 +30,8 @@ struct BagImage {
 struct BagSession {
   std::string name;  ///< scenario and seed
   std::unique_ptr<scenario::SessionSetup> setup;
-  std::vector<traffic::TrafficSnapshot> decisions;             ///< at decision ticks, in order
-  std::map<std::uint64_t, std::map<int, DriveKey>> drives;     ///< by tick, then slot
+  std::vector<traffic::TrafficSnapshot> decisions;          ///< at decision ticks, in order
+  std::map<std::uint64_t, std::map<int, DriveKey>> drives;  ///< by tick, then slot
   std::map<DriveKey, map::Route> routes;
   std::set<std::pair<std::string, std::uint64_t>> disturbed;   ///< noise or fault: vehicle, tick
   std::map<std::string, std::vector<std::uint64_t>> contacts;  ///< ticks by vehicle

@@ -23,8 +23,8 @@ using core::InputError;
 /// Where a vehicle is on its route at a decision.
 struct Place {
   DriveKey drive;
-  double arc_length = 0.0;       ///< as planners see it [m]
-  std::size_t decisions = 0;     ///< that it has been driven before this one
+  double arc_length = 0.0;    ///< as planners see it [m]
+  std::size_t decisions = 0;  ///< that it has been driven before this one
 };
 
 class SampleMaker {
@@ -85,9 +85,9 @@ class SampleMaker {
     if (reason != nullptr) return reason;
     training::Sample sample = sampleAt(at->second, place->second);
     sample.image = image.image;
-    const SampleSurroundings surroundings{
-        *session_.setup, session_.decisions[at->second], session_.routes.at(place->second.drive),
-        place->second.arc_length};
+    const SampleSurroundings surroundings{*session_.setup, session_.decisions[at->second],
+                                          session_.routes.at(place->second.drive),
+                                          place->second.arc_length};
     const SampleKinds kinds = kindsOf(sample, surroundings);
     if (kinds.standing && !keepsStanding(sample)) return "standing_thinned";
     sample.maneuver = kinds.maneuver;
@@ -148,9 +148,9 @@ class SampleMaker {
     sample.vehicle = id;
     sample.tick = snapshot.tick;
     sample.recovering = recovers(begin, place);
-    sample.route = diffusion::routeTokens(options_.architecture,
-                                          session_.routes.at(place.drive).path(), place.arc_length,
-                                          start.pose());
+    sample.route =
+        diffusion::routeTokens(options_.architecture, session_.routes.at(place.drive).path(),
+                               place.arc_length, start.pose());
     sample.rollout.resize(static_cast<Eigen::Index>(horizon_), traffic::kRolloutColumns);
     double heading = 0.0;
     double last_heading = start.heading;

@@ -11,8 +11,8 @@
 namespace cdiff::ros {
 namespace {
 
-constexpr double kStanding = 0.3;                  // [m/s]
-constexpr double kMoving = 2.0;                    // [m/s]
+constexpr double kStanding = 0.3;                   // [m/s]
+constexpr double kMoving = 2.0;                     // [m/s]
 constexpr double kTurn = 15.0 * core::kPi / 180.0;  // of heading over the horizon [rad]
 
 constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
@@ -37,8 +37,7 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
       continue;
     if (planning::isLeading(around.route, around.arc_length, other.state)) return 2;
   }
-  const auto light =
-      planning::distanceToRedLight(around.route, around.arc_length, around.snapshot);
+  const auto light = planning::distanceToRedLight(around.route, around.arc_length, around.snapshot);
   if (light && *light < kLightDistance) return 1;
   for (const auto& [from, to] : around.route.junctionStretches()) {
     if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance) return 3;

@@ -30,7 +30,6 @@ struct SampleKinds {
 SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
 
 /// Adds a sample to the statistics.
-void count(const training::Sample& sample, const SampleKinds& kinds,
-           DatasetStatistics& statistics);
+void count(const training::Sample& sample, const SampleKinds& kinds, DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

@@ -20,8 +20,8 @@ using traffic::SessionStatus;
 constexpr std::uint32_t kLights = 0;
 constexpr std::uint32_t kDensity = 1;
 
-constexpr double kEgoBlockedTime = 60.0;  // [s]
-constexpr double kEgoDeviation = 100.0;   // [m]
+constexpr double kEgoBlockedTime = 60.0;    // [s]
+constexpr double kEgoDeviation = 100.0;     // [m]
 constexpr double kCollectionWarmUp = 20.0;  // [s]
 
 }  // namespace
@@ -71,10 +71,9 @@ CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOption
   cbv_planner_ = perturbedPlanner(setup.options().cbv_planner);
   if (images) camera_.emplace(setup.options().camera, setup.network());
   world_ = std::make_unique<World>(setup);
-  world_->setTakeOverDisturbance(
-      [this](const std::string& id, const traffic::VehicleState& state) {
-        return disturbedStart(options_.noise, seed_, world_->snapshot().tick, id, state);
-      });
+  world_->setTakeOverDisturbance([this](const std::string& id, const traffic::VehicleState& state) {
+    return disturbedStart(options_.noise, seed_, world_->snapshot().tick, id, state);
+  });
 }
 
 CollectionLoop::~CollectionLoop() = default;
@@ -83,7 +82,8 @@ std::unique_ptr<PerturbedPlanner> CollectionLoop::perturbedPlanner(const std::st
   auto planner =
       planning::makePlanner(name, setup_.options().plannerOptions(), setup_.planningContext());
   if (planner->needsImages())
-    throw core::InputError("planner '" + name + "' needs images; data are collected with planners "
+    throw core::InputError("planner '" + name +
+                           "' needs images; data are collected with planners "
                            "that do not, such as 'pdm_lite'");
   return std::make_unique<PerturbedPlanner>(std::move(planner), options_, seed_);
 }

@@ -17,8 +17,8 @@ constexpr std::uint32_t kSteer = 2;
 constexpr std::uint32_t kPedal = 3;
 constexpr std::uint32_t kSteerSign = 4;
 
-constexpr double kSlow = 1.0;         // [m/s] slower vehicles get no noise
-constexpr double kSmallest = 0.3;     // of the largest steering noise
+constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
+constexpr double kSmallest = 0.3;       // of the largest steering noise
 constexpr double kLeastThrottle = 0.3;  // less does nothing (BicycleModel)
 
 }  // namespace
@@ -37,8 +37,7 @@ PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std:
   Burst burst;
   burst.count = count;
   burst.begin = after - noise.interval * std::log(1.0 - noise_.uniform(key, kInterval));
-  burst.end =
-      burst.begin + noise_.uniform(key, kDuration, noise.minimum_time, noise.maximum_time);
+  burst.end = burst.begin + noise_.uniform(key, kDuration, noise.minimum_time, noise.maximum_time);
   const double size = noise_.uniform(key, kSteer, kSmallest, 1.0);
   burst.steer = noise_.uniform(key, kSteerSign) < 0.5 ? -size : size;
   burst.pedal = noise_.uniform(key, kPedal, -1.0, 1.0);

@@ -88,9 +88,9 @@ std::optional<map::Route> randomRoute(const map::LaneGraph& graph, const map::La
                                       const core::RandomKey& key) {
   constexpr double kLeastLastLane = 2.0;  // [m]
   double length = options.length;
-  const map::LanePath path = RandomWalk(graph.network(), random, key)
-                                 .walk(start.lane, start.arc_length, length,
-                                       options.lane_change_share);
+  const map::LanePath path =
+      RandomWalk(graph.network(), random, key)
+          .walk(start.lane, start.arc_length, length, options.lane_change_share);
   if (length < options.minimum_length) return std::nullopt;
   const map::Lane& last = graph.network().lane(path.lanes.back());
   if (last.internal) return std::nullopt;

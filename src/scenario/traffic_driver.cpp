@@ -72,10 +72,12 @@ const char* TrafficDriver::releaseReason(const traffic::TrafficSnapshot& snapsho
   if (held.assignment.conflict_point.cbv_distance < options_.route_end) return cbv::kRouteEnd;
   const double inside = area_.signedDistance(state.position, state.elevation);
   if (inside < -options_.off_road_distance) return kLeftRoad;
-  if (state.speed > kStandingSpeed) held.standing_since = -1.0;
-  else if (held.standing_since < 0.0) held.standing_since = snapshot.time;
-  const bool stood = held.standing_since >= 0.0 &&
-                     snapshot.time - held.standing_since >= options_.standing_time;
+  if (state.speed > kStandingSpeed)
+    held.standing_since = -1.0;
+  else if (held.standing_since < 0.0)
+    held.standing_since = snapshot.time;
+  const bool stood =
+      held.standing_since >= 0.0 && snapshot.time - held.standing_since >= options_.standing_time;
   return stood ? kStoodTooLong : nullptr;
 }
 
@@ -84,11 +86,10 @@ double TrafficDriver::spaceAround(const traffic::TrafficSnapshot& snapshot,
                                   const traffic::Vehicle& vehicle) const {
   double space = std::numeric_limits<double>::infinity();
   for (const traffic::Vehicle& other : snapshot.vehicles) {
-    const bool driven =
-        other.role == traffic::VehicleRole::kEgo ||
-        std::any_of(slots_.begin(), slots_.end(), [&](const auto& slot) {
-          return slot.second.assignment.vehicle_id == other.id;
-        });
+    const bool driven = other.role == traffic::VehicleRole::kEgo ||
+                        std::any_of(slots_.begin(), slots_.end(), [&](const auto& slot) {
+                          return slot.second.assignment.vehicle_id == other.id;
+                        });
     if (!driven) continue;
     space = std::min(space, (other.state.position - vehicle.state.position).norm());
   }

@@ -18,7 +18,7 @@ namespace cdiff::ros {
 
 struct DatasetOptions {
   diffusion::Architecture architecture;  ///< horizon, image size, route tokens
-  double standing_share = 0.25;  ///< part kept of samples that stand all the time
+  double standing_share = 0.25;          ///< part kept of samples that stand all the time
 };
 
 /// What is in a data set; sums, so that those of several bags add up.
@@ -28,12 +28,12 @@ struct DatasetStatistics {
   std::map<std::string, std::uint64_t> dropped;       ///< images that gave no sample, by reason
   std::map<std::string, std::uint64_t> maneuvers;     ///< samples: straight, left, right, other
   std::map<std::string, std::uint64_t> stop_reasons;  ///< samples: none, light, leader, ...
-  std::map<std::string, std::uint64_t> kinds;  ///< samples: standing, starting, stopping,
+  std::map<std::string, std::uint64_t> kinds;         ///< samples: standing, starting, stopping,
                                                ///< recovering, off_road, on_bend, in_junction
-  std::array<std::uint64_t, 8> speeds{};       ///< samples by speed, 2 m/s a bin, the last open
-  double steer_sum = 0.0;                      ///< of mean |steer| of each sample
-  std::uint64_t contacts = 0;                  ///< of driven vehicles
-  double seconds = 0.0;                        ///< simulated
+  std::array<std::uint64_t, 8> speeds{};  ///< samples by speed, 2 m/s a bin, the last open
+  double steer_sum = 0.0;                 ///< of mean |steer| of each sample
+  std::uint64_t contacts = 0;             ///< of driven vehicles
+  double seconds = 0.0;                   ///< simulated
 
   void add(const DatasetStatistics& other);
 };

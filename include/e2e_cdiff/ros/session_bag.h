@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The bag of a session that one process drives: the same topics, stamps and order as the
-/// recorder's, and the images that planners or records were given. While it writes, the file is called
-/// FILE.active.
+/// recorder's, and the images that planners or records were given. While it writes, the file is
+/// called FILE.active.
 #pragma once
 
 #include <filesystem>

@@ -23,24 +23,24 @@ struct NoiseOptions {
 };
 
 struct CollectionOptions {
-  std::int64_t vehicles = 12;        ///< background vehicles driven at a time
-  double duration = 60.0;            ///< longest session [s]
-  double image_period = 0.5;         ///< between two images of a vehicle [s]
-  double minimum_speed = 5.0;        ///< lowest target speed of a vehicle [m/s]
-  double maximum_speed = 12.0;       ///< highest target speed of a vehicle [m/s]
-  double radius = 150.0;             ///< of the ego: vehicles within it are driven [m]
-  double spacing = 12.0;             ///< wished between driven vehicles when they are chosen [m]
-  double minimum_route = 120.0;      ///< shorter routes are not taken [m]
-  double route_length = 250.0;       ///< of a vehicle, where the network allows [m]
-  double route_end = 40.0;           ///< released with less of its route left [m]
-  double off_road_distance = 3.0;    ///< released farther outside the drivable area [m]
-  double standing_time = 8.0;        ///< released after standing so long [s]
-  double pause = 3.0;                ///< before a released vehicle may be driven again [s]
-  double lane_change_share = 0.15;   ///< of lanes longer than 60 m that have a neighbour
-  double program_lights_share = 0.4; ///< of sessions with the lights' own programs
-  double minimum_density = 18.0;     ///< fewest vehicles near the ego, of generated demand
-  double maximum_density = 45.0;     ///< most vehicles near the ego, of generated demand
-  double standing_share = 0.25;      ///< of samples that stand all the time, the part kept
+  std::int64_t vehicles = 12;         ///< background vehicles driven at a time
+  double duration = 60.0;             ///< longest session [s]
+  double image_period = 0.5;          ///< between two images of a vehicle [s]
+  double minimum_speed = 5.0;         ///< lowest target speed of a vehicle [m/s]
+  double maximum_speed = 12.0;        ///< highest target speed of a vehicle [m/s]
+  double radius = 150.0;              ///< of the ego: vehicles within it are driven [m]
+  double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
+  double minimum_route = 120.0;       ///< shorter routes are not taken [m]
+  double route_length = 250.0;        ///< of a vehicle, where the network allows [m]
+  double route_end = 40.0;            ///< released with less of its route left [m]
+  double off_road_distance = 3.0;     ///< released farther outside the drivable area [m]
+  double standing_time = 8.0;         ///< released after standing so long [s]
+  double pause = 3.0;                 ///< before a released vehicle may be driven again [s]
+  double lane_change_share = 0.15;    ///< of lanes longer than 60 m that have a neighbour
+  double program_lights_share = 0.4;  ///< of sessions with the lights' own programs
+  double minimum_density = 18.0;      ///< fewest vehicles near the ego, of generated demand
+  double maximum_density = 45.0;      ///< most vehicles near the ego, of generated demand
+  double standing_share = 0.25;       ///< of samples that stand all the time, the part kept
   NoiseOptions noise;
 
   void describe(core::OptionsVisitor& visitor);

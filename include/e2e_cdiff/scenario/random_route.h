@@ -21,8 +21,7 @@ struct RandomRouteOptions {
 /// nullopt when it would be shorter than the minimum.
 std::optional<map::Route> randomRoute(const map::LaneGraph& graph, const map::LanePosition& start,
                                       const RandomRouteOptions& options,
-                                      const core::RandomStream& random,
-                                      const core::RandomKey& key);
+                                      const core::RandomStream& random, const core::RandomKey& key);
 
 /// `route` and a random way on from its end, up to `length` in all; `route` itself where the
 /// network ends.
