@@ -17,6 +17,9 @@ int main(int argc, char** argv) {
   cdiff::cli::addImportCommand(program, exit_code);
   cdiff::cli::addMetricCommand(program, exit_code);
   cdiff::cli::addDoctorCommand(program, exit_code);
+#ifdef E2E_CDIFF_WITH_COLLECT
+  cdiff::cli::addCollectCommand(program, exit_code);
+#endif
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -24,6 +27,9 @@ int main(int argc, char** argv) {
   } catch (const cdiff::core::InputError& error) {
     std::cerr << "cdiff: " << error.what() << "\n";
     return cdiff::cli::kBadInput;
+  } catch (const cdiff::core::Interrupted& error) {
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return cdiff::cli::kInterrupted;
   } catch (const std::exception& error) {
     std::cerr << "cdiff: " << error.what() << "\n";
     return cdiff::cli::kRunTimeError;

@@ -18,6 +18,7 @@ struct RunArguments {
   scenario::SessionRequest request;
   std::string results;
   bool quiet = false;
+  bool record = false;
 };
 
 std::string timeStamp() {
@@ -34,7 +35,7 @@ int run(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + timeStamp())
           : fs::path(arguments.results);
-  return runSession(options, folder, arguments.quiet);
+  return runSession(options, {folder, arguments.quiet, arguments.record});
 }
 
 }  // namespace
@@ -56,6 +57,7 @@ void addRunCommand(CLI::App& program, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--results", arguments->results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
+  command->add_flag("--record", arguments->record, "Also write session.bag, for replay and rviz");
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -13,6 +13,9 @@
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "progress.h"
+#ifdef E2E_CDIFF_WITH_ROS
+#include "e2e_cdiff/ros/session_bag.h"
+#endif
 
 namespace cdiff::cli {
 namespace {
@@ -56,10 +59,39 @@ int finish(report::ResultWriter& writer, Clock::time_point begin, bool quiet) {
   return writer.exitCode();
 }
 
+/// session.bag of a session that is to be recorded; without ROS there are no bags.
+class BagRecord {
+ public:
+  BagRecord(const scenario::SessionSetup& setup, const RunOutput& output,
+            scenario::ClosedLoop& loop) {
+    if (!output.record) return;
+#ifdef E2E_CDIFF_WITH_ROS
+    bag_ = std::make_unique<ros::SessionBag>(
+        setup, output.folder / "session.bag",
+        ros::BagOrigin{"cdiff run", loop.world().simulatorVersion()});
+    loop.addObserver(*bag_);
+#else
+    (void)setup, (void)loop;
+    throw core::InputError("--record needs a build with ROS (E2E_CDIFF_ROS=ON)");
+#endif
+  }
+  void finish() {
+#ifdef E2E_CDIFF_WITH_ROS
+    if (bag_) bag_->finish();
+#endif
+  }
+
+ private:
+#ifdef E2E_CDIFF_WITH_ROS
+  std::unique_ptr<ros::SessionBag> bag_;
+#endif
+};
+
 }  // namespace
 
-int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder,
-               bool quiet) {
+int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
+  const std::filesystem::path& folder = output.folder;
+  const bool quiet = output.quiet;
   catchSignals();
   const scenario::SessionSetup setup(options);
   removeEarlierSession(folder);
@@ -80,7 +112,9 @@ int runSession(const scenario::ScenarioOptions& options, const std::filesystem::
   loop->addObserver(writer);
   if (!quiet) loop->addObserver(progress);
   try {
+    BagRecord bag(setup, output, *loop);
     loop->run(stop_requested);
+    bag.finish();
     return finish(writer, begin, quiet);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,

@@ -10,10 +10,16 @@
 
 namespace cdiff::cli {
 
+/// Where the results go, and how much is told.
+struct RunOutput {
+  std::filesystem::path folder;
+  bool quiet = false;   ///< no progress line, no table
+  bool record = false;  ///< also write session.bag; InputError where built without ROS
+};
+
 /// Runs to the end and answers the exit code. SIGINT and SIGTERM end the session as interrupted.
 /// Throws InputError for a scenario that cannot be set up; a simulator that cannot start or is lost
 /// gives a result folder with status error.
-int runSession(const scenario::ScenarioOptions& options, const std::filesystem::path& folder,
-               bool quiet);
+int runSession(const scenario::ScenarioOptions& options, const RunOutput& output);
 
 }  // namespace cdiff::cli

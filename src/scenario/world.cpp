@@ -265,6 +265,7 @@ void World::takeOver(const cbv::CbvAssignment& assignment) {
   vehicle->id = assignment.vehicle_id;
   vehicle->slot = assignment.slot;
   vehicle->state = simulated->state;
+  if (disturbance_) vehicle->state = disturbance_(vehicle->id, vehicle->state);
   vehicle->dimensions = simulated->dimensions;
   vehicle->acceleration = simulated->acceleration;
   vehicle->route = assignment.conflict_aware_route;

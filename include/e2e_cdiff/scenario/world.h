@@ -5,6 +5,7 @@
 /// decides nothing.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -42,6 +43,14 @@ class World {
   /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
   /// present one with this status and fault.
   void end(traffic::SessionStatus status, const traffic::Fault& fault);
+  /// Where a vehicle that we take over begins to be driven, given its id and where SUMO had it.
+  using TakeOverDisturbance =
+      std::function<traffic::VehicleState(const std::string&, const traffic::VehicleState&)>;
+  /// For data collection: shifts every vehicle as it is taken over. Without it they begin where
+  /// they are.
+  void setTakeOverDisturbance(TakeOverDisturbance disturbance) {
+    disturbance_ = std::move(disturbance);
+  }
   /// Records a fault that was survived; shown in the next snapshot.
   void recordFault(const std::string& source, const std::string& text);
 
@@ -81,6 +90,7 @@ class World {
   std::map<std::pair<std::string, std::string>, std::uint64_t>
       last_overlap_;                    ///< tick of each pair's last overlap
   std::vector<std::string> to_remove_;  ///< in contact at the present tick
+  TakeOverDisturbance disturbance_;     ///< may be empty
 };
 
 }  // namespace cdiff::scenario

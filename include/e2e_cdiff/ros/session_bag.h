@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The bag of a session that one process drives: the same topics, stamps and order as the
+/// recorder's, and the images that planners or records were given. While it writes, the file is
+/// called FILE.active.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "e2e_cdiff/scenario/session_observer.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+#include "rosbag/bag.h"
+
+namespace cdiff::ros {
+
+/// What is added to the name of the planner of an action that carries noise.
+inline constexpr const char* kNoiseMark = "+noise";
+
+/// Topic of the images of a slot; of the ego for -1.
+std::string cameraImageTopic(int slot);
+
+/// Who made the session, for SessionInfo.
+struct BagOrigin {
+  std::string deployment;         ///< "cdiff run", "cdiff collect"
+  std::string simulator_version;  ///< "SUMO 1.15.0"
+};
+
+class SessionBag : public scenario::SessionObserver {
+ public:
+  /// `setup` must outlive the object. Throws InputError naming the file when it cannot be written.
+  SessionBag(const scenario::SessionSetup& setup, const std::filesystem::path& file,
+             const BagOrigin& origin);
+  ~SessionBag() override;
+
+  /// Asked at each action whether it carries noise; without it none does.
+  void setNoiseQuery(std::function<bool(const std::string& vehicle_id)> query) {
+    noisy_ = std::move(query);
+  }
+  void observe(const scenario::TickRecord& record) override;
+  /// Gives the file its name. Without this call it stays FILE.active.
+  void finish();
+
+ private:
+  void open(const BagOrigin& origin);
+  void writeImage(const scenario::SlotImage& seen);
+  void writeAction(const planning::PlannedAction& action, const scenario::TickRecord& record);
+  void write(const std::function<void()>& writing);
+
+  const scenario::SessionSetup& setup_;
+  std::filesystem::path file_;
+  rosbag::Bag bag_;
+  std::function<bool(const std::string&)> noisy_;
+};
+
+}  // namespace cdiff::ros

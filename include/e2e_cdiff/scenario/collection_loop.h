@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A session of data collection in one process: as ClosedLoop, but many background vehicles are
+/// driven, each on a route of its own, and what drives is disturbed and recovers.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/rendering/front_camera.h"
+#include "e2e_cdiff/scenario/perturbed_planner.h"
+#include "e2e_cdiff/scenario/session_observer.h"
+#include "e2e_cdiff/scenario/traffic_driver.h"
+#include "e2e_cdiff/scenario/world.h"
+
+namespace cdiff::scenario {
+
+/// The scenario as collection runs it: its protocol ends it only after the duration (or with the
+/// ego's route); lights and density of generated demand are drawn from the seed, and every other
+/// seed generates the demand of a scenario that brings a file.
+ScenarioOptions collectionScenario(ScenarioOptions scenario, const CollectionOptions& options);
+
+/// Its set-up, with the ego route lengthened by random turns to what the duration needs.
+std::unique_ptr<SessionSetup> collectionSetup(const ScenarioOptions& scenario,
+                                              const CollectionOptions& options);
+
+class CollectionLoop {
+ public:
+  /// `setup` must outlive the loop. `images`: whether records hold what vehicles see, every
+  /// image_period, those of different slots at different decisions. Throws InputError for unknown
+  /// planners and planners that need images.
+  CollectionLoop(const SessionSetup& setup, const CollectionOptions& options, bool images);
+  ~CollectionLoop();
+
+  /// Observers are called in the order added and must outlive the run.
+  void addObserver(SessionObserver& observer) { observers_.push_back(&observer); }
+  /// Runs to the end; `stop` ends the session as interrupted.
+  traffic::SessionStatus run(const std::atomic<bool>& stop);
+  const World& world() const { return *world_; }
+  /// Whether the last action decided for a vehicle carries noise.
+  bool perturbed(const std::string& vehicle_id) const;
+
+ private:
+  struct Decision;
+  Decision decide();
+  void render(Decision& decision);
+  std::unique_ptr<PerturbedPlanner> perturbedPlanner(const std::string& name) const;
+
+  const SessionSetup& setup_;
+  CollectionOptions options_;
+  std::uint64_t seed_;
+  std::unique_ptr<World> world_;
+  TrafficDriver driver_;
+  std::unique_ptr<PerturbedPlanner> ego_planner_;
+  std::unique_ptr<PerturbedPlanner> cbv_planner_;
+  std::optional<rendering::FrontCamera> camera_;
+  std::vector<SessionObserver*> observers_;
+};
+
+}  // namespace cdiff::scenario

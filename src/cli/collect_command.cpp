@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "child_processes.h"
+#include "collect_session.h"
+#include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSessionCommand = "collect_session";
+
+struct CollectArguments {
+  CollectRequest request;
+  std::vector<std::string> scenarios;
+  int seeds = 1;
+  int first_seed = 1;
+  int jobs = 1;
+};
+
+std::vector<std::string> wordsOf(const CollectRequest& request) {
+  std::vector<std::string> words = {kSessionCommand, request.scenario,
+                                    "--seed",        std::to_string(request.seed),
+                                    "--results",     request.results.string(),
+                                    "--duration",    core::formatNumber(request.duration)};
+  if (request.keep_bag) words.push_back("--keep-bags");
+  if (!request.images) words.push_back("--no-images");
+  for (const std::string& assignment : request.set) {
+    words.push_back("--set");
+    words.push_back(assignment);
+  }
+  return words;
+}
+
+std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
+  std::vector<CollectRequest> sessions;
+  const std::vector<std::string> scenarios =
+      arguments.scenarios.empty() ? scenario::shippedScenarios() : arguments.scenarios;
+  for (int i = 0; i < arguments.seeds; ++i) {
+    for (const std::string& name : scenarios) {
+      CollectRequest request = arguments.request;
+      request.scenario = name;
+      request.seed = arguments.first_seed + i;
+      sessions.push_back(request);
+    }
+  }
+  return sessions;
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return "-";
+  return core::formatFixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1);
+}
+
+void addRows(std::string& text, const std::string& kind,
+             const std::map<std::string, std::uint64_t>& counts, std::uint64_t whole) {
+  for (const auto& [name, count] : counts) {
+    text +=
+        "| " + kind + name + " | " + std::to_string(count) + " | " + percent(count, whole) + " |\n";
+  }
+}
+
+std::string table(const ros::DatasetStatistics& statistics) {
+  std::string text = "| | number | % |\n|---|---|---|\n";
+  text += "| images | " + std::to_string(statistics.images) + " | |\n";
+  addRows(text, "dropped: ", statistics.dropped, statistics.images);
+  text += "| samples | " + std::to_string(statistics.samples) + " | " +
+          percent(statistics.samples, statistics.images) + " |\n";
+  addRows(text, "maneuver: ", statistics.maneuvers, statistics.samples);
+  addRows(text, "stop reason: ", statistics.stop_reasons, statistics.samples);
+  addRows(text, "", statistics.kinds, statistics.samples);
+  for (std::size_t i = 0; i < statistics.speeds.size(); ++i) {
+    const bool last = i + 1 == statistics.speeds.size();
+    text += "| speed " + std::to_string(2 * i) +
+            (last ? " and more" : " to " + std::to_string(2 * i + 2)) + " m/s | " +
+            std::to_string(statistics.speeds[i]) + " | " +
+            percent(statistics.speeds[i], statistics.samples) + " |\n";
+  }
+  const double samples = static_cast<double>(std::max<std::uint64_t>(1, statistics.samples));
+  text += "| mean of absolute steer | " + core::formatFixed(statistics.steer_sum / samples, 4) +
+          " | |\n| contacts of driven vehicles | " + std::to_string(statistics.contacts) +
+          " | |\n| simulated seconds | " + core::formatFixed(statistics.seconds, 0) + " | |\n";
+  return text;
+}
+
+/// Sums up every session whose files are there.
+void conclude(const CollectArguments& arguments, const std::vector<CollectRequest>& sessions) {
+  ros::DatasetStatistics sum;
+  for (const CollectRequest& request : sessions) {
+    const fs::path file = statisticsFile(request, sessionName(resolveCollection(request)));
+    if (fs::exists(file)) sum.add(readStatistics(file));
+  }
+  core::writeFileAtomically(arguments.request.results / "statistics.json", toJson(sum));
+  std::cout << table(sum) << std::flush;
+}
+
+int exitCode(const std::vector<ChildProcess>& children) {
+  int code = kPassed;
+  for (const ChildProcess& child : children) {
+    if (child.exit_code == kPassed) continue;
+    if (child.exit_code != kBadInput) return kRunTimeError;
+    code = kBadInput;
+  }
+  return code;
+}
+
+int collect(const CollectArguments& arguments) {
+  const std::vector<CollectRequest> sessions = planSessions(arguments);
+  std::vector<ChildProcess> children;
+  for (const CollectRequest& request : sessions) {
+    const std::string name = sessionName(resolveCollection(request));
+    const bool done =
+        fs::exists(shardFile(request, name)) && fs::exists(statisticsFile(request, name));
+    if (!done) children.push_back({name, wordsOf(request)});
+  }
+  fs::create_directories(arguments.request.results);
+  std::cerr << sessions.size() << " sessions, " << sessions.size() - children.size()
+            << " of them already there\n";
+  std::size_t done = 0;
+  const bool all = runChildren(children, arguments.jobs, [&](const ChildProcess& child) {
+    ++done;
+    std::cerr << done << "/" << children.size() << " " << child.name << " exit code "
+              << child.exit_code << "\n";
+  });
+  if (arguments.request.images) conclude(arguments, sessions);
+  return all ? exitCode(children) : kInterrupted;
+}
+
+void addCommonOptions(CLI::App& command, CollectRequest& request) {
+  command.add_option("--results", request.results, "Folder of the data set")->required();
+  command.add_option("--duration", request.duration, "Longest session [s]")
+      ->check(CLI::Range(1.0, 3600.0));
+  command.add_flag("--keep-bags", request.keep_bag, "Keep the bags that the shards are made of");
+  command.add_flag("!--no-images", request.images, "Record bags without images, and no shards");
+  command
+      .add_option("--set", request.set,
+                  "Any key of the scenario or of the group collection as key=value")
+      ->allow_extra_args(false);
+}
+
+}  // namespace
+
+void addCollectCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<CollectArguments>();
+  CLI::App* command = program.add_subcommand(
+      "collect", "Drive and record many vehicles, and make training samples of it");
+  command
+      ->add_option("--scenarios", arguments->scenarios,
+                   "Scenarios, names or files (default: all that are shipped)")
+      ->delimiter(',');
+  command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")
+      ->check(CLI::Range(0, 1000000000));
+  command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
+  addCommonOptions(*command, arguments->request);
+  command->callback([arguments, &exit_code] { exit_code = collect(*arguments); });
+
+  auto request = std::make_shared<CollectRequest>();
+  CLI::App* session = program.add_subcommand(kSessionCommand, "One session of collect");
+  session->group("");  // not shown: collect starts it
+  session->add_option("scenario", request->scenario)->required();
+  session->add_option("--seed", request->seed)->required();
+  addCommonOptions(*session, *request);
+  session->callback([request, &exit_code] { exit_code = collectSession(*request); });
+}
+
+}  // namespace cdiff::cli

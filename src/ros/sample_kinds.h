@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What happens in a sample, for the statistics and the sample's own labels.
+#pragma once
+
+#include "e2e_cdiff/ros/dataset_from_bag.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+
+namespace cdiff::ros {
+
+/// What surrounds the vehicle of a sample at planning time.
+struct SampleSurroundings {
+  const scenario::SessionSetup& setup;
+  const traffic::TrafficSnapshot& snapshot;
+  const map::Route& route;
+  double arc_length = 0.0;  ///< on the route [m]
+};
+
+struct SampleKinds {
+  std::uint8_t maneuver = 0;     ///< as Sample::maneuver
+  std::uint8_t stop_reason = 0;  ///< as Sample::stop_reason
+  bool standing = false;         ///< all the time
+  bool starting = false;         ///< from standing to more than 2 m/s
+  bool stopping = false;         ///< from more than 2 m/s to standing
+  bool off_road = false;         ///< its centre at planning time
+  bool in_junction = false;
+  bool off_course = false;  ///< more than 0.4 m or 5 degrees off its route
+};
+
+SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
+
+/// Adds a sample to the statistics.
+void count(const training::Sample& sample, const SampleKinds& kinds, DatasetStatistics& statistics);
+
+}  // namespace cdiff::ros

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/ros/dataset_from_bag.h"
+#include "e2e_cdiff/ros/session_bag.h"
+#include "e2e_cdiff/scenario/collection_loop.h"
+#include "std_msgs/String.h"
+#include "support/sumo_network.h"
+
+namespace cdiff::ros {
+namespace {
+
+/// What a session's samples are compared with.
+class Witness : public scenario::SessionObserver {
+ public:
+  explicit Witness(const scenario::CollectionLoop& loop) : loop_(loop) {}
+  void observe(const scenario::TickRecord& record) override {
+    if (record.actions == nullptr) return;
+    for (const planning::PlannedAction& action : *record.actions) {
+      if (loop_.perturbed(action.vehicle_id))
+        perturbed.insert({action.vehicle_id, record.snapshot->tick});
+      for (const scenario::SlotImage& seen : *record.images) {
+        if (seen.slot == action.slot)
+          images[{action.vehicle_id, record.snapshot->tick}] = seen.image.rgb;
+      }
+    }
+  }
+  std::set<std::pair<std::string, std::uint64_t>> perturbed;
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<std::uint8_t>> images;
+
+ private:
+  const scenario::CollectionLoop& loop_;
+};
+
+/// One session of 10 s, recorded for all tests.
+class DatasetFromBag : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    record(bag(), true);
+  }
+  static void TearDownTestSuite() {
+    witness_.reset();
+    folder_.reset();
+  }
+  static std::filesystem::path bag() { return folder_->path() / "session.bag"; }
+
+  static void record(const std::filesystem::path& file, bool images) {
+    scenario::CollectionOptions options;
+    options.duration = images ? 10.0 : 0.5;
+    options.vehicles = 4;
+    options.noise.interval = 4.0;
+    scenario::ScenarioOptions wanted = scenario::loadScenario("crossing_left_turn");
+    wanted.seed = 3;
+    const auto setup =
+        scenario::collectionSetup(scenario::collectionScenario(wanted, options), options);
+    scenario::CollectionLoop loop(*setup, options, images);
+    SessionBag bag(*setup, file, {"test", "SUMO"});
+    bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
+    loop.addObserver(bag);
+    auto witness = std::make_unique<Witness>(loop);
+    loop.addObserver(*witness);
+    const std::atomic<bool> stop{false};
+    loop.run(stop);
+    bag.finish();
+    if (images) witness_ = std::move(witness);
+  }
+
+  static std::string errorOf(const std::filesystem::path& file) {
+    DatasetStatistics statistics;
+    try {
+      samplesFromBag(file, {}, statistics);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  static inline std::unique_ptr<test::TemporaryFolder> folder_;
+  static inline std::unique_ptr<Witness> witness_;
+};
+
+TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
+  DatasetStatistics statistics;
+  const auto samples = samplesFromBag(bag(), {}, statistics);
+  ASSERT_GT(samples.size(), 10u);
+  const dynamics::BicycleModel model;
+  for (const training::Sample& sample : samples) {
+    schemaOf({}).check(sample);
+    traffic::VehicleState state;
+    state.speed = sample.speed;
+    for (Eigen::Index t = 0; t < sample.rollout.rows(); ++t) {
+      const auto row = sample.rollout.row(t);
+      state = model.step(state, {row(4), row(5), row(6)}, 0.1);
+      EXPECT_NEAR(row(0), state.position.x(), 1e-6);
+      EXPECT_NEAR(row(1), state.position.y(), 1e-6);
+      EXPECT_NEAR(row(2), state.heading, 1e-6);
+      EXPECT_NEAR(row(3), state.speed, 1e-6);
+    }
+  }
+}
+
+TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
+  DatasetStatistics statistics;
+  const auto samples = samplesFromBag(bag(), {}, statistics);
+  EXPECT_GT(statistics.dropped["disturbed"], 0u);
+  for (const training::Sample& sample : samples) {
+    for (std::uint64_t t = 0; t < 32; ++t) {
+      EXPECT_EQ(witness_->perturbed.count({sample.vehicle, sample.tick + 2 * t}), 0u)
+          << sample.vehicle << " tick " << sample.tick;
+    }
+    EXPECT_EQ(sample.image.rgb, witness_->images.at({sample.vehicle, sample.tick}));
+  }
+}
+
+TEST_F(DatasetFromBag, EveryImageIsCountedOnce) {
+  DatasetStatistics statistics;
+  const auto samples = samplesFromBag(bag(), {}, statistics);
+  std::uint64_t dropped = 0;
+  for (const auto& [reason, count] : statistics.dropped) dropped += count;
+  EXPECT_EQ(statistics.samples, samples.size());
+  EXPECT_EQ(statistics.images, samples.size() + dropped);
+  EXPECT_EQ(statistics.images, witness_->images.size());
+  std::uint64_t by_speed = 0;
+  for (const std::uint64_t count : statistics.speeds) by_speed += count;
+  EXPECT_EQ(by_speed, statistics.samples);
+}
+
+TEST_F(DatasetFromBag, BadBagsAreNamedErrors) {
+  const auto in = [](const std::string& name) { return folder_->path() / name; };
+  EXPECT_NE(errorOf(in("none.bag")).find("none.bag"), std::string::npos);
+  core::writeFileAtomically(in("text.bag"), "not a bag");
+  EXPECT_NE(errorOf(in("text.bag")).find("text.bag"), std::string::npos);
+  {
+    rosbag::Bag foreign(in("foreign.bag").string(), rosbag::bagmode::Write);
+    foreign.write("/words", ::ros::TIME_MIN, std_msgs::String());
+  }
+  EXPECT_NE(errorOf(in("foreign.bag")).find("holds no session"), std::string::npos);
+  record(in("blind.bag"), false);
+  EXPECT_NE(errorOf(in("blind.bag")).find("no camera images"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cdiff::ros
