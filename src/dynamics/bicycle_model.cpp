@@ -13,7 +13,7 @@
 namespace cdiff::dynamics {
 namespace {
 
-constexpr double kTick = 0.05;          // [s] the period that the fitted polynomials describe
+constexpr double kTick = BicycleModel::kTick;
 constexpr double kKmhPerMps = 3.6;      // [km/h per m/s]
 constexpr double kDriveThrottle = 0.3;  // below it the fit leaves the speed as it is
 constexpr double kStandstill = 1e-3;    // [m/s] a braking car slower than this stands
@@ -25,14 +25,35 @@ double drivenSpeed(double v, double u) {
          6.71079346e-4 * v * v * u * u;
 }
 
+double drivenSpeedByV(double v, double u) {
+  return 0.963873001 + 2.0 * 4.37535692e-4 * v + 0.0916787414 * u - 0.0705461530 * u * u -
+         2.0 * 1.05996152e-3 * v * u + 2.0 * 6.71079346e-4 * v * u * u;
+}
+
+double drivenSpeedByU(double v, double u) {
+  return -0.380192912 + 2.0 * 1.74950069 * u + 0.0916787414 * v - 2.0 * 0.0705461530 * v * u -
+         1.05996152e-3 * v * v + 2.0 * 6.71079346e-4 * v * v * u;
+}
+
 /// Speed [km/h] one tick later under full brake, before the cap (Horner's scheme; no constant
 /// term).
+constexpr double kBrakeFit[] = {-4.91381935e-12, 2.44419284e-9, -4.90357228e-7, 5.06587474e-5,
+                                -2.83832427e-3,  8.20967431e-2, 9.31711370e-3};
+
 double brakedSpeed(double v) {
-  constexpr double kCoefficients[] = {-4.91381935e-12, 2.44419284e-9, -4.90357228e-7, 5.06587474e-5,
-                                      -2.83832427e-3,  8.20967431e-2, 9.31711370e-3};
   double value = 0.0;
-  for (const double coefficient : kCoefficients) value = (value + coefficient) * v;
+  for (const double coefficient : kBrakeFit) value = (value + coefficient) * v;
   return value;
+}
+
+double brakedSpeedByV(double v) {
+  double value = 0.0;
+  double derivative = 0.0;
+  for (const double coefficient : kBrakeFit) {
+    derivative = derivative * v + (value + coefficient);
+    value = (value + coefficient) * v;
+  }
+  return derivative;
 }
 
 long tickCount(double duration) {
@@ -91,14 +112,49 @@ double BicycleModel::nextSpeed(double speed, const traffic::ControlAction& actio
   return action.brake > 0.0 && change <= 0.0 && next < kStandstill ? 0.0 : next;
 }
 
+SpeedResponse BicycleModel::speedResponse(double speed,
+                                          const traffic::ControlAction& action) const {
+  SpeedResponse response;
+  response.speed = nextSpeed(speed, action);
+  const double v = speed * kKmhPerMps;
+  const bool driven = action.throttle >= kDriveThrottle;
+  const double drive = driven ? drivenSpeed(v, action.throttle) - v : 0.0;
+  const double strongest = -options_.max_deceleration * kTick * kKmhPerMps;
+  const double uncapped = brakedSpeed(v) - v;
+  const double brake = std::clamp(uncapped, strongest, 0.0);
+  const double raw = (v + (1.0 - action.brake) * drive + action.brake * brake) / kKmhPerMps;
+  const bool stands = response.speed == 0.0 && raw > 0.0;  // the last millimetre per second
+  if (raw < 0.0 || raw > options_.max_speed || stands) return response;
+  const double drive_by_v = driven ? drivenSpeedByV(v, action.throttle) - 1.0 : 0.0;
+  const double brake_by_v = uncapped == brake ? brakedSpeedByV(v) - 1.0 : 0.0;
+  response.by_speed = 1.0 + (1.0 - action.brake) * drive_by_v + action.brake * brake_by_v;
+  response.by_brake = (brake - drive) / kKmhPerMps;
+  if (driven) {
+    response.by_throttle = (1.0 - action.brake) * drivenSpeedByU(v, action.throttle) / kKmhPerMps;
+  }
+  return response;
+}
+
+double BicycleModel::slip(double steer) const {
+  const double wheel_angle = options_.steering_gain * steer;
+  const double wheelbase = options_.rear_length + options_.front_length;
+  return std::atan(options_.rear_length / wheelbase * std::tan(wheel_angle));
+}
+
+SlipResponse BicycleModel::slipResponse(double steer) const {
+  const double ratio = options_.rear_length / (options_.rear_length + options_.front_length);
+  const double tangent = std::tan(options_.steering_gain * steer);
+  const double scaled = ratio * tangent;
+  return {std::atan(scaled),
+          options_.steering_gain * ratio * (1.0 + tangent * tangent) / (1.0 + scaled * scaled)};
+}
+
 traffic::VehicleState BicycleModel::step(const traffic::VehicleState& state,
                                          const traffic::ControlAction& action,
                                          double duration) const {
   requireValid(action);
   const long ticks = tickCount(duration);
-  const double wheel_angle = options_.steering_gain * action.steer;
-  const double wheelbase = options_.rear_length + options_.front_length;
-  const double slip = std::atan(options_.rear_length / wheelbase * std::tan(wheel_angle));
+  const double slip = this->slip(action.steer);
   traffic::VehicleState next = state;
   for (long tick = 0; tick < ticks; ++tick) {
     next.position += next.speed * kTick * geometry::direction(next.heading + slip);

@@ -4,6 +4,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/planning/diffusion_planner.h"
 #include "e2e_cdiff/planning/pdm_lite.h"
 
 namespace cdiff::planning {
@@ -14,7 +15,25 @@ using Constructor = std::unique_ptr<Planner> (*)(const PlannerOptions&, const Pl
 struct Entry {
   const char* name;
   Constructor make;
+  bool guided;  ///< follows guidance objectives
+  bool sees;    ///< needs images
 };
+
+std::unique_ptr<Planner> makeDiffusion(const PlannerOptions& options,
+                                       const PlanningContext& context) {
+  auto planner = std::make_unique<DiffusionPlanner>(options.diffusion, options.guidance,
+                                                    options.vehicle, context);
+  const diffusion::Architecture& sizes = planner->model().architecture;
+  const rendering::CameraOptions& camera = options.camera;
+  if (camera.width != sizes.image_width || camera.height != sizes.image_height) {
+    throw core::InputError("the camera's size is " + std::to_string(camera.width) + " x " +
+                           std::to_string(camera.height) + " (keys camera.width, camera.height); " +
+                           "model '" + planner->model().name + "' sees " +
+                           std::to_string(sizes.image_width) + " x " +
+                           std::to_string(sizes.image_height));
+  }
+  return planner;
+}
 
 std::unique_ptr<Planner> makePdmLite(const PlannerOptions& options,
                                      const PlanningContext& context) {
@@ -23,16 +42,22 @@ std::unique_ptr<Planner> makePdmLite(const PlannerOptions& options,
 
 /// The table, sorted by name: a new planner is one more line.
 constexpr Entry kPlanners[] = {
-    {"pdm_lite", &makePdmLite},
+    {"diffusion", &makeDiffusion, true, true},
+    {"pdm_lite", &makePdmLite, false, false},
 };
+
+const Entry* findEntry(const std::string& name) {
+  for (const Entry& entry : kPlanners) {
+    if (name == entry.name) return &entry;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
 std::unique_ptr<Planner> makePlanner(const std::string& name, const PlannerOptions& options,
                                      const PlanningContext& context) {
-  for (const Entry& entry : kPlanners) {
-    if (name == entry.name) return entry.make(options, context);
-  }
+  if (const Entry* entry = findEntry(name)) return entry->make(options, context);
   if (name == "external") {
     throw core::InputError(
         "planner 'external' is a node of the user's own: it needs the node graph "
@@ -46,6 +71,16 @@ std::vector<std::string> plannerNames() {
   std::vector<std::string> names;
   for (const Entry& entry : kPlanners) names.emplace_back(entry.name);
   return names;
+}
+
+bool canBeGuided(const std::string& name) {
+  const Entry* entry = findEntry(name);
+  return entry != nullptr && entry->guided;
+}
+
+bool seesImages(const std::string& name) {
+  const Entry* entry = findEntry(name);
+  return entry != nullptr && entry->sees;
 }
 
 }  // namespace cdiff::planning

@@ -87,13 +87,23 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
   return fault.empty() ? actions : failSafe(tasks);
 }
 
+void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask>& tasks) {
+  for (PlanningTask& task : tasks) {
+    for (const SlotImage& seen : images) {
+      if (seen.slot == task.slot) task.image = &seen.image;
+    }
+  }
+}
+
 ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
   const ScenarioOptions& options = setup.options();
-  const planning::PlannerOptions planner_options{options.pdm_lite, options.vehicle};
+  const planning::PlannerOptions planner_options = options.plannerOptions();
   ego_planner_ =
       planning::makePlanner(options.ego_planner, planner_options, setup.planningContext());
   cbv_planner_ =
       planning::makePlanner(options.cbv_planner, planner_options, setup.planningContext());
+  if (ego_planner_->needsImages() || cbv_planner_->needsImages())
+    camera_.emplace(options.camera, setup.network());
   selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
                                                  setup.graph(), setup.egoRoute());
   world_ = std::make_unique<World>(setup);
@@ -104,29 +114,42 @@ ClosedLoop::~ClosedLoop() = default;
 struct ClosedLoop::Decision {
   cbv::CbvSelection selection;
   std::vector<PlannedAction> actions;
+  std::vector<SlotImage> images;
   std::vector<PlannerLatency> latencies;
 };
+
+void ClosedLoop::render(const std::vector<PlanningTask>& tasks, std::vector<SlotImage>& images) {
+  for (const PlanningTask& task : tasks)
+    images.push_back({task.slot, camera_->render(world_->snapshot(), *task.vehicle)});
+}
+
+void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
+                     std::vector<PlanningTask> tasks, Decision& decision) {
+  if (tasks.empty()) return;
+  if (planner.needsImages()) {
+    render(tasks, decision.images);
+    attachImages(decision.images, tasks);
+  }
+  PlannerLatency latency{name, 0.0};
+  std::string fault;
+  for (PlannedAction& action :
+       planTimed(planner, world_->snapshot(), tasks, latency.milliseconds, fault)) {
+    if (!action.fault.empty()) world_->recordFault(name, action.fault);
+    decision.actions.push_back(std::move(action));
+  }
+  if (!fault.empty()) world_->recordFault(name, fault);
+  decision.latencies.push_back(latency);
+}
 
 ClosedLoop::Decision ClosedLoop::decide() {
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
   const ScenarioOptions& options = setup_.options();
   Decision decision;
   decision.selection = selector_->update(snapshot);
-  const auto ask = [&](planning::Planner& planner, const std::string& name,
-                       const std::vector<PlanningTask>& tasks) {
-    if (tasks.empty()) return;
-    PlannerLatency latency{name, 0.0};
-    std::string fault;
-    for (PlannedAction& action : planTimed(planner, snapshot, tasks, latency.milliseconds, fault)) {
-      decision.actions.push_back(std::move(action));
-    }
-    if (!fault.empty()) world_->recordFault(name, fault);
-    decision.latencies.push_back(latency);
-  };
   ask(*ego_planner_, "ego:" + options.ego_planner,
-      egoTasks(snapshot, setup_.egoRoute(), options.target_speed));
+      egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
   ask(*cbv_planner_, "cbv:" + options.cbv_planner,
-      cbvTasks(snapshot, decision.selection, options.target_speed));
+      cbvTasks(snapshot, decision.selection, options.target_speed), decision);
   return decision;
 }
 
@@ -146,6 +169,7 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       }
       record.selection = &decision.selection;
       record.actions = &decision.actions;
+      record.images = &decision.images;
       record.latencies = decision.latencies;
     } else {
       selector_->observe(snapshot);

@@ -120,6 +120,11 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   visitor.group({"pdm_lite", "", "Planner pdm_lite."}, pdm_lite);
+  visitor.group({"diffusion", "", "Planner diffusion."}, diffusion);
+  visitor.text({"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
+               guidance_profile, {});
+  visitor.group({"guidance", "", "Guidance objectives; defaults are the profile's."}, guidance);
+  visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
   visitor.group({"protocol", "", "When a session ends."}, protocol);
@@ -139,6 +144,8 @@ void ScenarioOptions::validate() const {
   route.validate();
   cbv.validate();
   pdm_lite.validate();
+  guidance.validate();
+  camera.validate();
   vehicle.validate();
   if (!isMultiple(simulation_step, 0.05)) {
     throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) +
@@ -149,10 +156,10 @@ void ScenarioOptions::validate() const {
                      " s; expected a multiple of simulation_step (" +
                      core::formatNumber(simulation_step) + " s)");
   }
-  if (mode == "safety_critical" && cbv_planner == "pdm_lite") {
+  if (mode == "safety_critical" && !planning::canBeGuided(cbv_planner)) {
     throw InputError(
-        "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner "
-        "'pdm_lite' drives by rules, naturalistic only");
+        "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
+        cbv_planner + "' drives naturalistically only; expected diffusion");
   }
   const bool file = demand != "generated" && demand != "none";
   if (file && !fs::is_regular_file(demand)) {
@@ -163,9 +170,9 @@ void ScenarioOptions::validate() const {
   checkStatuses(verdict.statuses);
 }
 
-ScenarioOptions loadScenario(const std::string& name_or_file) {
+ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base) {
   const fs::path file = findScenario(name_or_file);
-  ScenarioOptions options;
+  ScenarioOptions options = base;
   options.name = file.stem().string();
   core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
   const bool file_network = looksLikeFile(options.network);

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using core::InputError;
 
 /// A scenario made of a Bench2Drive route alone, with generated demand.
-ScenarioOptions bench2DriveScenario(const SessionRequest& request) {
+ScenarioOptions bench2DriveScenario(const SessionRequest& request, const ScenarioOptions& base) {
   if (request.route.empty())
     throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
   if (request.network.empty()) {
@@ -21,20 +21,20 @@ ScenarioOptions bench2DriveScenario(const SessionRequest& request) {
                      map::bench2DriveTown(request.bench2drive, request.route) +
                      "; give that town's network (--network NET.net.xml)");
   }
-  ScenarioOptions options;
+  ScenarioOptions options = base;
   options.name = "bench2drive_" + request.route;
   options.route.bench2drive_file = fs::absolute(request.bench2drive).string();
   options.route.bench2drive_id = request.route;
   return options;
 }
 
-ScenarioOptions baseScenario(const SessionRequest& request) {
+ScenarioOptions baseScenario(const SessionRequest& request, const ScenarioOptions& base) {
   const bool bench2drive = !request.bench2drive.empty();
   if (bench2drive && !request.scenario.empty()) {
     throw InputError("give either a scenario or a Bench2Drive file, not both ('" +
                      request.scenario + "' and '" + request.bench2drive + "')");
   }
-  if (bench2drive) return bench2DriveScenario(request);
+  if (bench2drive) return bench2DriveScenario(request, base);
   if (!request.route.empty())
     throw InputError("--route " + request.route + " needs --bench2drive FILE");
   if (request.scenario.empty()) {
@@ -42,13 +42,12 @@ ScenarioOptions baseScenario(const SessionRequest& request) {
         "nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID "
         "--network NET");
   }
-  return loadScenario(request.scenario);
+  return loadScenario(request.scenario, base);
 }
 
-}  // namespace
-
-ScenarioOptions resolveRequest(const SessionRequest& request) {
-  ScenarioOptions options = baseScenario(request);
+/// `base` with the scenario's keys and then the request's on top.
+ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOptions& base) {
+  ScenarioOptions options = baseScenario(request, base);
   if (!request.network.empty()) {
     options.network = fs::is_regular_file(request.network) ? fs::absolute(request.network).string()
                                                            : request.network;
@@ -62,6 +61,19 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   apply("seed", request.seed);
   for (const std::string& assignment : request.set)
     core::overrideOption(assignment, request.set_source, options);
+  return options;
+}
+
+}  // namespace
+
+ScenarioOptions resolveRequest(const SessionRequest& request) {
+  // Which profile applies is only known when everything was read; the profile's values then lie
+  // below everything else.
+  const ScenarioOptions first = applyRequest(request, {});
+  ScenarioOptions base;
+  base.guidance = guidance::loadProfile(first.guidance_profile.empty() ? first.mode
+                                                                       : first.guidance_profile);
+  const ScenarioOptions options = applyRequest(request, base);
   options.validate();
   return options;
 }

@@ -28,7 +28,7 @@ struct SamplerOptions {
   std::int64_t steps = 10;              ///< of real_time
   std::int64_t inner_iterations = 4;    ///< of the proximal step
   double trust_region = 2.0;            ///< c
-  bool warm_start = true;               ///< real_time: start from the previous plan where it fits
+  bool warm_start = false;              ///< real_time: start from the previous plan where it fits
   std::int64_t warm_start_step = 50;    ///< diffusion step k that it is noised to
   std::int64_t warm_steps = 5;          ///< denoising steps from there
 
@@ -69,7 +69,8 @@ class Sampler {
           const traffic::Rollout& spread, const core::RandomStream& noise);
 
   /// Draws all requests as one batch, for the contexts that `denoiser` holds (same order and
-  /// count). `objective` may be nullptr.
+  /// count). Cold or warm starts, not both (std::invalid_argument); modes other than real_time start
+  /// cold. `objective` may be nullptr.
   std::vector<SampledTrajectory> sample(Denoiser& denoiser, StateBranch& states,
                                         const std::vector<SampleRequest>& requests,
                                         CleanObjective* objective) const;

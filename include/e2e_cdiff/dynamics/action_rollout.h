@@ -20,8 +20,8 @@ class ActionRollout {
 
   /// Adds to the action columns of `gradient` what its state columns (dJ/ds) mean for the actions:
   /// dJ/da += (ds/da)^T dJ/ds at `rollout`, whose states rollOut() made. Zero for actions at or
-  /// beyond a bound that the gradient points out of, and for throttle below 0.3 (the response is
-  /// flat there).
+  /// beyond a bound that descent (along -dJ/da) points out of; beyond a bound that it points into,
+  /// the derivative at the bound. Zero for throttle below 0.3 (the response is flat there).
   void pullBack(double initial_speed, const traffic::Rollout& rollout,
                 traffic::Rollout& gradient) const;
 

@@ -21,6 +21,20 @@ struct BicycleModelOptions {
   void validate() const;
 };
 
+/// Speed one tick (0.05 s) later and its derivatives.
+struct SpeedResponse {
+  double speed = 0.0;        ///< [m/s]
+  double by_speed = 0.0;     ///< d next / d speed
+  double by_throttle = 0.0;  ///< d next / d throttle [m/s]
+  double by_brake = 0.0;     ///< d next / d brake [m/s]
+};
+
+/// Slip angle of the centre and its derivative.
+struct SlipResponse {
+  double slip = 0.0;      ///< [rad]
+  double by_steer = 0.0;  ///< d slip / d steer [rad]
+};
+
 /// Steering: slip = atan(l_r / (l_f + l_r) tan(gain steer)); x' = v cos(heading + slip),
 /// y' = v sin(heading + slip), heading' = v / l_r sin(slip); Euler with the speed at the start of
 /// the 0.05 s. Speed per 0.05 s, in km/h:
@@ -41,8 +55,16 @@ class BicycleModel {
                              const traffic::ControlAction& action, double duration) const;
   const BicycleModelOptions& options() const { return options_; }
 
- private:
+  /// The parts of a tick, for derivatives along many ticks; the action is not checked. Where the
+  /// response has a kink (0.3 of throttle, caps, standstill) the derivative is that of the branch
+  /// that `step` takes.
+  static constexpr double kTick = 0.05;  ///< [s] the period that the fitted polynomials describe
+  double slip(double steer) const;
+  SlipResponse slipResponse(double steer) const;
   double nextSpeed(double speed, const traffic::ControlAction& action) const;
+  SpeedResponse speedResponse(double speed, const traffic::ControlAction& action) const;
+
+ private:
   BicycleModelOptions options_;
 };
 

@@ -15,10 +15,10 @@ namespace cdiff::guidance {
 /// An objective as a profile uses it.
 struct WeightedObjective {
   std::string name;
-  double weight = 0.0;           ///< w_i; 0 switches it off
-  std::int64_t first_step = 0;   ///< acts at diffusion steps k <= first_step; 0: from K on
-  std::int64_t last_step = 1;    ///< and k >= last_step
-  double gradient_cap = 0.0;     ///< largest norm of w_i dJ_i per sample, normalised units; 0: none
+  double weight = 0.0;          ///< w_i; 0 switches it off
+  std::int64_t first_step = 0;  ///< acts at diffusion steps k <= first_step; 0: from K on
+  std::int64_t last_step = 1;   ///< and k >= last_step
+  double gradient_cap = 0.0;    ///< largest norm of w_i dJ_i per sample, normalised units; 0: none
   std::unique_ptr<Objective> objective;
 
   bool actsAt(int diffusion_step) const {

@@ -23,11 +23,11 @@ struct OtherMotion {
 struct GuidanceScene {
   traffic::VehicleState state;  ///< of the planned vehicle: the body frame of rollouts
   traffic::VehicleDimensions dimensions;
-  double target_speed = 8.0;                          ///< v* after the lane's limit [m/s]
-  const map::DrivableArea* drivable_area = nullptr;   ///< never null
-  const map::Route* route = nullptr;                  ///< null: no route
-  double route_arc_length = 0.0;                      ///< of the vehicle on it [m]
-  const OtherMotion* other = nullptr;                 ///< null: nobody to avoid or seek
+  double target_speed = 8.0;                         ///< v* after the lane's limit [m/s]
+  const map::DrivableArea* drivable_area = nullptr;  ///< never null
+  const map::Route* route = nullptr;                 ///< null: no route
+  double route_arc_length = 0.0;                     ///< of the vehicle on it [m]
+  const OtherMotion* other = nullptr;                ///< null: nobody to avoid or seek
 };
 
 /// Map-frame position of a rollout row.
@@ -35,6 +35,14 @@ inline Eigen::Vector2d positionOnMap(const GuidanceScene& scene, const traffic::
                                      Eigen::Index row) {
   return scene.state.pose().toMap(
       {rollout(row, traffic::kRolloutX), rollout(row, traffic::kRolloutY)});
+}
+
+/// Adds a gradient with respect to the map-frame position to a rollout row's x and y.
+inline void addPositionGradient(const GuidanceScene& scene, const Eigen::Vector2d& on_map,
+                                Eigen::Index row, traffic::Rollout& gradient) {
+  const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
+  gradient(row, traffic::kRolloutX) += forward.dot(on_map);
+  gradient(row, traffic::kRolloutY) += geometry::leftNormal(forward).dot(on_map);
 }
 
 }  // namespace cdiff::guidance

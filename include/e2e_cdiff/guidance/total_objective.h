@@ -17,11 +17,12 @@ class TotalObjective {
   /// Whether any objective acts at this diffusion step.
   bool actsAt(int diffusion_step) const;
   /// J_total of a metric rollout; `gradient` (resized to its shape) becomes dJ_total/d(rollout).
-  /// `scale` [T, 7] is the size of a normalised unit in each cell: caps and reported norms are those
-  /// of gradient x scale.
+  /// `scale` [T, 7] is the size of a normalised unit in each cell: caps and reported norms are
+  /// those of gradient x scale.
   double evaluate(int diffusion_step, const traffic::Rollout& rollout,
                   const traffic::Rollout& scale, traffic::Rollout& gradient);
-  /// Weighted sum for ranking candidates: every objective with a weight, whatever its window.
+  /// Weighted sum for ranking candidates: every objective with a weight, whatever its window. The
+  /// largest double when it is not finite, so that such a candidate ranks last.
   double score(const traffic::Rollout& rollout) const;
   /// What happened so far, with the values at `chosen`.
   GuidanceReport report(const traffic::Rollout& chosen) const;
@@ -33,9 +34,12 @@ class TotalObjective {
     std::int64_t capped = 0;
     std::int64_t dropped = 0;
   };
+  double addObjective(std::size_t index, const traffic::Rollout& rollout,
+                      const traffic::Rollout& scale, traffic::Rollout& gradient);
   const GuidanceOptions& options_;
   const GuidanceScene& scene_;
   std::vector<Tally> tallies_;  ///< by objective
+  traffic::Rollout part_;       ///< gradient of one objective
 };
 
 }  // namespace cdiff::guidance

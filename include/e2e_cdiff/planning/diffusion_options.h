@@ -20,7 +20,6 @@ struct DiffusionOptions {
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
-  void validate() const;
 };
 
 }  // namespace cdiff::planning

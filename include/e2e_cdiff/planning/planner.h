@@ -23,6 +23,7 @@ struct PlanningContext {
   std::uint64_t seed = 1;
   double simulation_step = 0.05;  ///< [s]
   double decision_period = 0.1;   ///< [s]
+  const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
 };
 
 /// One vehicle to drive at this decision.

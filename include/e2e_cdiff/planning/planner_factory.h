@@ -8,15 +8,21 @@
 #include <vector>
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
+#include "e2e_cdiff/planning/diffusion_options.h"
 #include "e2e_cdiff/planning/pdm_lite_options.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 
 namespace cdiff::planning {
 
 /// Options of all planners; each takes its own.
 struct PlannerOptions {
   PdmLiteOptions pdm_lite;
+  DiffusionOptions diffusion;
+  guidance::GuidanceOptions guidance;  ///< of planners that can be guided
   dynamics::BicycleModelOptions vehicle;
+  rendering::CameraOptions camera;  ///< that planners which see look through
 };
 
 /// Throws InputError naming the nearest known planner for an unknown name.
@@ -25,5 +31,9 @@ std::unique_ptr<Planner> makePlanner(const std::string& name, const PlannerOptio
 
 /// Names that makePlanner knows, sorted.
 std::vector<std::string> plannerNames();
+/// Whether a planner of this name follows guidance objectives; false for unknown names.
+bool canBeGuided(const std::string& name);
+/// Whether a planner of this name needs images; false for unknown names.
+bool seesImages(const std::string& name);
 
 }  // namespace cdiff::planning

@@ -8,8 +8,10 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "e2e_cdiff/rendering/front_camera.h"
 #include "e2e_cdiff/scenario/session_observer.h"
 #include "e2e_cdiff/scenario/world.h"
 
@@ -23,6 +25,9 @@ std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& sna
 /// Task of the ego planner; empty when the ego is gone.
 std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                              const map::Route& route, double target_speed);
+/// Gives each task the image of its slot; tasks without one stay without.
+void attachImages(const std::vector<SlotImage>& images,
+                  std::vector<planning::PlanningTask>& tasks);
 /// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields
 /// fail-safe actions; the text of the fault goes to `fault` (empty when none).
 std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
@@ -46,11 +51,15 @@ class ClosedLoop {
  private:
   struct Decision;
   Decision decide();
+  void ask(planning::Planner& planner, const std::string& name,
+           std::vector<planning::PlanningTask> tasks, Decision& decision);
+  void render(const std::vector<planning::PlanningTask>& tasks, std::vector<SlotImage>& images);
   const SessionSetup& setup_;
   std::unique_ptr<World> world_;
   std::unique_ptr<cbv::CbvSelector> selector_;
   std::unique_ptr<planning::Planner> ego_planner_;
   std::unique_ptr<planning::Planner> cbv_planner_;
+  std::optional<rendering::FrontCamera> camera_;  ///< where a planner sees
   std::vector<SessionObserver*> observers_;
 };
 

@@ -10,7 +10,8 @@
 #include "e2e_cdiff/cbv/cbv_selector.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/map/route_source.h"
-#include "e2e_cdiff/planning/pdm_lite_options.h"
+#include "e2e_cdiff/planning/planner_factory.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/scenario/protocol.h"
 #include "e2e_cdiff/simulation/demand_generator.h"
 #include "e2e_cdiff/simulation/sumo_simulator.h"
@@ -43,6 +44,10 @@ struct ScenarioOptions {
   std::int64_t max_cbv = 2;
   cbv::CbvOptions cbv;
   planning::PdmLiteOptions pdm_lite;
+  planning::DiffusionOptions diffusion;
+  std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
+  guidance::GuidanceOptions guidance;  ///< the profile's values, with what the scenario changes
+  rendering::CameraOptions camera;     ///< that planners see through
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
@@ -56,12 +61,16 @@ struct ScenarioOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for fields that contradict each other.
   void validate() const;
+  planning::PlannerOptions plannerOptions() const {
+    return {pdm_lite, diffusion, guidance, vehicle, camera};
+  }
 };
 
 /// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside
-/// it are resolved against the file's folder. Throws InputError naming file, line and key, or the
+/// it are resolved against the file's folder; keys that it does not name keep the values of `base`.
+/// Throws InputError naming file, line and key, or the
 /// nearest shipped scenario.
-ScenarioOptions loadScenario(const std::string& name_or_file);
+ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base = {});
 
 /// Names of the shipped scenarios, sorted.
 std::vector<std::string> shippedScenarios();

@@ -19,11 +19,18 @@ struct PlannerLatency {
   double milliseconds = 0.0;
 };
 
+/// What the vehicle of a slot saw at a decision.
+struct SlotImage {
+  int slot = -1;  ///< -1: the ego
+  traffic::CameraImage image;
+};
+
 /// One tick. Selection, actions and latencies are there at decision ticks only.
 struct TickRecord {
   const traffic::TrafficSnapshot* snapshot = nullptr;
   const cbv::CbvSelection* selection = nullptr;                   ///< nullptr between decisions
   const std::vector<planning::PlannedAction>* actions = nullptr;  ///< ego first, then CBVs by slot
+  const std::vector<SlotImage>* images = nullptr;  ///< of vehicles whose planner sees
   std::vector<PlannerLatency> latencies;
 };
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
+/// future states and throttle, steer and brake out, of which the first action drives. All vehicles of
+/// a decision form one batch.
+///
+/// Choices where the paper leaves them open:
+///  - the image is encoded once per decision, the denoiser runs on its features;
+///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
+///    nearest other vehicle, for the ego;
+///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
+///    brake the larger one acts;
+///  - of several candidates the one with the lowest weighted objective drives, unless the one nearest
+///    to the previous plan is no worse by `hysteresis`.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+#include "e2e_cdiff/diffusion/image_encoder.h"
+#include "e2e_cdiff/diffusion/model.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
+#include "e2e_cdiff/planning/diffusion_options.h"
+#include "e2e_cdiff/planning/image_watch.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/route_follower.h"
+
+namespace cdiff::planning {
+
+/// Throttle, steer and brake that the vehicle executes for a row of a rollout.
+traffic::ControlAction executableAction(const traffic::Rollout& rollout, Eigen::Index row);
+
+class DiffusionPlanner : public Planner {
+ public:
+  /// Loads the model. Throws InputError for a bad model or bad options.
+  DiffusionPlanner(const DiffusionOptions& options, const guidance::GuidanceOptions& guidance,
+                   const dynamics::BicycleModelOptions& vehicle, const PlanningContext& context);
+
+  /// A vehicle with a NaN state, without a usable image, or without a route where one is asked for
+  /// gets the fail-safe action and a fault that names what is wrong; the others drive on.
+  std::vector<PlannedAction> plan(const traffic::TrafficSnapshot& snapshot,
+                                  const std::vector<PlanningTask>& tasks) override;
+  bool needsImages() const override { return true; }
+  const diffusion::Model& model() const { return model_; }
+
+ private:
+  struct Memory;
+  struct Situation;
+
+  std::optional<std::string> faultOf(const PlanningTask& task, std::uint64_t tick, Memory& memory);
+  std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
+                                         const PlanningTask& task, Memory& memory);
+  void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
+  void setWarmStart(std::uint64_t tick, Situation& situation) const;
+  void solve(std::uint64_t tick, const std::vector<Situation*>& situations);
+  void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
+              std::size_t first) const;
+  PlannedAction actionOf(const Situation& situation) const;
+
+  DiffusionOptions options_;
+  guidance::GuidanceOptions guidance_;
+  dynamics::BicycleModelOptions vehicle_;
+  PlanningContext context_;
+  diffusion::Model model_;
+  diffusion::NoiseSchedule schedule_;
+  diffusion::ImageEncoder encoder_;
+  diffusion::CpuDenoiser denoiser_;
+  diffusion::Sampler sampler_;
+  dynamics::ActionRollout exact_;
+  RouteFollower ego_follower_;
+  std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
+};
+
+}  // namespace cdiff::planning

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/diffusion/image_encoder.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "encoder_network.h"
+
+namespace cdiff::diffusion {
+
+struct ImageEncoder::Network : EncoderNetwork {
+  using EncoderNetwork::EncoderNetwork;
+};
+
+ImageEncoder::ImageEncoder(const Model& model) : network_(std::make_unique<Network>(model)) {}
+ImageEncoder::ImageEncoder(ImageEncoder&&) noexcept = default;
+ImageEncoder& ImageEncoder::operator=(ImageEncoder&&) noexcept = default;
+ImageEncoder::~ImageEncoder() = default;
+
+std::vector<float> ImageEncoder::encode(const traffic::CameraImage& image) {
+  const MapShape& expected = network_->imageShape();
+  const std::size_t bytes = static_cast<std::size_t>(expected.size());
+  if (image.width != expected.width || image.height != expected.height ||
+      image.rgb.size() != bytes) {
+    throw std::invalid_argument(
+        "image encoder: the image is " + std::to_string(image.width) + " x " +
+        std::to_string(image.height) + " (" + std::to_string(image.rgb.size()) +
+        " bytes), but the model takes " + std::to_string(expected.width) + " x " +
+        std::to_string(expected.height) + " (" + std::to_string(bytes) + " bytes)");
+  }
+  return network_->encode(image.rgb.data());
+}
+
+std::string ImageEncoder::instructionSet() {
+  switch (dnnl::get_effective_cpu_isa()) {
+    case dnnl::cpu_isa::sse41:
+      return "sse41";
+    case dnnl::cpu_isa::avx:
+      return "avx";
+    case dnnl::cpu_isa::avx2:
+      return "avx2";
+    case dnnl::cpu_isa::avx2_vnni:
+      return "avx2_vnni";
+    case dnnl::cpu_isa::avx512_core:
+      return "avx512_core";
+    case dnnl::cpu_isa::avx512_core_vnni:
+      return "avx512_core_vnni";
+    case dnnl::cpu_isa::avx512_core_bf16:
+      return "avx512_core_bf16";
+    case dnnl::cpu_isa::avx512_core_amx:
+      return "avx512_core_amx";
+    default:
+      return "isa_" + std::to_string(static_cast<int>(dnnl::get_effective_cpu_isa()));
+  }
+}
+
+}  // namespace cdiff::diffusion

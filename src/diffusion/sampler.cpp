@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/diffusion/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+#include "proximal_step.h"
+#include "sampling_batch.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+using traffic::kActionColumns;
+using traffic::kRolloutColumns;
+using traffic::kStateColumns;
+
+/// alpha_bar at K and K - 1 is so small that a few-step sampler divides by almost nothing there.
+constexpr int kSkippedSteps = 2;
+
+/// One run over a batch.
+class Run {
+ public:
+  Run(Denoiser& denoiser, StateBranch& branch, const NoiseSchedule& schedule,
+      const core::RandomStream& noise, const std::vector<SampleRequest>& requests)
+      : denoiser_(denoiser),
+        branch_(branch),
+        schedule_(schedule),
+        noise_(noise),
+        requests_(requests),
+        batch_(requests.size(), denoiser.architecture().horizon),
+        results_(requests.size()) {}
+
+  /// Pure noise, or the previous plan noised to k. Its noise is that of step K + 1, which no reverse
+  /// step draws.
+  void start(int k, bool warm);
+  void ddpm(CleanObjective* objective);
+  void ddim(const std::vector<int>& steps, const SamplerOptions& options,
+            const traffic::Rollout& spread, CleanObjective* objective);
+  std::vector<SampledTrajectory> take();
+
+ private:
+  float normal(std::size_t sample, int k, std::size_t cell) const;
+  bool guidesAny(const CleanObjective* objective, int k) const;
+  void reverse(int k, const std::vector<float>* gradient);
+  void jump(int from, int to);
+  void countGuided(const CleanObjective& objective, int k, const std::vector<bool>& clipped);
+
+  Denoiser& denoiser_;
+  StateBranch& branch_;
+  const NoiseSchedule& schedule_;
+  const core::RandomStream& noise_;
+  const std::vector<SampleRequest>& requests_;
+  SamplingBatch batch_;
+  std::vector<SampledTrajectory> results_;
+};
+
+float Run::normal(std::size_t sample, int k, std::size_t cell) const {
+  core::RandomKey key = requests_[sample].key;
+  key.diffusion_step = static_cast<std::uint16_t>(k);
+  const auto element =
+      static_cast<std::uint32_t>(requests_[sample].candidate * batch_.cells() + cell);
+  return static_cast<float>(noise_.normal(key, element));
+}
+
+void Run::start(int k, bool warm) {
+  const auto signal = static_cast<float>(std::sqrt(schedule_.alphaBar(k)));
+  const auto sigma = static_cast<float>(std::sqrt(1.0 - schedule_.alphaBar(k)));
+  for (std::size_t b = 0; b < batch_.count(); ++b) {
+    for (std::size_t i = 0; i < batch_.cells(); ++i) {
+      const float z = normal(b, schedule_.steps() + 1, i);
+      batch_.noisy(b)[i] = warm ? signal * requests_[b].warm->data()[i] + sigma * z : z;
+    }
+  }
+}
+
+bool Run::guidesAny(const CleanObjective* objective, int k) const {
+  if (objective == nullptr) return false;
+  for (std::size_t b = 0; b < requests_.size(); ++b) {
+    if (objective->actsAt(b, k)) return true;
+  }
+  return false;
+}
+
+void Run::countGuided(const CleanObjective& objective, int k, const std::vector<bool>& clipped) {
+  for (std::size_t b = 0; b < results_.size(); ++b) {
+    if (!objective.actsAt(b, k)) continue;
+    ++results_[b].guided_steps;
+    if (!clipped.empty() && clipped[b]) ++results_[b].trust_region_hits;
+  }
+}
+
+/// tau^{k-1} from tau^k and the clean prediction.
+void Run::reverse(int k, const std::vector<float>* gradient) {
+  const auto clean_weight = static_cast<float>(schedule_.cleanWeight(k));
+  const auto noisy_weight = static_cast<float>(schedule_.noisyWeight(k));
+  const auto beta = static_cast<float>(schedule_.beta(k));
+  const auto sigma = k > 1 ? static_cast<float>(std::sqrt(schedule_.beta(k))) : 0.0F;
+  for (std::size_t b = 0; b < batch_.count(); ++b) {
+    const Trajectory clean = batch_.clean(b);
+    float* noisy = batch_.noisy(b);
+    for (std::size_t i = 0; i < batch_.cells(); ++i) {
+      float mean = clean_weight * clean.data()[i] + noisy_weight * noisy[i];
+      if (gradient != nullptr) mean -= beta * (*gradient)[b * batch_.cells() + i];
+      noisy[i] = sigma > 0.0F ? mean + sigma * normal(b, k, i) : mean;
+    }
+  }
+}
+
+void Run::ddpm(CleanObjective* objective) {
+  for (int k = schedule_.steps(); k >= 1; --k) {
+    batch_.predict(denoiser_, branch_, k);
+    const std::vector<float>* gradient = nullptr;
+    if (guidesAny(objective, k)) {
+      batch_.evaluate(*objective, k);
+      gradient = &batch_.noisyGradient(denoiser_, branch_);
+      countGuided(*objective, k, {});
+    }
+    reverse(k, gradient);
+  }
+  // The rollout that is planned is what the states do under the guided actions.
+  for (std::size_t b = 0; b < batch_.count(); ++b) {
+    const Eigen::Map<const Trajectory> last(batch_.noisy(b), batch_.horizon(), kRolloutColumns);
+    for (Eigen::Index t = 0; t < batch_.horizon(); ++t) {
+      for (int c = 0; c < kActionColumns; ++c)
+        batch_.actions(b)[t * kActionColumns + c] = last(t, kStateColumns + c);
+    }
+  }
+  batch_.predictStates(branch_, 1);
+}
+
+/// DDIM: the noise that the clean prediction implies is kept.
+void Run::jump(int from, int to) {
+  const double signal = std::sqrt(schedule_.alphaBar(from));
+  const double sigma = std::sqrt(1.0 - schedule_.alphaBar(from));
+  const double next_signal = std::sqrt(schedule_.alphaBar(to));
+  const double next_sigma = std::sqrt(1.0 - schedule_.alphaBar(to));
+  for (std::size_t b = 0; b < batch_.count(); ++b) {
+    const Trajectory clean = batch_.clean(b);
+    float* noisy = batch_.noisy(b);
+    for (std::size_t i = 0; i < batch_.cells(); ++i) {
+      const double x = clean.data()[i];
+      const double epsilon = (noisy[i] - signal * x) / sigma;
+      noisy[i] = static_cast<float>(next_signal * x + next_sigma * epsilon);
+    }
+  }
+}
+
+/// r_k of the actions [T, 3].
+std::vector<float> proximalRadius(double alpha_bar, const traffic::Rollout& spread) {
+  std::vector<float> radius;
+  for (Eigen::Index t = 0; t < spread.rows(); ++t) {
+    for (int c = 0; c < kActionColumns; ++c) {
+      const double variance = std::pow(spread(t, kStateColumns + c), 2);
+      radius.push_back(static_cast<float>(
+          std::sqrt(variance * (1.0 - alpha_bar) / (alpha_bar * variance + 1.0 - alpha_bar))));
+    }
+  }
+  return radius;
+}
+
+void Run::ddim(const std::vector<int>& steps, const SamplerOptions& options,
+               const traffic::Rollout& spread, CleanObjective* objective) {
+  const ProximalOptions proximal{static_cast<int>(options.inner_iterations), options.trust_region};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const int k = steps[i];
+    batch_.predict(denoiser_, branch_, k);
+    if (guidesAny(objective, k)) {
+      const std::vector<float> radius = proximalRadius(schedule_.alphaBar(k), spread);
+      countGuided(*objective, k,
+                  proximalStep(proximal, radius, k, branch_, *objective, batch_));
+    }
+    if (i + 1 < steps.size()) jump(k, steps[i + 1]);
+  }
+}
+
+std::vector<SampledTrajectory> Run::take() {
+  for (std::size_t b = 0; b < batch_.count(); ++b) results_[b].clean = batch_.clean(b);
+  return std::move(results_);
+}
+
+}  // namespace
+
+void SamplerOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"mode", "", "How trajectories are denoised."}, mode,
+               {"paper", "real_time", "unguided"});
+  visitor.integer({"steps", "", "Denoising steps of real_time."}, steps, 1, 1000);
+  visitor.integer({"inner_iterations", "", "Descent steps of each proximal step of real_time."},
+                  inner_iterations, 1, 50);
+  visitor.number({"trust_region", "", "Farthest proximal step in units of r_k."}, trust_region,
+                 0.01, 100.0);
+  visitor.flag({"warm_start", "", "real_time: start from the previous plan where it still fits."},
+               warm_start);
+  visitor.integer({"warm_start_step", "", "Diffusion step that the previous plan is noised to."},
+                  warm_start_step, 1, 1000);
+  visitor.integer({"warm_steps", "", "Denoising steps of a warm start."}, warm_steps, 1, 1000);
+}
+
+void SamplerOptions::validate(int diffusion_steps) const {
+  const auto refuse = [&](const char* key, std::int64_t value) {
+    throw core::InputError("key 'diffusion.sampler." + std::string(key) + "' is " +
+                           std::to_string(value) + "; the model has K = " +
+                           std::to_string(diffusion_steps) + " diffusion steps, so at most " +
+                           std::to_string(diffusion_steps) + " is expected");
+  };
+  if (steps > diffusion_steps) refuse("steps", steps);
+  if (warm_start_step > diffusion_steps) refuse("warm_start_step", warm_start_step);
+  if (warm_steps > warm_start_step) {
+    throw core::InputError("key 'diffusion.sampler.warm_steps' is " + std::to_string(warm_steps) +
+                           "; expected at most warm_start_step (" +
+                           std::to_string(warm_start_step) + ")");
+  }
+}
+
+Sampler::Sampler(const SamplerOptions& options, const NoiseSchedule& schedule,
+                 const traffic::Rollout& spread, const core::RandomStream& noise)
+    : options_(options), schedule_(schedule), spread_(spread), noise_(noise) {
+  options_.validate(schedule.steps());
+}
+
+std::vector<int> Sampler::visitedSteps(bool warm) const {
+  std::vector<int> steps;
+  if (options_.mode != "real_time") {
+    for (int k = schedule_.steps(); k >= 1; --k) steps.push_back(k);
+    return steps;
+  }
+  const int first = warm ? static_cast<int>(options_.warm_start_step)
+                         : std::max(1, schedule_.steps() - kSkippedSteps);
+  const int count =
+      std::min(first, static_cast<int>(warm ? options_.warm_steps : options_.steps));
+  for (int i = 0; i < count; ++i) {
+    steps.push_back(static_cast<int>(std::lround(static_cast<double>(first) * (count - i) / count)));
+  }
+  return steps;
+}
+
+std::vector<SampledTrajectory> Sampler::sample(Denoiser& denoiser, StateBranch& states,
+                                               const std::vector<SampleRequest>& requests,
+                                               CleanObjective* objective) const {
+  if (requests.empty()) return {};
+  for (const SampleRequest& request : requests) {
+    if ((request.warm == nullptr) != (requests.front().warm == nullptr))
+      throw std::invalid_argument("a batch holds cold starts only or warm starts only");
+  }
+  Run run(denoiser, states, schedule_, noise_, requests);
+  const bool warm = options_.mode == "real_time" && requests.front().warm != nullptr;
+  const std::vector<int> steps = visitedSteps(warm);
+  run.start(steps.front(), warm);
+  if (options_.mode == "real_time")
+    run.ddim(steps, options_, spread_, objective);
+  else
+    run.ddpm(options_.mode == "unguided" ? nullptr : objective);
+  return run.take();
+}
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The working memory of one guided sampling run: noisy and clean trajectories of a batch,
+/// normalised, and their gradients.
+#pragma once
+
+#include <vector>
+
+#include "e2e_cdiff/diffusion/sampler.h"
+
+namespace cdiff::diffusion {
+
+/// Blocks [B, T, columns], row-major.
+class SamplingBatch {
+ public:
+  SamplingBatch(std::size_t count, Eigen::Index horizon);
+
+  std::size_t count() const { return count_; }
+  Eigen::Index horizon() const { return horizon_; }
+  std::size_t cells() const { return static_cast<std::size_t>(horizon_) * traffic::kRolloutColumns; }
+  float* noisy(std::size_t sample) { return noisy_.data() + sample * cells(); }
+  float* actions(std::size_t sample);
+  float* states(std::size_t sample);
+
+  /// Clean prediction of the whole batch: actions by the denoiser, states by the branch.
+  void predict(Denoiser& denoiser, StateBranch& branch, int k);
+  /// States of the actions as they are now.
+  void predictStates(StateBranch& branch, int k);
+  /// [states; actions] of a sample.
+  Trajectory clean(std::size_t sample) const;
+
+  /// dJ/d(clean) of every sample on which the objective acts, zero for the others; J per sample.
+  std::vector<double> evaluate(CleanObjective& objective, int k);
+  /// dJ/d(actions) with the part that reaches them through the states; after evaluate().
+  const std::vector<float>& actionGradient(StateBranch& branch);
+  /// dJ/d(tau^k) through the network; after evaluate().
+  const std::vector<float>& noisyGradient(Denoiser& denoiser, StateBranch& branch);
+
+ private:
+  std::size_t count_;
+  Eigen::Index horizon_;
+  std::vector<float> noisy_;            ///< [B, T, 7]
+  std::vector<float> actions_;          ///< [B, T, 3]
+  std::vector<float> states_;           ///< [B, T, 4]
+  std::vector<float> state_gradient_;   ///< [B, T, 4]
+  std::vector<float> direct_gradient_;  ///< [B, T, 3], of the objective itself
+  std::vector<float> action_gradient_;  ///< [B, T, 3]
+  std::vector<float> noisy_gradient_;   ///< [B, T, 7]
+};
+
+}  // namespace cdiff::diffusion

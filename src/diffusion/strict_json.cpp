@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "strict_json.h"
+
+#include <set>
+#include <vector>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+constexpr int kMaxDepth = 8;
+constexpr std::size_t kMaxElements = 65536;
+
+/// Watches the parser's events; the keys of every object that is open.
+class Watcher {
+ public:
+  explicit Watcher(const std::string& source) : source_(source) {}
+
+  void see(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (++elements_ > kMaxElements) {
+      fail("more than " + std::to_string(kMaxElements) + " values and keys");
+    }
+    if (depth > kMaxDepth) fail("nested deeper than " + std::to_string(kMaxDepth));
+    if (event == Json::parse_event_t::object_start) {
+      open_.emplace_back();
+    } else if (event == Json::parse_event_t::object_end) {
+      open_.pop_back();
+    } else if (event == Json::parse_event_t::key) {
+      const std::string& key = parsed.get_ref<const std::string&>();
+      if (!open_.back().insert(key).second) fail("duplicate key '" + key + "'");
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw core::InputError(source_ + ": the JSON has a fault: " + what);
+  }
+
+  const std::string& source_;
+  std::size_t elements_ = 0;
+  std::vector<std::set<std::string>> open_;
+};
+
+}  // namespace
+
+Json parseStrictJson(std::string_view text, const std::string& source) {
+  Watcher watcher(source);
+  const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    watcher.see(depth, event, parsed);
+    return true;
+  };
+  try {
+    return Json::parse(text.begin(), text.end(), watch);
+  } catch (const Json::exception& error) {
+    throw core::InputError(source + " is not JSON: " + error.what());
+  }
+}
+
+std::string kindOf(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::object:
+      return "an object";
+    case Json::value_t::array:
+      return "an array";
+    case Json::value_t::string:
+      return "a string";
+    case Json::value_t::boolean:
+      return "a boolean";
+    case Json::value_t::number_integer:
+    case Json::value_t::number_unsigned:
+      return "an integer";
+    case Json::value_t::number_float:
+      return "a number with a fraction";
+    default:
+      return "null";
+  }
+}
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/guidance/guidance_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/guidance/objective_factory.h"
+
+namespace cdiff::guidance {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+constexpr double kLargestWeight = 1000.0;
+constexpr double kLargestCap = 1e6;
+constexpr std::int64_t kLastDiffusionStep = 10000;
+
+fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
+
+fs::path findProfile(const std::string& name_or_file) {
+  if (fs::is_regular_file(name_or_file)) return fs::absolute(name_or_file);
+  const fs::path shipped = profileFolder() / (name_or_file + ".yaml");
+  if (fs::is_regular_file(shipped)) return shipped;
+  const std::vector<std::string> known = shippedProfiles();
+  throw InputError("guidance profile '" + name_or_file +
+                   "' is neither a file nor a shipped profile; the nearest shipped one is '" +
+                   core::nearestName(name_or_file, known) +
+                   "' (all: " + core::joinText(known, ", ") + ")");
+}
+
+/// For values that were set in code, past the ranges of describe().
+void requireRange(const std::string& key, double value, double maximum) {
+  if (value >= 0.0 && value <= maximum) return;
+  throw InputError("key '" + key + "' is " + core::formatNumber(value) +
+                   "; expected a number in [0, " + core::formatNumber(maximum) + "]");
+}
+
+void validateEntry(const WeightedObjective& entry) {
+  requireRange(entry.name + ".weight", entry.weight, kLargestWeight);
+  requireRange(entry.name + ".gradient_cap", entry.gradient_cap, kLargestCap);
+  if (entry.last_step < 1 || (entry.first_step != 0 && entry.first_step < entry.last_step)) {
+    throw InputError("key '" + entry.name + ".first_step' is " + std::to_string(entry.first_step) +
+                     " and last_step is " + std::to_string(entry.last_step) +
+                     "; diffusion steps count down: expected first_step >= last_step >= 1, or "
+                     "first_step 0 to act from the first step on");
+  }
+  try {
+    entry.objective->validate();
+  } catch (const InputError& error) {
+    throw InputError("objective '" + entry.name + "': " + error.what());
+  }
+}
+
+}  // namespace
+
+void WeightedObjective::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"weight", "", "Weight in the sum; 0 switches the objective off."}, weight, 0.0,
+                 kLargestWeight);
+  visitor.integer({"first_step", "", "Acts at diffusion steps up to this one; 0: from the first."},
+                  first_step, 0, kLastDiffusionStep);
+  visitor.integer({"last_step", "", "Acts at diffusion steps down to this one."}, last_step, 1,
+                  kLastDiffusionStep);
+  visitor.number({"gradient_cap", "",
+                  "Largest norm of weight x gradient in normalised units; 0: "
+                  "none."},
+                 gradient_cap, 0.0, kLargestCap);
+  objective->describe(visitor);
+}
+
+GuidanceOptions::GuidanceOptions() {
+  for (const std::string& name : objectiveNames()) {
+    WeightedObjective entry;
+    entry.name = name;
+    entry.objective = makeObjective(name);
+    objectives.push_back(std::move(entry));
+  }
+}
+
+GuidanceOptions::GuidanceOptions(const GuidanceOptions& other) {
+  for (const WeightedObjective& entry : other.objectives) {
+    objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
+                          entry.gradient_cap, entry.objective->clone()});
+  }
+}
+
+GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
+  GuidanceOptions copy(other);
+  objectives = std::move(copy.objectives);
+  return *this;
+}
+
+WeightedObjective& GuidanceOptions::find(const std::string& name) {
+  std::vector<std::string> known;
+  for (WeightedObjective& entry : objectives) {
+    if (entry.name == name) return entry;
+    known.push_back(entry.name);
+  }
+  throw InputError("unknown guidance objective '" + name + "'; the nearest known objective is '" +
+                   core::nearestName(name, known) + "'");
+}
+
+void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
+  for (WeightedObjective& entry : objectives) {
+    visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
+  }
+}
+
+void GuidanceOptions::validate() const {
+  for (const WeightedObjective& entry : objectives) validateEntry(entry);
+}
+
+GuidanceOptions loadProfile(const std::string& name_or_file) {
+  const fs::path file = findProfile(name_or_file);
+  GuidanceOptions options;
+  core::loadOptions({file.string(), core::readFile(file, "guidance profile")}, options);
+  try {
+    options.validate();
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return options;
+}
+
+std::vector<std::string> shippedProfiles() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(profileFolder())) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace cdiff::guidance
