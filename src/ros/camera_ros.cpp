@@ -15,8 +15,7 @@ constexpr std::uint32_t kQueueSize = 1000;
 
 void CameraRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
-  camera_ =
-      std::make_unique<rendering::FrontCamera>(cameraOptions(setup_->options()), setup_->network());
+  camera_ = std::make_unique<rendering::FrontCamera>(setup_->options().camera, setup_->network());
   if (graph().imagesOfEgo()) open(kEgoSlot);
   if (!graph().imagesOfCbvs()) return;
   for (int slot = 0; slot < graph().max_cbv; ++slot) open(slot);

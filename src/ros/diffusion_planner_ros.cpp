@@ -9,7 +9,7 @@ namespace cdiff::ros {
 
 void DiffusionPlannerRos::begin(const msgs::SessionInfo& info) {
   CbvPlannerRos::begin(info);
-  images_ = ImageInbox(cameraOptions(setup().options()), setup().options().simulation_step);
+  images_ = ImageInbox(setup().options().camera, setup().options().simulation_step);
   statistics_ = PlannerStatistics(setup().options().decision_period);
   guidance_ = advertise<msgs::GuidanceReport>(kGuidanceTopic);
   for (int slot = 0; slot < graph().max_cbv; ++slot) {

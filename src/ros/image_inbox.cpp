@@ -37,10 +37,9 @@ double ageOf(const sensor_msgs::Image& image, const traffic::TrafficSnapshot& sn
 /// Puts the images into `images` and points the tasks to them; answers each task's fault.
 std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficSnapshot& snapshot,
                                 std::vector<PlanningTask>& tasks,
-                                std::vector<traffic::CameraImage>& images,
+                                std::vector<scenario::SlotImage>& images,
                                 SeeingDecision& decision) {
   std::vector<std::string> faults(tasks.size());
-  images.resize(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const auto message = inbox.find(tasks[i].slot, snapshot.tick);
     if (!message) {
@@ -49,14 +48,15 @@ std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficS
       continue;
     }
     try {
-      images[i] = inbox.read(tasks[i].slot, tasks[i].vehicle->id, snapshot.tick);
-      tasks[i].image = &images[i];
+      images.push_back(
+          {tasks[i].slot, inbox.read(tasks[i].slot, tasks[i].vehicle->id, snapshot.tick)});
       decision.image_age = std::max(decision.image_age, ageOf(*message, snapshot));
     } catch (const core::InputError& error) {
       faults[i] = error.what();
       ++decision.refused;
     }
   }
+  scenario::attachImages(images, tasks);
   return faults;
 }
 
@@ -87,7 +87,7 @@ SeeingDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnap
                           const std::vector<PlanningTask>& tasks, const ImageInbox& inbox) {
   SeeingDecision decision;
   std::vector<PlanningTask> with_images = tasks;
-  std::vector<traffic::CameraImage> images;
+  std::vector<scenario::SlotImage> images;
   const std::vector<std::string> faults = attach(inbox, snapshot, with_images, images, decision);
   std::vector<PlanningTask> seeing;
   for (const PlanningTask& task : with_images) {

@@ -32,7 +32,7 @@ void EgoPlannerRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   planner_ = makePlanner(setup_->options().ego_planner, *setup_);
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
-  images_ = ImageInbox(cameraOptions(setup_->options()), setup_->options().simulation_step);
+  images_ = ImageInbox(setup_->options().camera, setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(kEgoControlTopic);
   listen<nav_msgs::Path>(kEgoRouteTopic, [this](const nav_msgs::PathConstPtr& path) {
     if (route_.empty() && !path->poses.empty())

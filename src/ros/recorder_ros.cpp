@@ -32,7 +32,7 @@ void RecorderRos::begin(const msgs::SessionInfo& info) {
   bag_.write(bagTopic(kSessionTopic), ::ros::TIME_MIN, info);
   const scenario::ScenarioOptions options = optionsFromMsg(info);
   answers_ = TickAnswers(options.simulation_step);
-  camera_ = cameraOptions(options);
+  camera_ = options.camera;
   images_ = ImageInbox(camera_, options.simulation_step);
   listenToAll();
 }

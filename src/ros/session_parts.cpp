@@ -8,17 +8,13 @@
 namespace cdiff::ros {
 namespace {
 
-/// By name, since the traffic simulator makes no planner; the planner nodes check it against
-/// Planner::needsImages().
-bool sees(const std::string& planner) { return planner == "diffusion"; }
-
 std::vector<std::string> neededNodes(const scenario::ScenarioOptions& options,
                                      const GraphRequest& request) {
-  const bool cbvs_see = sees(options.cbv_planner);
+  const bool cbvs_see = planning::seesImages(options.cbv_planner);
   std::vector<std::string> nodes = {kCbvIdentificationNode, kEgoPlannerNode,
                                     cbvs_see ? kDiffusionPlannerNode : kCbvPlannerNode,
                                     kMetricsNode};
-  if (cbvs_see || sees(options.ego_planner) || request.show_cameras)
+  if (cbvs_see || planning::seesImages(options.ego_planner) || request.show_cameras)
     nodes.emplace_back(kCameraNode);
   if (request.record) nodes.emplace_back(kRecorderNode);
   return nodes;
@@ -33,18 +29,15 @@ std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
 
 std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
                                                const scenario::SessionSetup& setup) {
-  const planning::PlannerOptions options{setup.options().pdm_lite, setup.options().vehicle};
-  return planning::makePlanner(name, options, setup.planningContext());
+  return planning::makePlanner(name, setup.options().plannerOptions(), setup.planningContext());
 }
-
-rendering::CameraOptions cameraOptions(const scenario::ScenarioOptions&) { return {}; }
 
 SessionGraph graphOf(const scenario::ScenarioOptions& options, const GraphRequest& request,
                      const std::vector<std::string>& participants) {
   SessionGraph graph;
   graph.max_cbv = static_cast<int>(options.max_cbv);
   graph.external_ego = options.ego_planner == "external";
-  graph.ego_sees = sees(options.ego_planner);
+  graph.ego_sees = planning::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
   for (const std::string& node :
        participants.empty() ? neededNodes(options, request) : participants) {

@@ -42,7 +42,7 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   results_ = makeResultFolder(parameters.text("results"), options);
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
-  if (graph_.has(kCameraNode)) display_.showCameras(cameraOptions(setup_->options()));
+  if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
   book_ = ParticipantBook(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
   paced_answers_ = PacedAnswers(options.simulation_step);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What nodes make of a SessionInfo: the setup, planners, camera options, and who takes part.
+/// What nodes make of a SessionInfo: the setup, planners, and who takes part.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,6 @@
 
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/planning/planner.h"
-#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
@@ -17,7 +16,6 @@ namespace cdiff::ros {
 std::unique_ptr<scenario::SessionSetup> setupOf(const ::e2e_cdiff::SessionInfo& info);
 std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
                                                const scenario::SessionSetup& setup);
-rendering::CameraOptions cameraOptions(const scenario::ScenarioOptions& options);
 
 /// What launch files and parameters add to the scenario.
 struct GraphRequest {
