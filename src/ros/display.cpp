@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "e2e_cdiff/core/angles.h"
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/image_conversions.h"
 #include "e2e_cdiff/ros/topics.h"
