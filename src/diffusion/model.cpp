@@ -28,23 +28,12 @@ struct Part {
   Model description;  ///< architecture, normaliser and spread only
 };
 
-Part readPart(const fs::path& file, const std::string& format, TensorLister tensors) {
-  Part part;
-  part.source = "weight file '" + file.string() + "'";
-  part.content = readSafetensors(file, [&](const Metadata& metadata) {
-    part.description.architecture = readArchitecture(metadata, format, part.source);
-    readScales(metadata, part.source, part.description);
-    return tensors(part.description.architecture);
-  });
-  return part;
-}
-
-void requireAgreement(const Part& encoder, const Part& denoiser) {
-  const Model& left = encoder.description;
-  const Model& right = denoiser.description;
+void requireAgreement(const Part& first, const Part& second) {
+  const Model& left = first.description;
+  const Model& right = second.description;
   const auto fail = [&](const std::string& what) {
-    throw core::InputError(encoder.source + " and " + denoiser.source + " disagree about the " +
-                           what + "; they are not of one model");
+    throw core::InputError(first.source + " and " + second.source + " disagree about the " + what +
+                           "; they are not of one model");
   };
   if (!(left.architecture == right.architecture)) {
     fail("architecture (" + left.architecture.toJson() + " and " + right.architecture.toJson() +
@@ -55,6 +44,21 @@ void requireAgreement(const Part& encoder, const Part& denoiser) {
     fail("normalizer");
   }
   if (left.spread != right.spread) fail("spread");
+}
+
+/// `other` is the model's other file when that has been read: what the two say of the model is
+/// compared before any tensor is read.
+Part readPart(const fs::path& file, const std::string& format, TensorLister tensors,
+              const Part* other) {
+  Part part;
+  part.source = "weight file '" + file.string() + "'";
+  part.content = readSafetensors(file, [&](const Metadata& metadata) {
+    part.description.architecture = readArchitecture(metadata, format, part.source);
+    readScales(metadata, part.source, part.description);
+    if (other != nullptr) requireAgreement(*other, part);
+    return tensors(part.description.architecture);
+  });
+  return part;
 }
 
 /// Names of the shipped models, sorted.
@@ -116,9 +120,8 @@ SafetensorsFile fileOf(const Model& model, const std::string& format,
 
 Model loadModel(const std::string& name_or_folder) {
   const fs::path folder = folderOf(name_or_folder);
-  Part encoder = readPart(folder / kEncoderFile, kEncoderFormat, encoderTensors);
-  Part denoiser = readPart(folder / kDenoiserFile, kDenoiserFormat, denoiserTensors);
-  requireAgreement(encoder, denoiser);
+  Part denoiser = readPart(folder / kDenoiserFile, kDenoiserFormat, denoiserTensors, nullptr);
+  Part encoder = readPart(folder / kEncoderFile, kEncoderFormat, encoderTensors, &denoiser);
   Model model = std::move(denoiser.description);
   model.name = folder.filename().string();
   model.sha256 =

@@ -102,7 +102,7 @@ Architecture readArchitecture(const Metadata& metadata, const std::string& forma
                               const std::string& source) {
   const std::string& actual = textOf(metadata, "format", source);
   if (actual != format) {
-    throw core::InputError(source + ": the format is '" + actual + "'; '" + format +
+    throw core::InputError(source + ": the format is '" + excerpt(actual) + "'; '" + format +
                            "' was expected");
   }
   return Architecture::fromJson(textOf(metadata, "architecture", source), source);

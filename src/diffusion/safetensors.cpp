@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLengthBytes = 8;
 constexpr std::uint64_t kMaxHeader = 8u << 20;
+constexpr std::size_t kChecksumDigits = 64;
 constexpr std::size_t kAlignment = 8;  // of the data section, as other writers do
 
 static_assert(sizeof(Eigen::half) == 2 && sizeof(float) == 4);
@@ -172,6 +173,10 @@ SafetensorsFile readSafetensors(
   const auto checksum = header.metadata.find(kChecksumKey);
   if (checksum == header.metadata.end()) {
     fail(input.source(), std::string("the metadata lacks the key '") + kChecksumKey + "'");
+  }
+  if (checksum->second.size() != kChecksumDigits) {
+    fail(input.source(), "the metadata's sha256 has " + std::to_string(checksum->second.size()) +
+                             " characters; 64 hexadecimal digits were expected");
   }
   requireExpected(header, expected(header.metadata), input.source());
   SafetensorsFile content;

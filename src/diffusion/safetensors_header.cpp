@@ -37,7 +37,8 @@ const Json& memberOf(const Json& object, const char* key, const std::string& whe
 TensorType typeOf(const Json& value, const std::string& where) {
   if (value == "F16") return TensorType::kF16;
   if (value == "F32") return TensorType::kF32;
-  throw core::InputError(where + ": dtype is " + value.dump() + "; F16 or F32 was expected");
+  throw core::InputError(where + ": dtype is " + excerpt(value.dump()) +
+                         "; F16 or F32 was expected");
 }
 
 const Json& arrayOf(const Json& object, const char* key, const std::string& where) {

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kMaxDepth = 8;
 constexpr std::size_t kMaxElements = 65536;
+constexpr std::size_t kMaxKey = 256;
+constexpr std::size_t kExcerpt = 100;
 
 /// Watches the parser's events; the keys of every object that is open.
 class Watcher {
@@ -29,6 +31,7 @@ class Watcher {
       open_.pop_back();
     } else if (event == Json::parse_event_t::key) {
       const std::string& key = parsed.get_ref<const std::string&>();
+      if (key.size() > kMaxKey) fail("a key of " + std::to_string(key.size()) + " bytes");
       if (!open_.back().insert(key).second) fail("duplicate key '" + key + "'");
     }
   }
@@ -54,7 +57,7 @@ Json parseStrictJson(std::string_view text, const std::string& source) {
   try {
     return Json::parse(text.begin(), text.end(), watch);
   } catch (const Json::exception& error) {
-    throw core::InputError(source + " is not JSON: " + error.what());
+    throw core::InputError(source + " is not JSON: " + excerpt(error.what()));
   }
 }
 
@@ -76,6 +79,10 @@ std::string kindOf(const Json& value) {
     default:
       return "null";
   }
+}
+
+std::string excerpt(const std::string& text) {
+  return text.size() <= kExcerpt ? text : text.substr(0, kExcerpt) + " ...";
 }
 
 }  // namespace cdiff::diffusion

@@ -13,10 +13,13 @@ namespace cdiff::diffusion {
 using Json = nlohmann::json;
 
 /// Throws InputError that begins with `source` when `text` is not JSON, repeats a key of an object,
-/// nests deeper than 8 or holds more than 65536 values and keys.
+/// nests deeper than 8, holds more than 65536 values and keys or a key of more than 256 bytes.
 Json parseStrictJson(std::string_view text, const std::string& source);
 
 /// What kind of value it is, for errors: "a string", "an array" ...
 std::string kindOf(const Json& value);
+
+/// At most the first 100 bytes of a text from a file, for errors.
+std::string excerpt(const std::string& text);
 
 }  // namespace cdiff::diffusion

@@ -101,6 +101,8 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
   guidance_.validate();
 }
 
+DiffusionPlanner::~DiffusionPlanner() = default;
+
 std::optional<std::string> DiffusionPlanner::faultOf(const PlanningTask& task, std::uint64_t tick,
                                                      Memory& memory) {
   if (!isFinite(task.vehicle->state)) return "its state is not finite";
@@ -276,46 +278,60 @@ PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
   return planned;
 }
 
+void DiffusionPlanner::followEgo(const traffic::TrafficSnapshot& snapshot) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego == nullptr || context_.ego_route == nullptr || context_.ego_route->empty()) return;
+  if (isFinite(ego->state)) ego_follower_.update(*context_.ego_route, ego->state.position);
+}
+
+void DiffusionPlanner::rememberOnly(const std::vector<PlanningTask>& tasks) {
+  std::map<std::string, std::unique_ptr<Memory>> kept;
+  for (const PlanningTask& task : tasks) {
+    std::unique_ptr<Memory>& known = memories_[task.vehicle->id];
+    kept[task.vehicle->id] = known ? std::move(known) : std::make_unique<Memory>();
+  }
+  memories_ = std::move(kept);
+}
+
+/// The chosen plan becomes the vehicle's action, unless it cannot be executed.
+void DiffusionPlanner::conclude(std::uint64_t tick, const Situation& situation,
+                                PlannedAction& planned) const {
+  if (!situation.plan.allFinite()) {
+    planned.fault = "vehicle '" + planned.vehicle_id +
+                    "': the sampled plan is not finite; full braking instead";
+    situation.memory->plan.reset();
+    return;
+  }
+  planned = actionOf(situation);
+  situation.memory->plan = situation.plan;
+  situation.memory->plan_tick = tick;
+}
+
 std::vector<PlannedAction> DiffusionPlanner::plan(const traffic::TrafficSnapshot& snapshot,
                                                   const std::vector<PlanningTask>& tasks) {
-  std::map<std::string, std::unique_ptr<Memory>> kept;
-  std::vector<std::unique_ptr<Situation>> situations;
+  followEgo(snapshot);
+  rememberOnly(tasks);
   std::vector<PlannedAction> actions;
-  const traffic::Vehicle* ego = snapshot.ego();
-  if (context_.ego_route != nullptr && !context_.ego_route->empty() && ego != nullptr)
-    ego_follower_.update(*context_.ego_route, ego->state.position);
-  for (const PlanningTask& task : tasks) {
-    std::unique_ptr<Memory>& memory = kept[task.vehicle->id];
-    memory = std::move(memories_[task.vehicle->id]);
-    if (!memory) memory = std::make_unique<Memory>();
-    PlannedAction planned{task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}};
-    situations.emplace_back();
-    if (auto fault = faultOf(task, snapshot.tick, *memory)) {
-      planned.fault = "vehicle '" + task.vehicle->id + "': " + *fault + "; full braking instead";
-      memory->plan.reset();
-    } else {
-      situations.back() = situationOf(snapshot, task, *memory);
-    }
-    actions.push_back(std::move(planned));
-  }
+  std::vector<std::unique_ptr<Situation>> situations(tasks.size());
   std::vector<Situation*> cold;
   std::vector<Situation*> warm;
-  for (const auto& situation : situations) {
-    if (situation) (situation->warm ? warm : cold).push_back(situation.get());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const std::string& id = tasks[i].vehicle->id;
+    actions.push_back({tasks[i].slot, id, traffic::ControlAction::failSafe(), {}});
+    Memory& memory = *memories_[id];
+    if (auto fault = faultOf(tasks[i], snapshot.tick, memory)) {
+      actions[i].fault = "vehicle '" + id + "': " + *fault + "; full braking instead";
+      memory.plan.reset();
+      continue;
+    }
+    situations[i] = situationOf(snapshot, tasks[i], memory);
+    (situations[i]->warm ? warm : cold).push_back(situations[i].get());
   }
   solve(snapshot.tick, cold);
   solve(snapshot.tick, warm);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (!situations[i]) continue;
-    actions[i] = actionOf(*situations[i]);
-    situations[i]->memory->plan = situations[i]->plan;
-    situations[i]->memory->plan_tick = snapshot.tick;
-    if (actions[i].action.valid()) continue;
-    actions[i].action = traffic::ControlAction::failSafe();
-    actions[i].fault = "vehicle '" + actions[i].vehicle_id +
-                       "': the sampled action is not finite; full braking instead";
+    if (situations[i]) conclude(snapshot.tick, *situations[i], actions[i]);
   }
-  memories_ = std::move(kept);
   return actions;
 }
 

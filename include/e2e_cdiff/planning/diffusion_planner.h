@@ -39,6 +39,7 @@ class DiffusionPlanner : public Planner {
   /// Loads the model. Throws InputError for a bad model or bad options.
   DiffusionPlanner(const DiffusionOptions& options, const guidance::GuidanceOptions& guidance,
                    const dynamics::BicycleModelOptions& vehicle, const PlanningContext& context);
+  ~DiffusionPlanner() override;
 
   /// A vehicle with a NaN state, without a usable image, or without a route where one is asked for
   /// gets the fail-safe action and a fault that names what is wrong; the others drive on.
@@ -51,6 +52,8 @@ class DiffusionPlanner : public Planner {
   struct Memory;
   struct Situation;
 
+  void followEgo(const traffic::TrafficSnapshot& snapshot);
+  void rememberOnly(const std::vector<PlanningTask>& tasks);
   std::optional<std::string> faultOf(const PlanningTask& task, std::uint64_t tick, Memory& memory);
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const PlanningTask& task, Memory& memory);
@@ -60,6 +63,7 @@ class DiffusionPlanner : public Planner {
   void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
               std::size_t first) const;
   PlannedAction actionOf(const Situation& situation) const;
+  void conclude(std::uint64_t tick, const Situation& situation, PlannedAction& planned) const;
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;

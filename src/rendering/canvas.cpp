@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "canvas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "view.h"
+
+namespace cdiff::rendering {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
+constexpr double kThinnest = 0.5;   // [samples] half the width of a drawn line
+constexpr double kFaintest = 0.02;  // less opaque lines are left out
+constexpr double kEdgeOn = 1e-9;    // [m] distance of the eye from a plane seen edge-on
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Newell's normal of a polygon, twice its area long.
+Eigen::Vector3d normalOf(const Eigen::Vector3d* points, int count) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int i = 1; i + 1 < count; ++i) {
+    normal += (points[i] - points[0]).cross(points[i + 1] - points[0]);
+  }
+  return normal;
+}
+
+/// The point where the way between two points meets the near plane; the same for both directions.
+Eigen::Vector3d nearCrossing(const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
+  const Eigen::Vector3d& behind = first.z() < second.z() ? first : second;
+  const Eigen::Vector3d& ahead = first.z() < second.z() ? second : first;
+  const double share = (kNearPlane - behind.z()) / (ahead.z() - behind.z());
+  Eigen::Vector3d crossing = behind + share * (ahead - behind);
+  crossing.z() = kNearPlane;
+  return crossing;
+}
+
+/// Sutherland-Hodgman at the near plane; returns the count of corners kept.
+int clipNear(const Eigen::Vector3d* points, int count, Eigen::Vector3d* kept) {
+  int corners = 0;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d& here = points[i];
+    const Eigen::Vector3d& next = points[i + 1 == count ? 0 : i + 1];
+    const bool here_ahead = here.z() >= kNearPlane;
+    if (here_ahead) kept[corners++] = here;
+    if (here_ahead != (next.z() >= kNearPlane)) kept[corners++] = nearCrossing(here, next);
+  }
+  return corners;
+}
+
+int toIndex(double value, int limit) {
+  return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(limit)));
+}
+
+}  // namespace
+
+Canvas::Canvas(const CameraOptions& options)
+    : width_(static_cast<int>(options.width)),
+      height_(static_cast<int>(options.height)),
+      samples_(static_cast<int>(options.supersampling)),
+      columns_(width_ * samples_),
+      rows_(height_ * samples_),
+      focal_length_(intrinsicsOf(options).focal_length * samples_),
+      middle_column_(0.5 * columns_ - 0.5),
+      middle_row_(0.5 * rows_ - 0.5),
+      colors_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+      depths_(colors_.size()),
+      span_begin_(static_cast<std::size_t>(rows_)),
+      span_end_(static_cast<std::size_t>(rows_)) {
+  makeBackground(options);
+}
+
+void Canvas::makeBackground(const CameraOptions& options) {
+  const double pitch = options.pitch * kRadiansPerDegree;
+  for (int row = 0; row < rows_; ++row) {
+    // Angle above the horizon of the ray through the row's middle.
+    const double angle = std::atan((middle_row_ - row) / focal_length_) - pitch;
+    const double height = std::min(1.0, std::abs(angle) / (30.0 * kRadiansPerDegree));
+    background_.push_back(angle > 0.0 ? mix(kSkyHorizon, kSkyTop, height)
+                                      : mix(kGrassHorizon, kGrassNear, std::sqrt(height)));
+  }
+}
+
+void Canvas::clear() {
+  for (int row = 0; row < rows_; ++row) {
+    std::fill_n(colors_.begin() + static_cast<std::ptrdiff_t>(row) * columns_, columns_,
+                background_[static_cast<std::size_t>(row)]);
+  }
+  std::fill(depths_.begin(), depths_.end(), 0.0f);
+}
+
+bool Canvas::depthPlane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point,
+                        DepthPlane& plane) const {
+  const double distance = normal.dot(point);
+  if (std::abs(distance) <= kEdgeOn * normal.norm()) return false;
+  plane.across = normal.x() / (distance * focal_length_);
+  plane.down = normal.y() / (distance * focal_length_);
+  plane.middle = normal.z() / distance;
+  return true;
+}
+
+void Canvas::fill(const Eigen::Vector3d* points, int count, const Paint& paint) {
+  Eigen::Vector3d kept[kMostCorners];
+  const int corners = clipNear(points, std::min(count, kMostCorners / 2), kept);
+  if (corners < 3) return;
+  DepthPlane plane;
+  if (!depthPlane(normalOf(points, count), points[0], plane)) return;
+  Eigen::Vector2d projected[kMostCorners];
+  for (int i = 0; i < corners; ++i) projected[i] = project(kept[i]);
+  scan(projected, corners, plane, paint);
+}
+
+void Canvas::line(const Eigen::Vector3d& begin, const Eigen::Vector3d& end,
+                  const Eigen::Vector3d& side, const Paint& paint) {
+  Eigen::Vector3d ends[2] = {begin, end};
+  if (begin.z() < kNearPlane && end.z() < kNearPlane) return;
+  DepthPlane plane;
+  if (!depthPlane((end - begin).cross(side), begin, plane)) return;
+  if (begin.z() < kNearPlane) ends[0] = nearCrossing(begin, end);
+  if (end.z() < kNearPlane) ends[1] = nearCrossing(begin, end);
+  const Eigen::Vector2d axis[2] = {project(ends[0]), project(ends[1])};
+  const Eigen::Vector2d along = axis[1] - axis[0];
+  const double length = along.norm();
+  if (length < 1e-6) return;
+  const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()) / length;
+  Eigen::Vector2d corners[4];
+  double opacity = 0.0;
+  for (int i = 0; i < 2; ++i) {
+    // How far `side` moves the point in the picture: the derivative of the projection along it.
+    const double depth = ends[i].z();
+    const Eigen::Vector2d moved = (focal_length_ * side.head<2>() - axis[i] * side.z()) / depth;
+    const double half_width = std::abs(moved.dot(across));
+    const bool thin = half_width < kThinnest;
+    const Eigen::Vector2d offset = thin ? Eigen::Vector2d(kThinnest * across) : moved;
+    const double sign = offset.dot(across) < 0.0 ? -1.0 : 1.0;
+    opacity += 0.5 * (thin ? half_width / kThinnest : 1.0);
+    corners[i == 0 ? 0 : 3] = axis[i] + sign * offset;
+    corners[i == 0 ? 1 : 2] = axis[i] - sign * offset;
+  }
+  Paint thinned = paint;
+  thinned.opacity *= opacity;
+  if (thinned.opacity >= kFaintest) scan(corners, 4, plane, thinned);
+}
+
+void Canvas::scan(const Eigen::Vector2d* corners, int count, const DepthPlane& plane,
+                  const Paint& paint) {
+  const RowRange range = spanRows(corners, count);
+  if (range.last < range.first) return;
+  DepthPlane ranked = plane;
+  ranked.across *= paint.rank;
+  ranked.down *= paint.rank;
+  ranked.middle *= paint.rank;
+  for (int row = range.first; row <= range.last; ++row) paintSpan(row, ranked, paint);
+}
+
+Canvas::RowRange Canvas::spanRows(const Eigen::Vector2d* corners, int count) {
+  double top = kInfinity;
+  double bottom = -kInfinity;
+  double left = kInfinity;
+  double right = -kInfinity;
+  for (int i = 0; i < count; ++i) {
+    top = std::min(top, corners[i].y());
+    bottom = std::max(bottom, corners[i].y());
+    left = std::min(left, corners[i].x());
+    right = std::max(right, corners[i].x());
+  }
+  if (left > middle_column_ || right < -middle_column_) return {};
+  RowRange range;
+  range.first = std::max(0, toIndex(std::ceil(top + middle_row_), rows_));
+  range.last = std::min(rows_ - 1, toIndex(std::floor(bottom + middle_row_), rows_));
+  for (int row = range.first; row <= range.last; ++row) {
+    span_begin_[static_cast<std::size_t>(row)] = kInfinity;
+    span_end_[static_cast<std::size_t>(row)] = -kInfinity;
+  }
+  if (range.last < range.first) return range;
+  for (int i = 0; i < count; ++i) spanEdge(corners[i], corners[i + 1 == count ? 0 : i + 1]);
+  return range;
+}
+
+void Canvas::spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& second) {
+  const bool downwards = first.y() < second.y();
+  const Eigen::Vector2d& upper = downwards ? first : second;
+  const Eigen::Vector2d& lower = downwards ? second : first;
+  const int begin = std::max(0, toIndex(std::ceil(upper.y() + middle_row_), rows_));
+  const int end = std::min(rows_ - 1, toIndex(std::floor(lower.y() + middle_row_), rows_));
+  const double height = lower.y() - upper.y();
+  const double slope = height > 0.0 ? (lower.x() - upper.x()) / height : 0.0;
+  for (int row = begin; row <= end; ++row) {
+    const double at = upper.x() + (row - middle_row_ - upper.y()) * slope;
+    double& span_begin = span_begin_[static_cast<std::size_t>(row)];
+    double& span_end = span_end_[static_cast<std::size_t>(row)];
+    span_begin = std::min(span_begin, height > 0.0 ? at : std::min(upper.x(), lower.x()));
+    span_end = std::max(span_end, height > 0.0 ? at : std::max(upper.x(), lower.x()));
+  }
+}
+
+void Canvas::paintSpan(int row, const DepthPlane& plane, const Paint& paint) {
+  const double begin = span_begin_[static_cast<std::size_t>(row)];
+  const double end = span_end_[static_cast<std::size_t>(row)];
+  const int first = std::max(0, toIndex(std::ceil(begin + middle_column_), columns_));
+  const int last = std::min(columns_ - 1, toIndex(std::floor(end + middle_column_), columns_));
+  const std::size_t offset = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+  Color* colors = colors_.data() + offset;
+  float* depths = depths_.data() + offset;
+  const auto constant = static_cast<float>(plane.middle + plane.down * (row - middle_row_));
+  const auto across = static_cast<float>(plane.across);
+  const auto middle = static_cast<float>(middle_column_);
+  const Color color = paint.color;
+  if (paint.opacity >= 1.0) {
+    for (int i = first; i <= last; ++i) {
+      const float depth = constant + across * (static_cast<float>(i) - middle);
+      const bool nearer = depth > depths[i];
+      depths[i] = nearer ? depth : depths[i];
+      colors[i] = nearer ? color : colors[i];
+    }
+    return;
+  }
+  for (int i = first; i <= last; ++i) {
+    const float depth = constant + across * (static_cast<float>(i) - middle);
+    if (depth <= depths[i]) continue;
+    depths[i] = depth;
+    colors[i] = mix(colors[i], color, paint.opacity);
+  }
+}
+
+traffic::CameraImage Canvas::image() const {
+  traffic::CameraImage image;
+  image.width = width_;
+  image.height = height_;
+  image.rgb.resize(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  const auto count = static_cast<std::uint32_t>(samples_ * samples_);
+  std::uint8_t* target = image.rgb.data();
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      std::uint32_t red_blue[2] = {0, 0};
+      std::uint32_t green = 0;
+      for (int row = y * samples_; row < (y + 1) * samples_; ++row) {
+        const Color* source =
+            colors_.data() + static_cast<std::ptrdiff_t>(row) * columns_ + x * samples_;
+        for (int i = 0; i < samples_; ++i) {
+          red_blue[0] += source[i] & 0xffu;
+          green += (source[i] >> 8) & 0xffu;
+          red_blue[1] += source[i] >> 16;
+        }
+      }
+      *target++ = static_cast<std::uint8_t>((red_blue[0] + count / 2) / count);
+      *target++ = static_cast<std::uint8_t>((green + count / 2) / count);
+      *target++ = static_cast<std::uint8_t>((red_blue[1] + count / 2) / count);
+    }
+  }
+  return image;
+}
+
+}  // namespace cdiff::rendering

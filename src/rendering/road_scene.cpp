@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "road_scene.h"
+
+#include <algorithm>
+
+#include "lane_markings.h"
+#include "lane_surface.h"
+#include "triangulation.h"
+
+namespace cdiff::rendering {
+namespace {
+
+constexpr double kPiece = 12.0;          // [m] longest piece of a lane
+constexpr double kShortestLane = 0.05;   // [m]
+constexpr double kAsphaltMargin = 0.25;  // [m] beside a lane
+
+Surface surfaceOf(const Eigen::Vector3d* corners, int count, Color color, double rank) {
+  Surface surface;
+  surface.count = count;
+  surface.color = color;
+  surface.rank = rank;
+  std::copy_n(corners, count, surface.corners.begin());
+  surface.up = (corners[2] - corners[0]).cross(corners[count == 4 ? 3 : 1] - corners[1]);
+  if (count == 3) surface.up = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (surface.up.z() < 0.0) surface.up = -surface.up;
+  return surface;
+}
+
+void addLane(const map::Lane& lane, std::vector<Surface>& surfaces) {
+  const double length = lane.centerline.length();
+  if (length < kShortestLane || lane.width <= 0.0) return;
+  const bool road = lane.allows_cars;
+  const double half_width = 0.5 * lane.width + (road ? kAsphaltMargin : 0.0);
+  const auto sections = crossSections(lane.centerline, 0.0, length, kPiece);
+  for (std::size_t i = 1; i < sections.size(); ++i) {
+    const Eigen::Vector3d corners[4] = {sections[i - 1].at(-half_width),
+                                        sections[i].at(-half_width), sections[i].at(half_width),
+                                        sections[i - 1].at(half_width)};
+    surfaces.push_back(
+        surfaceOf(corners, 4, road ? kAsphalt : kPavement, road ? rank::kRoad : rank::kPavement));
+  }
+}
+
+std::vector<Surface> surfacesOf(const map::RoadNetwork& network) {
+  std::vector<Surface> surfaces;
+  for (const map::Junction& junction : network.junctions()) {
+    for (const auto& triangle : triangulate(junction.shape)) {
+      surfaces.push_back(surfaceOf(triangle.data(), 3, kAsphalt, rank::kRoad));
+    }
+  }
+  for (const map::Lane& lane : network.lanes()) {
+    // Crossings and walking areas lie on the junction's area.
+    if (!lane.internal || lane.allows_cars) addLane(lane, surfaces);
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+Marking markingBetween(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, double width,
+                       Color color) {
+  Marking marking;
+  marking.begin = begin;
+  marking.end = end;
+  marking.color = color;
+  const Eigen::Vector2d along = (end - begin).head<2>();
+  const double length = std::max(along.norm(), 1e-9);
+  marking.side.head<2>() = geometry::leftNormal(along) * (0.5 * width / length);
+  return marking;
+}
+
+void drawMarking(const Marking& marking, double rank, const View& view, Canvas& canvas) {
+  const Eigen::Vector3d up = (marking.end - marking.begin).cross(marking.side);
+  if (up.dot(view.eye() - marking.begin) <= 0.0) return;
+  canvas.line(view.toCamera(marking.begin), view.toCamera(marking.end),
+              view.directionToCamera(marking.side), {marking.color, rank, 1.0});
+}
+
+RoadScene::RoadScene(const map::RoadNetwork& network)
+    : surfaces_(surfacesOf(network)), markings_(laneMarkings(network)) {
+  std::vector<Bound> bounds;
+  for (const Surface& surface : surfaces_) {
+    bounds.push_back(boundOf(surface.corners.data(), surface.count));
+  }
+  surface_grid_ = SpatialGrid(std::move(bounds));
+  bounds.clear();
+  for (const Marking& marking : markings_) {
+    const Eigen::Vector3d ends[2] = {marking.begin, marking.end};
+    bounds.push_back(boundOf(ends, 2));
+  }
+  marking_grid_ = SpatialGrid(std::move(bounds));
+}
+
+void RoadScene::drawSurface(const Surface& surface, const View& view, Canvas& canvas) const {
+  Eigen::Vector3d corners[4];
+  for (int i = 0; i < surface.count; ++i) {
+    corners[i] = view.toCamera(surface.corners[static_cast<std::size_t>(i)]);
+  }
+  const bool from_above = surface.up.dot(view.eye() - surface.corners[0]) > 0.0;
+  canvas.fill(corners, surface.count, {from_above ? surface.color : kUnderside, surface.rank, 1.0});
+}
+
+void RoadScene::sortMarkings(const View& view) {
+  by_distance_.clear();
+  for (const int i : visible_) {
+    const Marking& marking = markings_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d offset = 0.5 * (marking.begin + marking.end) - view.eye();
+    const double distance = offset.x() * offset.x() + offset.y() * offset.y();
+    by_distance_.emplace_back(-distance, i);
+  }
+  std::sort(by_distance_.begin(), by_distance_.end());
+  std::transform(by_distance_.begin(), by_distance_.end(), visible_.begin(),
+                 [](const auto& entry) { return entry.second; });
+}
+
+void RoadScene::draw(const View& view, Canvas& canvas) {
+  surface_grid_.visible(view, visible_);
+  for (const int i : visible_) drawSurface(surfaces_[static_cast<std::size_t>(i)], view, canvas);
+  marking_grid_.visible(view, visible_);
+  sortMarkings(view);
+  for (const int i : visible_) {
+    drawMarking(markings_[static_cast<std::size_t>(i)], rank::kMarking, view, canvas);
+  }
+}
+
+}  // namespace cdiff::rendering

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "signal_heads.h"
+
+#include <algorithm>
+
+namespace cdiff::rendering {
+namespace {
+
+constexpr double kStopLineWidth = 0.5;  // [m]
+constexpr double kStopLineBack = 0.25;  // [m] its middle before the lane's end
+constexpr double kBehindLine = 2.5;     // [m] lamps behind the stop line
+constexpr double kLampHeight = 3.1;     // [m] its middle above the road
+constexpr double kArmHeight = 3.9;      // [m]
+constexpr double kMastBeside = 0.7;     // [m] right of the rightmost lane
+constexpr double kMastRadius = 0.08;    // [m]
+constexpr double kHousingHalfWidth = 0.34;
+constexpr double kHousingHalfHeight = 0.85;
+constexpr double kBulbRadius = 0.24;
+constexpr double kBulbSpacing = 0.54;
+constexpr Color kHousing = rgb(26, 28, 30);
+constexpr Color kMast = rgb(88, 92, 96);
+/// Unlit and lit bulbs from the top: red, yellow, green.
+constexpr Color kUnlit[3] = {rgb(70, 20, 20), rgb(70, 60, 16), rgb(16, 60, 26)};
+constexpr Color kLit[3] = {rgb(255, 40, 32), rgb(255, 208, 24), rgb(40, 240, 96)};
+
+/// Rank of a turn among those that a lane offers: the straightest shows the colour.
+int straightness(char direction) {
+  const std::string order = "srRlLt";
+  const std::size_t at = order.find(direction);
+  return static_cast<int>(at == std::string::npos ? order.size() : at);
+}
+
+const map::LaneLink* shownLink(const map::Lane& lane) {
+  const map::LaneLink* shown = nullptr;
+  for (const map::LaneLink& link : lane.next) {
+    if (link.signal_id.empty() || link.signal_link < 0) continue;
+    if (!shown || straightness(link.direction) < straightness(shown->direction)) shown = &link;
+  }
+  return shown;
+}
+
+Eigen::Vector3d lift(const Eigen::Vector2d& point, double height) {
+  return {point.x(), point.y(), height};
+}
+
+Eigen::Vector2d endDirection(const map::Lane& lane) {
+  const auto& points = lane.centerline.points();
+  return (points.back() - points[points.size() - 2]).head<2>().normalized();
+}
+
+}  // namespace
+
+LampColor lampColorOf(char letter) {
+  switch (letter) {
+    case 'r':
+    case 's':
+      return LampColor::kRed;
+    case 'y':
+    case 'Y':
+    case 'u':
+      return LampColor::kYellow;
+    case 'g':
+    case 'G':
+      return LampColor::kGreen;
+    default:
+      return LampColor::kDark;
+  }
+}
+
+SignalHeads::SignalHeads(const map::RoadNetwork& network) {
+  for (const map::Lane& lane : network.lanes()) {
+    if (!lane.internal && lane.allows_cars) addLane(lane);
+  }
+  for (const std::string& edge : network.edgeIds()) addMast(network, edge);
+  states_.resize(signal_by_id_.size());
+  std::vector<Bound> bounds;
+  for (const SignalHead& head : heads_) bounds.push_back({head.stop, 6.0});
+  head_grid_ = SpatialGrid(std::move(bounds));
+  bounds.clear();
+  for (const SignalMast& mast : masts_) {
+    const Eigen::Vector3d points[3] = {mast.base, mast.top, mast.arm_end};
+    bounds.push_back(boundOf(points, 3));
+  }
+  mast_grid_ = SpatialGrid(std::move(bounds));
+}
+
+void SignalHeads::addLane(const map::Lane& lane) {
+  const map::LaneLink* link = shownLink(lane);
+  if (!link) return;
+  SignalHead head;
+  head.forward = endDirection(lane);
+  head.stop = lane.centerline.points().back();
+  head.stop.head<2>() -= kStopLineBack * head.forward;
+  head.width = lane.width;
+  const auto signal = static_cast<int>(signal_by_id_.size());
+  head.signal = signal_by_id_.emplace(link->signal_id, signal).first->second;
+  head.link = link->signal_link;
+  heads_.push_back(head);
+}
+
+void SignalHeads::addMast(const map::RoadNetwork& network, const std::string& edge) {
+  const map::Lane* first = nullptr;
+  const map::Lane* last = nullptr;
+  for (const map::LaneIndex index : network.lanesOfEdge(edge)) {
+    const map::Lane& lane = network.lane(index);
+    if (!lane.allows_cars || !shownLink(lane)) continue;
+    if (!first) first = &lane;
+    last = &lane;
+  }
+  if (!first) return;
+  const Eigen::Vector2d forward = endDirection(*first);
+  const Eigen::Vector3d end = first->centerline.points().back();
+  const Eigen::Vector2d foot = end.head<2>() + kBehindLine * forward -
+                               geometry::leftNormal(forward) * (0.5 * first->width + kMastBeside);
+  const Eigen::Vector3d far_end = last->centerline.points().back();
+  SignalMast mast;
+  mast.base = lift(foot, end.z());
+  mast.top = lift(foot, end.z() + kArmHeight);
+  mast.arm_end = lift(far_end.head<2>() + kBehindLine * endDirection(*last), mast.top.z());
+  masts_.push_back(mast);
+}
+
+void SignalHeads::look(const View& view, const std::vector<traffic::SignalState>& signals) {
+  head_grid_.visible(view, visible_heads_);
+  mast_grid_.visible(view, visible_masts_);
+  std::fill(states_.begin(), states_.end(), nullptr);
+  if (visible_heads_.empty()) return;
+  for (const traffic::SignalState& signal : signals) {
+    const auto known = signal_by_id_.find(signal.id);
+    if (known != signal_by_id_.end()) {
+      states_[static_cast<std::size_t>(known->second)] = &signal.state;
+    }
+  }
+}
+
+LampColor SignalHeads::colorOf(const SignalHead& head) const {
+  const std::string* state = states_[static_cast<std::size_t>(head.signal)];
+  const auto link = static_cast<std::size_t>(head.link);
+  return state && link < state->size() ? lampColorOf((*state)[link]) : LampColor::kDark;
+}
+
+void SignalHeads::drawStopLines(const View& view, Canvas& canvas) const {
+  for (const int i : visible_heads_) {
+    const SignalHead& head = heads_[static_cast<std::size_t>(i)];
+    const LampColor lamp = colorOf(head);
+    const Color color = lamp == LampColor::kDark ? kWhitePaint : kLit[static_cast<int>(lamp) - 1];
+    const Eigen::Vector2d left = geometry::leftNormal(head.forward) * (0.5 * head.width - 0.1);
+    const Eigen::Vector2d middle = head.stop.head<2>();
+    drawMarking(markingBetween(lift(middle - left, head.stop.z()),
+                               lift(middle + left, head.stop.z()), kStopLineWidth, color),
+                rank::kStopLine, view, canvas);
+  }
+}
+
+void SignalHeads::drawLamps(const View& view, Canvas& canvas) const {
+  const Eigen::Vector3d right = {kMastRadius, 0.0, 0.0};
+  const Eigen::Vector3d up = view.directionToCamera({0.0, 0.0, kMastRadius});
+  for (const int i : visible_masts_) {
+    const SignalMast& mast = masts_[static_cast<std::size_t>(i)];
+    canvas.line(view.toCamera(mast.base), view.toCamera(mast.top), right,
+                {kMast, rank::kBody, 1.0});
+    canvas.line(view.toCamera(mast.top), view.toCamera(mast.arm_end), up,
+                {kMast, rank::kBody, 1.0});
+  }
+  for (const int i : visible_heads_) drawLamp(heads_[static_cast<std::size_t>(i)], view, canvas);
+}
+
+void SignalHeads::drawLamp(const SignalHead& head, const View& view, Canvas& canvas) const {
+  const Eigen::Vector2d foot = head.stop.head<2>() + (kStopLineBack + kBehindLine) * head.forward;
+  const Eigen::Vector3d middle = view.toCamera(lift(foot, head.stop.z() + kLampHeight));
+  const Eigen::Vector3d left =
+      view.directionToCamera(lift(geometry::leftNormal(head.forward), 0.0));
+  const Eigen::Vector3d up = view.directionToCamera({0.0, 0.0, 1.0});
+  const auto ring = [&](const Eigen::Vector3d& center, double wide, double high, int corners,
+                        const Paint& paint) {
+    // Corners of a square, or of an octagon (a square with its corners cut).
+    static constexpr double kCut = 0.41421356237309503;
+    static constexpr double kOctagon[8][2] = {{1, kCut},   {kCut, 1},   {-kCut, 1}, {-1, kCut},
+                                              {-1, -kCut}, {-kCut, -1}, {kCut, -1}, {1, -kCut}};
+    static constexpr double kSquare[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    Eigen::Vector3d points[8];
+    for (int i = 0; i < corners; ++i) {
+      const double* at = corners == 4 ? kSquare[i] : kOctagon[i];
+      points[i] = center + left * (wide * at[0]) + up * (high * at[1]);
+    }
+    canvas.fill(points, corners, paint);
+  };
+  ring(middle, kHousingHalfWidth, kHousingHalfHeight, 4, {kHousing, rank::kBody, 1.0});
+  if (head.forward.dot(view.eye().head<2>() - foot) >= 0.0) return;  // seen from behind
+  const int lit = static_cast<int>(colorOf(head)) - 1;
+  for (int i = 0; i < 3; ++i) {
+    ring(middle + up * (kBulbSpacing * (1 - i)), kBulbRadius, kBulbRadius, 8,
+         {i == lit ? kLit[i] : kUnlit[i], rank::kBodyDetail, 1.0});
+  }
+}
+
+}  // namespace cdiff::rendering

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/guidance/collision_seeking_objective.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
+#include "e2e_cdiff/guidance/objective_factory.h"
+
+namespace cdiff::guidance {
+namespace {
+
+GuidanceOptions optionsFrom(const std::string& yaml) {
+  GuidanceOptions options;
+  core::loadOptions({"profile.yaml", yaml}, options);
+  options.validate();
+  return options;
+}
+
+std::string errorOf(const std::string& yaml) {
+  try {
+    optionsFrom(yaml);
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expectParts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
+  }
+}
+
+std::set<std::string> activeOf(const GuidanceOptions& options) {
+  std::set<std::string> names;
+  for (const WeightedObjective& entry : options.objectives) {
+    if (entry.weight > 0.0) names.insert(entry.name);
+  }
+  return names;
+}
+
+TEST(GuidanceOptions, HoldsEveryObjectiveSwitchedOff) {
+  const GuidanceOptions options;
+  ASSERT_EQ(options.objectives.size(), objectiveNames().size());
+  for (std::size_t i = 0; i < options.objectives.size(); ++i) {
+    EXPECT_EQ(options.objectives[i].name, objectiveNames()[i]);
+  }
+  EXPECT_TRUE(activeOf(options).empty());
+}
+
+TEST(GuidanceOptions, ReadsWeightWindowCapAndOwnKeys) {
+  GuidanceOptions options = optionsFrom(
+      "collision_seeking:\n  weight: 2\n  first_step: 80\n  last_step: 5\n  gradient_cap: 3\n"
+      "  gate: hard\n  kappa: 7\n");
+  const WeightedObjective& entry = options.find("collision_seeking");
+  EXPECT_EQ(entry.weight, 2.0);
+  EXPECT_EQ(entry.gradient_cap, 3.0);
+  EXPECT_FALSE(entry.actsAt(81));
+  EXPECT_TRUE(entry.actsAt(80));
+  EXPECT_TRUE(entry.actsAt(5));
+  EXPECT_FALSE(entry.actsAt(4));
+  const auto& seeking = dynamic_cast<const CollisionSeekingObjective&>(*entry.objective);
+  EXPECT_EQ(seeking.gate, "hard");
+  EXPECT_EQ(seeking.proximity.kappa, 7.0);
+}
+
+TEST(GuidanceOptions, WindowFromZeroActsFromTheFirstStepOn) {
+  GuidanceOptions options = optionsFrom("speed:\n  weight: 1\n  last_step: 3\n");
+  EXPECT_TRUE(options.find("speed").actsAt(100));
+  EXPECT_FALSE(options.find("speed").actsAt(2));
+  EXPECT_FALSE(options.find("route").actsAt(50));
+}
+
+TEST(GuidanceOptions, CopiesAreIndependent) {
+  GuidanceOptions options = optionsFrom("speed:\n  weight: 1\n  factor: 0.5\n");
+  GuidanceOptions copy = options;
+  copy.find("speed").weight = 4.0;
+  core::overrideOption("speed.factor=2", "--set", copy);
+  EXPECT_EQ(options.find("speed").weight, 1.0);
+  EXPECT_EQ(core::dumpOptions(options),
+            core::dumpOptions(optionsFrom("speed:\n  weight: 1\n  factor: 0.5\n")));
+  EXPECT_NE(core::dumpOptions(options), core::dumpOptions(copy));
+  options = copy;
+  EXPECT_EQ(core::dumpOptions(options), core::dumpOptions(copy));
+}
+
+TEST(GuidanceOptions, DumpReadsBack) {
+  const GuidanceOptions options = loadProfile("safety_critical");
+  const std::string dump = core::dumpOptions(options, true);
+  EXPECT_EQ(core::dumpOptions(optionsFrom(dump), true), dump);
+}
+
+TEST(GuidanceOptions, UnknownNamesPointToTheNearest) {
+  expectParts(errorOf("# two lines\nsped:\n  weight: 1\n"),
+              {"profile.yaml:2", "unknown key 'sped'", "'speed'"});
+  expectParts(errorOf("speed:\n  wieght: 1\n"), {"profile.yaml:2", "'speed.wieght'", "'weight'"});
+  EXPECT_THROW(GuidanceOptions().find("sped"), core::InputError);
+}
+
+TEST(GuidanceOptions, ValuesOutOfRangeAreRefused) {
+  expectParts(errorOf("speed:\n  weight: -1\n"), {"profile.yaml:2", "speed.weight", "'-1'", "[0,"});
+  expectParts(errorOf("speed:\n  last_step: 0\n"), {"profile.yaml:2", "speed.last_step"});
+  GuidanceOptions options;
+  options.find("route").weight = -0.5;
+  EXPECT_THROW(options.validate(), core::InputError);
+  options.find("route").weight = std::nan("");
+  EXPECT_THROW(options.validate(), core::InputError);
+}
+
+TEST(GuidanceOptions, AWindowThatEndsBeforeItBeginsIsRefused) {
+  expectParts(errorOf("speed:\n  weight: 1\n  first_step: 5\n  last_step: 20\n"),
+              {"speed.first_step", "5", "20", "count down"});
+  EXPECT_EQ(errorOf("speed:\n  first_step: 20\n  last_step: 20\n"), "no error");
+}
+
+TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
+  const std::map<std::string, std::set<std::string>> expected = {
+      {"ablation_collision", {"collision_avoidance"}},
+      {"ablation_drivable", {"drivable_area"}},
+      {"ablation_speed", {"speed"}},
+      {"naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
+      {"none", {}},
+      {"safety_critical", {"speed", "drivable_area", "collision_seeking"}}};
+  std::vector<std::string> names;
+  for (const auto& [name, active] : expected) {
+    names.push_back(name);
+    EXPECT_EQ(activeOf(loadProfile(name)), active) << name;
+  }
+  EXPECT_EQ(shippedProfiles(), names);
+}
+
+TEST(Profiles, AblationsUseTheWeightsOfNaturalistic) {
+  GuidanceOptions naturalistic = loadProfile("naturalistic");
+  for (const std::string name : {"ablation_collision", "ablation_drivable", "ablation_speed"}) {
+    const GuidanceOptions ablation = loadProfile(name);
+    for (const WeightedObjective& entry : ablation.objectives) {
+      if (entry.weight == 0.0) continue;
+      EXPECT_EQ(entry.weight, naturalistic.find(entry.name).weight) << name;
+      EXPECT_EQ(entry.gradient_cap, naturalistic.find(entry.name).gradient_cap) << name;
+    }
+  }
+}
+
+TEST(Profiles, UnknownNameAndBrokenFileAreNamed) {
+  try {
+    loadProfile("naturalstic");
+    FAIL() << "no error";
+  } catch (const core::InputError& error) {
+    expectParts(error.what(), {"'naturalstic'", "'naturalistic'"});
+  }
+  const std::string file =
+      testing::TempDir() + "cdiff_profile_" + std::to_string(::getpid()) + ".yaml";
+  core::writeFileAtomically(file, "speed:\n  weight: 1\n  first_step: 1\n  last_step: 2\n");
+  try {
+    loadProfile(file);
+    ADD_FAILURE() << "no error";
+  } catch (const core::InputError& error) {
+    expectParts(error.what(), {file, "speed.first_step"});
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace cdiff::guidance

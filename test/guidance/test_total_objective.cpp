@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "e2e_cdiff/guidance/total_objective.h"
+#include "guidance/guidance_world.h"
+
+namespace cdiff::guidance {
+namespace {
+
+using test::GuidanceWorld;
+using traffic::Rollout;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Gives what it is told.
+class BrokenObjective : public Objective {
+ public:
+  BrokenObjective(double value, double derivative) : value_(value), derivative_(derivative) {}
+  void describe(core::OptionsVisitor&) override {}
+  double evaluate(const GuidanceScene&, const Rollout&, Rollout& gradient) const override {
+    gradient(0, 0) += derivative_;
+    return value_;
+  }
+  std::unique_ptr<Objective> clone() const override {
+    return std::make_unique<BrokenObjective>(*this);
+  }
+
+ private:
+  double value_;
+  double derivative_;
+};
+
+GuidanceOptions withWeights(double speed, double area, double avoidance) {
+  GuidanceOptions options;
+  options.find("speed").weight = speed;
+  options.find("drivable_area").weight = area;
+  options.find("collision_avoidance").weight = avoidance;
+  return options;
+}
+
+void addBroken(GuidanceOptions& options, double value, double derivative) {
+  options.objectives.insert(
+      options.objectives.begin() + 1,
+      {"broken", 1.0, 0, 1, 0.0, std::make_unique<BrokenObjective>(value, derivative)});
+}
+
+const Rollout kUnitScale = Rollout::Ones(test::kRows, traffic::kRolloutColumns);
+
+struct Evaluation {
+  double value = 0.0;
+  Rollout gradient;
+};
+
+Evaluation evaluate(const GuidanceOptions& options, const GuidanceScene& scene,
+                    const Rollout& rollout, int diffusion_step = 50) {
+  TotalObjective total(options, scene);
+  Evaluation result;
+  result.value = total.evaluate(diffusion_step, rollout, kUnitScale, result.gradient);
+  return result;
+}
+
+void expectSameBits(const Evaluation& left, const Evaluation& right) {
+  EXPECT_EQ(left.value, right.value);
+  EXPECT_EQ(left.gradient, right.gradient);
+}
+
+TEST(TotalObjective, IsTheWeightedSum) {
+  GuidanceWorld world;
+  const Rollout rollout = test::wandering(1);
+  const GuidanceOptions options = withWeights(0.5, 2.0, 3.0);
+  const Evaluation total = evaluate(options, world.scene(), rollout);
+  double value = 0.0;
+  Rollout gradient = Rollout::Zero(test::kRows, traffic::kRolloutColumns);
+  for (const WeightedObjective& entry : options.objectives) {
+    value += entry.weight * test::valueOf(*entry.objective, world.scene(), rollout);
+    gradient += entry.weight * test::gradientOf(*entry.objective, world.scene(), rollout);
+  }
+  EXPECT_NEAR(total.value, value, 1e-9);
+  EXPECT_LT((total.gradient - gradient).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(TotalObjective(options, world.scene()).score(rollout), value, 1e-9);
+}
+
+TEST(TotalObjective, AllZeroWeightsGiveExactlyZero) {
+  GuidanceWorld world;
+  const GuidanceOptions options;
+  Evaluation total = evaluate(options, world.scene(), test::wandering(1));
+  EXPECT_EQ(total.value, 0.0);
+  EXPECT_EQ(total.gradient, Rollout::Zero(test::kRows, traffic::kRolloutColumns));
+  EXPECT_FALSE(TotalObjective(options, world.scene()).actsAt(50));
+  EXPECT_TRUE(TotalObjective(options, world.scene()).report(test::wandering(1)).objectives.empty());
+}
+
+TEST(TotalObjective, OrderInTheProfileDoesNotMatter) {
+  GuidanceWorld world;
+  const std::string speed = "speed:\n  weight: 0.37\n";
+  const std::string area = "drivable_area:\n  weight: 0.11\n";
+  const std::string collision = "collision_avoidance:\n  weight: 1.7\n";
+  GuidanceOptions first;
+  GuidanceOptions second;
+  core::loadOptions({"first", speed + area + collision}, first);
+  core::loadOptions({"second", collision + speed + area}, second);
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    expectSameBits(evaluate(first, world.scene(), test::wandering(trial)),
+                   evaluate(second, world.scene(), test::wandering(trial)));
+  }
+}
+
+TEST(TotalObjective, DisabledEqualsAbsentBitForBit) {
+  GuidanceWorld world;
+  const GuidanceOptions disabled = withWeights(0.37, 0.0, 1.7);
+  GuidanceOptions absent = disabled;
+  absent.objectives.erase(std::remove_if(absent.objectives.begin(), absent.objectives.end(),
+                                         [](const auto& entry) { return entry.weight == 0.0; }),
+                          absent.objectives.end());
+  ASSERT_EQ(absent.objectives.size(), 2U);
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    expectSameBits(evaluate(disabled, world.scene(), test::wandering(trial)),
+                   evaluate(absent, world.scene(), test::wandering(trial)));
+  }
+}
+
+TEST(TotalObjective, WindowsOpenAndClose) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(1.0, 0.0, 0.0);
+  options.find("speed").first_step = 60;
+  options.find("speed").last_step = 10;
+  const Rollout rollout = test::standing(0.0, 0.0, 0.0, 5.0);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 61).value, 0.0);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 60).value, 9.0 * test::kRows);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 10).value, 9.0 * test::kRows);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 9).gradient.norm(), 0.0);
+  const TotalObjective total(options, world.scene());
+  EXPECT_TRUE(total.actsAt(30));
+  EXPECT_FALSE(total.actsAt(9));
+  EXPECT_EQ(total.score(rollout), 9.0 * test::kRows);  // whatever the window
+}
+
+TEST(TotalObjective, CapsTheNormInNormalisedUnits) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(0.5, 0.0, 0.0);
+  options.find("speed").gradient_cap = 2.0;
+  TotalObjective total(options, world.scene());
+  Rollout scale = kUnitScale;
+  scale.col(traffic::kRolloutSpeed).setConstant(3.0);
+  Rollout gradient;
+  // One row at 5 m/s, the others at the target of 8: 0.5 x 2 x (-3) x 3 = -9, capped to -2.
+  Rollout rollout = test::standing(0.0, 0.0, 0.0, 8.0);
+  rollout(2, traffic::kRolloutSpeed) = 5.0;
+  total.evaluate(50, rollout, scale, gradient);
+  EXPECT_NEAR(gradient(2, traffic::kRolloutSpeed) * 3.0, -2.0, 1e-12);
+  // At 7.5 m/s: 0.5 x 2 x (-0.5) x 3 = -1.5, below the cap.
+  rollout(2, traffic::kRolloutSpeed) = 7.5;
+  total.evaluate(49, rollout, scale, gradient);
+  EXPECT_NEAR(gradient(2, traffic::kRolloutSpeed) * 3.0, -1.5, 1e-12);
+  const GuidanceReport report = total.report(rollout);
+  ASSERT_EQ(report.objectives.size(), 1U);
+  EXPECT_EQ(report.objectives[0].name, "speed");
+  EXPECT_EQ(report.objectives[0].weight, 0.5);
+  EXPECT_EQ(report.objectives[0].value, 0.25);
+  EXPECT_NEAR(report.objectives[0].gradient_norm, 0.5 * (9.0 + 1.5), 1e-12);
+  EXPECT_EQ(report.objectives[0].capped_share, 0.5);
+  EXPECT_EQ(report.objectives[0].dropped, 0);
+}
+
+TEST(TotalObjective, NotFiniteIsLeftOutAndCounted) {
+  GuidanceWorld world;
+  const Rollout rollout = test::wandering(3);
+  const GuidanceOptions whole = withWeights(0.5, 0.2, 1.0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double pairs[][2] = {{kNan, 0.0}, {1.0, kNan}, {infinity, 1.0}, {1.0, -infinity}};
+  for (const auto& [value, derivative] : pairs) {
+    GuidanceOptions options = whole;
+    addBroken(options, value, derivative);
+    TotalObjective total(options, world.scene());
+    Evaluation result;
+    for (int step = 3; step > 0; --step) {
+      result.value = total.evaluate(step, rollout, kUnitScale, result.gradient);
+      expectSameBits(result, evaluate(whole, world.scene(), rollout));
+    }
+    const GuidanceReport report = total.report(rollout);
+    ASSERT_EQ(report.objectives.size(), 4U);
+    EXPECT_EQ(report.objectives[1].name, "broken");
+    EXPECT_EQ(report.objectives[1].dropped, 3);
+    EXPECT_EQ(report.objectives[1].gradient_norm, 0.0);
+    EXPECT_EQ(report.objectives[0].dropped, 0);
+  }
+}
+
+TEST(TotalObjective, ACandidateWithoutAScoreRanksLast) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(0.5, 0.0, 0.0);
+  addBroken(options, kNan, 0.0);
+  EXPECT_EQ(TotalObjective(options, world.scene()).score(test::wandering(0)),
+            std::numeric_limits<double>::max());
+}
+
+TEST(TotalObjective, RaisingAWeightRaisesItsShareOfTheGradient) {
+  GuidanceWorld world;
+  const Rollout rollout = test::standing(0.0, 3.0, 0.0, 4.0);
+  const Rollout weak = evaluate(withWeights(0.5, 1.0, 0.0), world.scene(), rollout).gradient;
+  const Rollout strong = evaluate(withWeights(0.5, 2.0, 0.0), world.scene(), rollout).gradient;
+  EXPECT_EQ(strong(0, traffic::kRolloutSpeed), weak(0, traffic::kRolloutSpeed));
+  EXPECT_EQ(strong(0, traffic::kRolloutY), 2.0 * weak(0, traffic::kRolloutY));
+}
+
+}  // namespace
+}  // namespace cdiff::guidance
