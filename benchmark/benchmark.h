@@ -38,6 +38,8 @@ inline double median(std::vector<double> values) {
 /// Folder with the real networks and routes; throws InputError saying how to name it.
 std::filesystem::path dataFolder();
 
+void benchmarkEncoder(Figures& figures);
+void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 

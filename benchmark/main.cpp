@@ -45,8 +45,11 @@ void writeJson(const Figures& figures, const std::string& file) {
 }
 
 int run(const std::string& name, const std::string& json) {
-  const std::map<std::string, void (*)(Figures&)> known = {{"loop", benchmarkLoop},
-                                                           {"map", benchmarkMap}};
+  const std::map<std::string, void (*)(Figures&)> known = {
+      {"denoiser", benchmarkDenoiser},
+      {"encoder", benchmarkEncoder},
+      {"loop", benchmarkLoop},
+      {"map", benchmarkMap}};
   if (!name.empty() && known.count(name) == 0) {
     std::vector<std::string> names;
     for (const auto& entry : known) names.push_back(entry.first);

@@ -20,9 +20,11 @@ MapShape outputShape(const MapShape& input, std::int64_t channels, std::int64_t 
           outputSide(input.width, kernel, options)};
 }
 
-/// Post-operations and memory of its own, so that encoders in different threads share nothing.
+/// Scratch memory of its own, so that encoders in different threads share nothing; full float32
+/// whatever the environment asks for.
 dnnl::primitive_attr attributes(bool relu) {
   dnnl::primitive_attr attributes;
+  attributes.set_fpmath_mode(dnnl::fpmath_mode::strict);
   attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
   if (!relu) return attributes;
   dnnl::post_ops operations;
@@ -58,8 +60,9 @@ EncoderConvolution::EncoderConvolution(const dnnl::engine& engine, const MapShap
                                        Tag layout, const ConvolutionOptions& options,
                                        const Tensor& weight, const Tensor* bias)
     : output_(diffusion::outputShape(input, weight.shape[0], weight.shape[2], options)),
-      description_(describe(engine, mapDescription(input, input.channels < 8 ? Tag::nhwc : layout),
-                            mapDescription(output_, layout), options, weight, bias != nullptr)),
+      description_(
+          describe(engine, mapDescription(input, input.channels < 8 ? imageLayout(layout) : layout),
+                   mapDescription(output_, layout), options, weight, bias != nullptr)),
       primitive_(description_) {
   loadWeights(engine, weight, bias);
 }

@@ -19,7 +19,7 @@ struct ConvolutionOptions {
 class EncoderConvolution {
  public:
   /// `weight` is [out, in, kernel, kernel]; with a `bias` [out] a ReLU follows. An input of less
-  /// than 8 channels (the image) comes in nhwc.
+  /// than 8 channels comes in imageLayout(layout), all else in `layout`.
   EncoderConvolution(const dnnl::engine& engine, const MapShape& input,
                      dnnl::memory::format_tag layout, const ConvolutionOptions& options,
                      const Tensor& weight, const Tensor* bias = nullptr);

@@ -24,6 +24,8 @@ Tag preferredLayout(const dnnl::engine& engine) {
   return Tag::nhwc;
 }
 
+Tag imageLayout(Tag layout) { return layout == Tag::nhwc ? Tag::nhwc : Tag::nchw; }
+
 dnnl::memory::desc mapDescription(const MapShape& shape, Tag layout) {
   return dnnl::memory::desc({1, shape.channels, shape.height, shape.width},
                             dnnl::memory::data_type::f32, layout);

@@ -23,6 +23,9 @@ struct MapShape {
 /// Layout that a 3x3 convolution prefers here: nhwc, nChw8c or nChw16c.
 dnnl::memory::format_tag preferredLayout(const dnnl::engine& engine);
 
+/// The plain layout in which the first convolution reads the image's three channels.
+dnnl::memory::format_tag imageLayout(dnnl::memory::format_tag layout);
+
 dnnl::memory::desc mapDescription(const MapShape& shape, dnnl::memory::format_tag layout);
 
 /// Where channel c of a pixel lies: block (c / width) x block_stride + pixel x pixel_stride + c %

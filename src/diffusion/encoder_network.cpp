@@ -151,7 +151,13 @@ void EncoderNetwork::bindLayers() {
 }
 
 void EncoderNetwork::readImage(const std::uint8_t* rgb) {
-  for (std::int64_t i = 0; i < image_.size(); ++i) pixels_[i] = pixel_values_[rgb[i]];
+  const bool channels_last = imageLayout(layout_) == dnnl::memory::format_tag::nhwc;
+  const std::int64_t channel_stride = channels_last ? 1 : image_.pixels();
+  const std::int64_t pixel_stride = channels_last ? image_.channels : 1;
+  for (std::int64_t pixel = 0; pixel < image_.pixels(); ++pixel) {
+    for (std::int64_t channel = 0; channel < image_.channels; ++channel)
+      pixels_[pixel * pixel_stride + channel * channel_stride] = pixel_values_[*rgb++];
+  }
 }
 
 std::vector<float> EncoderNetwork::encode(const std::uint8_t* rgb) {

@@ -46,7 +46,7 @@ double TotalObjective::addObjective(std::size_t index, const Rollout& rollout, c
   const double value = entry.weight * entry.objective->evaluate(scene_, rollout, part_);
   part_ *= entry.weight;
   const double norm = normOf(part_, scale);
-  if (!std::isfinite(value) || !std::isfinite(norm) || !part_.allFinite()) {
+  if (!std::isfinite(value) || !std::isfinite(norm)) {
     ++tally.dropped;
     return 0.0;
   }

@@ -32,6 +32,7 @@ class GuidanceWorld {
 
   guidance::GuidanceScene& scene() { return scene_; }
   guidance::OtherMotion& other() { return other_; }
+  const map::RoadNetwork& network() const { return network_; }
 
   /// A state in the road's frame (x along it, y left) on the map.
   traffic::VehicleState placed(double x, double y, double heading, double speed) const {

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "e2e_cdiff/guidance/drivable_area_objective.h"
 #include "e2e_cdiff/guidance/objective_factory.h"
 #include "e2e_cdiff/guidance/route_objective.h"
@@ -81,6 +83,21 @@ TEST(ObjectiveGradients, RouteWithHeading) {
   RouteObjective objective;
   objective.heading_weight = 2.0;
   EXPECT_GT(expectGradientEverywhere(objective), 50);
+}
+
+TEST(ObjectiveGradients, RouteOutsideAKinkPointsAwayFromIt) {
+  GuidanceWorld world;
+  // A turn of 45 degrees to the left 45 m along; on its outer side the kink is the nearest point.
+  const map::Route route(world.network(), {{0, 0, 0}, {45, 0, 0}, {60, 15, 0}}, {0, 0, 0});
+  world.scene().route = &route;
+  const RouteObjective objective;
+  const Rollout beside = test::standing(6.0, -2.0, 0.0, 0.0, 1);
+  expectGradient(objective, world.scene(), beside);
+  // 1 m ahead and 2 m to the right of the kink: (sqrt(5) - 0.5)^2, downhill back and to the left.
+  EXPECT_NEAR(test::valueOf(objective, world.scene(), beside), 5.25 - std::sqrt(5.0), 1e-12);
+  const Rollout gradient = test::gradientOf(objective, world.scene(), beside);
+  EXPECT_NEAR(gradient(0, traffic::kRolloutY), -2.0 * gradient(0, traffic::kRolloutX), 1e-12);
+  EXPECT_GT(gradient(0, traffic::kRolloutX), 0.0);
 }
 
 TEST(ObjectiveGradients, AddToWhatIsThere) {

@@ -129,6 +129,7 @@ TEST(CollisionSeeking, GateIsOneThenFallsToExactlyZero) {
   EXPECT_DOUBLE_EQ(objective.gateAt(30.0), 0.5);
   EXPECT_DOUBLE_EQ(objective.gateAt(27.5), 1.0 - 0.0625 * 2.5);
   EXPECT_EQ(objective.gateAt(35.0), 0.0);
+  EXPECT_EQ(objective.gateAt(40.0), 0.0);
   objective.gate = "hard";
   EXPECT_EQ(objective.gateAt(25.0), 1.0);
   EXPECT_EQ(objective.gateAt(25.001), 0.0);

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "benchmark.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+
+#if defined(__x86_64__)
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes the undefined operands of its own intrinsics for a mistake (its bug 105593).
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <immintrin.h>
+#endif
+
+namespace cdiff::benchmark {
+namespace {
+
+using diffusion::CpuDenoiser;
+
+/// Weights of about unit gain; speed does not depend on them.
+diffusion::Model randomModel() {
+  diffusion::Model model;
+  const core::RandomStream random(1, "benchmark");
+  for (const diffusion::TensorShape& wanted : diffusion::denoiserTensors(model.architecture)) {
+    diffusion::Tensor& tensor = model.denoiser[wanted.name];
+    tensor.shape = wanted.shape;
+    std::int64_t count = 1;
+    for (const std::int64_t size : wanted.shape) count *= size;
+    const double bound = wanted.shape.size() == 1 ? 1.0 : 0.05;
+    core::RandomKey key;
+    key.vehicle = core::hashText(wanted.name);
+    for (std::int64_t i = 0; i < count; ++i) {
+      tensor.values.push_back(
+          static_cast<float>(random.uniform(key, static_cast<std::uint32_t>(i), -bound, bound)));
+    }
+  }
+  return model;
+}
+
+/// Floating-point operations of the U-Net's convolutions for one sample; its pull-back has as many.
+double operationsOf(const diffusion::Model& model) {
+  const auto levels = static_cast<std::int64_t>(model.architecture.channels.size());
+  double sum = 0.0;
+  for (const auto& [name, tensor] : model.denoiser) {
+    if (tensor.shape.size() != 3) continue;
+    std::int64_t halvings = 0;
+    if (name.rfind("down.", 0) == 0)
+      halvings = name[5] - '0' + (name.compare(6, 7, ".sample") == 0);
+    if (name.rfind("middle.", 0) == 0) halvings = levels - 1;
+    if (name.rfind("up.", 0) == 0) halvings = levels - 1 - (name[3] - '0');
+    sum += 2.0 * static_cast<double>(tensor.values.size()) *
+           static_cast<double>(model.architecture.horizon >> halvings);
+  }
+  return sum;
+}
+
+#if defined(__x86_64__)
+constexpr int kPeakRounds = 1000000;
+
+/// Fused multiply-adds that wait for no other; returns something that depends on all.
+__attribute__((target("avx512f"))) float fuseAvx512() {
+  const __m512 factor = _mm512_set1_ps(0.5f);
+  __m512 sums[12];
+  for (__m512& sum : sums) sum = factor;
+  for (int round = 0; round < kPeakRounds; ++round) {
+#pragma GCC unroll 12
+    for (int i = 0; i < 12; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, factor);
+  }
+  for (int i = 1; i < 12; ++i) sums[0] = _mm512_add_ps(sums[0], sums[i]);
+  return _mm512_cvtss_f32(sums[0]);
+}
+
+__attribute__((target("avx2,fma"))) float fuseAvx2() {
+  const __m256 factor = _mm256_set1_ps(0.5f);
+  __m256 sums[12];
+  for (__m256& sum : sums) sum = factor;
+  for (int round = 0; round < kPeakRounds; ++round) {
+#pragma GCC unroll 12
+    for (int i = 0; i < 12; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, factor);
+  }
+  for (int i = 1; i < 12; ++i) sums[0] = _mm256_add_ps(sums[0], sums[i]);
+  return _mm256_cvtss_f32(sums[0]);
+}
+
+/// Operations per second; 0 where it is not measured.
+double peakOf(CpuDenoiser::InstructionSet set) {
+  if (set == CpuDenoiser::InstructionSet::kPlain) return 0.0;
+  const bool wide = set == CpuDenoiser::InstructionSet::kAvx512;
+  std::vector<double> seconds;
+  float result = 0.0f;
+  for (int round = 0; round < 9; ++round) {
+    seconds.push_back(secondsOf([&] { result += wide ? fuseAvx512() : fuseAvx2(); }));
+  }
+  return result == 0.0f ? 0.0 : 12.0 * kPeakRounds * (wide ? 32.0 : 16.0) / median(seconds);
+}
+#else
+double peakOf(CpuDenoiser::InstructionSet) { return 0.0; }
+#endif
+
+struct Times {
+  double forward = 0.0;  ///< [s]
+  double both = 0.0;     ///< [s], with the pull-back
+};
+
+Times timesOf(CpuDenoiser& denoiser, std::size_t samples) {
+  const diffusion::Architecture& architecture = denoiser.architecture();
+  diffusion::Context context;
+  context.image_features.assign(static_cast<std::size_t>(architecture.image_features), 0.1f);
+  denoiser.setContexts(std::vector<diffusion::Context>(samples, context));
+  const std::size_t rows = samples * static_cast<std::size_t>(architecture.horizon);
+  std::vector<float> noisy(rows * 7, 0.3f);
+  std::vector<float> actions(rows * 3);
+  std::vector<double> forward;
+  std::vector<double> both;
+  for (int k = static_cast<int>(architecture.diffusion_steps); k > 0; --k) {
+    forward.push_back(secondsOf([&] { denoiser.predictActions(noisy.data(), k, actions.data()); }));
+    both.push_back(forward.back() +
+                   secondsOf([&] { denoiser.pullBackActions(actions.data(), noisy.data()); }));
+  }
+  return {median(forward), median(both)};
+}
+
+}  // namespace
+
+void benchmarkDenoiser(Figures& figures) {
+  const diffusion::Model model = randomModel();
+  const CpuDenoiser::InstructionSet set = CpuDenoiser::bestInstructionSet();
+  CpuDenoiser denoiser(model, set);
+  const double peak = peakOf(set);
+  figures.push_back({"fma_peak_" + CpuDenoiser::toText(set), 1e-9 * peak, "GFLOP/s", ""});
+  for (const std::size_t samples : {1, 8}) {
+    const Times times = timesOf(denoiser, samples);
+    const std::string prefix = "denoiser_b" + std::to_string(samples);
+    const std::string goal = samples == 1 ? "<=1" : "";
+    figures.push_back({prefix + "_forward", 1e3 * times.forward, "ms", ""});
+    figures.push_back({prefix + "_forward_and_pull_back", 1e3 * times.both, "ms", goal});
+    if (peak == 0.0) continue;
+    const double rate = 2.0 * static_cast<double>(samples) * operationsOf(model) / times.both;
+    figures.push_back({prefix + "_share_of_peak", 100.0 * rate / peak, "%", ""});
+  }
+}
+
+}  // namespace cdiff::benchmark

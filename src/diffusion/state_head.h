@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
+/// pull-back to the actions. The first layer's time columns are tabulated at load, its speed column
+/// is added once per set of contexts.
+#pragma once
+
+#include <vector>
+
+#include "e2e_cdiff/diffusion/denoiser.h"
+#include "unet_layers.h"
+
+namespace cdiff::diffusion {
+
+class StateHead {
+ public:
+  /// `time_embeddings`: [K + 1, time_width].
+  StateHead(const DenoiserKernels& kernels, const Architecture& architecture,
+            const Tensors& tensors, const Activation& time_embeddings);
+
+  void setContexts(const std::vector<Context>& contexts);
+  void forward(const float* actions, int k, float* states);
+  void pullBack(const float* state_gradient, float* action_gradient);
+
+ private:
+  /// A hidden layer: value before Mish, after it, and Mish'; the gradient overwrites none of them.
+  struct Hidden {
+    Activation input;
+    Activation value;
+    Activation slope;
+    Activation gradient;
+
+    Hidden() = default;
+    Hidden(std::int64_t width, std::int64_t rows);
+  };
+  void mish(Hidden& hidden) const;
+
+  const DenoiserKernels* kernels_;
+  std::int64_t action_values_;  ///< T x 3
+  std::int64_t state_values_;   ///< T x 4
+  std::int64_t width_;
+  Convolution actions_, actions_reversed_;
+  Convolution speed_;
+  Convolution middle_, middle_reversed_;
+  Convolution out_, out_reversed_;
+  Activation time_part_;   ///< [K + 1, width], with the bias
+  Activation speed_part_;  ///< [B, width]
+  Activation action_rows_, state_rows_;
+  Hidden hidden_[2];
+};
+
+}  // namespace cdiff::diffusion

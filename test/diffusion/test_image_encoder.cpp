@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/diffusion/image_encoder.h"
+#include "reference_encoder.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+/// Weights uniform with variance 2 / fan-in (He), gains around 1, shifts and biases around 0.
+Tensor randomTensor(const TensorShape& description, std::uint32_t number) {
+  const core::RandomStream random(1, "image encoder test");
+  std::int64_t count = 1;
+  for (const std::int64_t side : description.shape) count *= side;
+  const bool weight = description.shape.size() > 1;
+  const double fan_in = static_cast<double>(count / description.shape[0]);
+  const double reach = weight ? std::sqrt(6.0 / fan_in) : 0.5;
+  const bool gain = !weight && description.name.find("weight") != std::string::npos;
+  Tensor tensor;
+  tensor.shape = description.shape;
+  for (std::int64_t i = 0; i < count; ++i) {
+    tensor.values.push_back(static_cast<float>(
+        (gain ? 1.0 : 0.0) +
+        random.uniform({0, number, 0}, static_cast<std::uint32_t>(i), -reach, reach)));
+  }
+  return tensor;
+}
+
+Model smallModel() {
+  Model model;
+  model.name = "random";
+  model.architecture.image_width = 64;
+  model.architecture.image_height = 32;
+  std::uint32_t number = 0;
+  for (const TensorShape& tensor : encoderTensors(model.architecture))
+    model.encoder[tensor.name] = randomTensor(tensor, number++);
+  return model;
+}
+
+/// The small model's tensors, made once, but for those whose shape depends on the size.
+Model randomModel(std::int64_t width, std::int64_t height) {
+  static const Model small = smallModel();
+  Model model = small;
+  model.architecture.image_width = width;
+  model.architecture.image_height = height;
+  for (const TensorShape& tensor : encoderTensors(model.architecture)) {
+    if (model.encoder.at(tensor.name).shape != tensor.shape)
+      model.encoder[tensor.name] = randomTensor(tensor, 1000);
+  }
+  return model;
+}
+
+traffic::CameraImage plainImage(int width, int height, std::uint8_t value) {
+  traffic::CameraImage image;
+  image.width = width;
+  image.height = height;
+  image.rgb.assign(static_cast<std::size_t>(width * height * 3), value);
+  return image;
+}
+
+traffic::CameraImage randomImage(int width, int height) {
+  const core::RandomStream random(2, "image encoder test");
+  traffic::CameraImage image = plainImage(width, height, 0);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = static_cast<std::uint8_t>(random.index({}, static_cast<std::uint32_t>(i), 256));
+  return image;
+}
+
+/// Largest difference of any feature over the root mean square of all.
+double relativeError(const std::vector<float>& features, const std::vector<double>& expected) {
+  EXPECT_EQ(features.size(), expected.size());
+  double largest = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    largest = std::max(largest, std::abs(features[i] - expected[i]));
+    squares += expected[i] * expected[i];
+  }
+  return largest / std::sqrt(squares / static_cast<double>(expected.size()));
+}
+
+TEST(ImageEncoder, AgreesWithThePlainReference) {
+  // 64 x 32 halves five times to 2 x 1; 72 x 40 (not multiples of 32) ends at 3 x 2; 160 x 96 is
+  // what ships.
+  const std::pair<int, int> sizes[] = {{64, 32}, {72, 40}, {160, 96}};
+  for (const auto& [width, height] : sizes) {
+    const Model model = randomModel(width, height);
+    const traffic::CameraImage image = randomImage(width, height);
+    const double error =
+        relativeError(ImageEncoder(model).encode(image), ReferenceEncoder(model).encode(image));
+    EXPECT_LT(error, 1e-4) << width << " x " << height;
+    RecordProperty("relative_error_" + std::to_string(width), std::to_string(error));
+  }
+}
+
+TEST(ImageEncoder, RepeatsItsBytes) {
+  const Model model = randomModel(160, 96);
+  const traffic::CameraImage image = randomImage(160, 96);
+  ImageEncoder first(model);
+  const std::vector<float> features = first.encode(image);
+  first.encode(plainImage(160, 96, 255));
+  EXPECT_EQ(first.encode(image), features);
+  ImageEncoder second(model);
+  EXPECT_EQ(second.encode(image), features);
+  ImageEncoder moved(std::move(first));
+  EXPECT_EQ(moved.encode(image), features);
+}
+
+TEST(ImageEncoder, EncodersOfTwoThreadsDoNotDisturbEachOther) {
+  const Model model = randomModel(64, 32);
+  const std::vector<traffic::CameraImage> images = {randomImage(64, 32), plainImage(64, 32, 200)};
+  std::vector<std::vector<float>> expected;
+  for (const traffic::CameraImage& image : images)
+    expected.push_back(ImageEncoder(model).encode(image));
+  std::array<int, 2> wrong{};
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < 2; ++i) {
+    threads.emplace_back([&, i] {
+      ImageEncoder encoder(model);
+      for (int round = 0; round < 20; ++round) wrong[i] += encoder.encode(images[i]) != expected[i];
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong[0], 0);
+  EXPECT_EQ(wrong[1], 0);
+}
+
+TEST(ImageEncoder, TellsBlackFromWhite) {
+  ImageEncoder encoder(randomModel(64, 32));
+  EXPECT_NE(encoder.encode(plainImage(64, 32, 0)), encoder.encode(plainImage(64, 32, 255)));
+}
+
+TEST(ImageEncoder, RefusesAnotherSizeNamingBoth) {
+  ImageEncoder encoder(randomModel(64, 32));
+  try {
+    encoder.encode(plainImage(32, 64, 0));  // as many bytes, but turned
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("32 x 64"), std::string::npos) << text;
+    EXPECT_NE(text.find("64 x 32"), std::string::npos) << text;
+  }
+  traffic::CameraImage short_image = plainImage(64, 32, 0);
+  short_image.rgb.pop_back();
+  EXPECT_THROW(encoder.encode(short_image), std::invalid_argument);
+}
+
+TEST(ImageEncoder, NamesATensorThatIsMissingOrMisshapen) {
+  Model model = randomModel(64, 32);
+  model.encoder["layer3.2.norm1.bias"].shape = {128};
+  try {
+    ImageEncoder encoder(model);
+    FAIL() << "accepted";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'layer3.2.norm1.bias'"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("[128], but must be [256]"), std::string::npos);
+  }
+  model = randomModel(64, 32);
+  model.encoder.erase("squeeze.bias");
+  EXPECT_THROW(ImageEncoder{model}, core::InputError);
+}
+
+TEST(ImageEncoder, NamesItsInstructionSet) { EXPECT_FALSE(ImageEncoder::instructionSet().empty()); }
+
+}  // namespace
+}  // namespace cdiff::diffusion
