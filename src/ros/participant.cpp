@@ -44,7 +44,7 @@ bool Participant::waitForSession() {
   }
   graph_ = graphOf(*session_);
   if (graph_.has(name_)) return true;
-  ROS_INFO("%s: the session does not need this node", name_.c_str());
+  ROS_DEBUG("%s: the session does not need this node", name_.c_str());
   return false;
 }
 
