@@ -15,10 +15,10 @@ FakeSimulator::FakeSimulator(const std::string& node, const std::filesystem::pat
       graph_{{node}, static_cast<int>(setup_.options().max_cbv), false, false, true} {
   listen();
   answerForOthers(node);
-  publishSession(node, results);
+  publishSession(results);
 }
 
-void FakeSimulator::publishSession(const std::string& node, const std::filesystem::path& results) {
+void FakeSimulator::publishSession(const std::filesystem::path& results) {
   session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
                                                        listeners(kSessionTopic, graph_), true);
   route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,

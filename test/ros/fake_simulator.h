@@ -66,7 +66,7 @@ class FakeSimulator {
   std::map<std::uint64_t, sensor_msgs::CameraInfo::ConstPtr> infos;  ///< of slot 0
 
  private:
-  void publishSession(const std::string& node, const std::filesystem::path& results);
+  void publishSession(const std::filesystem::path& results);
   void answerForOthers(const std::string& node);
   void listen();
 

@@ -116,13 +116,15 @@ struct BagImages {
 BagImages imagesIn(const fs::path& file) {
   BagImages images;
   rosbag::Bag bag(file.string(), rosbag::bagmode::Read);
-  ::e2e_cdiff::TrafficSnapshot::ConstPtr snapshot;
+  std::map<std::uint64_t, ::e2e_cdiff::TrafficSnapshot::ConstPtr> snapshots;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag, rosbag::TopicQuery("/traffic"))) {
+    const auto snapshot = message.instantiate<::e2e_cdiff::TrafficSnapshot>();
+    snapshots[snapshot->tick] = snapshot;
+  }
   for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
-    if (const auto next = message.instantiate<::e2e_cdiff::TrafficSnapshot>()) snapshot = next;
     if (const auto selection = message.instantiate<::e2e_cdiff::CbvSelection>()) {
-      EXPECT_EQ(snapshot->tick, selection->tick);
       for (const auto& assignment : selection->assignments) {
-        if (ros::contains(*snapshot, assignment.vehicle_id))
+        if (ros::contains(*snapshots.at(selection->tick), assignment.vehicle_id))
           images.occupied.emplace("/" + ros::imageTopic(assignment.slot), selection->header.stamp);
       }
     }
