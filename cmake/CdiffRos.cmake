@@ -2,7 +2,12 @@
 # programs, so it is included before any target. The devel space is <build>/devel.
 find_package(catkin REQUIRED COMPONENTS
   diagnostic_msgs diagnostic_updater geometry_msgs message_generation nav_msgs rosbag roscpp
-  rosgraph_msgs std_msgs tf2_msgs visualization_msgs)
+  rosgraph_msgs sensor_msgs std_msgs tf2_msgs visualization_msgs)
+# Apart from the others: their exported libraries are all of OpenCV, which every node would load.
+find_package(cv_bridge REQUIRED)
+find_package(image_transport REQUIRED)
+find_library(CDIFF_CV_BRIDGE_LIBRARY cv_bridge REQUIRED)
+find_library(CDIFF_IMAGE_TRANSPORT_LIBRARY image_transport REQUIRED)
 
 file(GLOB CDIFF_MESSAGES RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/msg/*.msg)
@@ -17,6 +22,13 @@ target_include_directories(e2e_cdiff_messages SYSTEM INTERFACE
   ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_messages INTERFACE ${catkin_LIBRARIES})
 add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
+
+# Images as messages, for the layer ros alone.
+add_library(e2e_cdiff_images INTERFACE)
+target_include_directories(e2e_cdiff_images SYSTEM INTERFACE
+  ${cv_bridge_INCLUDE_DIRS} ${image_transport_INCLUDE_DIRS})
+target_link_libraries(e2e_cdiff_images INTERFACE
+  ${CDIFF_CV_BRIDGE_LIBRARY} ${CDIFF_IMAGE_TRANSPORT_LIBRARY} opencv_core)
 
 foreach(folder config launch networks rviz)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})

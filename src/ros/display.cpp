@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/image_conversions.h"
 #include "e2e_cdiff/ros/topics.h"
 
 namespace cdiff::ros {
@@ -18,6 +20,38 @@ geometry_msgs::Quaternion toQuaternion(double heading) {
 }
 
 std::string frameOf(const traffic::Vehicle& vehicle) { return vehicle.id + "/base_link"; }
+
+geometry_msgs::TransformStamped transformBetween(const std::string& parent,
+                                                 const std::string& child, double time) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp = toStamp(time);
+  transform.header.frame_id = parent;
+  transform.child_frame_id = child;
+  return transform;
+}
+
+/// Where the camera sits: base_link lies on the road below the box's centre.
+geometry_msgs::TransformStamped mount(const traffic::Vehicle& vehicle, double time,
+                                      const rendering::CameraOptions& camera) {
+  auto transform = transformBetween(frameOf(vehicle), vehicle.id + "/camera", time);
+  transform.transform.translation.x = camera.mount_forward;
+  transform.transform.translation.z = camera.mount_height;
+  const double half_pitch =
+      0.5 * core::degreesToRadians(camera.pitch);  // about y (left): downwards
+  transform.transform.rotation.y = std::sin(half_pitch);
+  transform.transform.rotation.w = std::cos(half_pitch);
+  return transform;
+}
+
+/// REP 103: x right, y down, z forward.
+geometry_msgs::TransformStamped optical(const traffic::Vehicle& vehicle, double time) {
+  auto transform = transformBetween(vehicle.id + "/camera", opticalFrame(vehicle.id), time);
+  transform.transform.rotation.x = -0.5;
+  transform.transform.rotation.y = 0.5;
+  transform.transform.rotation.z = -0.5;
+  transform.transform.rotation.w = 0.5;
+  return transform;
+}
 
 }  // namespace
 
@@ -39,15 +73,23 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot) {
   tf2_msgs::TFMessage message;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    geometry_msgs::TransformStamped transform;
-    transform.header.stamp = toStamp(snapshot.time);
-    transform.header.frame_id = kMapFrame;
-    transform.child_frame_id = frameOf(vehicle);
+    auto transform = transformBetween(kMapFrame, frameOf(vehicle), snapshot.time);
     transform.transform.translation.x = vehicle.state.position.x();
     transform.transform.translation.y = vehicle.state.position.y();
     transform.transform.translation.z = vehicle.state.elevation;
     transform.transform.rotation = toQuaternion(vehicle.state.heading);
     message.transforms.push_back(transform);
+  }
+  return message;
+}
+
+tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
+                            const rendering::CameraOptions& camera) {
+  tf2_msgs::TFMessage message = toTfMsg(snapshot);
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
+    message.transforms.push_back(mount(vehicle, snapshot.time, camera));
+    message.transforms.push_back(optical(vehicle, snapshot.time));
   }
   return message;
 }
@@ -60,7 +102,8 @@ void Display::publish(const traffic::TrafficSnapshot& snapshot) const {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego != nullptr && odometry_.getNumSubscribers() > 0)
     odometry_.publish(toOdometryMsg(*ego, snapshot.time));
-  if (transforms_.getNumSubscribers() > 0) transforms_.publish(toTfMsg(snapshot));
+  if (transforms_.getNumSubscribers() == 0) return;
+  transforms_.publish(camera_ ? toTfMsg(snapshot, *camera_) : toTfMsg(snapshot));
 }
 
 }  // namespace cdiff::ros

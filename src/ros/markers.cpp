@@ -10,6 +10,7 @@ namespace cdiff::ros {
 namespace {
 
 using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
 
 constexpr double kLifetime = 0.5;  // [s] of simulated time
 constexpr double kLift = 0.05;     // [m] above the road, so that lines stay visible
@@ -27,6 +28,7 @@ constexpr Color kLaneColor{0.55F, 0.55F, 0.55F, 1.0F};
 constexpr Color kJunctionColor{0.75F, 0.65F, 0.35F, 1.0F};
 constexpr Color kEgoRouteColor{0.90F, 0.45F, 0.45F, 0.8F};
 constexpr Color kConflictColor{1.0F, 0.80F, 0.10F, 1.0F};
+constexpr Color kRolloutColor{0.20F, 0.90F, 0.40F, 1.0F};
 constexpr Color kLabelColor{1.0F, 1.0F, 1.0F, 1.0F};
 
 Marker makeMarker(const std::string& marker_namespace, int id, int type, const Color& color) {
@@ -143,6 +145,25 @@ visualization_msgs::MarkerArray mapMarkers(const scenario::SessionSetup& setup) 
   visualization_msgs::MarkerArray array;
   array.markers = {deleteAll(), laneMarker(setup.network()), junctionMarker(setup.network()),
                    routeMarker("ego_route", 0, setup.egoRoute(), kEgoRouteColor)};
+  return array;
+}
+
+MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, double time) {
+  constexpr double kRolloutLift = 0.3;  // [m] above the route
+  MarkerArray array;
+  for (const planning::PlannedAction& action : actions) {
+    Marker marker = makeMarker("rollouts", action.slot, Marker::LINE_STRIP, kRolloutColor);
+    if (action.rollout.size() < 2) marker.action = Marker::DELETE;  // a line needs two points
+    marker.header.stamp = toStamp(time);
+    marker.lifetime = ::ros::Duration(kLifetime);
+    marker.scale.x = 0.5;
+    for (const planning::RolloutPoint& point : action.rollout) {
+      const Eigen::Vector2d& position = point.state.position;
+      marker.points.push_back(
+          toPoint({position.x(), position.y(), point.state.elevation + kRolloutLift}));
+    }
+    array.markers.push_back(marker);
+  }
   return array;
 }
 

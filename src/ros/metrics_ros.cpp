@@ -68,6 +68,10 @@ void MetricsRos::listenToAnswers() {
       answers_.addCbv(slot, message);
     });
   }
+  if (!graph().cbvsSee()) return;
+  answers_.expectGuidance();
+  listen<msgs::GuidanceReport>(kGuidanceTopic,
+                               [this](const auto& message) { answers_.add(message); });
 }
 
 bool MetricsRos::handle(const Snapshot& message, bool superseded) {

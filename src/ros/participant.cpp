@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/session_parts.h"
 #include "ros/callback_queue.h"
 
 namespace cdiff::ros {
@@ -41,11 +42,9 @@ bool Participant::waitForSession() {
     if (!::ros::ok() || stop_.raised()) return false;
     spin();
   }
-  graph_.participants = session_->participants;
-  graph_.external_ego = session_->external_ego != 0;
-  graph_.max_cbv = static_cast<int>(optionsFromMsg(*session_).max_cbv);
+  graph_ = graphOf(*session_);
   if (graph_.has(name_)) return true;
-  ROS_INFO("%s: the session does not need this node", name_.c_str());
+  ROS_DEBUG("%s: the session does not need this node", name_.c_str());
   return false;
 }
 

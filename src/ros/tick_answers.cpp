@@ -3,7 +3,6 @@
 #include "e2e_cdiff/ros/tick_answers.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/topics.h"
@@ -56,12 +55,14 @@ std::uint64_t TickAnswers::tickOf(const msgs::ControlAction& control,
                                   std::uint64_t otherwise) const {
   if (control.tick != 0) return control.tick;
   if (control.header.stamp.isZero()) return otherwise;
-  return static_cast<std::uint64_t>(std::llround(control.header.stamp.toSec() / simulation_step_));
+  return nearestTick(control.header.stamp, simulation_step_);
 }
 
 void TickAnswers::add(const Selection& selection) {
   selections_.emplace(selection->tick, selection);
 }
+
+void TickAnswers::add(const Guidance& guidance) { guidance_.emplace(guidance->tick, guidance); }
 
 void TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
   controls_[tickOf(*control, otherwise)].emplace(kEgoSlot, control);
@@ -80,10 +81,14 @@ std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snaps
     topics.emplace_back(kSelectionTopic);
     return topics;
   }
+  bool any_cbv = false;
   for (const msgs::CbvAssignment& assignment : chosen->assignments) {
-    if (!contains(snapshot, assignment.vehicle_id) || cbv(assignment.slot, snapshot.tick)) continue;
-    topics.push_back(cbvControlTopic(assignment.slot));
+    if (!contains(snapshot, assignment.vehicle_id)) continue;
+    any_cbv = true;
+    if (!cbv(assignment.slot, snapshot.tick)) topics.push_back(cbvControlTopic(assignment.slot));
   }
+  if (guidance_expected_ && any_cbv && !guidance(snapshot.tick))
+    topics.emplace_back(kGuidanceTopic);
   return topics;
 }
 
@@ -97,6 +102,21 @@ TickAnswers::Control TickAnswers::cbv(int slot, std::uint64_t tick) const {
   if (at_tick == controls_.end()) return nullptr;
   const auto found = at_tick->second.find(slot);
   return found == at_tick->second.end() ? nullptr : found->second;
+}
+
+TickAnswers::Guidance TickAnswers::guidance(std::uint64_t tick) const {
+  const auto found = guidance_.find(tick);
+  return found == guidance_.end() ? nullptr : found->second;
+}
+
+void TickAnswers::addGuidance(Answer& answer, std::uint64_t tick) const {
+  const Guidance report = guidance(tick);
+  if (!report) return;
+  for (const msgs::VehicleGuidance& vehicle : report->vehicles) {
+    if (vehicle.vehicle_id != answer.action.vehicle_id) continue;
+    answer.action.guidance = fromMsg(vehicle);
+    answer.action.state_mismatch = vehicle.state_mismatch;
+  }
 }
 
 TickAnswers::Control TickAnswers::ego(std::uint64_t tick) const { return cbv(kEgoSlot, tick); }
@@ -113,6 +133,7 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
     const Control control = cbv(assignment.slot, snapshot.tick);
     if (!control || !contains(snapshot, assignment.vehicle_id)) continue;
     answers.push_back(answerOf(*control, assignment.slot, assignment.vehicle_id));
+    addGuidance(answers.back(), snapshot.tick);
   }
   return answers;
 }
@@ -136,6 +157,7 @@ TickAnswers::Selection TickAnswers::selectionAfter(std::uint64_t tick) const {
 void TickAnswers::forgetBefore(std::uint64_t tick) {
   selections_.erase(selections_.begin(), selections_.lower_bound(tick));
   controls_.erase(controls_.begin(), controls_.lower_bound(tick));
+  guidance_.erase(guidance_.begin(), guidance_.lower_bound(tick));
 }
 
 }  // namespace cdiff::ros

@@ -7,28 +7,51 @@
 namespace cdiff::ros {
 namespace {
 
+using Nodes = std::vector<std::string>;
+
+/// Who may listen to a topic of a slot, whether it takes part or not.
+Nodes possibleListenersOfSlot(const std::string& topic, int slot, const SessionGraph& graph) {
+  if (topic == cbvControlTopic(slot)) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
+  if (topic == cbvRolloutTopic(slot)) return {kRecorderNode};
+  if (topic == imageTopic(slot) && graph.imagesOfCbvs())
+    return {kDiffusionPlannerNode, kRecorderNode};
+  return {};
+}
+
 /// Who may listen, whether it takes part or not.
-std::vector<std::string> possibleListeners(const std::string& topic, int max_cbv) {
+Nodes possibleListeners(const std::string& topic, const SessionGraph& graph) {
   if (topic == kSessionTopic || topic == kTrafficTopic) {
-    return {kCbvIdentificationNode, kEgoPlannerNode, kCbvPlannerNode, kMetricsNode, kRecorderNode};
+    return {kCbvIdentificationNode, kCameraNode,  kEgoPlannerNode, kCbvPlannerNode,
+            kDiffusionPlannerNode,  kMetricsNode, kRecorderNode};
   }
   if (topic == kEgoRouteTopic) return {kCbvIdentificationNode, kEgoPlannerNode, kRecorderNode};
-  if (topic == kSelectionTopic)
-    return {kTrafficSimulatorNode, kCbvPlannerNode, kMetricsNode, kRecorderNode};
+  if (topic == kSelectionTopic) {
+    return {kTrafficSimulatorNode, kCameraNode,  kCbvPlannerNode,
+            kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
+  }
   if (topic == kEgoControlTopic) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
+  if (topic == imageTopic(kEgoSlot) && graph.imagesOfEgo())
+    return graph.ego_sees ? Nodes{kEgoPlannerNode, kRecorderNode} : Nodes{kRecorderNode};
   if (topic == kTickAckTopic) return {kTrafficSimulatorNode};
   if (topic == kMetricsTopic) return {kRecorderNode};
-  for (int slot = 0; slot < max_cbv; ++slot) {
-    if (topic == cbvControlTopic(slot)) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
-    if (topic == cbvRolloutTopic(slot)) return {kRecorderNode};
+  if (topic == kGuidanceTopic) return {kMetricsNode, kRecorderNode};
+  for (int slot = 0; slot < graph.max_cbv; ++slot) {
+    const Nodes nodes = possibleListenersOfSlot(topic, slot, graph);
+    if (!nodes.empty()) return nodes;
   }
   return {};
 }
 
+std::string vehicleTopics(int slot) {
+  return slot == kEgoSlot ? "ego" : "cbv_" + std::to_string(slot);
+}
+
 }  // namespace
 
-std::string cbvControlTopic(int slot) { return "cbv_" + std::to_string(slot) + "/control"; }
-std::string cbvRolloutTopic(int slot) { return "cbv_" + std::to_string(slot) + "/rollout"; }
+std::string cbvControlTopic(int slot) { return vehicleTopics(slot) + "/control"; }
+std::string cbvRolloutTopic(int slot) { return vehicleTopics(slot) + "/rollout"; }
+std::string imageTopic(int slot) { return vehicleTopics(slot) + "/camera/image_raw"; }
+std::string cameraInfoTopic(int slot) { return vehicleTopics(slot) + "/camera/camera_info"; }
 
 bool SessionGraph::has(const std::string& node) const {
   return std::find(participants.begin(), participants.end(), node) != participants.end();
@@ -36,7 +59,7 @@ bool SessionGraph::has(const std::string& node) const {
 
 std::vector<std::string> listeners(const std::string& topic, const SessionGraph& graph) {
   std::vector<std::string> nodes;
-  for (const std::string& node : possibleListeners(topic, graph.max_cbv)) {
+  for (const std::string& node : possibleListeners(topic, graph)) {
     if (node == kTrafficSimulatorNode || graph.has(node)) nodes.push_back(node);
   }
   return nodes;
@@ -46,7 +69,7 @@ std::string answererOf(const std::string& topic, const SessionGraph& graph) {
   if (topic == kSelectionTopic) return kCbvIdentificationNode;
   if (topic == kEgoControlTopic)
     return graph.external_ego ? "the external ego planner" : kEgoPlannerNode;
-  return kCbvPlannerNode;
+  return graph.cbvsSee() ? kDiffusionPlannerNode : kCbvPlannerNode;
 }
 
 bool isObserver(const std::string& node) { return node == kMetricsNode || node == kRecorderNode; }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <cmath>
+
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/ros/conversions.h"
 
@@ -39,6 +41,10 @@ std_msgs::Header headerOf(const traffic::TrafficSnapshot& snapshot) {
 }  // namespace
 
 ::ros::Time toStamp(double seconds) { return ::ros::Time(seconds); }
+
+std::uint64_t nearestTick(const ::ros::Time& stamp, double simulation_step) {
+  return static_cast<std::uint64_t>(std::llround(stamp.toSec() / simulation_step));
+}
 
 msgs::VehicleState toMsg(const traffic::VehicleState& state) {
   msgs::VehicleState message;
@@ -154,12 +160,17 @@ msgs::ControlAction toMsg(const planning::PlannedAction& action,
   message.brake = action.action.brake;
   message.planner = origin.planner;
   message.planner_latency_ms = origin.latency_ms;
-  message.fault = origin.fault;
+  message.fault = origin.fault.empty() ? action.fault : origin.fault;
   return message;
 }
 
 planning::PlannedAction fromMsg(const msgs::ControlAction& message) {
-  return {message.slot, message.vehicle_id, {message.throttle, message.steer, message.brake}, {}};
+  planning::PlannedAction action;
+  action.slot = message.slot;
+  action.vehicle_id = message.vehicle_id;
+  action.action = {message.throttle, message.steer, message.brake};
+  action.fault = message.fault;
+  return action;
 }
 
 msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,

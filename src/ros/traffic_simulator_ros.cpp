@@ -6,6 +6,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/session_files.h"
+#include "e2e_cdiff/ros/session_parts.h"
 #include "rosgraph_msgs/Clock.h"
 #include "spinning.h"
 
@@ -16,9 +17,9 @@ namespace fs = std::filesystem;
 using traffic::SessionStatus;
 
 std::vector<std::string> knownParameters() {
-  return {"scenario",      "bench2drive",    "route",  "network", "mode",   "ego_planner",
-          "cbv_planner",   "seed",           "set",    "record",  "folder", "participants",
-          "start_timeout", "answer_timeout", "results"};
+  return {"scenario",      "bench2drive",    "route",   "network", "mode",   "ego_planner",
+          "cbv_planner",   "seed",           "set",     "record",  "folder", "participants",
+          "start_timeout", "answer_timeout", "results", "camera"};
 }
 
 /// Relative paths in parameters are meant from where the user started the session.
@@ -26,22 +27,6 @@ void enterFolder(const std::string& folder) {
   std::error_code error;
   if (!folder.empty()) fs::current_path(folder, error);
   if (error) throw core::InputError("parameter ~folder is '" + folder + "': " + error.message());
-}
-
-SessionGraph graphOf(const Parameters& parameters, const scenario::ScenarioOptions& options) {
-  SessionGraph graph;
-  graph.max_cbv = static_cast<int>(options.max_cbv);
-  graph.external_ego = options.ego_planner == "external";
-  const bool record = parameters.flag("record", false);
-  std::vector<std::string> nodes = core::splitText(parameters.text("participants"), ' ');
-  if (nodes.empty()) {
-    nodes = {kCbvIdentificationNode, kEgoPlannerNode, kCbvPlannerNode, kMetricsNode};
-    if (record) nodes.emplace_back(kRecorderNode);
-  }
-  for (const std::string& node : nodes) {
-    if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
-  }
-  return graph;
 }
 
 }  // namespace
@@ -55,7 +40,9 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   const scenario::ScenarioOptions options = scenario::resolveRequest(sessionRequest(parameters));
   setup_ = std::make_unique<scenario::SessionSetup>(options);
   results_ = makeResultFolder(parameters.text("results"), options);
-  graph_ = graphOf(parameters, options);
+  const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
+  graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
+  if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
   book_ = ParticipantBook(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
   paced_answers_ = PacedAnswers(options.simulation_step);
@@ -123,8 +110,7 @@ void TrafficSimulatorRos::publishSession() {
   info.package_version = E2E_CDIFF_VERSION;
   info.deployment = kDeployment;
   info.results_folder = results_.string();
-  info.participants = graph_.participants;
-  info.external_ego = graph_.external_ego;
+  putGraph(graph_, info);
   session_.publish(boost::make_shared<const msgs::SessionInfo>(info));
   route_.publish(boost::make_shared<const nav_msgs::Path>(toPathMsg(setup_->egoRoute())));
 }

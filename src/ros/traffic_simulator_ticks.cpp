@@ -3,6 +3,7 @@
 // The ticks of a session: publish, wait, advance.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
@@ -92,11 +93,10 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
 }
 
 void TrafficSimulatorRos::recordFaults(const std::vector<Answer>& answers) {
-  std::string last;  // all CBVs share one planning call
+  std::set<std::pair<std::string, std::string>> recorded;  // all CBVs share one planning call
   for (const Answer& answer : answers) {
-    if (!answer.fault.empty() && answer.planner != last)
+    if (!answer.fault.empty() && recorded.emplace(answer.planner, answer.fault).second)
       world_->recordFault(answer.planner, answer.fault);
-    last = answer.planner;
   }
 }
 

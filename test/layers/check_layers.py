@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 # Headers that only some layers may read: pattern -> layers that may.
 RESTRICTED = {
-    "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|"
+    "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"training"}),
     "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"diffusion"}),

@@ -4,19 +4,21 @@
 
 #include <algorithm>
 
+#include "e2e_cdiff/ros/session_parts.h"
+
 namespace cdiff::test {
 
 using namespace ros;  // NOLINT: a test of that layer
 
 FakeSimulator::FakeSimulator(const std::string& node, const std::filesystem::path& results)
     : setup_(scenario::loadScenario("crossing_left_turn")),
-      graph_{{node}, static_cast<int>(setup_.options().max_cbv), false} {
+      graph_{{node}, static_cast<int>(setup_.options().max_cbv), false, false, true} {
   listen();
   answerForOthers(node);
-  publishSession(node, results);
+  publishSession(results);
 }
 
-void FakeSimulator::publishSession(const std::string& node, const std::filesystem::path& results) {
+void FakeSimulator::publishSession(const std::filesystem::path& results) {
   session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
                                                        listeners(kSessionTopic, graph_), true);
   route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
@@ -24,7 +26,7 @@ void FakeSimulator::publishSession(const std::string& node, const std::filesyste
   traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
                                                            listeners(kTrafficTopic, graph_));
   msgs::SessionInfo info = toMsg(setup_);
-  info.participants = {node};
+  putGraph(graph_, info);
   info.results_folder = results.string();
   info.deployment = "test";
   info.simulator_version = "none";
@@ -56,6 +58,15 @@ void FakeSimulator::listen() {
              subscribe<msgs::ControlAction>(node_, cbvControlTopic(0),
                                             [this](const auto& m) { cbv_controls[m->tick] = m; }),
              subscribe<msgs::ControlAction>(node_, cbvControlTopic(1), [](const auto&) {}),
+             subscribe<sensor_msgs::Image>(
+                 node_, imageTopic(0),
+                 [this](const auto& m) { images[nearestTick(m->header.stamp, 0.05)] = m; }),
+             subscribe<sensor_msgs::Image>(
+                 node_, imageTopic(kEgoSlot),
+                 [this](const auto& m) { ego_images[nearestTick(m->header.stamp, 0.05)] = m; }),
+             subscribe<sensor_msgs::CameraInfo>(
+                 node_, cameraInfoTopic(0),
+                 [this](const auto& m) { infos[nearestTick(m->header.stamp, 0.05)] = m; }),
              subscribe<msgs::Rollout>(node_, cbvRolloutTopic(0),
                                       [this](const auto& m) { rollouts[m->tick] = m; }),
              subscribe<msgs::MetricReport>(node_, kMetricsTopic,
@@ -65,7 +76,11 @@ void FakeSimulator::listen() {
 bool FakeSimulator::ready() {
   return until([this] {
     const bool reported = !graph_.has(kMetricsNode) || inputs_.back().getNumPublishers() > 0;
-    return reported && connections_.missing().empty() && acknowledged(msgs::TickAck::READY, 0);
+    const bool shown =
+        !graph_.has(kCameraNode) || std::all_of(inputs_.end() - 5, inputs_.end() - 2,
+                                                [](auto& in) { return in.getNumPublishers() > 0; });
+    return reported && shown && connections_.missing().empty() &&
+           acknowledged(msgs::TickAck::READY, 0);
   });
 }
 

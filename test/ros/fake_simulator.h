@@ -17,13 +17,15 @@
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "ros/callback_queue.h"
+#include "sensor_msgs/CameraInfo.h"
+#include "sensor_msgs/Image.h"
 
 namespace cdiff::test {
 
 class FakeSimulator {
  public:
-  /// The session crossing_left_turn with `node` as the only node that the session counts on; its
-  /// files go to `results`.
+  /// The session crossing_left_turn, cameras shown, with `node` as the only node that the session
+  /// counts on; its files go to `results`.
   FakeSimulator(const std::string& node, const std::filesystem::path& results);
 
   /// Spins until `done` or 20 s of wall time; answers whether it is done.
@@ -59,9 +61,12 @@ class FakeSimulator {
   std::map<std::uint64_t, ros::msgs::ControlAction::ConstPtr> cbv_controls;
   std::map<std::uint64_t, ros::msgs::Rollout::ConstPtr> rollouts;
   std::map<std::uint64_t, ros::msgs::MetricReport::ConstPtr> reports;
+  std::map<std::uint64_t, sensor_msgs::Image::ConstPtr> images;  ///< of slot 0
+  std::map<std::uint64_t, sensor_msgs::Image::ConstPtr> ego_images;
+  std::map<std::uint64_t, sensor_msgs::CameraInfo::ConstPtr> infos;  ///< of slot 0
 
  private:
-  void publishSession(const std::string& node, const std::filesystem::path& results);
+  void publishSession(const std::filesystem::path& results);
   void answerForOthers(const std::string& node);
   void listen();
 

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/rendering/front_camera.h"
+#include "e2e_cdiff/ros/image_conversions.h"
 #include "fake_simulator.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
@@ -83,6 +85,34 @@ TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
   EXPECT_EQ(control.planner, "cbv:pdm_lite");
   EXPECT_EQ(control.fault, "");
   EXPECT_EQ(simulator.rollouts.at(0)->vehicle_id, "bg_0");
+}
+
+TEST(Camera, ShowsEgoAndOccupiedSlotAtDecisionTicksOnly) {
+  FakeSimulator simulator(ros::kCameraNode, resultFolder());
+  ASSERT_TRUE(simulator.ready());
+  for (std::uint64_t tick = 0; tick <= 2; ++tick) {
+    const traffic::TrafficSnapshot snapshot = simulator.snapshot(tick);
+    simulator.publish(snapshot);
+    if (snapshot.decision_tick) simulator.publishSelection(snapshot);
+  }
+  ASSERT_TRUE(simulator.until([&] {
+    return simulator.images.count(2) + simulator.ego_images.count(2) + simulator.infos.count(2) ==
+           3;
+  }));
+  EXPECT_EQ(simulator.images.count(0), 1U);
+  EXPECT_EQ(simulator.images.count(1), 0U);
+  EXPECT_EQ(simulator.ego_images.count(1), 0U);
+  const scenario::ScenarioOptions& options = simulator.setup().options();
+  rendering::FrontCamera camera(options.camera, simulator.setup().network());
+  const traffic::TrafficSnapshot snapshot = simulator.snapshot(2);
+  const traffic::CameraImage here = camera.render(snapshot, snapshot.vehicles[1]);
+  const ros::ExpectedImage expected{"cbv_0/camera/image_raw", "bg_0", 160, 96, 0.05};
+  const traffic::CameraImage image = fromMsg(*simulator.images.at(2), expected);
+  EXPECT_EQ(image.rgb, here.rgb);
+  EXPECT_EQ(image.tick, here.tick);
+  EXPECT_EQ(simulator.ego_images.at(2)->header.frame_id, "ego/camera_optical");
+  EXPECT_NE(simulator.ego_images.at(2)->data, simulator.images.at(2)->data);
+  EXPECT_EQ(simulator.infos.at(2)->header.frame_id, "bg_0/camera_optical");
 }
 
 TEST(Metrics, AcknowledgesEveryTickAndWritesTheResult) {

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/participant_book.h"
+#include "e2e_cdiff/ros/session_parts.h"
 #include "e2e_cdiff/ros/tick_answers.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "sample_messages.h"
@@ -36,6 +37,33 @@ TEST(TickAnswers, WhatIsMissingDependsOnTheSelection) {
   answers.addCbv(1, controlFor(4, 1, "bg_7"));
   answers.addEgo(controlFor(4, -1, "ego"));
   EXPECT_EQ(answers.missing(snapshot), Texts());
+}
+
+TEST(TickAnswers, GuidanceIsWaitedForWhereItIsExpected) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  TickAnswers answers;
+  answers.expectGuidance();
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add(selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(answers.missing(snapshot), Texts());  // nobody to drive
+  answers = TickAnswers();
+  answers.expectGuidance();
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add(selectionFor(4, 1, "bg_7"));
+  answers.addCbv(1, controlFor(4, 1, "bg_7"));
+  EXPECT_EQ(answers.missing(snapshot), Texts{"cbv/guidance"});
+  planning::PlannedAction action;
+  action.vehicle_id = "bg_7";
+  action.state_mismatch = 0.25;
+  action.guidance.candidates = 3;
+  answers.add(boost::make_shared<const msgs::GuidanceReport>(
+      toGuidanceMsg({action}, test::sampleSnapshot(4))));
+  EXPECT_EQ(answers.missing(snapshot), Texts());
+  const std::vector<Answer> all = answers.answers(snapshot);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].action.guidance.candidates, 0);
+  EXPECT_EQ(all[1].action.guidance.candidates, 3);
+  EXPECT_EQ(all[1].action.state_mismatch, 0.25);
 }
 
 TEST(TickAnswers, AssignedVehicleThatIsGoneIsNotWaitedFor) {
@@ -179,6 +207,48 @@ TEST(Topics, ListenersAreThoseThatTakePart) {
   EXPECT_EQ(listeners("cbv_1/control", graph), (Texts{kTrafficSimulatorNode, kMetricsNode}));
   EXPECT_EQ(listeners("cbv_2/control", graph), Texts());  // there is no slot 2
   EXPECT_EQ(listeners(kTickAckTopic, graph), Texts{kTrafficSimulatorNode});
+}
+
+scenario::ScenarioOptions scenarioWith(const std::string& ego, const std::string& cbv) {
+  scenario::ScenarioOptions options;
+  options.ego_planner = ego;
+  options.cbv_planner = cbv;
+  return options;
+}
+
+TEST(SessionGraph, WithoutASeeingPlannerThereIsNoCamera) {
+  const SessionGraph graph = graphOf(scenarioWith("pdm_lite", "pdm_lite"), {true, false});
+  EXPECT_EQ(graph.participants, (Texts{kCbvIdentificationNode, kEgoPlannerNode, kCbvPlannerNode,
+                                       kMetricsNode, kRecorderNode}));
+  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts());
+}
+
+TEST(SessionGraph, CamerasForLookingFeedTheRecorderOnly) {
+  const SessionGraph graph = graphOf(scenarioWith("external", "pdm_lite"), {true, true});
+  EXPECT_FALSE(graph.has(kEgoPlannerNode));
+  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts{kRecorderNode});
+  EXPECT_EQ(listeners("ego/camera/image_raw", graph), Texts{kRecorderNode});
+  EXPECT_TRUE(graph.has(kCameraNode));
+}
+
+TEST(SessionGraph, DiffusionPlannerReplacesTheOtherAndSeesTheSlots) {
+  const SessionGraph graph = graphOf(scenarioWith("pdm_lite", "diffusion"), {false, false});
+  EXPECT_EQ(graph.participants, (Texts{kCbvIdentificationNode, kEgoPlannerNode,
+                                       kDiffusionPlannerNode, kMetricsNode, kCameraNode}));
+  EXPECT_EQ(listeners("cbv_1/camera/image_raw", graph), Texts{kDiffusionPlannerNode});
+  EXPECT_EQ(listeners("ego/camera/image_raw", graph), Texts());
+  EXPECT_EQ(listeners(kGuidanceTopic, graph), Texts{kMetricsNode});
+  EXPECT_EQ(answererOf("cbv_1/control", graph), kDiffusionPlannerNode);
+}
+
+TEST(SessionGraph, EgoThatSeesHasItsImageAloneAndAllComesBackFromTheMessage) {
+  msgs::SessionInfo info;
+  info.scenario_yaml = "max_cbv: 3\n";
+  putGraph(graphOf(scenarioWith("diffusion", "pdm_lite"), {true, false}), info);
+  const SessionGraph graph = graphOf(info);
+  EXPECT_EQ(graph.max_cbv, 3);
+  EXPECT_EQ(listeners("ego/camera/image_raw", graph), (Texts{kEgoPlannerNode, kRecorderNode}));
+  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <set>
 
 #include "e2e_cdiff/ros/display.h"
@@ -71,6 +72,46 @@ TEST(Display, TransformsAreOfEgoAndCbvsOnly) {
   EXPECT_EQ(message.transforms[0].child_frame_id, "ego/base_link");
   EXPECT_EQ(message.transforms[1].child_frame_id, "bg_7/base_link");
   EXPECT_EQ(message.transforms[0].header.stamp, ::ros::Time(0.2));
+}
+
+TEST(Display, CameraSitsOnTheMountAndLooksDownTheRoad) {
+  rendering::CameraOptions camera;
+  camera.mount_forward = 0.5;
+  camera.mount_height = 1.4;
+  camera.pitch = 30.0;
+  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), camera);
+  ASSERT_EQ(message.transforms.size(), 6U);  // base_link of two, then camera and optical frame each
+  const auto& mount = message.transforms[4];
+  EXPECT_EQ(mount.header.frame_id, "bg_7/base_link");
+  EXPECT_EQ(mount.child_frame_id, "bg_7/camera");
+  EXPECT_EQ(mount.transform.translation.x, 0.5);
+  EXPECT_EQ(mount.transform.translation.z, 1.4);
+  const auto& optical = message.transforms[5];
+  EXPECT_EQ(optical.header.frame_id, "bg_7/camera");
+  EXPECT_EQ(optical.child_frame_id, "bg_7/camera_optical");
+  const auto rotation = [](const geometry_msgs::Quaternion& q) {
+    return Eigen::Quaterniond(q.w, q.x, q.y, q.z);
+  };
+  const Eigen::Quaterniond total =
+      rotation(mount.transform.rotation) * rotation(optical.transform.rotation);
+  // The view axis (optical z) lies 30 degrees below base_link's x; optical x points right.
+  EXPECT_TRUE((total * Eigen::Vector3d::UnitZ())
+                  .isApprox(Eigen::Vector3d(std::sqrt(3.0) / 2.0, 0.0, -0.5), 1e-12));
+  EXPECT_TRUE((total * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitY(), 1e-12));
+}
+
+TEST(Markers, RolloutsAreLinesBySlot) {
+  planning::PlannedAction planned{2, "bg_7", {}, {}};
+  planned.rollout = {{{{1.0, 2.0}, 5.0, 0.0, 3.0}, {}}, {{{4.0, 2.0}, 6.0, 0.0, 3.0}, {}}};
+  const MarkerArray array = rolloutMarkers({planned, {3, "bg_9", {}, {}}}, 0.2);
+  ASSERT_EQ(array.markers.size(), 2U);
+  EXPECT_EQ(array.markers[0].id, 2);
+  EXPECT_EQ(array.markers[0].action, Marker::ADD);
+  ASSERT_EQ(array.markers[0].points.size(), 2U);
+  EXPECT_EQ(array.markers[0].points[1].x, 4.0);
+  EXPECT_GT(array.markers[0].points[1].z, 6.0);
+  EXPECT_EQ(array.markers[0].header.stamp, ::ros::Time(0.2));
+  EXPECT_EQ(array.markers[1].action, Marker::DELETE);  // nothing is planned
 }
 
 }  // namespace

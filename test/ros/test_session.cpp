@@ -8,21 +8,27 @@
 #include <atomic>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/tick_answers.h"
+#include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
+#include "sensor_msgs/Image.h"
+#include "support/random_model.h"
 
 namespace cdiff {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Session : public testing::Test {
+class Session : public ::testing::Test {
  protected:
   Session()
       : folder_(fs::temp_directory_path() /
@@ -97,6 +103,80 @@ TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
     EXPECT_EQ(message.instantiate<::e2e_cdiff::TrafficSnapshot>()->tick, ticks++);
   }
   EXPECT_EQ(ticks, 161U);  // 8 s of 0.05 s, and tick 0
+}
+
+/// What a bag shows of each decision: slots that a selection occupies with a vehicle of the
+/// snapshot, and images by topic.
+struct BagImages {
+  std::set<std::pair<std::string, ::ros::Time>> occupied;  ///< image topic and stamp
+  std::set<std::pair<std::string, ::ros::Time>> shown;
+  std::set<::ros::Time> guided;
+};
+
+BagImages imagesIn(const fs::path& file) {
+  BagImages images;
+  rosbag::Bag bag(file.string(), rosbag::bagmode::Read);
+  std::map<std::uint64_t, ::e2e_cdiff::TrafficSnapshot::ConstPtr> snapshots;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag, rosbag::TopicQuery("/traffic"))) {
+    const auto snapshot = message.instantiate<::e2e_cdiff::TrafficSnapshot>();
+    snapshots[snapshot->tick] = snapshot;
+  }
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    if (const auto selection = message.instantiate<::e2e_cdiff::CbvSelection>()) {
+      for (const auto& assignment : selection->assignments) {
+        if (ros::contains(*snapshots.at(selection->tick), assignment.vehicle_id))
+          images.occupied.emplace("/" + ros::imageTopic(assignment.slot), selection->header.stamp);
+      }
+    }
+    if (const auto image = message.instantiate<sensor_msgs::Image>()) {
+      EXPECT_EQ(image->width, 160U);
+      EXPECT_EQ(image->height, 96U);
+      EXPECT_EQ(image->encoding, "rgb8");
+      images.shown.emplace(message.getTopic(), image->header.stamp);
+    }
+    if (const auto guidance = message.instantiate<::e2e_cdiff::GuidanceReport>())
+      images.guided.insert(guidance->header.stamp);
+  }
+  return images;
+}
+
+TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=crossing_left_turn seed:=2 record:=true camera:=true "
+                                 "set:=protocol.time_limit=8");
+  EXPECT_EQ(exitCode(), "0\n") << log;
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.set = {"protocol.time_limit=8"};
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  BagImages images = imagesIn(results() / "session.bag");
+  EXPECT_GT(images.occupied.size(), 0U) << "the session shows no CBV; choose one that does";
+  for (int decision = 0; decision < 80; ++decision)  // 8 s at 10 Hz, the end decides nothing
+    images.occupied.emplace("/ego/camera/image_raw", ::ros::Time(0.1 * decision));
+  EXPECT_EQ(images.shown, images.occupied);
+}
+
+TEST_F(Session, DiffusionPlannerHasTheTraceOfTheClosedLoopAndItsImagesInTheBag) {
+  const std::string model = testing::writeRandomModel(folder_ / "model");
+  const std::string settings = "protocol.time_limit=8 diffusion.model=" + model;
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=crossing_left_turn seed:=2 record:=true "
+                                 "cbv_planner:=diffusion set:=\"" +
+                                     settings + "\"");
+  EXPECT_EQ(exitCode(), "0\n") << log;
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.cbv_planner = "diffusion";
+  request.set = core::splitText(settings, ' ');
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0) << log;
+  const BagImages images = imagesIn(results() / "session.bag");
+  EXPECT_EQ(images.shown, images.occupied);
+  std::set<::ros::Time> decisions;
+  for (const auto& [topic, stamp] : images.occupied) decisions.insert(stamp);
+  EXPECT_EQ(images.guided, decisions);
 }
 
 TEST_F(Session, WholeRoundaboutHasTheTraceOfTheClosedLoop) {

@@ -9,6 +9,7 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
+#include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/MetricReport.h"
 #include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
@@ -29,6 +30,8 @@ inline constexpr const char* kMapFrame = "map";
 
 /// Simulated time as a ROS stamp.
 ::ros::Time toStamp(double seconds);
+/// Tick whose stamp is nearest; `simulation_step` in [s].
+std::uint64_t nearestTick(const ::ros::Time& stamp, double simulation_step);
 
 msgs::VehicleState toMsg(const traffic::VehicleState& state);
 traffic::VehicleState fromMsg(const msgs::VehicleState& message);
@@ -46,14 +49,19 @@ struct ActionOrigin {
   std::string fault;        ///< empty when none
 };
 
-/// `snapshot` gives tick and stamp.
+/// `snapshot` gives tick and stamp. The fault is the planning call's, else the action's own.
 msgs::ControlAction toMsg(const planning::PlannedAction& action,
                           const traffic::TrafficSnapshot& snapshot, const ActionOrigin& origin);
-/// Without rollout, which has a message of its own.
+/// Without rollout and guidance, which have messages of their own.
 planning::PlannedAction fromMsg(const msgs::ControlAction& message);
 msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
                            const traffic::TrafficSnapshot& snapshot);
 std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message);
+
+/// What guidance did for all vehicles of a decision; the caller fills in latency and image age.
+msgs::GuidanceReport toGuidanceMsg(const std::vector<planning::PlannedAction>& actions,
+                                   const traffic::TrafficSnapshot& snapshot);
+guidance::GuidanceReport fromMsg(const msgs::VehicleGuidance& message);
 
 /// Names lanes by their ids in `network`.
 msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time,

@@ -6,6 +6,9 @@
 /// from it.
 #pragma once
 
+#include <optional>
+
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "nav_msgs/Odometry.h"
 #include "ros/ros.h"
@@ -17,15 +20,22 @@ namespace cdiff::ros {
 nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time);
 /// Transforms of ego and CBVs.
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot);
+/// The same and, of each, base_link -> camera (x along the view, z up) -> camera_optical (x right,
+/// y down, z along the view).
+tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
+                            const rendering::CameraOptions& camera);
 
 class Display {
  public:
   explicit Display(::ros::NodeHandle& node);
+  /// From now on tf holds the camera frames too.
+  void showCameras(const rendering::CameraOptions& camera) { camera_ = camera; }
   void publish(const traffic::TrafficSnapshot& snapshot) const;
 
  private:
   ::ros::Publisher odometry_;
   ::ros::Publisher transforms_;
+  std::optional<rendering::CameraOptions> camera_;
 };
 
 }  // namespace cdiff::ros

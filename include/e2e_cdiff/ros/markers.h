@@ -17,6 +17,10 @@ namespace cdiff::ros {
 /// session ends.
 visualization_msgs::MarkerArray mapMarkers(const scenario::SessionSetup& setup);
 
+/// The planned rollouts of CBVs, one line each by slot; lives for 0.5 s of simulated time.
+visualization_msgs::MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions,
+                                               double time);
+
 /// One per session: gives each vehicle an id that it keeps.
 class SessionMarkers {
  public:

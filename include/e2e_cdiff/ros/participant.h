@@ -57,6 +57,8 @@ class Participant {
   /// Tells the traffic simulator that a tick is dealt with.
   void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
   const SessionGraph& graph() const { return graph_; }
+  /// For publishers that advertise() does not make.
+  Connections& connections() { return connections_; }
   ::ros::NodeHandle& node() { return node_; }
 
  private:

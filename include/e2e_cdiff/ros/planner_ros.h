@@ -9,13 +9,16 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/image_inbox.h"
 #include "e2e_cdiff/ros/participant.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 #include "nav_msgs/Path.h"
 
 namespace cdiff::ros {
 
-/// The ego's planner: snapshots and route in, ego/control out.
+/// The ego's planner: snapshots and route in (and its image where the planner sees), ego/control
+/// out.
 class EgoPlannerRos : public Participant {
  public:
   using Participant::Participant;
@@ -27,14 +30,18 @@ class EgoPlannerRos : public Participant {
   int conclude(Ending) override { return 0; }
 
  private:
+  std::vector<planning::PlannedAction> decide(const traffic::TrafficSnapshot& snapshot,
+                                              const std::vector<planning::PlanningTask>& tasks,
+                                              ActionOrigin& origin);
   std::unique_ptr<scenario::SessionSetup> setup_;
   map::Route route_;
+  ImageInbox images_;
   std::unique_ptr<planning::Planner> planner_;
   ::ros::Publisher controls_;
 };
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in,
-/// cbv_K/control and cbv_K/rollout out.
+/// cbv_K/control and cbv_K/rollout out, and the rollouts as markers while somebody looks.
 class CbvPlannerRos : public Participant {
  public:
   using Participant::Participant;
@@ -44,10 +51,25 @@ class CbvPlannerRos : public Participant {
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending) override { return 0; }
 
+  /// Whether all that the planner needs for this decision besides the selection has come.
+  virtual bool complete(const ::e2e_cdiff::TrafficSnapshot&,
+                        const ::e2e_cdiff::CbvSelection&) const {
+    return true;
+  }
+  /// The actions for the tasks (one at least), in their order; fills in latency and fault.
+  virtual std::vector<planning::PlannedAction> decide(
+      const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
+      ActionOrigin& origin);
+  const scenario::SessionSetup& setup() const { return *setup_; }
+  planning::Planner& planner() { return *planner_; }
+
  private:
   void plan(const traffic::TrafficSnapshot& snapshot, const ::e2e_cdiff::CbvSelection& selection);
+  void publish(const traffic::TrafficSnapshot& snapshot,
+               const std::vector<planning::PlannedAction>& actions, const ActionOrigin& origin);
   std::unique_ptr<scenario::SessionSetup> setup_;
   std::unique_ptr<planning::Planner> planner_;
+  ::ros::Publisher markers_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
   std::vector<::ros::Publisher> controls_;                                   ///< by slot
   std::vector<::ros::Publisher> rollouts_;                                   ///< by slot

@@ -10,6 +10,7 @@
 
 #include "e2e_cdiff/MetricReport.h"
 #include "e2e_cdiff/Rollout.h"
+#include "e2e_cdiff/ros/image_inbox.h"
 #include "e2e_cdiff/ros/participant.h"
 #include "e2e_cdiff/ros/tick_answers.h"
 #include "nav_msgs/Path.h"
@@ -29,13 +30,19 @@ class RecorderRos : public Participant {
 
  private:
   void listenToAll();
+  void listenToSlot(int slot);
+  void listenToImages(int slot);
   bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+  bool seen(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   void write(const Snapshot& snapshot);
+  void writeImages(std::uint64_t tick, const ::ros::Time& stamp);
   void writeDisplay(const ::e2e_cdiff::TrafficSnapshot& snapshot, const ::ros::Time& stamp);
   void forgetUntil(std::uint64_t tick);
 
   std::filesystem::path file_;
   rosbag::Bag bag_;
+  rendering::CameraOptions camera_;
+  ImageInbox images_;
   TickAnswers answers_;
   nav_msgs::Path::ConstPtr route_;
   std::map<std::uint64_t, ::e2e_cdiff::MetricReport::ConstPtr> reports_;  ///< by tick

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Collects what the other nodes answer to a tick (selection and controls), whatever the order of
-/// arrival, and says what is still missing. The traffic simulator, the metrics and the recorder
-/// wait by the same rule.
+/// Collects what the other nodes answer to a tick (selection, controls, guidance), whatever the
+/// order of arrival, and says what is still missing. The traffic simulator, the metrics and the
+/// recorder wait by the same rule.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
+#include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/scenario/session_observer.h"
@@ -35,11 +36,16 @@ class TickAnswers {
  public:
   using Selection = ::e2e_cdiff::CbvSelection::ConstPtr;
   using Control = ::e2e_cdiff::ControlAction::ConstPtr;
+  using Guidance = ::e2e_cdiff::GuidanceReport::ConstPtr;
 
   /// `simulation_step` [s] turns the stamp of a control without tick into a tick.
   explicit TickAnswers(double simulation_step = 0.05) : simulation_step_(simulation_step) {}
 
+  /// From now on a tick with CBVs needs a guidance report too.
+  void expectGuidance() { guidance_expected_ = true; }
+
   void add(const Selection& selection);
+  void add(const Guidance& guidance);
   /// A control that carries a stamp but no tick counts for the tick of its stamp; one with neither
   /// for `otherwise`.
   void addEgo(const Control& control, std::uint64_t otherwise = 0);
@@ -51,8 +57,9 @@ class TickAnswers {
   Selection selection(std::uint64_t tick) const;
   Control ego(std::uint64_t tick) const;
   Control cbv(int slot, std::uint64_t tick) const;
+  Guidance guidance(std::uint64_t tick) const;
   /// Answers of planners to a decision: the ego's, then those of assigned CBVs by slot; those that
-  /// are missing are left out.
+  /// are missing are left out. With guidance where a report came.
   std::vector<Answer> answers(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   /// A control and the tick that it answers.
   struct TimedControl {
@@ -68,9 +75,11 @@ class TickAnswers {
   void forgetBefore(std::uint64_t tick);
 
  private:
-  static constexpr int kEgoSlot = -1;
+  void addGuidance(Answer& answer, std::uint64_t tick) const;
   std::uint64_t tickOf(const ::e2e_cdiff::ControlAction& control, std::uint64_t otherwise) const;
   double simulation_step_;
+  bool guidance_expected_ = false;
+  std::map<std::uint64_t, Guidance> guidance_;
   std::map<std::uint64_t, Selection> selections_;
   std::map<std::uint64_t, std::map<int, Control>> controls_;  ///< by tick, then slot
 };

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/camera_ros.h"
+
+#include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/image_conversions.h"
+#include "e2e_cdiff/ros/session_parts.h"
+
+namespace cdiff::ros {
+namespace {
+
+constexpr std::uint32_t kQueueSize = 1000;
+
+}  // namespace
+
+void CameraRos::begin(const msgs::SessionInfo& info) {
+  setup_ = setupOf(info);
+  camera_ = std::make_unique<rendering::FrontCamera>(setup_->options().camera, setup_->network());
+  if (graph().imagesOfEgo()) open(kEgoSlot);
+  if (!graph().imagesOfCbvs()) return;
+  for (int slot = 0; slot < graph().max_cbv; ++slot) open(slot);
+  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& selection) {
+    selections_.emplace(selection->tick, selection);
+  });
+}
+
+/// Every transport that is installed counts as the image topic itself: the nodes that the session
+/// counts on take the raw one.
+void CameraRos::open(int slot) {
+  const std::string topic = imageTopic(slot);
+  connections().expect(topic, listeners(topic, graph()));
+  const auto connect = [this, topic](const image_transport::SingleSubscriberPublisher& peer) {
+    connections().connected(topic, peer.getSubscriberName());
+  };
+  const auto disconnect = [this, topic](const image_transport::SingleSubscriberPublisher& peer) {
+    connections().disconnected(topic, peer.getSubscriberName());
+  };
+  outputs_[slot] = {transport_.advertise(topic, kQueueSize, connect, disconnect),
+                    advertise<sensor_msgs::CameraInfo>(cameraInfoTopic(slot))};
+}
+
+bool CameraRos::handle(const Snapshot& message, bool superseded) {
+  if (!message->decision_tick) return true;
+  const auto found = selections_.find(message->tick);
+  if (graph().imagesOfCbvs() && found == selections_.end()) return superseded;
+  const traffic::TrafficSnapshot snapshot = fromMsg(*message);
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (graph().imagesOfEgo() && ego != nullptr) show(kEgoSlot, snapshot, ego->id);
+  if (found == selections_.end()) return true;
+  for (const msgs::CbvAssignment& assignment : found->second->assignments)
+    show(assignment.slot, snapshot, assignment.vehicle_id);
+  selections_.erase(selections_.begin(), selections_.upper_bound(message->tick));
+  return true;
+}
+
+void CameraRos::show(int slot, const traffic::TrafficSnapshot& snapshot,
+                     const std::string& vehicle_id) {
+  const traffic::Vehicle* vehicle = snapshot.find(vehicle_id);
+  if (vehicle == nullptr) return;
+  const auto image = boost::make_shared<const sensor_msgs::Image>(
+      toMsg(camera_->render(snapshot, *vehicle), snapshot.time, vehicle_id));
+  const Output& output = outputs_.at(slot);
+  output.infos.publish(boost::make_shared<const sensor_msgs::CameraInfo>(
+      toCameraInfoMsg(camera_->options(), image->header)));
+  output.images.publish(image);
+}
+
+}  // namespace cdiff::ros

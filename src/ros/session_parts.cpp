@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/session_parts.h"
+
+#include "e2e_cdiff/planning/planner_factory.h"
+#include "e2e_cdiff/ros/conversions.h"
+
+namespace cdiff::ros {
+namespace {
+
+std::vector<std::string> neededNodes(const scenario::ScenarioOptions& options,
+                                     const GraphRequest& request) {
+  const bool cbvs_see = planning::seesImages(options.cbv_planner);
+  std::vector<std::string> nodes = {kCbvIdentificationNode, kEgoPlannerNode,
+                                    cbvs_see ? kDiffusionPlannerNode : kCbvPlannerNode,
+                                    kMetricsNode};
+  if (cbvs_see || planning::seesImages(options.ego_planner) || request.show_cameras)
+    nodes.emplace_back(kCameraNode);
+  if (request.record) nodes.emplace_back(kRecorderNode);
+  return nodes;
+}
+
+}  // namespace
+
+std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
+  return std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
+                                                  routeFromMsg(info));
+}
+
+std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
+                                               const scenario::SessionSetup& setup) {
+  return planning::makePlanner(name, setup.options().plannerOptions(), setup.planningContext());
+}
+
+SessionGraph graphOf(const scenario::ScenarioOptions& options, const GraphRequest& request,
+                     const std::vector<std::string>& participants) {
+  SessionGraph graph;
+  graph.max_cbv = static_cast<int>(options.max_cbv);
+  graph.external_ego = options.ego_planner == "external";
+  graph.ego_sees = planning::seesImages(options.ego_planner);
+  graph.show_cameras = request.show_cameras;
+  for (const std::string& node :
+       participants.empty() ? neededNodes(options, request) : participants) {
+    if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
+  }
+  return graph;
+}
+
+void putGraph(const SessionGraph& graph, msgs::SessionInfo& info) {
+  info.participants = graph.participants;
+  info.external_ego = graph.external_ego;
+  info.ego_sees = graph.ego_sees;
+  info.show_cameras = graph.show_cameras;
+}
+
+SessionGraph graphOf(const msgs::SessionInfo& info) {
+  SessionGraph graph;
+  graph.participants = info.participants;
+  graph.max_cbv = static_cast<int>(optionsFromMsg(info).max_cbv);
+  graph.external_ego = info.external_ego != 0;
+  graph.ego_sees = info.ego_sees != 0;
+  graph.show_cameras = info.show_cameras != 0;
+  return graph;
+}
+
+}  // namespace cdiff::ros
