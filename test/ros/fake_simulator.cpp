@@ -5,13 +5,27 @@
 #include <algorithm>
 
 #include "e2e_cdiff/ros/session_parts.h"
+#include "support/random_model.h"
 
 namespace cdiff::test {
 
 using namespace ros;  // NOLINT: a test of that layer
 
+namespace {
+
+scenario::ScenarioOptions scenarioFor(const std::string& node,
+                                      const std::filesystem::path& results) {
+  scenario::ScenarioOptions options = scenario::loadScenario("crossing_left_turn");
+  if (node != kDiffusionPlannerNode) return options;
+  options.cbv_planner = "diffusion";
+  options.diffusion.model = testing::writeRandomModel(results / "model");
+  return options;
+}
+
+}  // namespace
+
 FakeSimulator::FakeSimulator(const std::string& node, const std::filesystem::path& results)
-    : setup_(scenario::loadScenario("crossing_left_turn")),
+    : setup_(scenarioFor(node, results)),
       graph_{{node}, static_cast<int>(setup_.options().max_cbv), false, false, true} {
   listen();
   answerForOthers(node);
@@ -41,7 +55,10 @@ void FakeSimulator::answerForOthers(const std::string& node) {
   };
   if (node != kCbvIdentificationNode) offer(kSelectionTopic, msgs::CbvSelection());
   if (node != kEgoPlannerNode) offer(kEgoControlTopic, msgs::ControlAction());
-  if (node == kCbvPlannerNode) return;
+  if (node == kDiffusionPlannerNode) {
+    for (int slot = 0; slot < graph_.max_cbv; ++slot) offer(imageTopic(slot), sensor_msgs::Image());
+  }
+  if (node == kCbvPlannerNode || node == kDiffusionPlannerNode) return;
   for (int slot = 0; slot < graph_.max_cbv; ++slot) {
     offer(cbvControlTopic(slot), msgs::ControlAction());
     offer(cbvRolloutTopic(slot), msgs::Rollout());
@@ -58,6 +75,8 @@ void FakeSimulator::listen() {
              subscribe<msgs::ControlAction>(node_, cbvControlTopic(0),
                                             [this](const auto& m) { cbv_controls[m->tick] = m; }),
              subscribe<msgs::ControlAction>(node_, cbvControlTopic(1), [](const auto&) {}),
+             subscribe<msgs::GuidanceReport>(node_, kGuidanceTopic,
+                                             [this](const auto& m) { guidance[m->tick] = m; }),
              subscribe<sensor_msgs::Image>(
                  node_, imageTopic(0),
                  [this](const auto& m) { images[nearestTick(m->header.stamp, 0.05)] = m; }),
@@ -120,6 +139,10 @@ cbv::CbvSelection FakeSimulator::selection(std::uint64_t tick) const {
 void FakeSimulator::publishSelection(const traffic::TrafficSnapshot& snapshot) {
   others_.at(kSelectionTopic)
       .publish(toMsg(selection(snapshot.tick), snapshot.time, setup_.network()));
+}
+
+void FakeSimulator::publishImage(const sensor_msgs::Image& image) {
+  others_.at(imageTopic(0)).publish(image);
 }
 
 void FakeSimulator::answer(const traffic::TrafficSnapshot& snapshot) {

@@ -24,8 +24,8 @@ namespace cdiff::test {
 
 class FakeSimulator {
  public:
-  /// The session crossing_left_turn, cameras shown, with `node` as the only node that the session
-  /// counts on; its files go to `results`.
+  /// The session crossing_left_turn, cameras shown (and a random model for the diffusion planner),
+  /// with `node` as the only node that the session counts on; its files go to `results`.
   FakeSimulator(const std::string& node, const std::filesystem::path& results);
 
   /// Spins until `done` or 20 s of wall time; answers whether it is done.
@@ -52,6 +52,7 @@ class FakeSimulator {
   /// What the other nodes would answer to a snapshot: selection, controls of ego and CBV, an empty
   /// rollout.
   void answer(const traffic::TrafficSnapshot& snapshot);
+  void publishImage(const sensor_msgs::Image& image);  ///< of slot 0
   void publishSelection(const traffic::TrafficSnapshot& snapshot);
 
   const scenario::SessionSetup& setup() const { return setup_; }
@@ -61,6 +62,7 @@ class FakeSimulator {
   std::map<std::uint64_t, ros::msgs::ControlAction::ConstPtr> cbv_controls;
   std::map<std::uint64_t, ros::msgs::Rollout::ConstPtr> rollouts;
   std::map<std::uint64_t, ros::msgs::MetricReport::ConstPtr> reports;
+  std::map<std::uint64_t, ros::msgs::GuidanceReport::ConstPtr> guidance;
   std::map<std::uint64_t, sensor_msgs::Image::ConstPtr> images;  ///< of slot 0
   std::map<std::uint64_t, sensor_msgs::Image::ConstPtr> ego_images;
   std::map<std::uint64_t, sensor_msgs::CameraInfo::ConstPtr> infos;  ///< of slot 0

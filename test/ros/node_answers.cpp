@@ -87,6 +87,49 @@ TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
   EXPECT_EQ(simulator.rollouts.at(0)->vehicle_id, "bg_0");
 }
 
+TEST(DiffusionPlanner, WaitsForTheImageAndBrakesWithANamedFaultWithoutAUsableOne) {
+  FakeSimulator simulator(ros::kDiffusionPlannerNode, resultFolder());
+  ASSERT_TRUE(simulator.ready());
+  const auto publish = [&](std::uint64_t tick) {
+    simulator.publish(simulator.snapshot(tick));
+    simulator.publishSelection(simulator.snapshot(tick));
+  };
+  const auto answered = [&](std::uint64_t tick) {
+    return simulator.until(
+        [&] { return simulator.cbv_controls.count(tick) + simulator.guidance.count(tick) == 2; });
+  };
+  const auto imageAt = [](std::uint64_t tick) {
+    const traffic::CameraImage grey{160, 96, tick, std::vector<std::uint8_t>(3 * 160 * 96, 128)};
+    return ros::toMsg(grey, 0.05 * static_cast<double>(tick), "bg_0");
+  };
+  publish(0);
+  const ::ros::WallTime wait = ::ros::WallTime::now() + ::ros::WallDuration(0.3);
+  EXPECT_TRUE(simulator.until([&] { return ::ros::WallTime::now() > wait; }));
+  EXPECT_TRUE(simulator.cbv_controls.empty());
+  simulator.publishImage(imageAt(0));
+  ASSERT_TRUE(answered(0));
+  EXPECT_EQ(simulator.cbv_controls.at(0)->planner, "cbv:diffusion");
+  EXPECT_EQ(simulator.cbv_controls.at(0)->fault, "");
+  EXPECT_GT(simulator.rollouts.at(0)->points.size(), 0U);
+  EXPECT_EQ(simulator.guidance.at(0)->vehicles.at(0).vehicle_id, "bg_0");
+
+  publish(2);
+  sensor_msgs::Image wrong = imageAt(2);
+  wrong.encoding = "bgr8";
+  simulator.publishImage(wrong);
+  ASSERT_TRUE(answered(2));
+  const ros::msgs::ControlAction refused = *simulator.cbv_controls.at(2);
+  EXPECT_EQ(ros::fromMsg(refused).action, traffic::ControlAction::failSafe());
+  EXPECT_NE(refused.fault.find("bgr8"), std::string::npos) << refused.fault;
+  EXPECT_EQ(simulator.guidance.at(2)->vehicles.at(0).fault, refused.fault);
+
+  publish(4);
+  simulator.publish(simulator.snapshot(5));  // the session goes on without it
+  ASSERT_TRUE(answered(4));
+  EXPECT_EQ(simulator.cbv_controls.at(4)->fault, "no image on cbv_0/camera/image_raw for tick 4");
+  EXPECT_EQ(simulator.cbv_controls.at(4)->brake, 1.0);
+}
+
 TEST(Camera, ShowsEgoAndOccupiedSlotAtDecisionTicksOnly) {
   FakeSimulator simulator(ros::kCameraNode, resultFolder());
   ASSERT_TRUE(simulator.ready());

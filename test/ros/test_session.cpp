@@ -172,6 +172,7 @@ TEST_F(Session, DiffusionPlannerHasTheTraceOfTheClosedLoopAndItsImagesInTheBag) 
   request.set = core::splitText(settings, ' ');
   EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
   EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0) << log;
+  EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
   const BagImages images = imagesIn(results() / "session.bag");
   EXPECT_EQ(images.shown, images.occupied);
   std::set<::ros::Time> decisions;
