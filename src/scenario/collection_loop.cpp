@@ -29,16 +29,17 @@ constexpr double kCollectionWarmUp = 20.0;  // [s]
 ScenarioOptions collectionScenario(ScenarioOptions scenario, const CollectionOptions& options) {
   options.validate();
   const core::RandomStream random(static_cast<std::uint64_t>(scenario.seed), "collection_session");
+  const core::RandomKey key{core::hashText(scenario.name), 0, 0};
   scenario.max_cbv = options.vehicles;
   scenario.protocol.time_limit = options.duration;
   scenario.protocol.blocked_time = kEgoBlockedTime;
   scenario.protocol.deviation_distance = kEgoDeviation;
-  const bool own_lights = random.uniform({}, kLights) < options.program_lights_share;
+  const bool own_lights = random.uniform(key, kLights) < options.program_lights_share;
   scenario.lights = own_lights ? "program" : "green";
   const bool file = scenario.demand != "generated" && scenario.demand != "none";
   if (file && scenario.seed % 2 != 0) scenario.demand = "generated";
   const double density =
-      random.uniform({}, kDensity, options.minimum_density, options.maximum_density);
+      random.uniform(key, kDensity, options.minimum_density, options.maximum_density);
   scenario.traffic.density = std::llround(density);
   scenario.traffic.warm_up = std::min(scenario.traffic.warm_up, kCollectionWarmUp);
   return scenario;
@@ -117,17 +118,27 @@ CollectionLoop::Decision CollectionLoop::decide() {
   return decision;
 }
 
-/// Images of the driven vehicles whose turn it is; the first one after the take-over, so that no
-/// jump lies between image and motion.
+/// Whether it is a vehicle's turn, or a disturbance of it has just ended: what it does then is
+/// worth more than what it does most of the time.
+bool CollectionLoop::imageDue(const PlannedAction& action, std::int64_t decision) {
+  const double period = setup_.options().decision_period;
+  const auto every = std::max<std::int64_t>(1, std::llround(options_.image_period / period));
+  if (perturbed(action.vehicle_id)) disturbed_[action.vehicle_id] = decision;
+  const auto disturbed = disturbed_.find(action.vehicle_id);
+  const std::int64_t since = disturbed == disturbed_.end() ? 0 : decision - disturbed->second;
+  return since == 1 || since == 4 || (decision + action.slot + 1) % every == 0;
+}
+
+/// Images of driven vehicles; the first one after the take-over, so that no jump lies between image
+/// and motion.
 void CollectionLoop::render(Decision& decision) {
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
-  const double period = setup_.options().decision_period;
-  const auto every = std::max(1LL, std::llround(options_.image_period / period));
-  const auto count = static_cast<long long>(snapshot.tick / setup_.ticksPerDecision());
+  const auto count = static_cast<std::int64_t>(snapshot.tick / setup_.ticksPerDecision());
   for (const PlannedAction& action : decision.actions) {
-    if ((count + action.slot + 1) % every != 0) continue;
     const traffic::Vehicle* vehicle = snapshot.find(action.vehicle_id);
-    if (vehicle == nullptr || !vehicle->applied_action) continue;
+    if (vehicle == nullptr) continue;
+    if (!vehicle->applied_action) disturbed_[action.vehicle_id] = count;
+    if (!imageDue(action, count) || !vehicle->applied_action) continue;
     decision.images.push_back({action.slot, camera_->render(snapshot, *vehicle)});
   }
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
@@ -151,8 +152,8 @@ TEST(PerturbedPlanner, MarksExactlyTheActionsThatItChanges) {
     const bool changed = !(noise.actions[i] == traffic::ControlAction{0.5, 0.1, 0.0});
     EXPECT_EQ(changed, noise.marks[i]) << i;
     EXPECT_TRUE(noise.actions[i].valid());
-    // At 8 m/s at most 0.35 x 3 / 8.
-    EXPECT_LE(std::abs(noise.actions[i].steer - 0.1), 0.35 * 3.0 / 8.0 + 1e-12);
+    // At 8 m/s at most 0.45 x 3.5 / 8.
+    EXPECT_LE(std::abs(noise.actions[i].steer - 0.1), 0.45 * 3.5 / 8.0 + 1e-12);
     marked += noise.marks[i];
   }
   // Bursts of 0.55 s, 6 s apart on average: 8.4 %; with some 90 bursts in 600 s +- 1 %.
@@ -192,8 +193,8 @@ TEST(DisturbedStart, MovesSidewaysAndTurnsWithinTwoStandardDeviations) {
   for (std::uint64_t tick = 0; tick < 200; ++tick) {
     const auto start = disturbedStart(NoiseOptions(), 1, tick, "a", state);
     EXPECT_NEAR(start.position.x(), 10.0, 1e-12);
-    EXPECT_LE(std::abs(start.position.y() - 20.0), 0.6 + 1e-12);
-    EXPECT_LE(std::abs(start.heading), core::degreesToRadians(8.0) + 1e-12);
+    EXPECT_LE(std::abs(start.position.y() - 20.0), 0.8 + 1e-12);
+    EXPECT_LE(std::abs(start.heading), core::degreesToRadians(10.0) + 1e-12);
     largest = std::max(largest, std::abs(start.position.y() - 20.0));
   }
   EXPECT_GT(largest, 0.3);

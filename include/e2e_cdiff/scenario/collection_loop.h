@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,7 +31,8 @@ std::unique_ptr<SessionSetup> collectionSetup(const ScenarioOptions& scenario,
 class CollectionLoop {
  public:
   /// `setup` must outlive the loop. `images`: whether records hold what vehicles see, every
-  /// image_period, those of different slots at different decisions. Throws InputError for unknown
+  /// image_period, those of different slots at different decisions, and soon after a disturbance.
+  /// Throws InputError for unknown
   /// planners and planners that need images.
   CollectionLoop(const SessionSetup& setup, const CollectionOptions& options, bool images);
   ~CollectionLoop();
@@ -47,6 +49,7 @@ class CollectionLoop {
   struct Decision;
   Decision decide();
   void render(Decision& decision);
+  bool imageDue(const planning::PlannedAction& action, std::int64_t decision);
   std::unique_ptr<PerturbedPlanner> perturbedPlanner(const std::string& name) const;
 
   const SessionSetup& setup_;
@@ -57,6 +60,7 @@ class CollectionLoop {
   std::unique_ptr<PerturbedPlanner> ego_planner_;
   std::unique_ptr<PerturbedPlanner> cbv_planner_;
   std::optional<rendering::FrontCamera> camera_;
+  std::map<std::string, std::int64_t> disturbed_;  ///< last decision with noise or take-over
   std::vector<SessionObserver*> observers_;
 };
 

@@ -13,11 +13,11 @@ struct NoiseOptions {
   double interval = 6.0;      ///< mean time from one burst to the next of a vehicle [s]
   double minimum_time = 0.3;  ///< shortest burst [s]
   double maximum_time = 0.8;  ///< longest burst [s]
-  double steer = 0.35;        ///< largest addition to the steering, up to steer_speed
-  double steer_speed = 3.0;   ///< faster vehicles get less: steer x steer_speed / speed [m/s]
+  double steer = 0.45;        ///< largest addition to the steering, up to steer_speed
+  double steer_speed = 3.5;   ///< faster vehicles get less: steer x steer_speed / speed [m/s]
   double pedal = 0.6;         ///< largest addition to throttle or brake
-  double lateral = 0.3;       ///< standard deviation of the place at the take-over [m]
-  double heading = 4.0;       ///< standard deviation of the heading at the take-over [deg]
+  double lateral = 0.4;       ///< standard deviation of the place at the take-over [m]
+  double heading = 5.0;       ///< standard deviation of the heading at the take-over [deg]
 
   void describe(core::OptionsVisitor& visitor);
 };
