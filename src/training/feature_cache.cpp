@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "checkpoint.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/diffusion/image_encoder.h"
 
 namespace cdiff::training {
 namespace {
@@ -31,17 +33,57 @@ std::string hashOf(const ParameterSet& parameters) {
   return digest.finish();
 }
 
-at::Tensor encode(const TrainingState& state, std::size_t begin, std::size_t end, bool mirrored) {
+std::vector<traffic::CameraImage> imagesOf(const TrainingState& state, std::size_t begin,
+                                           std::size_t end, bool mirrored) {
   std::vector<traffic::CameraImage> images;
   for (std::size_t i = begin; i < end; ++i) {
     Sample sample = state.dataset.sample(i);
     if (mirrored) mirrorSample(state.dataset.schema(), sample);
     images.push_back(std::move(sample.image));
   }
-  std::vector<const traffic::CameraImage*> views;
-  for (const traffic::CameraImage& image : images) views.push_back(&image);
-  return state.encoder.forward(imageTensor(views, 1.0, state.device)).to(at::kCPU);
+  return images;
 }
+
+/// Encodes images: on a CPU by the encoder that drives, one thread per encoder, which is faster than
+/// the one that learns; else by the latter.
+class Encoders {
+ public:
+  explicit Encoders(const TrainingState& state) : state_(state) {
+    if (!state.device.is_cpu()) return;
+    diffusion::Model model;
+    model.architecture = state.architecture;
+    model.encoder = state.encoder.parameters().values();
+    const auto threads = static_cast<std::size_t>(std::max<std::int64_t>(1, state.options.threads));
+    for (std::size_t i = 0; i < threads; ++i) encoders_.emplace_back(model);
+  }
+
+  at::Tensor encode(const std::vector<traffic::CameraImage>& images) {
+    if (encoders_.empty()) {
+      std::vector<const traffic::CameraImage*> views;
+      for (const traffic::CameraImage& image : images) views.push_back(&image);
+      return state_.encoder.forward(imageTensor(views, 1.0, state_.device)).to(at::kCPU);
+    }
+    const auto width = static_cast<std::size_t>(state_.architecture.image_features);
+    std::vector<float> features(images.size() * width);
+    std::vector<std::thread> threads;
+    for (std::size_t first = 0; first < encoders_.size(); ++first) {
+      threads.emplace_back([&, first] {
+        for (std::size_t i = first; i < images.size(); i += encoders_.size()) {
+          const std::vector<float> one = encoders_[first].encode(images[i]);
+          std::copy(one.begin(), one.end(), features.begin() + static_cast<long>(i * width));
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    return toTensor(features,
+                    {static_cast<std::int64_t>(images.size()), static_cast<std::int64_t>(width)},
+                    at::kCPU);
+  }
+
+ private:
+  const TrainingState& state_;
+  std::vector<diffusion::ImageEncoder> encoders_;  ///< one per thread
+};
 
 /// Features so far; rows up to `done` hold.
 struct Progress {
@@ -67,13 +109,16 @@ struct Progress {
   }
 };
 
-void computeChunk(const TrainingState& state, Progress& progress) {
+void computeChunk(const TrainingState& state, Encoders& encoders, Progress& progress) {
   const std::size_t end = std::min(progress.done + kChunk, state.dataset.size());
   const auto first = static_cast<std::int64_t>(progress.done);
   const auto count = static_cast<std::int64_t>(end - progress.done);
-  progress.cache.original.narrow(0, first, count).copy_(encode(state, progress.done, end, false));
-  if (state.options.mirror)
-    progress.cache.mirrored.narrow(0, first, count).copy_(encode(state, progress.done, end, true));
+  progress.cache.original.narrow(0, first, count)
+      .copy_(encoders.encode(imagesOf(state, progress.done, end, false)));
+  if (state.options.mirror) {
+    progress.cache.mirrored.narrow(0, first, count)
+        .copy_(encoders.encode(imagesOf(state, progress.done, end, true)));
+  }
   progress.done = end;
 }
 
@@ -92,6 +137,7 @@ FeatureCache computeFeatures(const TrainingState& state, const std::atomic<bool>
   progress.cache.original = at::zeros({samples, width}, at::kFloat);
   progress.cache.mirrored = at::zeros({state.options.mirror ? samples : 0, width}, at::kFloat);
   progress.load();
+  Encoders encoders(state);
   double saved = now();
   double reported = saved;
   const auto save = [&] {
@@ -100,7 +146,7 @@ FeatureCache computeFeatures(const TrainingState& state, const std::atomic<bool>
   };
   const std::size_t before = progress.done;
   while (progress.done < state.dataset.size()) {
-    computeChunk(state, progress);
+    computeChunk(state, encoders, progress);
     const double time = now();
     if (stop) {
       save();
