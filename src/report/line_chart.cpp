@@ -116,9 +116,9 @@ std::string chartSvg(const Chart& chart) {
   const Axes axes(chart);
   const std::string heading =
       escapeMarkup(chart.title) + (chart.unit.empty() ? "" : " [" + escapeMarkup(chart.unit) + "]");
-  std::string svg = "<figure class=\"chart\"><figcaption>" + heading +
-                    "</figcaption>\n<svg role=\"img\" aria-label=\"" + heading +
-                    " over time\" viewBox=\"0 0 " + shortNumber(kWidth) + " " +
+  std::string svg = std::string("<figure class=\"") + (chart.own_time ? "chart own" : "chart") +
+                    "\"><figcaption>" + heading + "</figcaption>\n<svg role=\"img\" aria-label=\"" +
+                    heading + " over time\" viewBox=\"0 0 " + shortNumber(kWidth) + " " +
                     shortNumber(kHeight) + "\" data-left=\"" + shortNumber(kLeft) +
                     "\" data-right=\"" + shortNumber(kWidth - kRight) + "\" data-duration=\"" +
                     core::formatNumber(axes.duration()) + "\">\n" + grid(axes);
@@ -127,6 +127,7 @@ std::string chartSvg(const Chart& chart) {
     svg += seriesPath(*series, axes);
   }
   for (const ChartMark& mark : chart.marks) svg += markSvg(mark, axes);
+  if (chart.own_time) return svg + "</svg></figure>\n";
   return svg + "<path class=\"cursor\" d=\"M0 " + shortNumber(kTop) + "V" +
          shortNumber(kHeight - kBottom) + "\"/></svg></figure>\n";
 }
