@@ -33,7 +33,7 @@ ObjectiveFigures figuresOf(const GuidanceSeries& series) {
     return figuresOf(values).mean;
   };
   ObjectiveFigures figures;
-  figures.weight = mean(&guidance::ObjectiveReport::weight);
+  if (!series.samples.empty()) figures.weight = series.samples.back().report.weight;
   figures.value = mean(&guidance::ObjectiveReport::value);
   figures.gradient_norm = mean(&guidance::ObjectiveReport::gradient_norm);
   figures.capped_share = mean(&guidance::ObjectiveReport::capped_share);

@@ -25,15 +25,15 @@ struct GuidanceSeries {
   std::vector<GuidanceSample> samples;
 };
 
-/// Means over the decisions in which the objective was active; n counts those decisions, values
-/// that are not finite are left out of the means.
+/// Over the decisions in which the objective was active.
 struct ObjectiveFigures {
-  std::optional<double> weight;
+  std::optional<double> weight;  ///< of the last decision
+  // Means; values that are not finite are left out.
   std::optional<double> value;
   std::optional<double> gradient_norm;
   std::optional<double> capped_share;
   std::int64_t dropped = 0;  ///< denoising steps, over all decisions
-  std::size_t n = 0;
+  std::size_t n = 0;         ///< decisions
 };
 
 class GuidanceLog {
