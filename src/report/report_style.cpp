@@ -114,6 +114,7 @@ h4 { font-size: .95rem; margin: 14px 0 4px; }
 .plan-view figcaption { font-weight: 600; font-size: .92rem; margin-bottom: 2px; }
 .plan-view svg { display: block; width: 100%; height: auto; background: var(--ground);
   border: 1px solid var(--line); border-radius: 8px; }
+.plan-view path.trail.cbv { stroke-width: 6; opacity: .6; }
 svg path.plan { stroke: var(--conflict); stroke-width: 2; stroke-dasharray: 6 4; }
 svg path.series.plan { stroke-dasharray: 6 4; }
 svg circle.stop { fill: var(--own); stroke: none; }

@@ -99,7 +99,7 @@ std::string selectionTable(const SessionResult& result) {
          fixed(static_cast<double>(record.selected_tick) * step, 2),
          fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
          fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
-         junction ? "at or beyond the first junction" : "before the first junction",
+         junction ? "junction or beyond" : "before junction",
          std::to_string(record.decisions_driven),
          record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
          record.release_reason + (other ? " with " + *other : ""),
@@ -110,8 +110,8 @@ std::string selectionTable(const SessionResult& result) {
 }
 
 std::string planTable(const PlanLog& plans) {
-  Table table({"CBV", "#Plans", "#After 1 s: mean [m]", "#95th percentile [m]",
-               "#After 2 s: mean [m]", "#95th percentile [m]", "#After 3 s: mean [m]",
+  Table table({"CBV", "#Plans", "#After 1\u00a0s: mean [m]", "#95th percentile [m]",
+               "#After 2\u00a0s: mean [m]", "#95th percentile [m]", "#After 3\u00a0s: mean [m]",
                "#95th percentile [m]", "#State mismatch: mean [m]", "#95th percentile [m]",
                "#maximum [m]"});
   for (const VehiclePlans& vehicle : plans.vehicles()) {
