@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/approach_section.h"
+#include "e2e_cdiff/report/guidance_section.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/playback.h"
 #include "e2e_cdiff/report/report_style.h"
@@ -112,6 +114,16 @@ std::string topView(const SessionResult& result, const MapCanvas& canvas) {
          topViewLegend(canvas);
 }
 
+std::string planSection(const PlanLog& plans) {
+  if (plans.empty()) return "<p class=\"note\">No plan of a CBV was shown.</p>\n";
+  return planTable(plans) +
+         "<p class=\"note\">Distance between where a decision's plan put the CBV and where it was, "
+         "1, 2 and 3 s later, over all decisions whose plan and drive reach that far. State "
+         "mismatch: "
+         "largest distance between planned positions and what the vehicle dynamics makes of the "
+         "planned actions.</p>\n";
+}
+
 std::string configuration(const SessionResult& result) {
   return originTable(result) + "<details><summary>Resolved scenario</summary>\n<pre>" +
          escapeMarkup(core::dumpOptions(result.setup.options())) + "</pre>\n</details>\n";
@@ -123,7 +135,10 @@ std::string htmlReport(const SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
   return head(result) + "<body>\n<main>\n" + banner(result) + figures(result) +
          section("From above", topView(result, canvas)) +
-         section("Over time", sessionCharts(result)) + section("Rules", ruleTable(result)) +
+         section("Over time", sessionCharts(result)) +
+         section("Closest approach", approachSection(result)) +
+         section("Plans against what was driven", planSection(result.plans)) +
+         section("Guidance", guidanceSection(result)) + section("Rules", ruleTable(result)) +
          section("Metrics", metricTable(result.measures)) +
          section("Critical background vehicles", selectionTable(result)) +
          section("Rejected candidates", rejectionTable(result.cbv)) +

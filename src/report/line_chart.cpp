@@ -56,9 +56,14 @@ std::string text(const std::string& style, double x, double y, const std::string
          "\">" + escapeMarkup(content) + "</text>";
 }
 
-/// Steps such as 0.1 add up to numbers such as 0.30000000000000004.
-std::string axisNumber(double value) {
-  return core::formatNumber(std::round(value * 1e6) / 1e6 + 0.0);
+/// A multiple of `step` in few letters: "0.3", "80k". Steps such as 0.1 add up to numbers such as
+/// 0.30000000000000004.
+std::string axisNumber(double value, double step) {
+  const double resolution = std::pow(10.0, 3.0 - std::floor(std::log10(step)));
+  const double rounded = std::round(value * resolution) / resolution + 0.0;
+  if (std::abs(rounded) >= 1e6) return core::formatNumber(rounded / 1e6) + "M";
+  if (std::abs(rounded) >= 1e4) return core::formatNumber(rounded / 1e3) + "k";
+  return core::formatNumber(rounded);
 }
 
 std::string grid(const Axes& axes) {
@@ -68,13 +73,13 @@ std::string grid(const Axes& axes) {
     const double value = axes.low() + i * axes.step();
     svg += "<path class=\"grid\" d=\"M" + shortNumber(kLeft) + " " + shortNumber(axes.y(value)) +
            "H" + shortNumber(kWidth - kRight) + "\"/>" +
-           text("tick end", kLeft - 6.0, axes.y(value) + 4.0, axisNumber(value));
+           text("tick end", kLeft - 6.0, axes.y(value) + 4.0, axisNumber(value, axes.step()));
   }
   const double step = niceStep(axes.duration(), 8);
   const int columns = static_cast<int>(axes.duration() / step + 1e-9);
   for (int i = 0; i <= columns; ++i) {
     svg += text("tick middle", axes.x(i * step), kHeight - 7.0,
-                axisNumber(i * step) + (i == columns ? " s" : ""));
+                axisNumber(i * step, step) + (i == columns ? " s" : ""));
   }
   return svg + "\n";
 }
@@ -116,9 +121,9 @@ std::string chartSvg(const Chart& chart) {
   const Axes axes(chart);
   const std::string heading =
       escapeMarkup(chart.title) + (chart.unit.empty() ? "" : " [" + escapeMarkup(chart.unit) + "]");
-  std::string svg = "<figure class=\"chart\"><figcaption>" + heading +
-                    "</figcaption>\n<svg role=\"img\" aria-label=\"" + heading +
-                    " over time\" viewBox=\"0 0 " + shortNumber(kWidth) + " " +
+  std::string svg = std::string("<figure class=\"") + (chart.own_time ? "chart own" : "chart") +
+                    "\"><figcaption>" + heading + "</figcaption>\n<svg role=\"img\" aria-label=\"" +
+                    heading + " over time\" viewBox=\"0 0 " + shortNumber(kWidth) + " " +
                     shortNumber(kHeight) + "\" data-left=\"" + shortNumber(kLeft) +
                     "\" data-right=\"" + shortNumber(kWidth - kRight) + "\" data-duration=\"" +
                     core::formatNumber(axes.duration()) + "\">\n" + grid(axes);
@@ -127,6 +132,7 @@ std::string chartSvg(const Chart& chart) {
     svg += seriesPath(*series, axes);
   }
   for (const ChartMark& mark : chart.marks) svg += markSvg(mark, axes);
+  if (chart.own_time) return svg + "</svg></figure>\n";
   return svg + "<path class=\"cursor\" d=\"M0 " + shortNumber(kTop) + "V" +
          shortNumber(kHeight - kBottom) + "\"/></svg></figure>\n";
 }

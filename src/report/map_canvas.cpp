@@ -32,6 +32,13 @@ MapCanvas::MapCanvas(const Region& content) {
   region_ = {center - 0.5 * shown, center + 0.5 * shown};
 }
 
+MapCanvas::MapCanvas(const Region& content, const Eigen::Vector2d& size) {
+  const Eigen::Vector2d wanted = (content.high - content.low).cwiseMax(Eigen::Vector2d(1.0, 1.0));
+  scale_ = size.cwiseQuotient(wanted).minCoeff();
+  const Eigen::Vector2d center = 0.5 * (content.low + content.high);
+  region_ = {center - 0.5 / scale_ * size, center + 0.5 / scale_ * size};
+}
+
 double MapCanvas::width() const { return (region_.high.x() - region_.low.x()) * scale_; }
 
 double MapCanvas::height() const { return (region_.high.y() - region_.low.y()) * scale_; }

@@ -54,7 +54,7 @@ const char kReportScript[] = R"JS(
   const zoomTo = function (value) { zoom = Math.min(Math.max(value, 1), 16); look(); };
 
   const moveCursors = function (time) {
-    for (const chart of document.querySelectorAll(".chart svg")) {
+    for (const chart of document.querySelectorAll(".chart:not(.own) svg")) {
       const left = Number(chart.dataset.left), right = Number(chart.dataset.right);
       const x = left + (right - left) * time / Number(chart.dataset.duration);
       const cursor = chart.querySelector(".cursor");
@@ -135,7 +135,7 @@ const char kReportScript[] = R"JS(
   view.addEventListener("pointerup", letGo);
   view.addEventListener("pointercancel", letGo);
 
-  for (const chart of document.querySelectorAll(".chart svg")) {
+  for (const chart of document.querySelectorAll(".chart:not(.own) svg")) {
     chart.addEventListener("click", function (event) {
       const frame = chart.getBoundingClientRect(), left = Number(chart.dataset.left);
       const x = (event.clientX - frame.left) * chart.viewBox.baseVal.width / frame.width;

@@ -100,6 +100,29 @@ svg circle.mark { fill: var(--page); stroke: var(--conflict); stroke-width: 2; }
 .chart text.mark-text { fill: var(--text); font-weight: 600; paint-order: stroke;
   stroke: var(--page); stroke-width: 3px; }
 .chart path.cursor { stroke: var(--soft); stroke-width: 1; visibility: hidden; }
+h3 { font-size: 1.02rem; margin: 0; overflow-wrap: anywhere; }
+h4 { font-size: .95rem; margin: 14px 0 4px; }
+.approach { border-left: 5px solid var(--own); padding: 2px 0 2px 16px; margin: 0 0 26px; }
+.approach .sub { margin-bottom: 8px; }
+.views { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 300px), 1fr));
+  gap: 10px 16px; align-items: start; }
+.view { margin: 0; min-width: 0; }
+.view img { display: block; width: 100%; height: auto; border-radius: 6px; }
+.view.small img { image-rendering: pixelated; }
+.view figcaption { color: var(--soft); font-size: .88rem; margin-top: 3px; }
+.plan-view { margin: 0; min-width: 0; }
+.plan-view figcaption { font-weight: 600; font-size: .92rem; margin-bottom: 2px; }
+.plan-view svg { display: block; width: 100%; height: auto; background: var(--ground);
+  border: 1px solid var(--line); border-radius: 8px; }
+.plan-view path.trail.cbv { stroke-width: 6; opacity: .6; }
+svg path.plan { stroke: var(--conflict); stroke-width: 2; stroke-dasharray: 6 4; }
+svg path.series.plan { stroke-dasharray: 6 4; }
+svg circle.stop { fill: var(--own); stroke: none; }
+svg circle.plan-stop { fill: var(--page); stroke: var(--conflict); stroke-width: 1.5; }
+.vehicle.later path { fill: none; stroke: var(--own); stroke-width: 1.8; }
+.vehicle.plan-end path { fill: none; stroke: var(--conflict); stroke-width: 1.5;
+  stroke-dasharray: 4 3; }
+.vehicle.later path.nose, .vehicle.plan-end path.nose { display: none; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .92rem; }
 th, td { text-align: left; padding: 5px 14px 5px 0; border-bottom: 1px solid var(--line);

@@ -16,6 +16,10 @@ constexpr std::size_t kMostFaults = 200;  // rows shown
 
 std::string fixed(double value, int decimals) { return core::formatFixed(value, decimals); }
 
+std::string fixedOrDash(const std::optional<double>& value, int decimals) {
+  return value ? fixed(*value, decimals) : "–";
+}
+
 /// Rows of plain texts under a head; a column whose name begins with '#' holds numbers.
 class Table {
  public:
@@ -83,21 +87,60 @@ std::string selectionTable(const SessionResult& result) {
   }
   Table table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score", "#Ego to conflict [m]",
                "#CBV to conflict [m]", "#Arrival gap [s]", "Place", "#Decisions", "#Released [s]",
-               "Why"});
+               "Why", "#Route driven [%]", "Conflict point"});
   const double step = result.setup.options().simulation_step;
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
     const CbvRecord& record = result.cbv.records()[i];
     const cbv::ConflictPoint& conflict = record.conflict_point;
     const bool junction = atOrBeyondFirstJunction(conflict, result.setup.egoRoute());
+    const std::optional<std::string> other = contactPartner(record, result);
     table.row(
         {"C" + std::to_string(i + 1), record.vehicle_id, std::to_string(record.slot),
          fixed(static_cast<double>(record.selected_tick) * step, 2),
          fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
          fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
-         junction ? "at or beyond the first junction" : "before the first junction",
+         junction ? "junction or beyond" : "before junction",
          std::to_string(record.decisions_driven),
          record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
-         record.release_reason});
+         record.release_reason + (other ? " with " + *other : ""),
+         fixed(record.routeCompletionPercent(), 1),
+         record.conflict_point_passed ? "passed" : "not reached"});
+  }
+  return table.html();
+}
+
+std::string planTable(const PlanLog& plans) {
+  Table table({"CBV", "#Plans", "#After 1\u00a0s: mean [m]", "#95th percentile [m]",
+               "#After 2\u00a0s: mean [m]", "#95th percentile [m]", "#After 3\u00a0s: mean [m]",
+               "#95th percentile [m]", "#State mismatch: mean [m]", "#95th percentile [m]",
+               "#maximum [m]"});
+  for (const VehiclePlans& vehicle : plans.vehicles()) {
+    if (vehicle.plans.empty()) continue;
+    std::vector<std::string> cells = {vehicle.vehicle_id, std::to_string(vehicle.plans.size())};
+    for (const double seconds : {1.0, 2.0, 3.0}) {
+      const SampleFigures figures = figuresOf(plans.displacements(vehicle, seconds));
+      cells.push_back(fixedOrDash(figures.mean, 2));
+      cells.push_back(fixedOrDash(figures.percentile_95, 2));
+    }
+    const SampleFigures mismatch = mismatchFigures(vehicle);
+    cells.push_back(fixedOrDash(mismatch.mean, 3));
+    cells.push_back(fixedOrDash(mismatch.percentile_95, 3));
+    cells.push_back(fixedOrDash(mismatch.maximum, 3));
+    table.row(cells);
+  }
+  return table.html();
+}
+
+std::string guidanceTable(const GuidanceLog& log) {
+  Table table({"Objective", "#Weight", "#Mean value", "#Mean gradient norm",
+               "#Steps with the gradient capped [%]", "#Steps left out", "#Decisions"});
+  for (const GuidanceSeries& series : log.series()) {
+    const ObjectiveFigures figures = figuresOf(series);
+    std::optional<double> capped = figures.capped_share;
+    if (capped) *capped *= 100.0;
+    table.row({series.objective, fixedOrDash(figures.weight, 3), fixedOrDash(figures.value, 4),
+               fixedOrDash(figures.gradient_norm, 4), fixedOrDash(capped, 1),
+               std::to_string(figures.dropped), std::to_string(figures.n)});
   }
   return table.html();
 }

@@ -58,7 +58,8 @@ class ResultWriter::Record {
         trace_(folder_ / "trace.csv"),
         metrics_(metricsOptions(setup.options()), setup.drivableArea(), setup.egoRoute()),
         timeline_(setup.options().simulation_step),
-        result_{setup, timeline_, cbv_, facts} {
+        plans_(setup.options().simulation_step),
+        result_{setup, timeline_, cbv_, approaches_, plans_, guidance_, facts} {
     core::writeFileAtomically(folder_ / "session.yaml", sessionYaml(setup, facts));
   }
 
@@ -75,6 +76,9 @@ class ResultWriter::Record {
     metrics_.observe(snapshot, record.selection);
     timeline_.observe(snapshot);
     if (record.selection != nullptr) cbv_.observe(snapshot, *record.selection);
+    approaches_.observe(record);
+    plans_.observe(record);
+    guidance_.observe(record);
   }
 
   const Verdict& finish(double wall_seconds) {
@@ -111,6 +115,9 @@ class ResultWriter::Record {
   metrics::SessionMetrics metrics_;
   Timeline timeline_;
   CbvLog cbv_;
+  ApproachLog approaches_;
+  PlanLog plans_;
+  GuidanceLog guidance_;
   LatencyLog latencies_;
   SessionResult result_;
   std::optional<std::uint64_t> last_tick_;

@@ -12,6 +12,10 @@ using Json = nlohmann::ordered_json;
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
+Json figuresObject(const SampleFigures& figures) {
+  return {{"mean", number(figures.mean)}, {"p95", number(figures.percentile_95)}, {"n", figures.n}};
+}
+
 /// {value, n, unit} and, where there is one, the reason (why absent, or how thinned out).
 Json measureObject(const metrics::Measure& measure) {
   Json object = {{"value", number(measure.value)}, {"n", measure.n}, {"unit", measure.unit}};
@@ -63,7 +67,8 @@ double secondsOf(std::uint64_t tick, double step) {
   return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
 }
 
-Json selectionObject(const CbvRecord& record, const scenario::SessionSetup& setup) {
+Json selectionObject(const CbvRecord& record, const SessionResult& result) {
+  const scenario::SessionSetup& setup = result.setup;
   const double step = setup.options().simulation_step;
   Json object = {{"slot", record.slot},
                  {"vehicle_id", record.vehicle_id},
@@ -74,8 +79,39 @@ Json selectionObject(const CbvRecord& record, const scenario::SessionSetup& setu
                  {"decisions_driven", record.decisions_driven},
                  {"released_tick", nullptr},
                  {"release_reason", record.release_reason},
-                 {"route_length_m", record.route_length}};
+                 {"contact_with", nullptr},
+                 {"route_length_m", record.route_length},
+                 {"route_completion_percent", record.routeCompletionPercent()},
+                 {"conflict_point_passed", record.conflict_point_passed},
+                 {"route_completed", record.routeCompleted()}};
   if (record.released_tick) object["released_tick"] = *record.released_tick;
+  if (const auto other = contactPartner(record, result)) object["contact_with"] = *other;
+  return object;
+}
+
+/// Plans of all CBVs against what was driven and against exact dynamics; null without plans.
+Json planObject(const SessionResult& result) {
+  if (result.plans.empty()) return nullptr;
+  Json object = Json::object();
+  for (const int seconds : {1, 2, 3}) {
+    object["displacement_" + std::to_string(seconds) + "s_m"] =
+        figuresObject(displacementFigures(result.plans, seconds));
+  }
+  const SampleFigures mismatch = mismatchFigures(result.plans);
+  object["state_mismatch_m"] = {{"mean", number(mismatch.mean)},
+                                {"p95", number(mismatch.percentile_95)},
+                                {"max", number(mismatch.maximum)},
+                                {"n", mismatch.n}};
+  return object;
+}
+
+/// Faults of planners of CBVs, by planner.
+Json cbvFaults(const std::vector<traffic::Fault>& faults) {
+  Json object = Json::object();
+  for (const traffic::Fault& fault : faults) {
+    if (fault.source.rfind("cbv:", 0) != 0) continue;
+    object[fault.source] = object.value(fault.source, 0) + 1;
+  }
   return object;
 }
 
@@ -89,10 +125,28 @@ Json cbvObject(const SessionResult& result) {
   object["distance_m"] = measures.cbv_distance_m;
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {
-    object["selections"].push_back(selectionObject(record, result.setup));
+    object["selections"].push_back(selectionObject(record, result));
   }
   object["rejected"] = Json::object();
   for (const auto& [reason, count] : result.cbv.rejected()) object["rejected"][reason] = count;
+  object["faults"] = cbvFaults(result.faults);
+  object["plan"] = planObject(result);
+  return object;
+}
+
+/// What guidance did to the plans of CBVs, by objective; null without guidance.
+Json guidanceObject(const GuidanceLog& log) {
+  if (log.series().empty()) return nullptr;
+  Json object = Json::object();
+  for (const GuidanceSeries& series : log.series()) {
+    const ObjectiveFigures figures = figuresOf(series);
+    object[series.objective] = {{"weight", number(figures.weight)},
+                                {"value", number(figures.value)},
+                                {"gradient_norm", number(figures.gradient_norm)},
+                                {"capped_share", number(figures.capped_share)},
+                                {"dropped", figures.dropped},
+                                {"n", figures.n}};
+  }
   return object;
 }
 
@@ -154,10 +208,20 @@ bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Rout
   return !junctions.empty() && conflict.ego_arc_length >= junctions.front().first;
 }
 
+std::optional<std::string> contactPartner(const CbvRecord& record, const SessionResult& result) {
+  const double step = result.setup.options().simulation_step;
+  const double end = record.released_tick ? static_cast<double>(*record.released_tick) * step
+                                          : result.timeline.duration();
+  return result.timeline.lastContactOf(record.vehicle_id,
+                                       static_cast<double>(record.selected_tick) * step, end);
+}
+
 std::string summaryJson(const SessionResult& result) {
   Json summary = headOf(result);
   summary["ego"] = egoObject(result.measures);
   summary["cbv"] = cbvObject(result);
+  summary["guidance"] = guidanceObject(result.guidance);
+  summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);
   summary["metrics"] = metricsObject(result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
   summary["faults"] = faultList(result.faults);

@@ -74,6 +74,17 @@ void Timeline::addContacts(const traffic::TrafficSnapshot& snapshot) {
   }
 }
 
+std::optional<std::string> Timeline::lastContactOf(const std::string& id, double begin,
+                                                   double end) const {
+  constexpr double kRounding = 1e-6;  // [s]
+  for (auto contact = contacts_.rbegin(); contact != contacts_.rend(); ++contact) {
+    if (contact->time < begin - kRounding || contact->time > end + kRounding) continue;
+    if (contact->first == id) return contact->second;
+    if (contact->second == id) return contact->first;
+  }
+  return std::nullopt;
+}
+
 void Timeline::updateGap(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {

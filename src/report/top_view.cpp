@@ -157,13 +157,9 @@ std::string vehicleShape(const TimelineVehicle& vehicle, double scale) {
 
 std::string vehicleBox(const TimelinePose& pose, const SessionResult& result,
                        const MapCanvas& canvas, const std::string& style) {
-  const TimelineVehicle& vehicle = result.timeline.vehicles()[pose.vehicle];
-  const Eigen::Vector2d pixel = canvas.toPixels({pose.x, pose.y});
-  return "<g class=\"vehicle " + style + "\" transform=\"translate(" + shortNumber(pixel.x()) +
-         " " + shortNumber(pixel.y()) + ") rotate(" +
-         shortNumber(-core::radiansToDegrees(static_cast<double>(pose.heading))) + ")\"><title>" +
-         escapeMarkup(vehicle.id) + "</title>" +
-         vehicleShape(vehicle, canvas.scale() * vehicleMagnification(canvas)) + "</g>\n";
+  return vehicleSvg(result.timeline.vehicles()[pose.vehicle],
+                    {{pose.x, pose.y}, static_cast<double>(pose.heading)}, canvas, style,
+                    vehicleMagnification(canvas));
 }
 
 std::string startBox(const SessionResult& result, const MapCanvas& canvas) {
@@ -222,17 +218,6 @@ std::string contactMarks(const Timeline& timeline, const MapCanvas& canvas) {
   return svg;
 }
 
-std::string scaleBar(const MapCanvas& canvas) {
-  const double metres = niceStep(200.0 / canvas.scale(), 2);
-  const double y = canvas.height() - 18.0;
-  const std::string length = shortNumber(metres * canvas.scale());
-  return "<g class=\"frame\">" +
-         path("scale", "M18 " + shortNumber(y - 5.0) + "v5h" + length + "v-5") +
-         label(24.0, y - 7.0, core::formatNumber(metres) + " m") +
-         path("north", "M" + shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
-         label(canvas.width() - 29.0, 46.0, "N") + "</g>\n";
-}
-
 }  // namespace
 
 double vehicleMagnification(const MapCanvas& canvas) {
@@ -257,18 +242,42 @@ std::string styleOf(VehicleRole role, const std::string& id, const CbvLog& cbv) 
   return "cbv c" + std::to_string(seen.size() % kShades);
 }
 
+std::string roadSvg(const SessionResult& result, const MapCanvas& canvas) {
+  return drivableArea(result, canvas) + laneLines(result.setup.network(), canvas);
+}
+
+std::string vehicleSvg(const TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                       const MapCanvas& canvas, const std::string& style, double magnification) {
+  const Eigen::Vector2d pixel = canvas.toPixels(pose.position);
+  return "<g class=\"vehicle " + style + "\" transform=\"translate(" + shortNumber(pixel.x()) +
+         " " + shortNumber(pixel.y()) + ") rotate(" +
+         shortNumber(-core::radiansToDegrees(pose.heading)) + ")\"><title>" +
+         escapeMarkup(vehicle.id) + "</title>" +
+         vehicleShape(vehicle, canvas.scale() * magnification) + "</g>\n";
+}
+
+std::string scaleBarSvg(const MapCanvas& canvas) {
+  const double metres = niceStep(200.0 / canvas.scale(), 2);
+  const double y = canvas.height() - 18.0;
+  const std::string length = shortNumber(metres * canvas.scale());
+  return "<g class=\"frame\">" +
+         path("scale", "M18 " + shortNumber(y - 5.0) + "v5h" + length + "v-5") +
+         label(24.0, y - 7.0, core::formatNumber(metres) + " m") +
+         path("north", "M" + shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
+         label(canvas.width() - 29.0, 46.0, "N") + "</g>\n";
+}
+
 std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas) {
   const std::string size = shortNumber(canvas.width()) + " " + shortNumber(canvas.height());
   return "<svg id=\"top-view\" role=\"img\" aria-label=\"The session from above\" viewBox=\"0 0 " +
          size + "\" data-magnification=\"" +
          core::formatFixed(canvas.scale() * vehicleMagnification(canvas), 4) + "\">\n" +
-         drivableArea(result, canvas) + laneLines(result.setup.network(), canvas) +
-         egoRoute(result, canvas) + conflictRoutes(result, canvas) +
+         roadSvg(result, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
          trailPaths(result, canvas, VehicleRole::kBackground) +
          trailPaths(result, canvas, VehicleRole::kCbv) +
          trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
          finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
-         conflictPoints(result, canvas) + scaleBar(canvas) + "</svg>\n";
+         conflictPoints(result, canvas) + scaleBarSvg(canvas) + "</svg>\n";
 }
 
 }  // namespace cdiff::report

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/report/cbv_log.h"
+#include "report/sample_session.h"
 
 namespace cdiff::report {
 namespace {
@@ -78,6 +79,49 @@ TEST(CbvLog, CountsRejectionsByReason) {
   decision.rejected = {{"a", "too_far", 0.0}};
   log.observe({}, decision);
   EXPECT_EQ(log.rejected(), (std::map<std::string, std::size_t>{{"no_way", 1}, {"too_far", 3}}));
+}
+
+/// The stay of "bg_1" from tick 52, on a route of 104 m with the conflict point after 42 m, driven
+/// to `arc_length`; released there for `reason` unless empty.
+CbvRecord stayOf(double arc_length, const std::string& reason) {
+  const test::SampleSetup sample;
+  CbvLog log;
+  traffic::TrafficSnapshot snapshot = test::sampleSnapshot(53);
+  for (double s = 0.0; s < arc_length; s += 0.6) {
+    snapshot.vehicles[1].state.position = {102.0, -44.0 + s};
+    log.observe(snapshot, test::sampleSelection(52, sample.setup.network()));
+  }
+  snapshot.vehicles[1].state.position = {102.0, -44.0 + arc_length};
+  cbv::CbvSelection last = test::sampleSelection(52, sample.setup.network());
+  if (!reason.empty()) last.assignments.clear();
+  last.tick = 400;
+  last.released = {{0, "bg_1", reason}};
+  log.observe(snapshot, last);
+  return log.records().at(0);
+}
+
+TEST(CbvLog, FollowsTheVehicleAlongItsConflictAwareRoute) {
+  const CbvRecord record = stayOf(26.0, "contact");
+  EXPECT_NEAR(record.arc_length, 26.0, 1e-9);
+  EXPECT_NEAR(record.routeCompletionPercent(), 25.0, 1e-9);  // of 104 m
+  EXPECT_FALSE(record.conflict_point_passed);
+  EXPECT_FALSE(record.routeCompleted());
+}
+
+TEST(CbvLog, TheConflictPointIsPassedByTheCentre) {
+  EXPECT_FALSE(stayOf(41.9, "").conflict_point_passed);
+  const CbvRecord record = stayOf(42.1, "");
+  EXPECT_TRUE(record.conflict_point_passed);
+  EXPECT_TRUE(record.routeCompleted());
+  EXPECT_NEAR(record.routeCompletionPercent(), 100.0 * 42.1 / 104.0, 1e-9);
+  EXPECT_EQ(record.release_reason, "session_end");
+}
+
+TEST(CbvLog, ARouteThatEndedIsCompleted) {
+  const CbvRecord record =
+      stayOf(10.0, "route_end");  // removed at the end before a decision saw it
+  EXPECT_DOUBLE_EQ(record.routeCompletionPercent(), 100.0);
+  EXPECT_TRUE(record.routeCompleted());
 }
 
 }  // namespace

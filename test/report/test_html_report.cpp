@@ -7,7 +7,8 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/html_report.h"
-#include "report/sample_session.h"
+#include "e2e_cdiff/report/png_data_uri.h"
+#include "report/seen_session.h"
 
 namespace cdiff::report {
 namespace {
@@ -42,7 +43,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
 
 TEST(HtmlReport, EscapesNamesEverywhere) {
   const std::string page = pageOf("<img src=x onerror=alert(1)>");
-  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("<img src"), std::string::npos);
   EXPECT_NE(page.find("<h1>&lt;img src=x onerror=alert(1)&gt;</h1>"), std::string::npos);
   EXPECT_EQ(page.find("<b>fault"), std::string::npos);
   EXPECT_EQ(countOf(page, "</script>"), 2u);
@@ -66,24 +67,63 @@ TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
   EXPECT_EQ(data["vehicles"][2][0], "</script><b>");
 }
 
-TEST(HtmlReport, EveryPictureIsWellFormed) {
-  const std::string page = pageOf("crossing");
+/// The page of the session with images, plans and guidance.
+std::string seenPage() {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSeenSession(writer, sample.setup);
+  writer.finish(2.0);
+  return core::readFile(scratch.path() / "report.html", "report");
+}
+
+void expectPictures(const std::string& page, std::size_t least) {
   std::size_t pictures = 0;
   for (std::size_t at = page.find("<svg"); at != std::string::npos;
        at = page.find("<svg", at + 1)) {
     const std::string svg = page.substr(at, page.find("</svg>", at) + 6 - at);
     pugi::xml_document document;
     EXPECT_TRUE(document.load_string(svg.c_str())) << svg.substr(0, 200);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
     ++pictures;
   }
-  EXPECT_GT(pictures, 6u);  // from above, five charts, legends
-  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_GT(pictures, least);
+}
+
+TEST(HtmlReport, EveryPictureIsWellFormed) {
+  expectPictures(pageOf("crossing"), 6u);  // from above, five charts, legends
+  expectPictures(seenPage(), 10u);         // and plan from above, speeds, two objectives
+}
+
+TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
+  const std::string page = seenPage();
+  const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
+  // Ego at (5 + 8 t, -2), CBV at (102, -60 + 6 t): they approach until the end at 6 s, when dx = 49
+  // and dy = 22: 53.7 m.
+  EXPECT_NE(article.find("<h3>bg_1 at 6.00 s"), std::string::npos) << article.substr(0, 300);
+  EXPECT_NE(article.find("Centres 53.7 m apart; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
+  EXPECT_EQ(countOf(article, "width=\"640\" height=\"384\""), 2u);  // from the CBV and the ego
+  EXPECT_EQ(countOf(article, "width=\"160\" height=\"96\""), 1u);   // only the CBV's planner sees
+  EXPECT_NE(article.find(pngDataUri(test::redAndBlue(120))), std::string::npos);
+  // 3 s before is tick 60, driven for 3 s only; the last plan with 3.2 s is that of tick 56.
+  EXPECT_NE(article.find("decision at 2.80 s against what was driven in the next 3.2 s: 0.80 m"),
+            std::string::npos);
+  EXPECT_NE(page.find("speed: value of the chosen plan"), std::string::npos);
+  EXPECT_LT(page.size(), 3'000'000u);
+}
+
+TEST(HtmlReport, ShowsViewsWithoutImagesAndPlans) {
+  const std::string page = pageOf("crossing");
+  const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
+  EXPECT_EQ(countOf(article, "<img "), 2u);
+  EXPECT_EQ(article.find("Plan of the decision"), std::string::npos);
+  EXPECT_NE(page.find("No plan of a CBV was guided."), std::string::npos);
 }
 
 TEST(HtmlReport, NeedsNothingFromOutside) {
   const std::string page = pageOf("crossing");
   EXPECT_EQ(countOf(page, "http"), countOf(page, "http://www.w3.org/2000/svg"));
-  EXPECT_EQ(page.find("src="), std::string::npos);
+  EXPECT_EQ(countOf(page, "src="), countOf(page, "src=\"data:image/png;base64,"));
   EXPECT_EQ(page.find("@import"), std::string::npos);
 }
 

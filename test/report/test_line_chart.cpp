@@ -40,5 +40,26 @@ TEST(LineChart, ReachesItsHighestValueWithAWholeStep) {
   EXPECT_EQ(svg.find(">12</text>"), std::string::npos);
 }
 
+TEST(LineChart, AxisNumbersStayShort) {
+  Chart chart;
+  chart.duration = 1.0;
+  chart.series = {{"ego", {{0.0, 74000.0}}}};  // step 20000
+  EXPECT_NE(chartSvg(chart).find(">80k</text>"), std::string::npos);
+  chart.series[0].points[0].second = 4.0e6;  // step 1e6
+  EXPECT_NE(chartSvg(chart).find(">3M</text>"), std::string::npos);
+  chart.least_top = 0.0;
+  chart.series[0].points[0].second = 6.0e-7;  // step 2e-7
+  EXPECT_NE(chartSvg(chart).find(">4e-07</text>"), std::string::npos) << chartSvg(chart);
+}
+
+TEST(LineChart, AChartWithItsOwnTimeIsLeftAloneByTheSlider) {
+  Chart chart;
+  chart.duration = 3.2;
+  EXPECT_NE(chartSvg(chart).find("class=\"cursor\""), std::string::npos);
+  chart.own_time = true;
+  EXPECT_EQ(chartSvg(chart).find("class=\"cursor\""), std::string::npos);
+  EXPECT_NE(chartSvg(chart).find("<figure class=\"chart own\">"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cdiff::report

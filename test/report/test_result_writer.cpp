@@ -9,7 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/result_writer.h"
-#include "report/sample_session.h"
+#include "report/seen_session.h"
 
 namespace cdiff::report {
 namespace {
@@ -50,16 +50,19 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   EXPECT_EQ(keysOf(summary),
             Keys({"schema_version", "scenario", "seed", "mode", "ego_planner", "cbv_planner",
                   "status", "simulated_seconds", "wall_seconds", "real_time_factor", "trace_sha256",
-                  "ego", "cbv", "metrics", "planner_latency_ms", "faults", "verdict"}));
+                  "ego", "cbv", "guidance", "guidance_trust_region_share", "metrics",
+                  "planner_latency_ms", "faults", "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]),
             Keys({"route_completion_percent", "driving_score", "collisions", "off_road_percent"}));
-  EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count", "decisions", "off_road_rate_percent",
-                                          "collisions", "collisions_with_ego", "collisions_per_km",
-                                          "distance_m", "selections", "rejected"}));
+  EXPECT_EQ(
+      keysOf(summary["cbv"]),
+      Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
+            "collisions_per_km", "distance_m", "selections", "rejected", "faults", "plan"}));
   EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
             Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
                   "conflict_point", "decisions_driven", "released_tick", "release_reason",
-                  "route_length_m"}));
+                  "contact_with", "route_length_m", "route_completion_percent",
+                  "conflict_point_passed", "route_completed"}));
   EXPECT_EQ(
       keysOf(summary["cbv"]["selections"][0]["conflict_point"]),
       Keys({"x", "y", "z", "ego_distance_m", "cbv_distance_m", "ego_arrival_s", "cbv_arrival_s",
@@ -93,6 +96,14 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   EXPECT_DOUBLE_EQ(selection["conflict_point"]["arrival_time_gap_s"], -0.5);
   EXPECT_EQ(selection["conflict_point"]["in_junction_or_beyond"], true);  // 97 m >= 85 m
   EXPECT_NEAR(selection["route_length_m"].get<double>(), 104.0, 1e-9);
+  // It was selected at y = -44 and is at y = -24.
+  EXPECT_NEAR(selection["route_completion_percent"].get<double>(), 100.0 * 20.0 / 104.0, 1e-9);
+  EXPECT_EQ(selection["conflict_point_passed"], false);
+  EXPECT_EQ(selection["route_completed"], false);
+  EXPECT_TRUE(selection["contact_with"].is_null());
+  EXPECT_TRUE(summary["cbv"]["plan"].is_null());  // no rollouts
+  EXPECT_TRUE(summary["guidance"].is_null());
+  EXPECT_TRUE(summary["guidance_trust_region_share"].is_null());
   // 61 decisions, 1 ms + 0.01 ms x tick: rank 31 is tick 60, rank ceil(57.95) = 58 is tick 114.
   const Json& latency = summary["planner_latency_ms"]["ego:pdm_lite"];
   EXPECT_DOUBLE_EQ(latency["p50"], 1.6);
@@ -100,6 +111,37 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   EXPECT_DOUBLE_EQ(latency["max"], 2.2);
   EXPECT_EQ(latency["n"], 61);
   EXPECT_EQ(summary["verdict"], Json::parse(R"({"passed": true, "failures": []})"));
+}
+
+TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
+  const test::ScratchFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSeenSession(writer, sample.setup);
+  writer.finish(2.0);
+  const Json summary = summaryOf(scratch);
+  const Json& plan = summary["cbv"]["plan"];
+  // The plan drifts by 0.25 m/s. Decisions at ticks 52, 54 ... 120; driven until tick 120, so 25,
+  // 15 and 5 of them were followed for 20, 40 and 60 ticks.
+  const std::size_t followed[] = {25, 15, 5};
+  for (int seconds = 1; seconds <= 3; ++seconds) {
+    const Json& displacement = plan["displacement_" + std::to_string(seconds) + "s_m"];
+    EXPECT_NEAR(displacement["mean"].get<double>(), 0.25 * seconds, 1e-9);
+    EXPECT_NEAR(displacement["p95"].get<double>(), 0.25 * seconds, 1e-9);
+    EXPECT_EQ(displacement["n"], followed[seconds - 1]);
+  }
+  // 0.5 m once, 0.1 m 34 times; rank ceil(0.95 x 35) = 34.
+  EXPECT_NEAR(plan["state_mismatch_m"]["mean"].get<double>(), (0.5 + 34 * 0.1) / 35.0, 1e-12);
+  EXPECT_DOUBLE_EQ(plan["state_mismatch_m"]["p95"], 0.1);
+  EXPECT_DOUBLE_EQ(plan["state_mismatch_m"]["max"], 0.5);
+  EXPECT_EQ(plan["state_mismatch_m"]["n"], 35);
+  EXPECT_EQ(summary["guidance"],
+            Json::parse(R"({"speed": {"weight": 1.5, "value": 2.0, "gradient_norm": 0.5,
+                                      "capped_share": 0.25, "dropped": 35, "n": 35},
+                            "comfort": {"weight": 1.0, "value": null, "gradient_norm": null,
+                                        "capped_share": 0.0, "dropped": 0, "n": 35}})"));
+  EXPECT_DOUBLE_EQ(summary["guidance_trust_region_share"], 0.125);
+  EXPECT_EQ(summary["cbv"]["faults"], Json::parse(R"({"cbv:diffusion": 1})"));
 }
 
 TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {

@@ -24,6 +24,22 @@ TEST(Timeline, KeepsAFrameEveryFifthOfASecondAndTheLastTick) {
   EXPECT_EQ(timeline.vehicles()[2].id, "bg_2");
 }
 
+TEST(Timeline, FindsTheLastContactOfAVehicle) {
+  Timeline timeline(0.05);
+  traffic::TrafficSnapshot snapshot;
+  for (const auto& contact :
+       {traffic::Contact{"a", "b"}, traffic::Contact{"b", "c"}, traffic::Contact{"a", "ego"}}) {
+    ++snapshot.tick;
+    snapshot.time = 0.05 * static_cast<double>(snapshot.tick);
+    snapshot.contacts = {contact};
+    timeline.observe(snapshot);
+  }
+  EXPECT_EQ(timeline.lastContactOf("a", 0.0, 1.0), "ego");
+  EXPECT_EQ(timeline.lastContactOf("a", 0.0, 0.1), "b");
+  EXPECT_EQ(timeline.lastContactOf("c", 0.1, 0.1), "b");
+  EXPECT_EQ(timeline.lastContactOf("c", 0.15, 1.0), std::nullopt);
+}
+
 TEST(Timeline, FindsTheSmallestGapBetweenFrames) {
   Timeline timeline(0.05);
   traffic::TrafficSnapshot snapshot;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// What became of every vehicle that was selected as CBV: where and when, for how many decisions,
-/// why released; and how often which reason rejected a candidate.
+/// how far along its conflict-aware route, why released; and how often which reason rejected a
+/// candidate.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/geometry/polyline.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::report {
@@ -31,6 +33,16 @@ struct CbvRecord {
   std::string release_reason = kSessionEnd;
   double route_length = 0.0;           ///< of the conflict-aware route [m]
   std::vector<Eigen::Vector3d> route;  ///< points of the conflict-aware route, map frame [m]
+  /// Reached on the conflict-aware route, as of the decisions of the stay and that of its release
+  /// [m].
+  double arc_length = 0.0;
+  bool conflict_point_passed = false;  ///< its centre came that far along the conflict-aware route
+
+  /// 100 arc_length / route_length; 100 when released because its route ended.
+  double routeCompletionPercent() const;
+  /// Released because its route ended, at least 95 % of the route driven, or the conflict point
+  /// passed.
+  bool routeCompleted() const;
 };
 
 class CbvLog {
@@ -43,11 +55,17 @@ class CbvLog {
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
 
  private:
+  struct Stay {
+    std::size_t record = 0;  ///< index
+    geometry::Polyline path;
+    double conflict_arc_length = 0.0;  ///< [m]
+  };
   CbvRecord& recordOf(const cbv::CbvAssignment& assignment);
+  void follow(const traffic::TrafficSnapshot& snapshot);
   void close(const cbv::CbvSelection& selection);
 
   std::vector<CbvRecord> records_;
-  std::map<int, std::size_t> open_;  ///< slot -> index of its present record
+  std::map<int, Stay> open_;  ///< slot -> its present stay
   std::map<std::string, std::size_t> rejected_;
 };
 

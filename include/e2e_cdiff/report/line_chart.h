@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A line chart over the session's time as one SVG element.
+/// A line chart over time as one SVG element: the session's time, which the page's slider marks and
+/// a click chooses, or a time of its own.
 #pragma once
 
 #include <string>
@@ -30,6 +31,7 @@ struct Chart {
   double bottom = 0.0;     ///< lower end of the value axis
   std::vector<ChartSeries> series = {};
   std::vector<ChartMark> marks = {};
+  bool own_time = false;  ///< its times are not the session's
 };
 
 std::string chartSvg(const Chart& chart);

@@ -15,6 +15,8 @@ class MapCanvas {
  public:
   /// Shows `content` and fills the width of the page.
   explicit MapCanvas(const Region& content);
+  /// Shows `content` in the middle of a picture of `size` (width, height) [pixels].
+  MapCanvas(const Region& content, const Eigen::Vector2d& size);
 
   const Region& region() const { return region_; }
   double scale() const { return scale_; }  ///< [pixels / m]

@@ -12,6 +12,9 @@ namespace cdiff::report {
 std::string ruleTable(const SessionResult& result);
 std::string metricTable(const metrics::SessionMeasures& measures);
 std::string selectionTable(const SessionResult& result);
+/// Distances between plans and what was driven, by CBV.
+std::string planTable(const PlanLog& plans);
+std::string guidanceTable(const GuidanceLog& log);
 std::string rejectionTable(const CbvLog& cbv);
 std::string contactTable(const Timeline& timeline);
 std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies);

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "e2e_cdiff/metrics/session_measures.h"
+#include "e2e_cdiff/report/approach_log.h"
 #include "e2e_cdiff/report/cbv_log.h"
+#include "e2e_cdiff/report/guidance_log.h"
 #include "e2e_cdiff/report/latency_log.h"
+#include "e2e_cdiff/report/plan_log.h"
 #include "e2e_cdiff/report/timeline.h"
 #include "e2e_cdiff/report/verdict.h"
 #include "e2e_cdiff/scenario/session_setup.h"
@@ -29,6 +32,9 @@ struct SessionResult {
   const scenario::SessionSetup& setup;
   const Timeline& timeline;
   const CbvLog& cbv;
+  const ApproachLog& approaches;
+  const PlanLog& plans;
+  const GuidanceLog& guidance;
   RunFacts facts;
   traffic::SessionStatus status = traffic::SessionStatus::kError;
   double simulated_seconds = 0.0;

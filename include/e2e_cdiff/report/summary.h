@@ -12,6 +12,9 @@ namespace cdiff::report {
 
 std::string summaryJson(const SessionResult& result);
 
+/// Id of the vehicle that a CBV touched last during its stay; nullopt when none.
+std::optional<std::string> contactPartner(const CbvRecord& record, const SessionResult& result);
+
 /// Whether a selected conflict lies at or beyond the first junction of the ego route.
 bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route);
 

@@ -65,6 +65,8 @@ class Timeline {
   const std::vector<TimelineFrame>& frames() const { return frames_; }
   const std::vector<TimelineContact>& contacts() const { return contacts_; }
   const std::optional<SmallestGap>& smallestGap() const { return smallest_gap_; }
+  /// Id of the vehicle that another one touched last in [begin, end] [s]; nullopt when none.
+  std::optional<std::string> lastContactOf(const std::string& id, double begin, double end) const;
   /// Time of the last snapshot [s].
   double duration() const { return duration_; }
 

@@ -12,6 +12,17 @@ namespace cdiff::report {
 
 std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas);
 
+/// Drivable area and lanes alone.
+std::string roadSvg(const SessionResult& result, const MapCanvas& canvas);
+
+/// A vehicle's box, `magnification` times as large as it is, of a CSS class.
+std::string vehicleSvg(const TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                       const MapCanvas& canvas, const std::string& style,
+                       double magnification = 1.0);
+
+/// A bar of a round length and the direction of north, in the lower corners and at the top right.
+std::string scaleBarSvg(const MapCanvas& canvas);
+
 /// Its legend, as HTML.
 std::string topViewLegend(const MapCanvas& canvas);
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/approach_section.h"
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/rendering/front_camera.h"
+#include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/plan_picture.h"
+#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/top_view.h"
+
+namespace cdiff::report {
+namespace {
+
+constexpr double kLookBack = 3.0;  // from the closest approach to the plan that is shown [s]
+
+/// The camera of the planners with more pixels.
+rendering::FrontCamera cameraForPeople(const SessionResult& result) {
+  rendering::CameraOptions options = result.setup.options().camera;
+  options.width = 640;
+  options.height = 384;
+  return {options, result.setup.network()};
+}
+
+std::string view(const traffic::CameraImage& image, const std::string& style,
+                 const std::string& caption) {
+  return "<figure class=\"" + style + "\"><img width=\"" + std::to_string(image.width) +
+         "\" height=\"" + std::to_string(image.height) + "\" alt=\"" + escapeMarkup(caption) +
+         "\" src=\"" + pngDataUri(image) + "\"><figcaption>" + escapeMarkup(caption) +
+         "</figcaption></figure>\n";
+}
+
+std::string speedText(const traffic::Vehicle& vehicle) {
+  return core::formatFixed(vehicle.state.speed, 1) + " m/s";
+}
+
+/// What a vehicle saw: for people, and as the planner got it.
+std::string views(rendering::FrontCamera& camera, const Approach& approach,
+                  const traffic::Vehicle& vehicle, const std::string& name,
+                  const traffic::CameraImage& seen) {
+  std::string html = view(camera.render(approach.snapshot, vehicle), "view",
+                          "From the " + name + " at " + core::formatFixed(approach.time(), 2) +
+                              " s, " + speedText(vehicle));
+  if (seen.empty()) return html;
+  const double step_age = static_cast<double>(approach.snapshot.tick - seen.tick);
+  const std::string when = step_age > 0.0 ? " at the decision " + core::formatFixed(step_age, 0) +
+                                                (step_age > 1.0 ? " ticks" : " tick") + " before"
+                                          : " at this tick";
+  return html +
+         view(seen, "view small",
+              "What the planner of the " + name + " saw" + when + ": " +
+                  std::to_string(seen.width) + " × " + std::to_string(seen.height) + " pixels");
+}
+
+std::string planPart(const SessionResult& result, const Approach& approach) {
+  const VehiclePlans* vehicle = result.plans.find(approach.vehicle_id);
+  if (vehicle == nullptr || vehicle->plans.empty()) return {};
+  const LoggedPlan* plan = result.plans.drivenPlanNear(*vehicle, approach.time() - kLookBack);
+  if (plan == nullptr) {
+    return "<p class=\"note\">It was not driven long enough to follow a whole plan.</p>\n";
+  }
+  return planPictures(result, *vehicle, *plan);
+}
+
+std::string approachPart(const SessionResult& result, const Approach& approach,
+                         rendering::FrontCamera& camera) {
+  const traffic::Vehicle* ego = approach.snapshot.ego();
+  const traffic::Vehicle* cbv = approach.snapshot.find(approach.vehicle_id);
+  if (ego == nullptr || cbv == nullptr) return {};
+  const std::string gap = approach.gap > 0.0
+                              ? core::formatFixed(approach.gap, 2) + " m between the outlines"
+                              : "the outlines overlap";
+  return "<article class=\"approach " +
+         styleOf(traffic::VehicleRole::kCbv, approach.vehicle_id, result.cbv) + "\">\n<h3>" +
+         escapeMarkup(approach.vehicle_id) + " at " + core::formatFixed(approach.time(), 2) +
+         " s: " + gap + "</h3>\n<p class=\"sub\">Centres " +
+         core::formatFixed(approach.center_distance, 1) + " m apart; CBV " + speedText(*cbv) +
+         ", ego " + speedText(*ego) + "</p>\n<div class=\"views\">\n" +
+         views(camera, approach, *cbv, "CBV", approach.cbv_image) +
+         views(camera, approach, *ego, "ego", approach.ego_image) + "</div>\n" +
+         planPart(result, approach) + "</article>\n";
+}
+
+}  // namespace
+
+std::vector<const Approach*> shownApproaches(const ApproachLog& log) {
+  std::vector<const Approach*> shown;
+  for (const Approach& approach : log.approaches()) shown.push_back(&approach);
+  std::stable_sort(shown.begin(), shown.end(), [](const Approach* left, const Approach* right) {
+    return left->gap < right->gap;
+  });
+  if (shown.size() > kMostApproaches) shown.resize(kMostApproaches);
+  return shown;
+}
+
+std::string approachSection(const SessionResult& result) {
+  const std::vector<const Approach*> shown = shownApproaches(result.approaches);
+  if (shown.empty()) return "<p class=\"note\">No CBV was driven near the ego.</p>\n";
+  rendering::FrontCamera camera = cameraForPeople(result);
+  std::string html;
+  const std::size_t count = result.approaches.approaches().size();
+  if (count > shown.size()) {
+    html += "<p class=\"note\">The " + std::to_string(shown.size()) + " nearest of " +
+            std::to_string(count) + " CBVs.</p>\n";
+  }
+  for (const Approach* approach : shown) html += approachPart(result, *approach, camera);
+  return html;
+}
+
+}  // namespace cdiff::report
