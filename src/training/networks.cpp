@@ -13,8 +13,6 @@ namespace {
 constexpr std::int64_t kSqueezed = 64;
 constexpr std::int64_t kChannelsPerGroup = 16;
 constexpr double kNormEpsilon = 1e-5;
-constexpr std::int64_t kTimeHidden = 256;
-constexpr std::int64_t kRouteHidden = 128;
 constexpr std::int64_t kHeadHidden = 256;
 
 /// Channels and count of the blocks of layer1 ... layer4.
@@ -125,14 +123,14 @@ DenoiserNet::DenoiserNet(const diffusion::Architecture& architecture, std::uint6
 
 void DenoiserNet::declareContext() {
   const diffusion::Architecture& a = architecture_;
-  parameters_.declareLayer("route.0", {kRouteHidden, 2 * a.route_points});
-  parameters_.declareLayer("route.2", {a.route_features, kRouteHidden});
+  parameters_.declareLayer("route.0", {2 * a.route_features, 2 * a.route_points});
+  parameters_.declareLayer("route.2", {a.route_features, 2 * a.route_features});
   parameters_.declare("no_route", {a.route_features}, {Start::Kind::kUniform, 0.1});
   parameters_.declareLayer("speed.0", {a.speed_features, 1});
   parameters_.declareLayer(
       "context.0", {a.context_width, a.image_features + a.route_features + a.speed_features});
-  parameters_.declareLayer("time.0", {kTimeHidden, a.time_width});
-  parameters_.declareLayer("time.2", {a.time_width, kTimeHidden});
+  parameters_.declareLayer("time.0", {4 * a.time_width, a.time_width});
+  parameters_.declareLayer("time.2", {a.time_width, 4 * a.time_width});
 }
 
 void DenoiserNet::declareBlock(const std::string& name, std::int64_t inputs, std::int64_t outputs) {

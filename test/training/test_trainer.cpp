@@ -56,8 +56,9 @@ TEST_F(TrainerTest, AllStagesMakeAModelThatFitsEightSamples) {
   EXPECT_EQ(training.at("data").at("samples"), 8);
   EXPECT_EQ(training.at("stages").at("denoiser").at("steps"), 300);
   EXPECT_EQ(training.at("stages").at("encoder").at("steps"), 3);
-  // The mean prediction would have a loss near E[w] 3/7... of unit variance; fitted samples do not.
-  EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.4);
+  // Predicting the mean alone costs 1 on the two state columns that vary, so 0.5, and the mean of
+  // w_t / 12 = 0.26 on the steer; fitted samples cost far less.
+  EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.2);
   EXPECT_LT(training.at("held_out").at("sample_ade_m").get<double>(), 0.5);
   const diffusion::Model model = diffusion::loadModel((folder_.path() / "model").string());
   EXPECT_EQ(model.spread.rows(), 8);
