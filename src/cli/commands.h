@@ -20,6 +20,7 @@ void addEvaluateCommand(CLI::App& program, int& exit_code);
 void addValidateCommand(CLI::App& program, int& exit_code);
 void addImportCommand(CLI::App& program, int& exit_code);
 void addMetricCommand(CLI::App& program, int& exit_code);
+void addTrainCommand(CLI::App& program, int& exit_code);
 void addDoctorCommand(CLI::App& program, int& exit_code);
 
 }  // namespace cdiff::cli
