@@ -55,6 +55,7 @@ json factsOf(const TrainingState& state, const std::map<std::string, StageResult
           {"mirror", state.options.mirror},
           {"machine", processorName()},
           {"threads", state.options.threads},
+          {"precision", state.half_precision ? "bf16" : "f32"},
           {"device", state.device.str()},
           {"torch", E2E_CDIFF_TORCH_VERSION}};
 }

@@ -16,6 +16,8 @@ class ImageEncoderNet {
   /// Images [B, 3, H, W] scaled as in the document -> features [B, image_features]. Smaller images
   /// give a smaller map before `squeeze`, which is stretched to the map of the full size.
   at::Tensor forward(const at::Tensor& images) const;
+  /// Whether the convolutions multiply in bfloat16 (sums, norms and weights stay float32).
+  void setHalfPrecision(bool half_precision) { half_precision_ = half_precision; }
 
   ParameterSet& parameters() { return parameters_; }
   const ParameterSet& parameters() const { return parameters_; }
@@ -24,7 +26,10 @@ class ImageEncoderNet {
   void declareBlock(const std::string& name, std::int64_t inputs, std::int64_t outputs);
   at::Tensor block(const std::string& name, const at::Tensor& x, std::int64_t stride) const;
   at::Tensor norm(const std::string& name, const at::Tensor& x) const;
+  at::Tensor convolve(const std::string& name, const at::Tensor& x, std::int64_t stride,
+                      std::int64_t padding) const;
 
+  bool half_precision_ = false;
   diffusion::Architecture architecture_;
   ParameterSet parameters_;
 };
@@ -47,6 +52,9 @@ class DenoiserNet {
   /// states [B, T, 4] of actions [B, T, 3]; no gradient flows into the actions if `detach`.
   at::Tensor predictStates(const at::Tensor& actions, const at::Tensor& k,
                            const ContextBatch& context, bool detach) const;
+  /// The transposed convolution of 4 taps and stride 2 as a convolution: y[2j] = w1 x[j] + w3
+  /// x[j-1], y[2j+1] = w2 x[j] + w0 x[j+1]. Libtorch's own is slow.
+  at::Tensor doubled(const std::string& name, const at::Tensor& x) const;
   void moveTo(const at::Device& device);
 
   ParameterSet& parameters() { return parameters_; }

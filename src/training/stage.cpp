@@ -44,7 +44,9 @@ class EncoderStage : public Stage {
 
   Loss loss(std::int64_t step) override {
     TrainingBatch batch = batches_.training(step);
+    state_.encoder.setHalfPrecision(state_.half_precision);
     const at::Tensor predicted = predict(batch);
+    state_.encoder.setHalfPrecision(false);
     const std::int64_t cells = batch.rollouts.size(1) * batch.rollouts.size(2);
     const at::Tensor rollout_loss =
         (predicted.narrow(1, 0, cells) - batch.rollouts.flatten(1)).pow(2).mean();
@@ -124,7 +126,11 @@ class DiffusionStage : public Stage {
 
   Loss loss(std::int64_t step) override {
     TrainingBatch batch = batches_.training(step, cache_);
-    if (cache_ == nullptr) batch.context.features = state_.encoder.forward(batch.images);
+    if (cache_ == nullptr) {
+      state_.encoder.setHalfPrecision(state_.half_precision);
+      batch.context.features = state_.encoder.forward(batch.images);
+      state_.encoder.setHalfPrecision(false);
+    }
     return state_.task.loss(state_.denoiser, batch);
   }
 

@@ -24,6 +24,7 @@ struct TrainingState {
   DenoiserNet denoiser;
   DiffusionTask task;
   std::vector<std::size_t> held_out;  ///< validation samples that judge
+  bool half_precision;                ///< of the encoder's convolutions while training
 };
 
 /// Weights that a stage trains; their names in checkpoints begin with `name`.

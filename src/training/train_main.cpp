@@ -33,6 +33,8 @@ void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
                    "The learning rate falls to 0 at the time limit");
   program.add_flag("--resume", options.resume, "Go on from the stage's checkpoint if there is one");
   program.add_option("--device", options.device, "auto | cpu | cuda");
+  program.add_option("--precision", options.precision,
+                     "Of the encoder's convolutions in training: auto | f32 | bf16");
   program.add_option("--image-scale", options.image_scale, "Of stage encoder: 1 or 0.5");
   program.add_option("--learning-rate", options.learning_rate);
   program.add_option("--weight-decay", options.weight_decay);

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <ostream>
 
@@ -25,6 +27,14 @@ at::Device chooseDevice(const std::string& name) {
   if (name == "cuda" && !at::hasCUDA())
     throw InputError("training: device is 'cuda', but libtorch finds none");
   return at::Device(name != "cpu" && at::hasCUDA() ? at::kCUDA : at::kCPU);
+}
+
+/// bfloat16 pays only where the processor multiplies it itself.
+bool halfPrecision(const std::string& precision) {
+  if (precision != "auto") return precision == "bf16";
+  std::ifstream file("/proc/cpuinfo");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return text.find("avx512_bf16") != std::string::npos;
 }
 
 diffusion::Architecture architectureOf(const TrainingOptions& options, const SampleSchema& schema) {
@@ -66,7 +76,8 @@ class Trainer {
                RegressionHead(architecture_, auxiliary(dataset), seed()),
                DenoiserNet(architecture_, seed()),
                DiffusionTask(architecture_, normalizer_, device_),
-               chooseHeldOut(dataset, static_cast<std::size_t>(options.validation_samples))} {
+               chooseHeldOut(dataset, static_cast<std::size_t>(options.validation_samples)),
+               halfPrecision(options.precision)} {
     loadInitial();
     state_.encoder.parameters().moveTo(device_);
     state_.head.parameters().moveTo(device_);

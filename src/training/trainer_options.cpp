@@ -34,6 +34,7 @@ void requireCount(const char* option, std::int64_t value, std::int64_t minimum) 
 void TrainingOptions::validate() const {
   requireOneOf("stage", stage, {"encoder", "fine_tune", "denoiser", "joint", "export", "all"});
   requireOneOf("device", device, {"auto", "cpu", "cuda"});
+  requireOneOf("precision", precision, {"auto", "f32", "bf16"});
   if (data.empty()) throw InputError("training: data, the folder of the shards, is not given");
   if (output.empty()) throw InputError("training: output, the folder to write to, is not given");
   requireCount("steps", steps, 1);

@@ -97,6 +97,28 @@ TEST(Networks, EncoderTakesHalfSizeImages) {
   }
 }
 
+TEST(Networks, HalfPrecisionChangesFeaturesLittle) {
+  // bfloat16 keeps 8 bits: a relative error of a few times 2^-8 of the features' size is expected.
+  const diffusion::Architecture architecture = test::smallArchitecture();
+  ImageEncoderNet encoder(architecture, 1);
+  const at::Tensor images = at::linspace(-2.0, 2.0, 3 * 64 * 64).view({1, 3, 64, 64}).sin();
+  const at::Tensor full = encoder.forward(images);
+  encoder.setHalfPrecision(true);
+  const at::Tensor half = encoder.forward(images);
+  const double error = (half - full).norm().item<double>() / full.norm().item<double>();
+  EXPECT_GT(error, 0.0);
+  EXPECT_LT(error, 0.03);
+}
+
+TEST(Networks, DoublingIsTheTransposedConvolution) {
+  const diffusion::Architecture architecture = test::smallArchitecture();
+  const DenoiserNet denoiser(architecture, 1);
+  const at::Tensor x = at::linspace(-1.0, 1.0, 2 * 16 * 4).view({2, 16, 4});
+  const at::Tensor expected = at::conv_transpose1d(x, denoiser.parameters()("up.0.sample.weight"),
+                                                   denoiser.parameters()("up.0.sample.bias"), 2, 1);
+  EXPECT_TRUE(at::allclose(denoiser.doubled("up.0.sample", x), expected, 1e-5, 1e-6));
+}
+
 TEST(Networks, LinearLayerIsAMatrixProduct) {
   // y = W x + b with W = [[1, 2], [3, 4], [5, 6]], b = [0, 10, 20] and x = [1, -1]:
   // (1 - 2, 3 - 4 + 10, 5 - 6 + 20) = (-1, 9, 19).

@@ -28,8 +28,9 @@ struct TrainingOptions {
   double time_limit = 0.0;      ///< of the stage, over all resumptions [s]; 0: none
   bool anneal_by_time = false;  ///< learning rate falls with time instead of steps
   bool resume = false;
-  std::string device = "auto";  ///< auto | cpu | cuda
-  double image_scale = 1.0;     ///< of stage `encoder`: 1 or 0.5
+  std::string device = "auto";     ///< auto | cpu | cuda
+  std::string precision = "auto";  ///< of the encoder's convolutions in training: auto | f32 | bf16
+  double image_scale = 1.0;        ///< of stage `encoder`: 1 or 0.5
   double learning_rate = 2e-4;
   double weight_decay = 1e-4;
   std::int64_t warm_up = 500;     ///< steps
