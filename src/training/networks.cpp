@@ -44,7 +44,7 @@ at::Tensor sinusoids(std::int64_t steps, std::int64_t width) {
 }
 
 /// x tanh(ln(1 + e^x)) = x n / (n + 2) with n = e^x (e^x + 2): several times as fast as at::mish.
-at::Tensor mish(const at::Tensor& x) {
+at::Tensor fastMish(const at::Tensor& x) {
   const at::Tensor power = at::exp(at::clamp_max(x, 20.0));
   const at::Tensor n = power * (power + 2.0);
   return x * (n / (n + 2.0));
@@ -184,16 +184,16 @@ void DenoiserNet::moveTo(const at::Device& device) {
 }
 
 at::Tensor DenoiserNet::contextOf(const ContextBatch& context) const {
-  at::Tensor route = mish(linear(parameters_, "route.0", context.route));
+  at::Tensor route = fastMish(linear(parameters_, "route.0", context.route));
   route = linear(parameters_, "route.2", route);
   route = context.has_route * route + (1 - context.has_route) * parameters_("no_route");
-  const at::Tensor speed = mish(linear(parameters_, "speed.0", context.speed));
-  return mish(linear(parameters_, "context.0", at::cat({context.features, route, speed}, 1)));
+  const at::Tensor speed = fastMish(linear(parameters_, "speed.0", context.speed));
+  return fastMish(linear(parameters_, "context.0", at::cat({context.features, route, speed}, 1)));
 }
 
 at::Tensor DenoiserNet::timeEmbedding(const at::Tensor& k) const {
   const at::Tensor hidden = linear(parameters_, "time.0", sinusoids_.index_select(0, k));
-  return linear(parameters_, "time.2", mish(hidden));
+  return linear(parameters_, "time.2", fastMish(hidden));
 }
 
 at::Tensor DenoiserNet::convolve(const std::string& name, const at::Tensor& x,
@@ -216,9 +216,9 @@ at::Tensor DenoiserNet::doubled(const std::string& name, const at::Tensor& x) co
 }
 
 at::Tensor DenoiserNet::smooth(const std::string& name, const at::Tensor& x) const {
-  return mish(at::group_norm(convolve(name + ".conv", x), architecture_.groups,
-                             parameters_(name + ".norm.weight"), parameters_(name + ".norm.bias"),
-                             kNormEpsilon));
+  return fastMish(at::group_norm(convolve(name + ".conv", x), architecture_.groups,
+                                 parameters_(name + ".norm.weight"),
+                                 parameters_(name + ".norm.bias"), kNormEpsilon));
 }
 
 at::Tensor DenoiserNet::block(const std::string& name, const at::Tensor& x,
@@ -231,7 +231,7 @@ at::Tensor DenoiserNet::block(const std::string& name, const at::Tensor& x,
 
 at::Tensor DenoiserNet::predictActions(const at::Tensor& noisy, const at::Tensor& k,
                                        const ContextBatch& context) const {
-  const at::Tensor z = mish(at::cat({timeEmbedding(k), contextOf(context)}, 1));
+  const at::Tensor z = fastMish(at::cat({timeEmbedding(k), contextOf(context)}, 1));
   const std::size_t levels = architecture_.channels.size();
   at::Tensor x = noisy.transpose(1, 2);
   std::vector<at::Tensor> skips;
@@ -253,8 +253,8 @@ at::Tensor DenoiserNet::predictStates(const at::Tensor& actions, const at::Tenso
                                       const ContextBatch& context, bool detach) const {
   const at::Tensor flat = (detach ? actions.detach() : actions).reshape({actions.size(0), -1});
   at::Tensor h = at::cat({flat, context.speed, timeEmbedding(k)}, 1);
-  h = mish(linear(parameters_, "state.0", h));
-  h = mish(linear(parameters_, "state.2", h));
+  h = fastMish(linear(parameters_, "state.0", h));
+  h = fastMish(linear(parameters_, "state.2", h));
   return linear(parameters_, "state.4", h)
       .reshape({actions.size(0), architecture_.horizon, traffic::kStateColumns});
 }
@@ -271,7 +271,7 @@ RegressionHead::RegressionHead(const diffusion::Architecture& architecture, std:
 at::Tensor RegressionHead::forward(const ContextBatch& context) const {
   const at::Tensor input = at::cat(
       {context.features, context.speed, context.route * context.has_route, context.has_route}, 1);
-  return linear(parameters_, "regression.2", mish(linear(parameters_, "regression.0", input)));
+  return linear(parameters_, "regression.2", fastMish(linear(parameters_, "regression.0", input)));
 }
 
 }  // namespace cdiff::training
