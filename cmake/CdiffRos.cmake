@@ -30,7 +30,7 @@ target_include_directories(e2e_cdiff_images SYSTEM INTERFACE
 target_link_libraries(e2e_cdiff_images INTERFACE
   ${CDIFF_CV_BRIDGE_LIBRARY} ${CDIFF_IMAGE_TRANSPORT_LIBRARY} opencv_core)
 
-foreach(folder config launch networks rviz)
+foreach(folder config launch networks rviz weights)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
   endif()

@@ -10,6 +10,8 @@
 
 #include "commands.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+#include "e2e_cdiff/diffusion/image_encoder.h"
 #include "e2e_cdiff/scenario/scenario_options.h"
 
 namespace cdiff::cli {
@@ -51,6 +53,19 @@ Finding folder(const std::string& subject, const std::function<fs::path()>& find
   }
 }
 
+/// The shipped model, and what computes with it on this machine.
+Finding shippedModel() {
+  try {
+    const diffusion::Model model = diffusion::loadModel("default");
+    return {true, "planner model",
+            "default (" + model.sha256.substr(0, 12) + "), encoder with " +
+                diffusion::ImageEncoder::instructionSet() + ", denoiser with " +
+                diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())};
+  } catch (const std::exception& error) {
+    return {false, "planner model", error.what()};
+  }
+}
+
 Finding rosIp() {
   const char* ip = std::getenv("ROS_IP");
   const bool good = ip != nullptr && std::string(ip) == "127.0.0.1";
@@ -70,6 +85,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
                                            program("roslaunch", "python3-roslaunch"),
                                            folder("package share", core::shareFolder),
                                            folder("cache folder", core::cacheFolder),
+                                           shippedModel(),
                                            rosIp()};
     for (const Finding& finding : findings) {
       std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text

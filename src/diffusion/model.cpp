@@ -131,6 +131,12 @@ Model loadModel(const std::string& name_or_folder) {
   return model;
 }
 
+std::string modelFilesSha256(const std::string& name_or_folder) {
+  const fs::path folder = folderOf(name_or_folder);
+  return core::sha256(core::sha256(core::readFile(folder / kEncoderFile, "weight file")) +
+                      core::sha256(core::readFile(folder / kDenoiserFile, "weight file")));
+}
+
 void saveModel(const Model& model, const fs::path& folder, TensorType type,
                const std::map<std::string, std::string>& training_facts) {
   validateDescription(model);

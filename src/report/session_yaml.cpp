@@ -5,6 +5,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+#include "e2e_cdiff/diffusion/image_encoder.h"
+#include "e2e_cdiff/diffusion/model.h"
+#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/report/build_info.h"
 
 namespace cdiff::report {
@@ -49,6 +53,18 @@ std::string machineBlock() {
          line(1, "instruction_set", quoted(instructionSet()));
 }
 
+/// What the bytes of a planned action depend on besides the scenario: model and instruction sets.
+std::string inferenceBlock(const scenario::ScenarioOptions& options) {
+  if (!planning::seesImages(options.cbv_planner) && !planning::seesImages(options.ego_planner))
+    return "";
+  using diffusion::CpuDenoiser;
+  return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
+         line(1, "model_files_sha256", quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
+         line(1, "encoder_instruction_set", quoted(diffusion::ImageEncoder::instructionSet())) +
+         line(1, "denoiser_instruction_set",
+              quoted(CpuDenoiser::toText(CpuDenoiser::bestInstructionSet())));
+}
+
 }  // namespace
 
 std::string sessionYaml(const scenario::SessionSetup& setup, const RunFacts& facts) {
@@ -60,7 +76,7 @@ std::string sessionYaml(const scenario::SessionSetup& setup, const RunFacts& fac
          line(0, "deterministic", facts.deterministic ? "true" : "false") + "seeds:\n" +
          line(1, "root", std::to_string(options.seed)) + "simulator:\n" +
          line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
-         machineBlock() + "scenario:\n" + indented(core::dumpOptions(options));
+         machineBlock() + inferenceBlock(options) + "scenario:\n" + indented(core::dumpOptions(options));
 }
 
 }  // namespace cdiff::report

@@ -24,6 +24,7 @@ using traffic::VehicleRole;
 ScenarioOptions scenarioWith(const std::string& name, const std::vector<std::string>& set) {
   SessionRequest request;
   request.scenario = name;
+  request.cbv_planner = "pdm_lite";  // unless `set` names another
   request.set = set;
   return resolveRequest(request);
 }
@@ -75,6 +76,17 @@ TEST_P(Determinism, SameSeedSameCourseOtherSeedDiffers) {
   EXPECT_GT(first.ticks_, 100u);
   EXPECT_EQ(first.hash(), second.hash());
   EXPECT_NE(first.hash(), other.hash());
+}
+
+TEST(ClosedLoop, DiffusionPlannerDrivesTwoCbvsToTheSameBytes) {
+  const std::vector<std::string> set = {"cbv_planner=diffusion", "protocol.time_limit=12"};
+  const Course first = runScenario(scenarioWith("roundabout_cross", set));
+  const Course second = runScenario(scenarioWith("roundabout_cross", set));
+  EXPECT_EQ(first.hash(), second.hash());
+  EXPECT_GT(first.cbv_ticks_, 60u);
+  EXPECT_TRUE(first.faults_.empty());
+  const Course rules = runScenario(scenarioWith("roundabout_cross", {"protocol.time_limit=12"}));
+  EXPECT_NE(first.hash(), rules.hash());
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, Determinism,

@@ -39,6 +39,7 @@ TEST(Levels, VehiclesOnTwoLevelsDoNotCollide) {
          "edges=\"bridge\"/></flow><flow id=\"down\" begin=\"0\" end=\"90\" period=\"1\" "
          "departSpeed=\"max\"><route edges=\"bridge_back\"/></flow></routes>";
   ScenarioOptions options;
+  options.cbv_planner = "pdm_lite";
   options.network = made.file.string();
   options.demand = demand;
   options.route.edges = {"west", "east"};

@@ -29,6 +29,10 @@ struct Model {
 /// "spread" are missing or malformed.
 Model loadModel(const std::string& name_or_folder);
 
+/// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder and
+/// denoiser file, one after the other. Throws InputError for an unknown model or missing file.
+std::string modelFilesSha256(const std::string& name_or_folder);
+
 /// Writes both files into `folder`.
 void saveModel(const Model& model, const std::filesystem::path& folder, TensorType type,
                const std::map<std::string, std::string>& training_facts);

@@ -40,7 +40,7 @@ struct ScenarioOptions {
   std::string lights = "green";       ///< green | program
   std::string mode = "naturalistic";  ///< naturalistic | safety_critical
   std::string ego_planner = "pdm_lite";
-  std::string cbv_planner = "pdm_lite";
+  std::string cbv_planner = "diffusion";
   std::int64_t max_cbv = 2;
   cbv::CbvOptions cbv;
   planning::PdmLiteOptions pdm_lite;
