@@ -43,5 +43,6 @@ void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
+void benchmarkPlanner(Figures& figures);
 
 }  // namespace cdiff::benchmark

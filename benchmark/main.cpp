@@ -50,7 +50,8 @@ int run(const std::string& name, const std::string& json) {
       {"denoiser", benchmarkDenoiser},
       {"encoder", benchmarkEncoder},
       {"loop", benchmarkLoop},
-      {"map", benchmarkMap}};
+      {"map", benchmarkMap},
+      {"planner", benchmarkPlanner}};
   if (!name.empty() && known.count(name) == 0) {
     std::vector<std::string> names;
     for (const auto& entry : known) names.push_back(entry.first);

@@ -67,6 +67,8 @@ struct DiffusionPlanner::Memory {
   ImageWatch watch;
   std::optional<Rollout> plan;   ///< of the last decision
   std::uint64_t plan_tick = 0;
+  std::vector<float> features;   ///< of the last image
+  std::uint64_t features_hash = 0;
 };
 
 /// One vehicle of this decision.
@@ -160,6 +162,17 @@ void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) co
     situation.warm = model_.normalizer.normalize(moved);
 }
 
+/// Encodes an image unless it is the one of the last decision, as before a standing vehicle.
+const std::vector<float>& DiffusionPlanner::featuresOf(const traffic::CameraImage& image,
+                                                       Memory& memory) {
+  const std::uint64_t hash = memory.watch.imageHash();
+  if (memory.features.empty() || memory.features_hash != hash) {
+    memory.features = encoder_.encode(image);
+    memory.features_hash = hash;
+  }
+  return memory.features;
+}
+
 std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
     const traffic::TrafficSnapshot& snapshot, const PlanningTask& task, Memory& memory) {
   auto situation = std::make_unique<Situation>();
@@ -172,7 +185,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   scene.target_speed = task.target_speed;
   scene.drivable_area = &context_.drivable_area;
   situation->context.speed = vehicle.state.speed;
-  situation->context.image_features = encoder_.encode(*task.image);
+  situation->context.image_features = featuresOf(*task.image, memory);
   if (task.route != nullptr && !task.route->empty()) {
     memory.follower.update(*task.route, vehicle.state.position);
     const double arc_length = memory.follower.arcLength();

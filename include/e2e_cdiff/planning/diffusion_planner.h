@@ -55,6 +55,7 @@ class DiffusionPlanner : public Planner {
   void followEgo(const traffic::TrafficSnapshot& snapshot);
   void rememberOnly(const std::vector<PlanningTask>& tasks);
   std::optional<std::string> faultOf(const PlanningTask& task, std::uint64_t tick, Memory& memory);
+  const std::vector<float>& featuresOf(const traffic::CameraImage& image, Memory& memory);
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const PlanningTask& task, Memory& memory);
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);

@@ -28,6 +28,8 @@ class ImageWatch {
   std::optional<std::string> fault(const ImageExpectation& expectation,
                                    const traffic::CameraImage* image,
                                    const traffic::VehicleState& state, std::uint64_t tick);
+  /// Hash of the last image that was looked at; 0 before the first.
+  std::uint64_t imageHash() const { return hash_; }
 
  private:
   bool frozen(const ImageExpectation& expectation, const traffic::CameraImage& image,
