@@ -21,5 +21,6 @@ void addValidateCommand(CLI::App& program, int& exit_code);
 void addImportCommand(CLI::App& program, int& exit_code);
 void addMetricCommand(CLI::App& program, int& exit_code);
 void addDoctorCommand(CLI::App& program, int& exit_code);
+void addReportCommand(CLI::App& program, int& exit_code);
 
 }  // namespace cdiff::cli

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   cdiff::cli::addImportCommand(program, exit_code);
   cdiff::cli::addMetricCommand(program, exit_code);
   cdiff::cli::addDoctorCommand(program, exit_code);
+  cdiff::cli::addReportCommand(program, exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
