@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "e2e_cdiff/evaluation/batch_files.h"
 #include "evaluation/run_records.h"
 

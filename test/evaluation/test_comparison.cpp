@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/evaluation/comparison.h"
@@ -74,7 +75,7 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
     return "";
   };
   EXPECT_NE(
-      textOf([&] { compareLevels(records, "guidance", "none", {}); }).find("'guidance_profile'"),
+      textOf([&] { compareLevels(records, "guidance_profil", "none", {}); }).find("'guidance_profile'"),
       std::string::npos);
   EXPECT_NE(textOf([&] {
               compareLevels(records, "guidance_profile", "nine", {});
