@@ -104,7 +104,7 @@ TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
   const fs::path results = folder("results");
   ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
                        scratch_.path() / "output");
-  while (!fs::exists(results / "runs" / "arterial_exit__seed1" / "trace.csv"))
+  while (!fs::exists(results / "runs" / "arterial_exit__seed1" / "session.yaml"))
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   process.signal(SIGINT);
   EXPECT_EQ(waitFor(process), 130) << output();

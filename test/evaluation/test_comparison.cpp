@@ -74,9 +74,10 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
     }
     return "";
   };
-  EXPECT_NE(
-      textOf([&] { compareLevels(records, "guidance_profil", "none", {}); }).find("'guidance_profile'"),
-      std::string::npos);
+  EXPECT_NE(textOf([&] {
+              compareLevels(records, "guidance_profil", "none", {});
+            }).find("'guidance_profile'"),
+            std::string::npos);
   EXPECT_NE(textOf([&] {
               compareLevels(records, "guidance_profile", "nine", {});
             }).find("the nearest is 'none'"),
