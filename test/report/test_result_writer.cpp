@@ -53,9 +53,11 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                   "ego", "cbv", "metrics", "planner_latency_ms", "faults", "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]),
             Keys({"route_completion_percent", "driving_score", "collisions", "off_road_percent"}));
-  EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count", "decisions", "off_road_rate_percent",
-                                          "collisions", "collisions_with_ego", "collisions_per_km",
-                                          "distance_m", "selections", "rejected"}));
+  EXPECT_EQ(
+      keysOf(summary["cbv"]),
+      Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
+            "collisions_per_km", "speed_error_mps", "closest_distance_m", "minimum_distance_m",
+            "distance_m", "selections", "rejected"}));
   EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
             Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
                   "conflict_point", "decisions_driven", "released_tick", "release_reason",
