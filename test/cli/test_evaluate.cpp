@@ -53,7 +53,8 @@ class EvaluateCommand : public testing::Test {
 
 TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const std::string matrix =
-      write("matrix.yaml", std::string("scenarios: [arterial_exit]\n") + kShort +
+      write("matrix.yaml", std::string("scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\n") +
+                               kShort +
                                "variants: ['slow: target_speed=3', 'fast: "
                                "target_speed=9']\nseeds: [1, 2]\n");
   const std::string results = folder("results");
@@ -88,8 +89,10 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
 TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
   const std::string sumo = write("sumo", "#!/bin/sh\nexit 1\n");
   fs::permissions(sumo, fs::perms::owner_all);
-  const std::string matrix = write(
-      "matrix.yaml", "scenarios: [arterial_exit]\nretries: 1\nset: [sumo.binary=" + sumo + "]\n");
+  const std::string matrix =
+      write("matrix.yaml",
+            "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nretries: 1\nset: [sumo.binary=" +
+                sumo + "]\n");
   EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 2);
   const auto records = readRecords(folder("results"));
   ASSERT_EQ(records.size(), 1U);
@@ -99,8 +102,9 @@ TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
 }
 
 TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
-  const std::string matrix = write(
-      "matrix.yaml", "scenarios: [arterial_exit]\nseeds: [1, 2]\nset: [real_time_factor=1]\n");
+  const std::string matrix = write("matrix.yaml",
+                                   "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseeds: "
+                                   "[1, 2]\nset: [real_time_factor=1]\n");
   const fs::path results = folder("results");
   ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
                        scratch_.path() / "output");
@@ -115,8 +119,9 @@ TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
 }
 
 TEST_F(EvaluateCommand, KillsARunThatTakesTooLong) {
-  const std::string matrix = write(
-      "matrix.yaml", "scenarios: [arterial_exit]\ntimeout: 2\nset: [real_time_factor=0.05]\n");
+  const std::string matrix = write("matrix.yaml",
+                                   "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\ntimeout: "
+                                   "2\nset: [real_time_factor=0.05]\n");
   EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 2);
   const auto records = readRecords(folder("results"));
   EXPECT_EQ(records.front().cause, "timed out: killed after 2 s");
@@ -127,9 +132,12 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"scenarios: [arterial_exi]\n", "the nearest shipped one is 'arterial_exit'"},
       {"seeds: [1]\n", "the matrix is empty"},
-      {"scenarios: [arterial_exit]\nseed: [1]\n", "matrix.yaml:2: unknown key 'seed'"},
-      {"scenarios: [arterial_exit]\nseeds: [one]\n", "key 'seeds' holds 'one'"},
-      {"scenarios: [arterial_exit]\nset: [target_sped=3]\n", "'target_speed'"}};
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseed: [1]\n",
+       "matrix.yaml:3: unknown key 'seed'"},
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseeds: [one]\n",
+       "key 'seeds' holds 'one'"},
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: [target_sped=3]\n",
+       "'target_speed'"}};
   for (const auto& [text, expected] : cases) {
     const std::string matrix = write("matrix.yaml", text);
     EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 3) << text;

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/evaluation/matrix.h"
 #include "e2e_cdiff/evaluation/run_plan.h"
+#include "e2e_cdiff/scenario/scenario_options.h"
 #include "report/scratch_folder.h"
 
 namespace cdiff::evaluation {
@@ -66,7 +67,7 @@ TEST(Plan, IsTheProductOfItsFactors) {
   ASSERT_EQ(plan.size(), 8U);
   EXPECT_EQ(plan[0].id, "arterial_exit__slow__seed1__repetition1");
   EXPECT_EQ(plan[7].id, "arterial_exit__fast__seed2__repetition2");
-  EXPECT_EQ(plan[7].factors.at("cbv_planner"), "pdm_lite");  // the scenario's own
+  EXPECT_EQ(plan[7].factors.at("cbv_planner"), scenario::ScenarioOptions().cbv_planner);
   expectIn("target_speed: 4\n", plan[0].scenario_text);
   expectIn("time_limit: 3\n", plan[0].scenario_text);  // a variant goes over set
   expectIn("time_limit: 5\n", plan[7].scenario_text);
