@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   cdiff::cli::addMetricCommand(program, exit_code);
   cdiff::cli::addTrainCommand(program, exit_code);
   cdiff::cli::addDoctorCommand(program, exit_code);
+  cdiff::cli::addReportCommand(program, exit_code);
 #ifdef E2E_CDIFF_WITH_COLLECT
   cdiff::cli::addCollectCommand(program, exit_code);
 #endif

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/session_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -64,6 +65,31 @@ Measure wassersteinMeasure(const std::vector<double>& cbvs, const std::vector<do
   return measure;
 }
 
+/// Limit of the lane that a vehicle is on; off the road, of the nearest one.
+std::optional<double> speedLimit(const Vehicle& vehicle, const map::RoadNetwork& network) {
+  constexpr double kRadius = 5.0;  // [m] from a lane's centre line
+  map::LaneIndex lane = network.findLane(vehicle.lane_id);
+  if (lane == map::kNoLane) {
+    const auto near = network.lanesNear(vehicle.state.position, vehicle.state.elevation, kRadius);
+    if (!near.empty()) lane = near.front().lane;
+  }
+  if (lane == map::kNoLane) return std::nullopt;
+  return network.lane(lane).speed_limit;
+}
+
+double wantedSpeed(const Vehicle& vehicle, const SessionMetricsOptions& options) {
+  if (options.network == nullptr || !vehicle.state.position.allFinite())
+    return options.target_speed;
+  const std::optional<double> limit = speedLimit(vehicle, *options.network);
+  return std::min(options.target_speed, limit.value_or(options.target_speed));
+}
+
+/// Of the centres; absent without ego, and where one passes under the other.
+std::optional<double> distanceToEgo(const Vehicle& vehicle, const Vehicle* ego) {
+  if (ego == nullptr || traffic::onDifferentLevels(vehicle, *ego)) return std::nullopt;
+  return (vehicle.state.position - ego->state.position).norm();
+}
+
 }  // namespace
 
 class SessionMetrics::Accumulator {
@@ -96,6 +122,9 @@ class SessionMetrics::Accumulator {
     result.cbv_ego_collisions = cbvs_.egoCollisions();
     result.collisions_per_km = cbvs_.collisionsPerKilometre();
     result.cbv_distance_m = cbvs_.distance();
+    result.cbv_speed_error = cbvs_.speedError();
+    result.cbv_closest_distance = cbvs_.closestDistance();
+    result.cbv_minimum_distance = cbvs_.minimumDistance();
     result.ttc_2d = times_.measure("s", "no vehicle was on a collision course with the ego");
     result.speed_shapiro_wilk = shapiroWilkMeasure(cbvs_.speeds());
     result.acceleration_shapiro_wilk = shapiroWilkMeasure(cbvs_.accelerations());
@@ -158,7 +187,8 @@ class SessionMetrics::Accumulator {
     sightings_.clear();
     for (const Vehicle& vehicle : snapshot.vehicles) {
       if (vehicle.role != VehicleRole::kCbv) continue;
-      sightings_.push_back({&vehicle, offRoad(vehicle)});
+      sightings_.push_back({&vehicle, offRoad(vehicle), wantedSpeed(vehicle, options_),
+                            distanceToEgo(vehicle, snapshot.ego())});
       if (sightings_.back().off_road) ++tick.cbv_off_road;
     }
     cbvs_.observe(sightings_, snapshot.decision_tick);

@@ -122,6 +122,9 @@ Json cbvObject(const SessionResult& result) {
   object["collisions"] = measures.cbv_collisions;
   object["collisions_with_ego"] = measures.cbv_ego_collisions;
   addMeasure(object, "collisions_per_km", measures.collisions_per_km);
+  addMeasure(object, "speed_error_mps", measures.cbv_speed_error);
+  addMeasure(object, "closest_distance_m", measures.cbv_closest_distance);
+  addMeasure(object, "minimum_distance_m", measures.cbv_minimum_distance);
   object["distance_m"] = measures.cbv_distance_m;
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {

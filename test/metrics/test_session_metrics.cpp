@@ -29,10 +29,11 @@ TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
   const SessionMeasures measures = metrics_.measures();
   EXPECT_EQ(measures.route_completion_percent, 0.0);
   EXPECT_EQ(measures.driving_score, 0.0);
-  for (const Measure& measure : {measures.ego_off_road_percent, measures.cbv_off_road_rate_percent,
-                                 measures.collisions_per_km, measures.ttc_2d.mean,
-                                 measures.ttc_2d.minimum, measures.speed_shapiro_wilk,
-                                 measures.acceleration_shapiro_wilk, measures.speed_wasserstein}) {
+  for (const Measure& measure :
+       {measures.ego_off_road_percent, measures.cbv_off_road_rate_percent,
+        measures.collisions_per_km, measures.ttc_2d.mean, measures.ttc_2d.minimum,
+        measures.speed_shapiro_wilk, measures.acceleration_shapiro_wilk, measures.speed_wasserstein,
+        measures.cbv_speed_error, measures.cbv_closest_distance, measures.cbv_minimum_distance}) {
     EXPECT_FALSE(measure.value.has_value());
     EXPECT_EQ(measure.n, 0U);
     EXPECT_FALSE(measure.reason.empty());
@@ -84,6 +85,52 @@ TEST_F(SessionMetricsTest, CountsACbvOnlyWhileItIsOne) {
   EXPECT_EQ(measures.speed_shapiro_wilk.reason, "n = 2, needs at least 3");
   // RIFT's rate knows decision ticks alone: off at one of two.
   EXPECT_NEAR(*measures.rift_compat.at("off_road_rate_percent").value, 50.0, 1e-9);
+}
+
+TEST_F(SessionMetricsTest, TakesTheNearestPassOfEveryCbv) {
+  // While it is a CBV, a comes as near as hypot(3, 4) = 5 m (tick 1, between decisions), b as 20 m.
+  // Nearer ticks at which a is background do not count.
+  observe(0, {ego(0, 0, 5), cbv("a", 10, 0, 4), cbv("b", -30, 0, 4)});
+  observe(1, {ego(0, 0, 5), cbv("a", 3, 4, 4), cbv("b", -20, 0, 4)});
+  observe(2, {ego(0, 0, 5), background("a", 1, 0, 4), cbv("b", -25, 0, 4)});
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_NEAR(*measures.cbv_closest_distance.value, 12.5, 1e-12);
+  EXPECT_EQ(measures.cbv_closest_distance.n, 2U);
+  EXPECT_NEAR(*measures.cbv_minimum_distance.value, 5.0, 1e-12);
+}
+
+TEST_F(SessionMetricsTest, PassesOverACbvOnAnotherLevel) {
+  auto below = cbv("a", 0, 0, 4);
+  below.state.elevation = -5.0;
+  observe(0, {ego(0, 0, 5), below});
+  EXPECT_FALSE(metrics_.measures().cbv_minimum_distance.value.has_value());
+  EXPECT_EQ(metrics_.measures().cbv_minimum_distance.reason, "the ego was never seen");
+}
+
+TEST_F(SessionMetricsTest, ComparesCbvSpeedsWithTheTarget) {
+  // Target 8 m/s; decisions at ticks 0 and 2 see 5 and 10 m/s: (3 + 2) / 2.
+  observe(0, {cbv("a", 50, 0, 5)});
+  observe(1, {cbv("a", 51, 0, 100)});
+  observe(2, {cbv("a", 52, 0, 10)});
+  EXPECT_NEAR(*metrics_.measures().cbv_speed_error.value, 2.5, 1e-12);
+  EXPECT_EQ(metrics_.measures().cbv_speed_error.n, 2U);
+}
+
+TEST(SpeedError, CapsTheTargetByTheLanesLimit) {
+  // Target 20 m/s on a lane of 13.89 m/s: known by the lane's id at tick 0, by the place (1 m off
+  // the centre line) at tick 2; 40 m off the road at tick 4 only the target is left.
+  const test::StraightRoad road;
+  SessionMetricsOptions options;
+  options.target_speed = 20.0;
+  options.network = &road.network;
+  SessionMetrics metrics(options, road.drivable_area, road.route);
+  auto on_lane = cbv("a", 50, 0, 13.89 + 1.0);
+  on_lane.lane_id = "road_0";
+  metrics.observe(snapshot(0, {on_lane}), nullptr);
+  metrics.observe(snapshot(2, {cbv("a", 51, 1, 13.89 + 2.0)}), nullptr);
+  EXPECT_NEAR(*metrics.measures().cbv_speed_error.value, 1.5, 1e-12);
+  metrics.observe(snapshot(4, {cbv("a", 51, 40, 11.0)}), nullptr);
+  EXPECT_NEAR(*metrics.measures().cbv_speed_error.value, 4.0, 1e-12);
 }
 
 TEST_F(SessionMetricsTest, SamplesSpeedsAndSignedAccelerationsAtDecisions) {

@@ -57,7 +57,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   EXPECT_EQ(
       keysOf(summary["cbv"]),
       Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
-            "collisions_per_km", "distance_m", "selections", "rejected", "faults", "plan"}));
+            "collisions_per_km", "speed_error_mps", "closest_distance_m", "minimum_distance_m",
+            "distance_m", "selections", "rejected", "faults", "plan"}));
   EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
             Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
                   "conflict_point", "decisions_driven", "released_tick", "release_reason",

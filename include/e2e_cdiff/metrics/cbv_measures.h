@@ -6,11 +6,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "e2e_cdiff/metrics/off_road_rate.h"
+#include "e2e_cdiff/metrics/sample_statistics.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::metrics {
@@ -19,6 +21,8 @@ namespace cdiff::metrics {
 struct CbvSighting {
   const traffic::Vehicle* vehicle = nullptr;
   bool off_road = false;
+  std::optional<double> wanted_speed = {};  ///< target speed capped by the lane's limit [m/s]
+  std::optional<double> ego_distance = {};  ///< of the centres of ego and CBV [m]
 };
 
 class CbvMeasures {
@@ -40,8 +44,16 @@ class CbvMeasures {
   const std::vector<double>& accelerations() const { return accelerations_; }
   Measure offRoadRatePercent() const;
   Measure collisionsPerKilometre() const;
+  /// Mean of |v - wanted speed| over decisions [m/s].
+  Measure speedError() const;
+  /// Mean over CBVs of each one's smallest distance to the ego [m].
+  Measure closestDistance() const;
+  /// The smallest of all distances to the ego [m].
+  Measure minimumDistance() const;
 
  private:
+  DistributionMeasure closestDistances() const;
+
   std::set<std::string> driven_;
   std::map<std::string, Eigen::Vector2d> last_positions_;  ///< of the CBVs of the last tick
   OffRoadRate off_road_;
@@ -51,6 +63,8 @@ class CbvMeasures {
   double distance_ = 0.0;
   std::vector<double> speeds_;
   std::vector<double> accelerations_;
+  SampleStatistics speed_errors_;
+  std::map<std::string, double> closest_;  ///< smallest distance to the ego, by vehicle [m]
 };
 
 /// Reason of every CBV figure of a session without CBVs.

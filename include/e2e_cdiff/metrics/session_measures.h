@@ -39,6 +39,9 @@ struct SessionMeasures {
   std::size_t cbv_ego_collisions = 0;  ///< of these, with the ego
   Measure collisions_per_km;           ///< paper's CPK
   double cbv_distance_m = 0.0;
+  Measure cbv_speed_error;       ///< mean |v - min(target speed, lane limit)| at decisions [m/s]
+  Measure cbv_closest_distance;  ///< mean over CBVs of the smallest centre distance to the ego [m]
+  Measure cbv_minimum_distance;  ///< the smallest of these [m]
   // Interaction.
   DistributionMeasure ttc_2d;  ///< ego against every other vehicle, per-decision minimum over those
                                ///< where defined [s]

@@ -21,6 +21,8 @@ struct SessionMetricsOptions {
   double completion_distance = 10.0;  ///< of the protocol [m]
   double ttc_radius = 60.0;           ///< vehicles considered for 2D-TTC [m]
   double ttc_limit = 3600.0;          ///< a longer 2D-TTC counts as never [s]
+  double target_speed = 8.0;          ///< that CBVs aim at, capped by the lane's limit [m/s]
+  const map::RoadNetwork* network = nullptr;  ///< for that limit; nullptr: target_speed alone
 };
 
 /// Figures of one tick, for the live topic.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What became of one planned run: record.json in its folder, written whole after the run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/evaluation/figures.h"
+#include "e2e_cdiff/evaluation/run_plan.h"
+
+namespace cdiff::evaluation {
+
+struct RunRecord {
+  std::string id;
+  Factors factors;
+  std::string scenario_sha256;
+  std::string status = "not_run";  ///< of the session; or "error", "interrupted", "not_run"
+  std::string cause;               ///< of an error
+  int exit_code = -1;
+  int attempts = 0;
+  double wall_seconds = 0.0;  ///< of the last attempt
+  double simulated_seconds = 0.0;
+  bool passed = false;                ///< the scenario's verdict
+  std::vector<std::string> failures;  ///< of the verdict
+  Figures figures;                    ///< of a session that ended by its own rules
+
+  /// Whether the session ended by its own rules.
+  bool complete() const;
+  /// Whether it was started, and broke.
+  bool failed() const { return status == "error"; }
+};
+
+/// The record of a run that was not started yet.
+RunRecord recordOf(const PlannedRun& run);
+
+std::string recordJson(const RunRecord& record);
+/// nullopt when the file is absent or is no record.
+std::optional<RunRecord> readRecord(const std::filesystem::path& file);
+/// Records of a batch's result folder by id. Throws InputError when it holds none.
+std::vector<RunRecord> readRecords(const std::filesystem::path& results);
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "batch_progress.h"
+
+#include <unistd.h>
+
+#include <iostream>
+
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::cli {
+
+using Clock = std::chrono::steady_clock;
+
+BatchProgress::BatchProgress(std::size_t total)
+    : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
+
+void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
+  ++done_;
+  if (resumed) {
+    ++resumed_;
+    return;
+  }
+  failed_ += record.failed();
+  simulated_ += record.simulated_seconds;
+  const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const double per_run = wall / static_cast<double>(done_ - resumed_);
+  const double left = per_run * static_cast<double>(total_ - done_);
+  std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_
+            << " failed, " << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1)
+            << " x real time, " << core::formatFixed(left, 0) << " s left: " << record.id << " "
+            << record.status << (record.cause.empty() ? "" : " (" + record.cause + ")")
+            << (terminal_ && !record.failed() ? "" : "\n");
+  std::cerr.flush();
+}
+
+void BatchProgress::finish() const {
+  if (terminal_ && done_ > resumed_) std::cerr << "\n";
+  if (resumed_ > 0) std::cerr << resumed_ << " runs were complete already\n";
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// How far a batch is: done of total, failed, pace, time left. One line that is rewritten on a
+/// terminal, a plain line per run elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+#include "e2e_cdiff/evaluation/run_record.h"
+
+namespace cdiff::cli {
+
+class BatchProgress {
+ public:
+  explicit BatchProgress(std::size_t total);
+  /// A run ended; `resumed`: it had before.
+  void ended(const evaluation::RunRecord& record, bool resumed);
+  /// Leaves the terminal on a line of its own.
+  void finish() const;
+
+ private:
+  std::size_t total_;
+  bool terminal_;
+  std::chrono::steady_clock::time_point begin_;
+  std::size_t done_ = 0;
+  std::size_t resumed_ = 0;
+  std::size_t failed_ = 0;
+  double simulated_ = 0.0;  ///< by all runs together [s]
+};
+
+}  // namespace cdiff::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/evaluation/comparison.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::vector<std::string> figures;
+  std::string factor;
+  std::string baseline;
+  std::string csv;
+};
+
+std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
+  evaluation::checkFigureNames(arguments.figures);
+  const std::vector<std::string>& folders = arguments.folders;
+  const bool levels = !arguments.factor.empty();
+  if (levels != !arguments.baseline.empty()) {
+    throw InputError(
+        "--factor and --baseline go together, e.g. --factor guidance_profile "
+        "--baseline none");
+  }
+  if (folders.size() != (levels ? 1U : 2U)) {
+    throw InputError("--compare needs two result folders, or one with --factor and --baseline");
+  }
+  if (levels) {
+    return evaluation::compareLevels(evaluation::readRecords(folders[0]), arguments.factor,
+                                     arguments.baseline, arguments.figures);
+  }
+  const evaluation::RunSet a{folders[0], evaluation::readRecords(folders[0])};
+  const evaluation::RunSet b{folders[1], evaluation::readRecords(folders[1])};
+  return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.figures)};
+}
+
+int report(const ReportArguments& arguments) {
+  const std::vector<evaluation::Comparison> comparisons = compare(arguments);
+  std::cout << evaluation::comparisonMarkdown(comparisons);
+  const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
+                                             : fs::path(arguments.csv);
+  core::writeFileAtomically(csv, evaluation::comparisonCsv(comparisons));
+  return kPassed;
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      program.add_subcommand("report", "Compare the results of evaluations, run by run");
+  command
+      ->add_option("--compare", arguments->folders,
+                   "Result folders A and B of `cdiff evaluate`, or one with --factor")
+      ->required()
+      ->expected(1, 2);
+  command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
+  command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
+  command->add_option("--figure", arguments->figures, "Only this figure; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--csv", arguments->csv,
+                      "CSV file (default: compare.csv in the last folder)");
+  command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
+}
+
+}  // namespace cdiff::cli

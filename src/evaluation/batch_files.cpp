@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/evaluation/batch_files.h"
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/markup.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json statisticsJson(const Statistics& statistics) {
+  Json interval = nullptr;
+  if (statistics.half_width) {
+    interval = Json::array(
+        {*statistics.mean - *statistics.half_width, *statistics.mean + *statistics.half_width});
+  }
+  return {{"mean", number(statistics.mean)},
+          {"standard_deviation", number(statistics.standard_deviation)},
+          {"interval_95", interval},
+          {"n", statistics.n}};
+}
+
+Json cellJson(const Cell& cell) {
+  Json factors = Json::object();
+  for (const std::string& factor : factorNames()) {
+    if (cell.factors.count(factor) != 0) factors[factor] = cell.factors.at(factor);
+  }
+  Json figures = Json::object();
+  for (const std::string& name : figureNames()) {
+    const auto figure = cell.figures.find(name);
+    figures[name] = statisticsJson(figure == cell.figures.end() ? Statistics() : figure->second);
+  }
+  return {{"factors", factors},
+          {"runs", cell.runs},
+          {"failed", cell.failed},
+          {"not_run", cell.missing},
+          {"figures", figures}};
+}
+
+struct Counts {
+  std::size_t failed = 0;
+  std::size_t missing = 0;
+  std::size_t not_passed = 0;  ///< complete, but the verdict failed
+};
+
+Counts countOf(const std::vector<RunRecord>& records) {
+  Counts counts;
+  for (const RunRecord& record : records) {
+    counts.failed += record.failed();
+    counts.missing += !record.failed() && !record.complete();
+    counts.not_passed += record.complete() && !record.passed;
+  }
+  return counts;
+}
+
+std::string attribute(const std::string& name, const std::string& value) {
+  return " " + name + "=\"" + report::escapeMarkup(value) + "\"";
+}
+
+std::string caseXml(const std::string& name, const RunRecord& record) {
+  std::string text = "    <testcase" + attribute("classname", "e2e_cdiff." + name) +
+                     attribute("name", record.id) +
+                     attribute("time", core::formatFixed(record.wall_seconds, 3));
+  if (record.complete() && record.passed) return text + "/>\n";
+  const std::string tag = record.failed() ? "error" : record.complete() ? "failure" : "skipped";
+  const std::string message = record.failed()     ? record.cause
+                              : record.complete() ? core::joinText(record.failures, "; ")
+                                                  : record.status;
+  text += ">\n      <" + tag;
+  if (tag != "skipped") text += attribute("type", record.status);
+  return text + attribute("message", message) + "/>\n    </testcase>\n";
+}
+
+/// "12.3 ± 0.4 (3)": mean, standard deviation and n.
+std::string cellText(const Cell& cell, const std::string& name) {
+  const auto found = cell.figures.find(name);
+  if (found == cell.figures.end() || !found->second.mean) return "-";
+  const Statistics& figure = found->second;
+  std::string text = core::formatFixed(*figure.mean, 2);
+  if (figure.standard_deviation)
+    text += " \xC2\xB1 " + core::formatFixed(*figure.standard_deviation, 2);
+  return text + " (" + std::to_string(figure.n) + ")";
+}
+
+/// Factors with more than one level; the scenario in any case.
+std::vector<std::string> shownFactors(const std::vector<Cell>& cells) {
+  std::vector<std::string> shown;
+  for (const std::string& factor : factorNames()) {
+    std::set<std::string> levels;
+    for (const Cell& cell : cells) {
+      const auto level = cell.factors.find(factor);
+      if (level != cell.factors.end()) levels.insert(level->second);
+    }
+    if (levels.size() > 1 || factor == "scenario") shown.push_back(factor);
+  }
+  return shown;
+}
+
+std::string rowText(const std::vector<std::string>& fields) {
+  return "| " + core::joinText(fields, " | ") + " |\n";
+}
+
+const std::vector<std::string>& tableFigures() {
+  static const std::vector<std::string> names = {
+      "ego_completion_percent", "ego_driving_score",  "ego_collisions",     "cbv_decisions",
+      "cbv_off_road_percent",   "cbv_ego_collisions", "cbv_passed_percent", "cbv_speed_error_mps",
+      "cbv_closest_distance_m", "ttc_mean_s"};
+  return names;
+}
+
+std::string cellsTable(const std::vector<Cell>& cells) {
+  const std::vector<std::string> shown = shownFactors(cells);
+  std::vector<std::string> head = shown;
+  head.insert(head.end(), {"runs", "failed", "not run"});
+  head.insert(head.end(), tableFigures().begin(), tableFigures().end());
+  std::string text = rowText(head) + rowText(std::vector<std::string>(head.size(), "---"));
+  for (const Cell& cell : cells) {
+    std::vector<std::string> fields;
+    for (const std::string& factor : shown) {
+      const std::string& level = cell.factors.at(factor);
+      fields.push_back(level.empty() ? "-" : level);
+    }
+    for (const std::size_t count : {cell.runs, cell.failed, cell.missing})
+      fields.push_back(std::to_string(count));
+    for (const std::string& name : tableFigures()) fields.push_back(cellText(cell, name));
+    text += rowText(fields);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + "\"";
+}
+
+std::string runsCsv(const std::vector<RunRecord>& records) {
+  std::vector<std::string> head = {"id"};
+  head.insert(head.end(), factorNames().begin(), factorNames().end());
+  head.insert(head.end(), {"status", "passed", "exit_code", "attempts", "wall_seconds"});
+  head.insert(head.end(), figureNames().begin(), figureNames().end());
+  head.emplace_back("cause");
+  std::string text = core::joinText(head, ",") + "\n";
+  for (const RunRecord& record : records) {
+    const bool started = record.attempts > 0;
+    text += csvField(record.id);
+    for (const std::string& factor : factorNames())
+      text += "," + csvField(record.factors.at(factor));
+    text += "," + record.status + "," +
+            (record.complete() ? (record.passed ? "true" : "false") : "") + "," +
+            (started ? std::to_string(record.exit_code) : "") + "," +
+            std::to_string(record.attempts) + "," +
+            (started ? core::formatFixed(record.wall_seconds, 3) : "");
+    for (const std::string& name : figureNames()) {
+      const auto figure = record.figures.find(name);
+      text += "," + (figure == record.figures.end() ? "" : core::formatNumber(figure->second));
+    }
+    text += "," + csvField(record.cause) + "\n";
+  }
+  return text;
+}
+
+std::string batchSummaryJson(const std::string& name, const std::vector<RunRecord>& records) {
+  const Counts counts = countOf(records);
+  Json summary = {{"schema_version", 1},       {"evaluation", name},
+                  {"runs", records.size()},    {"failed", counts.failed},
+                  {"not_run", counts.missing}, {"verdict_failed", counts.not_passed},
+                  {"cells", Json::array()}};
+  for (const Cell& cell : cellsOf(records)) summary["cells"].push_back(cellJson(cell));
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string batchJunitXml(const std::string& name, const std::vector<RunRecord>& records) {
+  const Counts counts = countOf(records);
+  double wall = 0.0;
+  for (const RunRecord& record : records) wall += record.wall_seconds;
+  const std::string figures = attribute("tests", std::to_string(records.size())) +
+                              attribute("failures", std::to_string(counts.not_passed)) +
+                              attribute("errors", std::to_string(counts.failed)) +
+                              attribute("skipped", std::to_string(counts.missing)) +
+                              attribute("time", core::formatFixed(wall, 3));
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + figures +
+                     ">\n  <testsuite" + attribute("name", name) + figures + ">\n";
+  for (const RunRecord& record : records) text += caseXml(name, record);
+  return text + "  </testsuite>\n</testsuites>\n";
+}
+
+std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>& records) {
+  const Counts counts = countOf(records);
+  return "# " + name + "\n\n" + std::to_string(records.size()) +
+         " runs: " + std::to_string(counts.failed) + " failed, " + std::to_string(counts.missing) +
+         " not run or interrupted, " + std::to_string(counts.not_passed) +
+         " ended with a failed verdict. Mean \xC2\xB1 standard deviation over seeds (number of "
+         "seeds that have the figure).\n\n" +
+         cellsTable(cellsOf(records));
+}
+
+void writeBatchFiles(const std::filesystem::path& results, const std::string& name,
+                     const std::vector<RunRecord>& records) {
+  core::writeFileAtomically(results / "runs.csv", runsCsv(records));
+  core::writeFileAtomically(results / "summary.json", batchSummaryJson(name, records));
+  core::writeFileAtomically(results / "junit.xml", batchJunitXml(name, records));
+  core::writeFileAtomically(results / "summary.md", batchMarkdown(name, records));
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/evaluation/comparison.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/evaluation/batch_files.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using core::InputError;
+using Groups = std::map<Factors, std::vector<const RunRecord*>>;
+
+std::set<std::string> levelsOf(const std::vector<RunRecord>& records, const std::string& factor) {
+  std::set<std::string> levels;
+  for (const RunRecord& record : records) levels.insert(record.factors.at(factor));
+  return levels;
+}
+
+/// Complete runs by their levels of the factors that pair.
+Groups grouped(const std::vector<RunRecord>& records, const std::set<std::string>& paired_by) {
+  Groups groups;
+  for (const RunRecord& record : records) {
+    if (!record.complete()) continue;
+    Factors key;
+    for (const std::string& factor : paired_by) key[factor] = record.factors.at(factor);
+    groups[key].push_back(&record);
+  }
+  return groups;
+}
+
+/// Mean of a figure over the runs that have it.
+std::optional<double> meanOf(const std::vector<const RunRecord*>& records,
+                             const std::string& figure) {
+  std::vector<double> values;
+  for (const RunRecord* record : records) {
+    const auto value = record->figures.find(figure);
+    if (value != record->figures.end()) values.push_back(value->second);
+  }
+  return statisticsOf(values).mean;
+}
+
+FigureComparison compareFigure(const std::string& figure, const Groups& a, const Groups& b) {
+  std::vector<double> values_a;
+  std::vector<double> values_b;
+  std::vector<double> differences;
+  for (const auto& [key, records] : a) {
+    const auto partner = b.find(key);
+    if (partner == b.end()) continue;
+    const auto value_a = meanOf(records, figure);
+    const auto value_b = meanOf(partner->second, figure);
+    if (!value_a || !value_b) continue;
+    values_a.push_back(*value_a);
+    values_b.push_back(*value_b);
+    differences.push_back(*value_b - *value_a);
+  }
+  return {figure, statisticsOf(values_a).mean.value_or(0.0),
+          statisticsOf(values_b).mean.value_or(0.0), statisticsOf(differences)};
+}
+
+std::string nearest(const std::string& name, const std::vector<std::string>& known) {
+  return "; the nearest is '" + core::nearestName(name, known) +
+         "' (all: " + core::joinText(known, ", ") + ")";
+}
+
+std::string intervalText(const Statistics& difference) {
+  if (!difference.half_width) return "-";
+  return "[" + core::formatFixed(*difference.mean - *difference.half_width, 3) + ", " +
+         core::formatFixed(*difference.mean + *difference.half_width, 3) + "]";
+}
+
+std::string tableOf(const Comparison& comparison) {
+  std::string text =
+      "## A = " + comparison.a + ", B = " + comparison.b + "\n\n" +
+      std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
+      " runs of A and " + std::to_string(comparison.runs_b) + " of B; paired by " +
+      core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
+      ".\n\n| figure | pairs | mean A | mean B | B - A | 95 % interval |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const FigureComparison& figure : comparison.figures) {
+    text += "| " + figure.figure + " | " + std::to_string(figure.difference.n) + " | " +
+            core::formatFixed(figure.mean_a, 3) + " | " + core::formatFixed(figure.mean_b, 3) +
+            " | " + core::formatFixed(*figure.difference.mean, 3) + " | " +
+            intervalText(figure.difference) + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b) {
+  std::set<std::string> shared = {"scenario", "seed", "repetition"};
+  for (const std::string& factor : factorNames()) {
+    const std::set<std::string> of_b = levelsOf(b.records, factor);
+    for (const std::string& level : levelsOf(a.records, factor)) {
+      if (of_b.count(level) != 0) shared.insert(factor);
+    }
+  }
+  return shared;
+}
+
+Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
+                       const std::vector<std::string>& names) {
+  const Groups groups_a = grouped(a.records, paired_by);
+  const Groups groups_b = grouped(b.records, paired_by);
+  Comparison comparison{a.name, b.name, paired_by, 0, a.records.size(), b.records.size(), {}};
+  for (const auto& [key, records] : groups_a) comparison.pairs += groups_b.count(key);
+  for (const std::string& figure : names.empty() ? figureNames() : names) {
+    FigureComparison compared = compareFigure(figure, groups_a, groups_b);
+    if (compared.difference.n > 0) comparison.figures.push_back(compared);
+  }
+  return comparison;
+}
+
+std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
+                                      const std::string& factor, const std::string& baseline,
+                                      const std::vector<std::string>& names) {
+  const auto& factors = factorNames();
+  if (std::find(factors.begin(), factors.end(), factor) == factors.end())
+    throw InputError("--factor '" + factor + "' is no factor" + nearest(factor, factors));
+  const std::set<std::string> levels = levelsOf(records, factor);
+  if (levels.count(baseline) == 0) {
+    throw InputError("--baseline '" + baseline + "' is no level of " + factor +
+                     nearest(baseline, {levels.begin(), levels.end()}));
+  }
+  std::map<std::string, RunSet> sets;
+  for (const RunRecord& record : records) {
+    RunSet& set = sets[record.factors.at(factor)];
+    set.name = factor + " " + record.factors.at(factor);
+    set.records.push_back(record);
+  }
+  std::set<std::string> paired_by(factors.begin(), factors.end());
+  paired_by.erase(factor);
+  std::vector<Comparison> comparisons;
+  for (const auto& [level, set] : sets) {
+    if (level == baseline) continue;
+    comparisons.push_back(compareRuns(sets.at(baseline), set, paired_by, names));
+  }
+  return comparisons;
+}
+
+void checkFigureNames(const std::vector<std::string>& names) {
+  const auto& known = figureNames();
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw InputError("--figure '" + name + "' is no figure" + nearest(name, known));
+  }
+}
+
+std::string comparisonMarkdown(const std::vector<Comparison>& comparisons) {
+  std::string text;
+  for (const Comparison& comparison : comparisons)
+    text += (text.empty() ? "" : "\n") + tableOf(comparison);
+  return text;
+}
+
+std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
+  std::string text =
+      "a,b,figure,pairs,mean_a,mean_b,difference,standard_deviation,low_95,high_95\n";
+  const auto field = [](const std::optional<double>& value) {
+    return "," + (value ? core::formatNumber(*value) : std::string());
+  };
+  for (const Comparison& comparison : comparisons) {
+    for (const FigureComparison& figure : comparison.figures) {
+      const Statistics& difference = figure.difference;
+      text += csvField(comparison.a) + "," + csvField(comparison.b) + "," + figure.figure + "," +
+              std::to_string(difference.n) + field(figure.mean_a) + field(figure.mean_b) +
+              field(difference.mean) + field(difference.standard_deviation);
+      const bool interval = difference.half_width.has_value();
+      text += interval ? field(*difference.mean - *difference.half_width) +
+                             field(*difference.mean + *difference.half_width)
+                       : ",,";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/evaluation/figures.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using nlohmann::json;
+
+/// Figures that lie at one place of a summary.
+const std::vector<std::pair<const char*, const char*>>& places() {
+  static const std::vector<std::pair<const char*, const char*>> all = {
+      {"ego_completion_percent", "/ego/route_completion_percent"},
+      {"ego_driving_score", "/ego/driving_score"},
+      {"ego_collisions", "/ego/collisions"},
+      {"ego_off_road_percent", "/ego/off_road_percent"},
+      {"cbv_count", "/cbv/count"},
+      {"cbv_decisions", "/cbv/decisions"},
+      {"cbv_off_road_percent", "/cbv/off_road_rate_percent"},
+      {"cbv_collisions", "/cbv/collisions"},
+      {"cbv_ego_collisions", "/cbv/collisions_with_ego"},
+      {"cbv_collisions_per_km", "/cbv/collisions_per_km"},
+      {"cbv_distance_m", "/cbv/distance_m"},
+      {"cbv_speed_error_mps", "/cbv/speed_error_mps"},
+      {"cbv_closest_distance_m", "/cbv/closest_distance_m"},
+      {"cbv_minimum_distance_m", "/cbv/minimum_distance_m"},
+      {"ttc_mean_s", "/metrics/ttc_2d_s/mean"},
+      {"ttc_min_s", "/metrics/ttc_2d_s/min"},
+      {"speed_shapiro_wilk", "/metrics/speed_shapiro_wilk/value"},
+      {"acceleration_shapiro_wilk", "/metrics/acceleration_shapiro_wilk/value"},
+      {"speed_wasserstein_mps", "/metrics/speed_wasserstein_mps/value"},
+      {"guidance_trust_region_share", "/guidance_trust_region_share"},
+      {"simulated_seconds", "/simulated_seconds"},
+      {"real_time_factor", "/real_time_factor"}};
+  return all;
+}
+
+/// Shares over the CBVs that were selected; absent where the summary does not have the keys.
+void addSelectionFigures(const json& summary, Figures& figures) {
+  const json selections = summary.value(json::json_pointer("/cbv/selections"), json::array());
+  double passed = 0.0;
+  double completion = 0.0;
+  std::size_t with_passed = 0;
+  std::size_t with_completion = 0;
+  for (const json& selection : selections) {
+    const json passed_value = selection.value("conflict_point_passed", json());
+    const json completion_value = selection.value("route_completion_percent", json());
+    if (passed_value.is_boolean()) {
+      ++with_passed;
+      passed += passed_value.get<bool>() ? 100.0 : 0.0;
+    }
+    if (completion_value.is_number()) {
+      ++with_completion;
+      completion += completion_value.get<double>();
+    }
+  }
+  if (with_passed > 0) figures["cbv_passed_percent"] = passed / static_cast<double>(with_passed);
+  if (with_completion > 0) {
+    figures["cbv_completion_percent"] = completion / static_cast<double>(with_completion);
+  }
+}
+
+std::string lastFault(const json& summary) {
+  const json faults = summary.value("faults", json::array());
+  return faults.empty() ? "" : faults.back().value("text", "");
+}
+
+}  // namespace
+
+const std::vector<std::string>& figureNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& [name, place] : places()) {
+      all.emplace_back(name);
+      if (all.back() != "cbv_minimum_distance_m") continue;
+      all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent"});
+    }
+    return all;
+  }();
+  return names;
+}
+
+SummaryFacts readSummary(const std::string& text, const std::string& source) {
+  try {
+    const json summary = json::parse(text);
+    SummaryFacts facts;
+    facts.status = summary.at("status");
+    facts.fault = lastFault(summary);
+    facts.passed = summary.at("verdict").at("passed");
+    facts.failures = summary.at("verdict").at("failures").get<std::vector<std::string>>();
+    facts.simulated_seconds = summary.at("simulated_seconds");
+    for (const auto& [name, place] : places()) {
+      const json::json_pointer pointer(place);
+      if (!summary.contains(pointer) || !summary.at(pointer).is_number()) continue;
+      facts.figures[name] = summary.at(pointer);
+    }
+    addSelectionFigures(summary, facts.figures);
+    return facts;
+  } catch (const json::exception& error) {
+    throw core::InputError("'" + source + "' is no summary of a session: " + error.what());
+  }
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/evaluation/run_record.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+RunRecord fromJson(const Json& json) {
+  RunRecord record;
+  record.id = json.at("id");
+  for (const auto& [factor, level] : json.at("factors").items()) record.factors[factor] = level;
+  for (const std::string& factor : factorNames()) {
+    if (record.factors.count(factor) == 0) record.factors[factor] = "";
+  }
+  record.scenario_sha256 = json.at("scenario_sha256");
+  record.status = json.at("status");
+  record.cause = json.at("cause");
+  record.exit_code = json.at("exit_code");
+  record.attempts = json.at("attempts");
+  record.wall_seconds = json.at("wall_seconds");
+  record.simulated_seconds = json.at("simulated_seconds");
+  record.passed = json.at("passed");
+  record.failures = json.at("failures").get<std::vector<std::string>>();
+  for (const auto& [name, value] : json.at("figures").items()) record.figures[name] = value;
+  return record;
+}
+
+}  // namespace
+
+bool RunRecord::complete() const {
+  return status != "error" && status != "interrupted" && status != "not_run";
+}
+
+RunRecord recordOf(const PlannedRun& run) {
+  RunRecord record;
+  record.id = run.id;
+  record.factors = run.factors;
+  record.scenario_sha256 = run.scenario_sha256;
+  return record;
+}
+
+std::string recordJson(const RunRecord& record) {
+  Json factors = Json::object();
+  for (const std::string& factor : factorNames()) factors[factor] = record.factors.at(factor);
+  Json figures = Json::object();
+  for (const auto& [name, value] : record.figures) figures[name] = value;
+  const Json json = {{"schema_version", 1},
+                     {"id", record.id},
+                     {"factors", factors},
+                     {"scenario_sha256", record.scenario_sha256},
+                     {"status", record.status},
+                     {"cause", record.cause},
+                     {"exit_code", record.exit_code},
+                     {"attempts", record.attempts},
+                     {"wall_seconds", record.wall_seconds},
+                     {"simulated_seconds", record.simulated_seconds},
+                     {"passed", record.passed},
+                     {"failures", record.failures},
+                     {"figures", figures}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<RunRecord> readRecord(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return std::nullopt;
+  try {
+    return fromJson(Json::parse(core::readFile(file, "record")));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<RunRecord> readRecords(const fs::path& results) {
+  std::vector<RunRecord> records;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(results / "runs", error)) {
+    if (auto record = readRecord(entry.path() / "record.json")) records.push_back(*record);
+  }
+  if (records.empty()) {
+    throw core::InputError("'" + results.string() +
+                           "' holds no records of an evaluation (runs/*/record.json)");
+  }
+  std::sort(records.begin(), records.end(),
+            [](const RunRecord& left, const RunRecord& right) { return left.id < right.id; });
+  return records;
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/evaluation/child_process.h"
+#include "e2e_cdiff/evaluation/run_record.h"
+#include "report/scratch_folder.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A session of 3 simulated seconds.
+constexpr const char* kShort = "set: [protocol.time_limit=3]\n";
+
+class EvaluateCommand : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(scratch_.path() / name) << text;
+    return (scratch_.path() / name).string();
+  }
+  std::string folder(const std::string& name) const { return (scratch_.path() / name).string(); }
+  /// Runs cdiff; its output is in output() afterwards.
+  int cdiff(const std::vector<std::string>& arguments) const {
+    ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
+    return waitFor(process);
+  }
+  static int waitFor(ChildProcess& process) {
+    std::optional<int> exit_code = process.poll();
+    while (!exit_code) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      exit_code = process.poll();
+    }
+    return *exit_code;
+  }
+  std::string output() const { return core::readFile(scratch_.path() / "output", "output"); }
+  void expectOutput(const std::string& part) const {
+    EXPECT_NE(output().find(part), std::string::npos) << part << "\nin\n" << output();
+  }
+  static std::size_t lines(const fs::path& file) {
+    return core::splitText(core::readFile(file, "file"), '\n').size();
+  }
+  test::ScratchFolder scratch_;
+};
+
+TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
+  const std::string matrix =
+      write("matrix.yaml", std::string("scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\n") +
+                               kShort +
+                               "variants: ['slow: target_speed=3', 'fast: "
+                               "target_speed=9']\nseeds: [1, 2]\n");
+  const std::string results = folder("results");
+  const std::vector<std::string> evaluate = {"evaluate", matrix, "--results", results,
+                                             "--jobs",   "2",    "--resume"};
+  ASSERT_EQ(cdiff(evaluate), 0) << output();
+  expectOutput("4/4 done, 0 failed");
+  expectOutput("| scenario | variant | runs |");
+  EXPECT_EQ(lines(fs::path(results) / "runs.csv"), 5U);
+  for (const char* name : {"matrix.yaml", "summary.json", "summary.md", "junit.xml"})
+    EXPECT_TRUE(fs::exists(fs::path(results) / name)) << name;
+  const fs::path run = fs::path(results) / "runs" / "arterial_exit__slow__seed2";
+  EXPECT_TRUE(fs::exists(run / "trace.csv"));
+  EXPECT_EQ(readRecord(run / "record.json")->status, "timed_out");  // the protocol's limit of 3 s
+  EXPECT_GT(readRecord(run / "record.json")->figures.at("ego_completion_percent"), 0.0);
+
+  fs::remove(run / "record.json");  // as if the batch had been cut off
+  ASSERT_EQ(cdiff(evaluate), 0) << output();
+  expectOutput("3 runs were complete already");
+  EXPECT_TRUE(fs::exists(run / "record.json"));
+
+  ASSERT_EQ(cdiff({"report", "--compare", results, "--factor", "variant", "--baseline", "slow",
+                   "--figure", "ego_completion_percent"}),
+            0);
+  expectOutput("## A = variant slow, B = variant fast");
+  expectOutput("| ego_completion_percent | 2 |");
+  EXPECT_EQ(lines(fs::path(results) / "compare.csv"), 2U);
+  ASSERT_EQ(cdiff({"report", "--compare", results, results}), 0);
+  expectOutput("4 pairs of 4 runs of A and 4 of B");
+}
+
+TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
+  const std::string sumo = write("sumo", "#!/bin/sh\nexit 1\n");
+  fs::permissions(sumo, fs::perms::owner_all);
+  const std::string matrix =
+      write("matrix.yaml",
+            "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nretries: 1\nset: [sumo.binary=" +
+                sumo + "]\n");
+  EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 2);
+  const auto records = readRecords(folder("results"));
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records.front().status, "error");
+  EXPECT_EQ(records.front().attempts, 2);
+  EXPECT_NE(records.front().cause.find("SUMO"), std::string::npos) << records.front().cause;
+}
+
+TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
+  const std::string matrix = write("matrix.yaml",
+                                   "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseeds: "
+                                   "[1, 2]\nset: [real_time_factor=1]\n");
+  const fs::path results = folder("results");
+  ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
+                       scratch_.path() / "output");
+  while (!fs::exists(results / "runs" / "arterial_exit__seed1" / "session.yaml"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  process.signal(SIGINT);
+  EXPECT_EQ(waitFor(process), 130) << output();
+  EXPECT_EQ(lines(results / "runs.csv"), 3U);
+  const std::string csv = core::readFile(results / "runs.csv", "runs");
+  EXPECT_NE(csv.find(",interrupted,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",not_run,"), std::string::npos) << csv;
+}
+
+TEST_F(EvaluateCommand, KillsARunThatTakesTooLong) {
+  const std::string matrix = write("matrix.yaml",
+                                   "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\ntimeout: "
+                                   "2\nset: [real_time_factor=0.05]\n");
+  EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 2);
+  const auto records = readRecords(folder("results"));
+  EXPECT_EQ(records.front().cause, "timed out: killed after 2 s");
+  EXPECT_EQ(records.front().attempts, 1);
+}
+
+TEST_F(EvaluateCommand, RefusesWrongInput) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"scenarios: [arterial_exi]\n", "the nearest shipped one is 'arterial_exit'"},
+      {"seeds: [1]\n", "the matrix is empty"},
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseed: [1]\n",
+       "matrix.yaml:3: unknown key 'seed'"},
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseeds: [one]\n",
+       "key 'seeds' holds 'one'"},
+      {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: [target_sped=3]\n",
+       "'target_speed'"}};
+  for (const auto& [text, expected] : cases) {
+    const std::string matrix = write("matrix.yaml", text);
+    EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 3) << text;
+    expectOutput(expected);
+    EXPECT_FALSE(fs::exists(folder("results"))) << text;
+  }
+  EXPECT_EQ(cdiff({"evaluate", "smok", "--results", folder("results")}), 3);
+  expectOutput("the nearest shipped one is 'smoke'");
+  EXPECT_EQ(cdiff({"evaluate", "--results", folder("results")}), 3);
+  EXPECT_EQ(cdiff({"report", "--compare", folder("nothing"), folder("nothing")}), 3);
+  expectOutput("holds no records");
+}
+
+TEST_F(EvaluateCommand, RefusesTheFolderOfAnotherMatrix) {
+  fs::create_directories(folder("results"));
+  write("results/matrix.yaml", "name: other\nscenarios: [bends_oncoming]\n");
+  for (const char* flag : {"--jobs=1", "--resume"}) {
+    EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results"), flag}), 3);
+    expectOutput("holds the results of another matrix ('other'");
+  }
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation

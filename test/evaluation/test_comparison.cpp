@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/evaluation/comparison.h"
+#include "evaluation/run_records.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using test::recordWith;
+using test::recordWithout;
+
+TEST(Comparison, TakesDifferencesWithinPairs) {
+  // Pairs (10, 11), (20, 22), (30, 33): differences 1, 2, 3 have s = 1 and t_{0.975, 2} = 4.302653,
+  // however far apart the scenarios are. Seed 4 has no partner, seed 5 of B broke.
+  const RunSet a{
+      "A",
+      {recordWith({"s", "1"}, 10), recordWith({"s", "2"}, 20), recordWith({"t", "1"}, 30),
+       recordWith({"s", "4"}, 99), recordWith({"s", "5"}, 99)}};
+  const RunSet b{"B",
+                 {recordWith({"t", "1"}, 33), recordWith({"s", "1"}, 11),
+                  recordWith({"s", "2"}, 22), recordWithout({"s", "5"}, "error")}};
+  const Comparison comparison = compareRuns(a, b, sharedFactors(a, b), {});
+  EXPECT_EQ(comparison.pairs, 3U);
+  EXPECT_EQ(comparison.runs_a, 5U);
+  EXPECT_EQ(comparison.runs_b, 4U);
+  ASSERT_EQ(comparison.figures.size(), 1U);
+  const FigureComparison& score = comparison.figures.front();
+  EXPECT_EQ(score.figure, "ego_driving_score");
+  EXPECT_DOUBLE_EQ(score.mean_a, 20.0);
+  EXPECT_DOUBLE_EQ(score.mean_b, 22.0);
+  EXPECT_EQ(score.difference.n, 3U);
+  EXPECT_DOUBLE_EQ(*score.difference.mean, 2.0);
+  EXPECT_NEAR(*score.difference.half_width, 4.302653 / std::sqrt(3.0), 1e-6);
+}
+
+TEST(Comparison, PairsByWhatBothSetsShare) {
+  // Profiles differ between the sets, so they are what is compared; everything else pairs.
+  const RunSet a{"A", {recordWith({"s", "1", "none"}, 10)}};
+  const RunSet b{"B", {recordWith({"s", "1", "naturalistic"}, 12)}};
+  const std::set<std::string> shared = sharedFactors(a, b);
+  EXPECT_EQ(shared.count("guidance_profile"), 0U);
+  EXPECT_EQ(shared.count("cbv_planner"), 1U);
+  EXPECT_EQ(compareRuns(a, b, shared, {}).pairs, 1U);
+  const RunSet both{"C", {recordWith({"s", "1", "none"}, 10), b.records.front()}};
+  EXPECT_EQ(sharedFactors(a, both).count("guidance_profile"), 1U);
+}
+
+TEST(Comparison, PairsALevelWithItsBaseline) {
+  const std::vector<RunRecord> records = {
+      recordWith({"s", "1", "none"}, 10), recordWith({"s", "2", "none"}, 20),
+      recordWith({"s", "1", "speed"}, 13), recordWith({"s", "2", "speed"}, 25),
+      recordWith({"s", "2", "area"}, 21)};
+  const auto comparisons = compareLevels(records, "guidance_profile", "none", {});
+  ASSERT_EQ(comparisons.size(), 2U);
+  EXPECT_EQ(comparisons[0].b, "guidance_profile area");
+  EXPECT_EQ(comparisons[0].figures.front().difference.n, 1U);
+  EXPECT_FALSE(comparisons[0].figures.front().difference.half_width.has_value());
+  EXPECT_DOUBLE_EQ(*comparisons[1].figures.front().difference.mean, 4.0);  // of 3 and 5
+}
+
+TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
+  const std::vector<RunRecord> records = {recordWith({"s", "1", "none"}, 10)};
+  const auto textOf = [](const std::function<void()>& call) -> std::string {
+    try {
+      call();
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(textOf([&] {
+              compareLevels(records, "guidance_profil", "none", {});
+            }).find("'guidance_profile'"),
+            std::string::npos);
+  EXPECT_NE(textOf([&] {
+              compareLevels(records, "guidance_profile", "nine", {});
+            }).find("the nearest is 'none'"),
+            std::string::npos);
+  EXPECT_NE(textOf([] { checkFigureNames({"ego_driving_scores"}); }).find("'ego_driving_score'"),
+            std::string::npos);
+}
+
+TEST(Comparison, WritesTables) {
+  const RunSet a{"A", {recordWith({"s", "1"}, 10), recordWith({"s", "2"}, 20)}};
+  const RunSet b{"B, new", {recordWith({"s", "1"}, 12), recordWith({"s", "2"}, 22)}};
+  const std::vector<Comparison> comparisons = {compareRuns(a, b, sharedFactors(a, b), {})};
+  EXPECT_NE(comparisonMarkdown(comparisons)
+                .find("| ego_driving_score | 2 | 15.000 | 17.000 | 2.000 | [2.000, 2.000] |"),
+            std::string::npos);
+  EXPECT_NE(comparisonCsv(comparisons).find("A,\"B, new\",ego_driving_score,2,15,17,2,0,2,2\n"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <thread>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/evaluation/executor.h"
+#include "report/scratch_folder.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Plays `cdiff run FILE --quiet --results FOLDER`: the scenario's text says how it ends.
+constexpr const char* kFakeProgram = R"sh(#!/bin/sh
+folder=$5
+echo attempt >> $folder/attempts
+succeed() {
+  cat > $folder/summary.json <<EOF
+{"status": "completed", "simulated_seconds": 4.0, "ego": {"driving_score": 80},
+ "faults": [], "verdict": {"passed": true, "failures": []}}
+EOF
+  exit 0
+}
+case "$(cat $2)" in
+  good) succeed ;;
+  hang) sleep 100 & echo $! > $folder/child; wait ;;
+  dies) kill -9 $$ ;;
+  dies_once) [ $(wc -l < $folder/attempts) -gt 1 ] && succeed; exit 137 ;;
+  refuses) echo "cdiff: key 'x' is wrong" >&2; exit 3 ;;
+  half) echo '{"status": "comp' > $folder/summary.json; exit 0 ;;
+  polite) trap 'exit 130' INT; touch $folder/ready; while :; do sleep 0.05; done ;;
+esac
+)sh";
+
+/// A process that is dead but no one's to reap here counts as dead.
+bool isAlive(pid_t process) {
+  std::ifstream stat("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  return !text.empty() && text.find(") Z ") == std::string::npos;
+}
+
+class ExecutorTest : public testing::Test {
+ protected:
+  ExecutorTest() {
+    options_.program = scratch_.path() / "program.sh";
+    options_.results = scratch_.path();
+    options_.timeout = 30.0;
+    options_.jobs = 2;
+    options_.ended = [this](const RunRecord& record, bool resumed) { ends_[record.id] = resumed; };
+    std::ofstream(options_.program) << kFakeProgram;
+    fs::permissions(options_.program, fs::perms::owner_all);
+  }
+  static std::vector<PlannedRun> plan(const std::vector<std::string>& ways) {
+    std::vector<PlannedRun> runs;
+    for (const std::string& way : ways) {
+      PlannedRun run;
+      run.id = way + std::to_string(runs.size());
+      for (const std::string& factor : factorNames()) run.factors[factor] = "x";
+      run.scenario_text = way;
+      run.scenario_sha256 = core::sha256(way);
+      runs.push_back(run);
+    }
+    return runs;
+  }
+  std::vector<RunRecord> execute(const std::vector<PlannedRun>& runs) {
+    return executeRuns(runs, options_, stop_);
+  }
+  fs::path file(const std::string& id, const std::string& name) const {
+    return runFolder(options_.results, id) / name;
+  }
+  std::size_t attempts(const std::string& id) const {
+    return core::readFile(file(id, "attempts"), "attempts").size() / 8;  // "attempt\n"
+  }
+  test::ScratchFolder scratch_;
+  ExecutorOptions options_;
+  std::atomic<bool> stop_{false};
+  std::map<std::string, bool> ends_;  ///< by id: whether it was complete before
+};
+
+TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
+  const auto records = execute(plan({"good", "refuses", "half", "good"}));
+  ASSERT_EQ(records.size(), 4U);
+  EXPECT_EQ(records[0].status, "completed");
+  EXPECT_TRUE(records[0].passed);
+  EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
+  EXPECT_DOUBLE_EQ(records[0].simulated_seconds, 4.0);
+  EXPECT_EQ(records[1].status, "error");
+  EXPECT_EQ(records[1].cause, "exit code 3: cdiff: key 'x' is wrong");
+  EXPECT_EQ(records[1].attempts, 1);  // wrong input stays wrong
+  EXPECT_EQ(records[2].status, "error");
+  EXPECT_NE(records[2].cause.find("is no summary of a session"), std::string::npos);
+  EXPECT_EQ(readRecords(options_.results).size(), 4U);
+  EXPECT_EQ(readRecord(file("good0", "record.json"))->figures, records[0].figures);
+  EXPECT_EQ(ends_.size(), 4U);
+}
+
+TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {
+  options_.retries = 2;
+  const auto records = execute(plan({"dies", "dies_once"}));
+  EXPECT_EQ(records[0].status, "error");
+  EXPECT_EQ(records[0].cause, "the process ended by signal 9");
+  EXPECT_EQ(records[0].attempts, 3);
+  EXPECT_EQ(attempts("dies0"), 3U);
+  EXPECT_EQ(records[1].status, "completed");
+  EXPECT_EQ(records[1].attempts, 2);
+  EXPECT_EQ(records[1].cause, "");
+}
+
+TEST_F(ExecutorTest, KillsALateRunWithAllThatItStarted) {
+  options_.timeout = 0.5;
+  const auto records = execute(plan({"hang", "good"}));
+  EXPECT_EQ(records[0].status, "error");
+  EXPECT_EQ(records[0].cause, "timed out: killed after 0.5 s");
+  EXPECT_EQ(records[0].attempts, 1);
+  EXPECT_EQ(records[1].status, "completed");
+  const pid_t process = std::stoi(core::readFile(file("hang0", "child"), "child"));
+  for (int i = 0; i < 100 && isAlive(process); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_FALSE(isAlive(process)) << "process " << process << " still runs";
+}
+
+TEST_F(ExecutorTest, ResumesWhatIsNotComplete) {
+  auto runs = plan({"good", "good", "good", "refuses"});
+  execute(runs);
+  fs::remove(file("good1", "record.json"));  // cut off before its record
+  runs[2].scenario_sha256 = core::sha256("changed");
+  options_.resume = true;
+  ends_.clear();
+  const auto records = execute(runs);
+  EXPECT_EQ(attempts("good0"), 1U);
+  EXPECT_EQ(attempts("good1"), 2U);
+  EXPECT_EQ(attempts("good2"), 2U);
+  EXPECT_EQ(attempts("refuses3"), 2U);
+  EXPECT_TRUE(ends_.at("good0"));
+  EXPECT_FALSE(ends_.at("good1"));
+  EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
+  EXPECT_EQ(records[2].scenario_sha256, runs[2].scenario_sha256);
+}
+
+TEST_F(ExecutorTest, StopsWithARecordOfWhatIsDone) {
+  // The first run ends; the second is under way when the stop comes; the third never starts.
+  options_.jobs = 1;
+  std::thread stopper([this] {
+    while (!fs::exists(file("polite1", "ready")))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stop_ = true;
+  });
+  const auto records = execute(plan({"good", "polite", "good"}));
+  stopper.join();
+  EXPECT_EQ(records[0].status, "completed");
+  EXPECT_EQ(records[1].status, "interrupted");
+  EXPECT_EQ(records[2].status, "not_run");
+  EXPECT_FALSE(fs::exists(file("good2", "attempts")));
+  EXPECT_EQ(readRecord(file("polite1", "record.json"))->status, "interrupted");
+}
+
+TEST_F(ExecutorTest, KillsWhatDoesNotEndInTheGraceAfterAStop) {
+  options_.grace = 0.2;
+  std::thread stopper([this] {
+    while (!fs::exists(file("hang0", "child")))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stop_ = true;
+  });
+  const auto records = execute(plan({"hang"}));
+  stopper.join();
+  EXPECT_EQ(records[0].status, "interrupted");
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/evaluation/figures.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+TEST(Figures, OfASummary) {
+  // Two of three CBVs passed their conflict point; they drove 50 % and 100 % of their routes.
+  const SummaryFacts facts = readSummary(R"({
+    "status": "completed", "simulated_seconds": 12.5, "real_time_factor": null,
+    "ego": {"route_completion_percent": 80, "collisions": 0},
+    "cbv": {"off_road_rate_percent": null, "selections": [
+      {"conflict_point_passed": true, "route_completion_percent": 50.0},
+      {"conflict_point_passed": true, "route_completion_percent": 100.0},
+      {"conflict_point_passed": false}]},
+    "faults": [{"tick": 1, "source": "a", "text": "first"},
+               {"tick": 2, "source": "a", "text": "last"}],
+    "verdict": {"passed": false, "failures": ["too slow"]}})",
+                                         "file");
+  EXPECT_EQ(facts.status, "completed");
+  EXPECT_EQ(facts.fault, "last");
+  EXPECT_FALSE(facts.passed);
+  EXPECT_EQ(facts.failures, std::vector<std::string>{"too slow"});
+  EXPECT_DOUBLE_EQ(facts.simulated_seconds, 12.5);
+  EXPECT_DOUBLE_EQ(facts.figures.at("ego_completion_percent"), 80.0);
+  EXPECT_DOUBLE_EQ(facts.figures.at("ego_collisions"), 0.0);
+  EXPECT_NEAR(facts.figures.at("cbv_passed_percent"), 200.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(facts.figures.at("cbv_completion_percent"), 75.0);
+  EXPECT_EQ(facts.figures.count("cbv_off_road_percent"), 0U);  // null
+  EXPECT_EQ(facts.figures.count("real_time_factor"), 0U);
+  EXPECT_EQ(facts.figures.count("ttc_mean_s"), 0U);  // absent
+  for (const auto& [name, value] : facts.figures) {
+    const auto& names = figureNames();
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  }
+}
+
+TEST(Figures, RefuseATextThatIsNoSummary) {
+  EXPECT_THROW(readSummary("{\"status\": \"comp", "file"), core::InputError);
+  EXPECT_THROW(readSummary("{}", "file"), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation

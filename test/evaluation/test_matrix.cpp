@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/evaluation/matrix.h"
+#include "e2e_cdiff/evaluation/run_plan.h"
+#include "e2e_cdiff/scenario/scenario_options.h"
+#include "report/scratch_folder.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string errorOf(const MatrixOptions& matrix) {
+  try {
+    planRuns(matrix, "matrix.yaml");
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+MatrixOptions oneScenario() {
+  MatrixOptions matrix;
+  matrix.scenarios = {"arterial_exit"};
+  return matrix;
+}
+
+void expectIn(const std::string& part, const std::string& text) {
+  EXPECT_NE(text.find(part), std::string::npos) << part << "\nin\n" << text;
+}
+
+class ShippedMatrix : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedMatrix, PlansRunsWithNamesOfTheirOwn) {
+  const auto plan = planRuns(loadMatrix(GetParam()), GetParam());
+  std::set<std::string> ids;
+  std::set<std::string> scenarios;
+  for (const PlannedRun& run : plan) {
+    ids.insert(run.id);
+    scenarios.insert(run.scenario_sha256);
+  }
+  EXPECT_EQ(ids.size(), plan.size());
+  EXPECT_EQ(scenarios.size(), plan.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedMatrix, testing::ValuesIn(shippedMatrices()),
+                         [](const auto& info) { return info.param; });
+
+TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
+  EXPECT_EQ(planRuns(loadMatrix("smoke"), "smoke").size(), 2U * 2U);
+  EXPECT_EQ(planRuns(loadMatrix("guidance_effect"), "").size(), 10U * 3U * 6U);
+}
+
+TEST(Plan, IsTheProductOfItsFactors) {
+  MatrixOptions matrix = oneScenario();
+  matrix.seeds = {"1", "2"};
+  matrix.variants = {"slow: target_speed=4 protocol.time_limit=3", "fast: target_speed=9"};
+  matrix.repetitions = 2;
+  matrix.set = {"protocol.time_limit=5"};
+  const auto plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 8U);
+  EXPECT_EQ(plan[0].id, "arterial_exit__slow__seed1__repetition1");
+  EXPECT_EQ(plan[7].id, "arterial_exit__fast__seed2__repetition2");
+  EXPECT_EQ(plan[7].factors.at("cbv_planner"), scenario::ScenarioOptions().cbv_planner);
+  expectIn("target_speed: 4\n", plan[0].scenario_text);
+  expectIn("time_limit: 3\n", plan[0].scenario_text);  // a variant goes over set
+  expectIn("time_limit: 5\n", plan[7].scenario_text);
+  EXPECT_EQ(plan[0].scenario_sha256, plan[1].scenario_sha256);
+  EXPECT_NE(plan[0].scenario_sha256, plan[2].scenario_sha256);
+}
+
+TEST(Plan, NamesWhatIsWrong) {
+  expectIn("the matrix is empty", errorOf(MatrixOptions()));
+  MatrixOptions matrix = oneScenario();
+  matrix.scenarios.emplace_back("arterial_exits");
+  expectIn("the nearest shipped one is 'arterial_exit'", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.seeds = {"1", "two"};
+  expectIn("matrix.yaml: key 'seeds' holds 'two'", errorOf(matrix));
+  matrix.seeds = {"9999999999"};
+  expectIn("2147483647", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.cbv_planners = {"pdm_lit"};
+  expectIn("the nearest known one is 'pdm_lite'", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.variants = {"target_speed=4"};
+  expectIn("expected \"name: key=value key=value\"", errorOf(matrix));
+  matrix.variants = {"slow: target_sped=4"};
+  expectIn("the nearest known key is 'target_speed'", errorOf(matrix));
+}
+
+TEST(Matrix, ResolvesFilesAgainstItsFolder) {
+  const test::ScratchFolder scratch;
+  std::ofstream(scratch.path() / "mine.yaml") << "network: arterial_merge\n";
+  std::ofstream(scratch.path() / "matrix.yaml") << "scenarios: [mine.yaml, arterial_exit]\n";
+  const MatrixOptions matrix = loadMatrix((scratch.path() / "matrix.yaml").string());
+  EXPECT_EQ(matrix.scenarios[0], fs::weakly_canonical(scratch.path() / "mine.yaml").string());
+  EXPECT_EQ(matrix.scenarios[1], "arterial_exit");
+}
+
+TEST(Matrix, IdentityForgetsWhatAResumptionMayChange) {
+  MatrixOptions matrix = oneScenario();
+  const std::string identity = identityOf(matrix);
+  matrix.timeout = 5.0;
+  matrix.retries = 7;
+  EXPECT_EQ(identityOf(matrix), identity);
+  matrix.seeds = {"5"};
+  EXPECT_NE(identityOf(matrix), identity);
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation
