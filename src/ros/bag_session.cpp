@@ -89,7 +89,7 @@ class Reader {
     if (topic == kSelectionTopic) return takeSelection(*message.instantiate<msgs::CbvSelection>());
     if (slotOf(topic, slots_, controlTopic))
       return takeControl(*message.instantiate<msgs::ControlAction>());
-    const auto slot = slotOf(topic, slots_, cameraImageTopic);
+    const auto slot = slotOf(topic, slots_, imageTopic);
     if (!slot) return;
     const auto image = message.instantiate<sensor_msgs::Image>();
     if (image == nullptr) throw InputError("topic '" + topic + "' holds no sensor_msgs/Image");

@@ -7,17 +7,10 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/session_files.h"
+#include "e2e_cdiff/ros/session_parts.h"
 
 namespace cdiff::ros {
 namespace {
-
-metrics::SessionMetricsOptions metricsOptions(const scenario::ScenarioOptions& options) {
-  metrics::SessionMetricsOptions result;
-  result.simulation_step = options.simulation_step;
-  result.completion_percent = options.protocol.completion_percent;
-  result.completion_distance = options.protocol.completion_distance;
-  return result;
-}
 
 /// The last state with the end that nobody told: as World::end would have made it.
 traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double step,
@@ -39,82 +32,64 @@ traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double
 }  // namespace
 
 void MetricsRos::begin(const msgs::SessionInfo& info) {
-  setup_ = std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
-                                                    routeFromMsg(info));
+  setup_ = setupOf(info);
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   const report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
   results_ = info.results_folder;
   writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, results_);
-  metrics_ = std::make_unique<metrics::SessionMetrics>(metricsOptions(setup_->options()),
-                                                       setup_->drivableArea(), setup_->egoRoute());
-  answers_ = TickAnswers(setup_->options().simulation_step);
+  reporter_ = std::make_unique<MetricReporter>(*setup_);
   reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
   map_output_ = advertise<visualization_msgs::MarkerArray>(kMapMarkersTopic, true);
   map_output_.publish(mapMarkers(*setup_));
-  listenToAnswers();
+  listenToAnswers(setup_->options(), {graph().egoPlansFromImages(), graph().cbvsPlanFromImages()});
   diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
   diagnostics_->setHardwareID(setup_->options().name);
   diagnostics_->add("session", this, &MetricsRos::diagnose);
 }
 
-void MetricsRos::listenToAnswers() {
-  listen<msgs::CbvSelection>(kSelectionTopic,
-                             [this](const auto& message) { answers_.add(message); });
-  listen<msgs::ControlAction>(kEgoControlTopic,
-                              [this](const auto& message) { answers_.addEgo(message); });
-  for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
-      answers_.addCbv(slot, message);
-    });
-  }
-  if (!graph().cbvsSee()) return;
-  answers_.expectGuidance();
-  listen<msgs::GuidanceReport>(kGuidanceTopic,
-                               [this](const auto& message) { answers_.add(message); });
-}
-
 bool MetricsRos::handle(const Snapshot& message, bool superseded) {
-  if (!superseded && !answers_.missing(*message).empty()) return false;
+  if (!superseded && !answered(*message)) return false;
   if (!begin_) begin_ = Clock::now();
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
   std::optional<cbv::CbvSelection> selection;
-  if (const auto answer = answers_.selection(message->tick))
+  if (const auto answer = answers().selection(message->tick))
     selection = fromMsg(*answer, setup_->network());
-  observe(snapshot, selection ? &*selection : nullptr, answers_.answers(*message));
+  observe(*message, snapshot, selection ? &*selection : nullptr);
   acknowledge(message->tick);
   show(snapshot, selection ? &*selection : nullptr);
-  answers_.forgetBefore(message->tick);
+  forgetUntil(message->tick);
   last_ = snapshot;
   return true;
 }
 
-void MetricsRos::observe(const traffic::TrafficSnapshot& snapshot,
-                         const cbv::CbvSelection* selection, const std::vector<Answer>& answers) {
-  const std::vector<planning::PlannedAction> actions = actionsOf(answers);
+void MetricsRos::observe(const msgs::TrafficSnapshot& message,
+                         const traffic::TrafficSnapshot& snapshot,
+                         const cbv::CbvSelection* selection) {
   scenario::TickRecord record;
   record.snapshot = &snapshot;
+  std::vector<planning::PlannedAction> actions;
+  std::vector<scenario::SlotImage> images;
   if (snapshot.decision_tick) {
+    const std::vector<Answer> given = answers().answers(message);
+    actions = actionsOf(given);
+    images = answers().images(message);
     record.selection = selection;
     record.actions = &actions;
-    record.latencies = latenciesOf(answers);
+    record.images = &images;
+    record.latencies = latenciesOf(given);
   }
   writer_->observe(record);
-  publishReport(snapshot, metrics_->observe(snapshot, record.selection));
-  for (const scenario::PlannerLatency& latency : record.latencies) {
+  note(record.latencies);
+  if (const auto report = reporter_->observe(snapshot, record.selection)) reports_.publish(report);
+}
+
+void MetricsRos::note(const std::vector<scenario::PlannerLatency>& latencies) {
+  for (const scenario::PlannerLatency& latency : latencies) {
     if (latency.milliseconds <= slowest_planner_ms_) continue;
     slowest_planner_ms_ = latency.milliseconds;
     slowest_planner_ = latency.planner;
   }
-}
-
-void MetricsRos::publishReport(const traffic::TrafficSnapshot& snapshot,
-                               const metrics::TickMeasures& measures) {
-  const bool final = snapshot.status != traffic::SessionStatus::kRunning;
-  if (!snapshot.decision_tick && !final) return;
-  msgs::MetricReport report = toMsg(measures, snapshot);
-  if (final) report.measures = toMsg(metrics_->measures());
-  reports_.publish(boost::make_shared<const msgs::MetricReport>(report));
 }
 
 void MetricsRos::show(const traffic::TrafficSnapshot& snapshot,

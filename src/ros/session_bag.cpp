@@ -2,126 +2,100 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/session_bag.h"
 
-#include <algorithm>
+#include <boost/make_shared.hpp>
 
-#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/image_conversions.h"
 #include "e2e_cdiff/ros/topics.h"
-#include "sensor_msgs/Image.h"
 
 namespace cdiff::ros {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A bag takes no stamp of zero.
-::ros::Time bagStamp(const ::ros::Time& stamp) { return std::max(stamp, ::ros::TIME_MIN); }
-
 std::string bagTopic(const std::string& topic) { return "/" + topic; }
 
-sensor_msgs::Image toImageMsg(const traffic::CameraImage& image, double time, int slot) {
-  sensor_msgs::Image message;
-  message.header.stamp = toStamp(time);
-  message.header.seq = static_cast<std::uint32_t>(image.tick);
-  message.header.frame_id =
-      (slot < 0 ? std::string("ego") : "cbv_" + std::to_string(slot)) + "/camera_optical";
-  message.height = static_cast<std::uint32_t>(image.height);
-  message.width = static_cast<std::uint32_t>(image.width);
-  message.encoding = "rgb8";
-  message.step = 3 * message.width;
-  message.data = image.rgb;
-  return message;
+template <class Message>
+boost::shared_ptr<const Message> shared(Message message) {
+  return boost::make_shared<const Message>(std::move(message));
+}
+
+double latencyOf(const scenario::TickRecord& record, const std::string& planner) {
+  for (const scenario::PlannerLatency& latency : record.latencies) {
+    if (latency.planner == planner) return latency.milliseconds;
+  }
+  return 0.0;
 }
 
 }  // namespace
 
-std::string cameraImageTopic(int slot) {
-  return (slot < 0 ? std::string("ego") : "cbv_" + std::to_string(slot)) + "/camera/image_raw";
-}
-
 SessionBag::SessionBag(const scenario::SessionSetup& setup, const fs::path& file,
                        const BagOrigin& origin)
-    : setup_(setup), file_(file) {
-  write([&] { open(origin); });
+    : setup_(setup), file_(file, setup.options().camera, bagTopic), reporter_(setup) {
+  msgs::SessionInfo info = toMsg(setup);
+  info.deployment = origin.deployment;
+  info.simulator_version = origin.simulator_version;
+  info.package_version = E2E_CDIFF_VERSION;
+  info.results_folder = fs::absolute(file).parent_path().string();
+  file_.write(info);
+  file_.write(toPathMsg(setup.egoRoute()));
 }
 
 SessionBag::~SessionBag() = default;
 
-/// Errors of the bag name its file.
-void SessionBag::write(const std::function<void()>& writing) {
-  try {
-    writing();
-  } catch (const std::exception& error) {
-    throw core::InputError("cannot write the bag '" + file_.string() + "': " + error.what());
-  }
-}
-
-void SessionBag::open(const BagOrigin& origin) {
-  if (file_.has_parent_path()) fs::create_directories(file_.parent_path());
-  bag_.open(file_.string() + ".active", rosbag::bagmode::Write);
-  bag_.setCompression(rosbag::compression::LZ4);
-  msgs::SessionInfo info = toMsg(setup_);
-  info.deployment = origin.deployment;
-  info.simulator_version = origin.simulator_version;
-  info.package_version = E2E_CDIFF_VERSION;
-  info.results_folder = fs::absolute(file_).parent_path().string();
-  bag_.write(bagTopic(kSessionTopic), ::ros::TIME_MIN, info);
-  bag_.write(bagTopic(kEgoRouteTopic), ::ros::TIME_MIN, toPathMsg(setup_.egoRoute()));
-}
-
 void SessionBag::observe(const scenario::TickRecord& record) {
-  write([&] {
-    const traffic::TrafficSnapshot& snapshot = *record.snapshot;
-    const ::ros::Time stamp = bagStamp(toStamp(snapshot.time));
-    bag_.write(bagTopic(kTrafficTopic), stamp, toMsg(snapshot));
-    if (record.selection != nullptr) {
-      bag_.write(bagTopic(kSelectionTopic), stamp,
-                 toMsg(*record.selection, snapshot.time, setup_.network()));
-    }
-    if (record.actions != nullptr) {
-      for (const planning::PlannedAction& action : *record.actions) writeAction(action, record);
-    }
-    if (record.images != nullptr) {
-      for (const scenario::SlotImage& seen : *record.images) writeImage(seen);
-    }
-    if (!snapshot.decision_tick) return;
-    bag_.write("/tf", stamp, toTfMsg(snapshot));
-    if (const traffic::Vehicle* ego = snapshot.ego())
-      bag_.write(bagTopic(kEgoOdometryTopic), stamp, toOdometryMsg(*ego, snapshot.time));
-  });
-}
-
-void SessionBag::writeAction(const planning::PlannedAction& action,
-                             const scenario::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
-  const ::ros::Time stamp = bagStamp(toStamp(snapshot.time));
-  const bool ego = action.slot < 0;
-  const scenario::ScenarioOptions& options = setup_.options();
-  ActionOrigin origin;
-  origin.planner = ego ? "ego:" + options.ego_planner : "cbv:" + options.cbv_planner;
-  for (const scenario::PlannerLatency& latency : record.latencies) {
-    if (latency.planner == origin.planner) origin.latency_ms = latency.milliseconds;
+  TickMessages tick;
+  tick.snapshot = shared(toMsg(snapshot));
+  if (record.selection != nullptr)
+    tick.selection = shared(toMsg(*record.selection, snapshot.time, setup_.network()));
+  if (record.actions != nullptr) {
+    addActions(record, tick);
+    addGuidance(record, tick);
+    if (record.images != nullptr) addImages(record, tick);
   }
-  if (noisy_ && noisy_(action.vehicle_id)) origin.planner += kNoiseMark;
-  origin.fault = action.fault;
-  const std::string topic = ego ? kEgoControlTopic : cbvControlTopic(action.slot);
-  bag_.write(bagTopic(topic), stamp, toMsg(action, snapshot, origin));
-  if (!ego)
-    bag_.write(bagTopic(cbvRolloutTopic(action.slot)), stamp, toRolloutMsg(action, snapshot));
+  tick.report = reporter_.observe(snapshot, record.selection);
+  file_.write(tick);
 }
 
-void SessionBag::writeImage(const scenario::SlotImage& seen) {
-  const double time = static_cast<double>(seen.image.tick) * setup_.options().simulation_step;
-  bag_.write(bagTopic(cameraImageTopic(seen.slot)), bagStamp(toStamp(time)),
-             toImageMsg(seen.image, time, seen.slot));
+std::string SessionBag::plannerOf(int slot) const {
+  const scenario::ScenarioOptions& options = setup_.options();
+  return slot == kEgoSlot ? "ego:" + options.ego_planner : "cbv:" + options.cbv_planner;
 }
 
-void SessionBag::finish() {
-  write([&] {
-    bag_.close();
-    fs::rename(file_.string() + ".active", file_);
-  });
+void SessionBag::addActions(const scenario::TickRecord& record, TickMessages& tick) const {
+  const traffic::TrafficSnapshot& snapshot = *record.snapshot;
+  for (const planning::PlannedAction& action : *record.actions) {
+    ActionOrigin origin{plannerOf(action.slot), 0.0, action.fault};
+    origin.latency_ms = latencyOf(record, origin.planner);
+    if (noisy_ && noisy_(action.vehicle_id)) origin.planner += kNoiseMark;
+    tick.controls[action.slot] = shared(toMsg(action, snapshot, origin));
+    if (action.slot != kEgoSlot)
+      tick.rollouts[action.slot] = shared(toRolloutMsg(action, snapshot));
+  }
 }
+
+/// Where the diffusion planner's node reports it.
+void SessionBag::addGuidance(const scenario::TickRecord& record, TickMessages& tick) const {
+  if (tick.rollouts.empty() || !planning::seesImages(setup_.options().cbv_planner)) return;
+  std::vector<planning::PlannedAction> actions;
+  for (const planning::PlannedAction& action : *record.actions) {
+    if (action.slot != kEgoSlot) actions.push_back(action);
+  }
+  msgs::GuidanceReport report = toGuidanceMsg(actions, *record.snapshot);
+  report.planner_latency_ms = latencyOf(record, plannerOf(actions.front().slot));
+  tick.guidance = shared(std::move(report));
+}
+
+void SessionBag::addImages(const scenario::TickRecord& record, TickMessages& tick) const {
+  for (const scenario::SlotImage& seen : *record.images) {
+    const double time = static_cast<double>(seen.image.tick) * setup_.options().simulation_step;
+    tick.images[seen.slot] =
+        shared(toMsg(seen.image, time, tick.controls.at(seen.slot)->vehicle_id));
+  }
+}
+
+void SessionBag::finish() { file_.finish(); }
 
 }  // namespace cdiff::ros

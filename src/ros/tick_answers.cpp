@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/topics.h"
 
@@ -27,6 +28,15 @@ Answer answerOf(const msgs::ControlAction& control, int slot, const std::string&
   answer.latency_ms = control.planner_latency_ms;
   answer.fault = control.fault;
   return answer;
+}
+
+template <class Message>
+Message findIn(const std::map<std::uint64_t, std::map<int, Message>>& messages, int slot,
+               std::uint64_t tick) {
+  const auto at_tick = messages.find(tick);
+  if (at_tick == messages.end()) return nullptr;
+  const auto found = at_tick->second.find(slot);
+  return found == at_tick->second.end() ? nullptr : found->second;
 }
 
 }  // namespace
@@ -72,10 +82,25 @@ void TickAnswers::addCbv(int slot, const Control& control) {
   controls_[control->tick].emplace(slot, control);
 }
 
+void TickAnswers::addRollout(int slot, const Rollout& rollout) {
+  rollouts_[rollout->tick].emplace(slot, rollout);
+}
+
+/// What a vehicle of the tick still needs.
+std::vector<std::string> TickAnswers::missingOf(int slot, std::uint64_t tick) const {
+  const bool ego = slot == kEgoSlot;
+  std::vector<std::string> topics;
+  if (!cbv(slot, tick)) topics.push_back(ego ? kEgoControlTopic : cbvControlTopic(slot));
+  if (expected_.rollouts && !ego && !rollout(slot, tick)) topics.push_back(cbvRolloutTopic(slot));
+  const bool image_expected = ego ? expected_.ego_image : expected_.cbv_images;
+  if (image_expected && !image(slot, tick)) topics.push_back(imageTopic(slot));
+  return topics;
+}
+
 std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
   std::vector<std::string> topics;
   if (!snapshot.decision_tick) return topics;
-  if (findEgo(snapshot) != nullptr && !ego(snapshot.tick)) topics.emplace_back(kEgoControlTopic);
+  if (findEgo(snapshot) != nullptr) topics = missingOf(kEgoSlot, snapshot.tick);
   const Selection chosen = selection(snapshot.tick);
   if (!chosen) {
     topics.emplace_back(kSelectionTopic);
@@ -85,9 +110,10 @@ std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snaps
   for (const msgs::CbvAssignment& assignment : chosen->assignments) {
     if (!contains(snapshot, assignment.vehicle_id)) continue;
     any_cbv = true;
-    if (!cbv(assignment.slot, snapshot.tick)) topics.push_back(cbvControlTopic(assignment.slot));
+    for (std::string& topic : missingOf(assignment.slot, snapshot.tick))
+      topics.push_back(std::move(topic));
   }
-  if (guidance_expected_ && any_cbv && !guidance(snapshot.tick))
+  if (expected_.guidance && any_cbv && !guidance(snapshot.tick))
     topics.emplace_back(kGuidanceTopic);
   return topics;
 }
@@ -98,10 +124,11 @@ TickAnswers::Selection TickAnswers::selection(std::uint64_t tick) const {
 }
 
 TickAnswers::Control TickAnswers::cbv(int slot, std::uint64_t tick) const {
-  const auto at_tick = controls_.find(tick);
-  if (at_tick == controls_.end()) return nullptr;
-  const auto found = at_tick->second.find(slot);
-  return found == at_tick->second.end() ? nullptr : found->second;
+  return findIn(controls_, slot, tick);
+}
+
+TickAnswers::Rollout TickAnswers::rollout(int slot, std::uint64_t tick) const {
+  return findIn(rollouts_, slot, tick);
 }
 
 TickAnswers::Guidance TickAnswers::guidance(std::uint64_t tick) const {
@@ -134,8 +161,23 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
     if (!control || !contains(snapshot, assignment.vehicle_id)) continue;
     answers.push_back(answerOf(*control, assignment.slot, assignment.vehicle_id));
     addGuidance(answers.back(), snapshot.tick);
+    if (const Rollout plan = rollout(assignment.slot, snapshot.tick))
+      answers.back().action.rollout = fromMsg(*plan);
   }
   return answers;
+}
+
+std::vector<scenario::SlotImage> TickAnswers::images(const msgs::TrafficSnapshot& snapshot) const {
+  std::vector<scenario::SlotImage> seen;
+  for (const Answer& answer : answers(snapshot)) {
+    const int slot = answer.action.slot;
+    if (!image(slot, snapshot.tick)) continue;
+    try {
+      seen.push_back({slot, images_.read(slot, answer.action.vehicle_id, snapshot.tick)});
+    } catch (const core::InputError&) {  // its planner has braked and said why
+    }
+  }
+  return seen;
 }
 
 TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehicle_id,
@@ -158,6 +200,8 @@ void TickAnswers::forgetBefore(std::uint64_t tick) {
   selections_.erase(selections_.begin(), selections_.lower_bound(tick));
   controls_.erase(controls_.begin(), controls_.lower_bound(tick));
   guidance_.erase(guidance_.begin(), guidance_.lower_bound(tick));
+  rollouts_.erase(rollouts_.begin(), rollouts_.lower_bound(tick));
+  images_.forgetBefore(tick);
 }
 
 }  // namespace cdiff::ros

@@ -12,10 +12,10 @@ using Nodes = std::vector<std::string>;
 /// Who may listen to a topic of a slot, whether it takes part or not.
 Nodes possibleListenersOfSlot(const std::string& topic, int slot, const SessionGraph& graph) {
   if (topic == cbvControlTopic(slot)) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
-  if (topic == cbvRolloutTopic(slot)) return {kRecorderNode};
-  if (topic == imageTopic(slot) && graph.imagesOfCbvs())
-    return {kDiffusionPlannerNode, kRecorderNode};
-  return {};
+  if (topic == cbvRolloutTopic(slot)) return {kMetricsNode, kRecorderNode};
+  if (topic != imageTopic(slot) || !graph.imagesOfCbvs()) return {};
+  if (!graph.cbvsPlanFromImages()) return {kRecorderNode};
+  return {kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
 }
 
 /// Who may listen, whether it takes part or not.
@@ -30,8 +30,10 @@ Nodes possibleListeners(const std::string& topic, const SessionGraph& graph) {
             kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
   }
   if (topic == kEgoControlTopic) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
-  if (topic == imageTopic(kEgoSlot) && graph.imagesOfEgo())
-    return graph.ego_sees ? Nodes{kEgoPlannerNode, kRecorderNode} : Nodes{kRecorderNode};
+  if (topic == imageTopic(kEgoSlot) && graph.imagesOfEgo()) {
+    return graph.egoPlansFromImages() ? Nodes{kEgoPlannerNode, kMetricsNode, kRecorderNode}
+                                      : Nodes{kRecorderNode};
+  }
   if (topic == kTickAckTopic) return {kTrafficSimulatorNode};
   if (topic == kMetricsTopic) return {kRecorderNode};
   if (topic == kGuidanceTopic) return {kMetricsNode, kRecorderNode};

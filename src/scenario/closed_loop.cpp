@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <set>
 #include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
@@ -132,9 +133,11 @@ void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
   }
   PlannerLatency latency{name, 0.0};
   std::string fault;
+  std::set<std::string> recorded;  // vehicles may share a cause
   for (PlannedAction& action :
        planTimed(planner, world_->snapshot(), tasks, latency.milliseconds, fault)) {
-    if (!action.fault.empty()) world_->recordFault(name, action.fault);
+    if (!action.fault.empty() && recorded.insert(action.fault).second)
+      world_->recordFault(name, action.fault);
     decision.actions.push_back(std::move(action));
   }
   if (!fault.empty()) world_->recordFault(name, fault);

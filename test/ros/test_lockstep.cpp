@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/image_conversions.h"
 #include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/participant_book.h"
 #include "e2e_cdiff/ros/session_parts.h"
@@ -40,14 +41,14 @@ TEST(TickAnswers, WhatIsMissingDependsOnTheSelection) {
 }
 
 TEST(TickAnswers, GuidanceIsWaitedForWhereItIsExpected) {
+  ExpectedAnswers guidance;
+  guidance.guidance = true;
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
-  TickAnswers answers;
-  answers.expectGuidance();
+  TickAnswers answers(0.05, guidance);
   answers.addEgo(controlFor(4, -1, "ego"));
   answers.add(selectionFor(4, 1, "bg_gone"));
   EXPECT_EQ(answers.missing(snapshot), Texts());  // nobody to drive
-  answers = TickAnswers();
-  answers.expectGuidance();
+  answers = TickAnswers(0.05, guidance);
   answers.addEgo(controlFor(4, -1, "ego"));
   answers.add(selectionFor(4, 1, "bg_7"));
   answers.addCbv(1, controlFor(4, 1, "bg_7"));
@@ -64,6 +65,61 @@ TEST(TickAnswers, GuidanceIsWaitedForWhereItIsExpected) {
   EXPECT_EQ(all[0].action.guidance.candidates, 0);
   EXPECT_EQ(all[1].action.guidance.candidates, 3);
   EXPECT_EQ(all[1].action.state_mismatch, 0.25);
+}
+
+sensor_msgs::Image::Ptr imageFor(std::uint64_t tick, const std::string& vehicle_id) {
+  const traffic::CameraImage image{2, 1, tick, {1, 2, 3, 4, 5, 6}};
+  return boost::make_shared<sensor_msgs::Image>(
+      toMsg(image, 0.05 * static_cast<double>(tick), vehicle_id));
+}
+
+rendering::CameraOptions smallCamera() {
+  rendering::CameraOptions camera;
+  camera.width = 2;
+  camera.height = 1;
+  return camera;
+}
+
+TEST(TickAnswers, RolloutsAndImagesAreWaitedForWhereTheyAreExpected) {
+  const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
+  const msgs::TrafficSnapshot message = toMsg(snapshot);
+  TickAnswers answers(0.05, {false, true, true, true}, smallCamera());
+  answers.add(selectionFor(4, 1, "bg_7"));
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.addCbv(1, controlFor(4, 1, "bg_7"));
+  EXPECT_EQ(answers.missing(message),
+            (Texts{"ego/camera/image_raw", "cbv_1/rollout", "cbv_1/camera/image_raw"}));
+  planning::PlannedAction action;
+  action.slot = 1;
+  action.vehicle_id = "bg_7";
+  action.rollout = {{{{1.0, 2.0}, 3.0, 0.5, 6.0}, {0.1, 0.2, 0.0}}};
+  answers.addRollout(1, boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
+  answers.addImage(-1, imageFor(4, "ego"));
+  EXPECT_EQ(answers.missing(message), Texts{"cbv_1/camera/image_raw"});
+  answers.addImage(1, imageFor(4, "bg_7"));
+  EXPECT_EQ(answers.missing(message), Texts());
+  const std::vector<Answer> all = answers.answers(message);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_TRUE(all[0].action.rollout.empty());
+  ASSERT_EQ(all[1].action.rollout.size(), 1U);
+  EXPECT_EQ(all[1].action.rollout[0].state.speed, 6.0);
+  const std::vector<scenario::SlotImage> seen = answers.images(message);
+  ASSERT_EQ(seen.size(), 2U);
+  EXPECT_EQ(seen[0].slot, -1);
+  EXPECT_EQ(seen[1].slot, 1);
+  EXPECT_EQ(seen[1].image.tick, 4U);
+  EXPECT_EQ(seen[1].image.rgb, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(TickAnswers, ImageOfAnotherVehicleIsHereButNotSeen) {
+  const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
+  TickAnswers answers(0.05, {false, false, false, true}, smallCamera());
+  answers.add(selectionFor(4, 1, "bg_7"));
+  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.addCbv(1, controlFor(4, 1, "bg_7"));
+  answers.addImage(1, imageFor(4, "bg_9"));
+  EXPECT_EQ(answers.missing(snapshot), Texts());
+  EXPECT_TRUE(answers.images(snapshot).empty());
 }
 
 TEST(TickAnswers, AssignedVehicleThatIsGoneIsNotWaitedFor) {
@@ -206,6 +262,7 @@ TEST(Topics, ListenersAreThoseThatTakePart) {
   EXPECT_EQ(listeners(kTrafficTopic, graph), (Texts{kCbvIdentificationNode, kMetricsNode}));
   EXPECT_EQ(listeners("cbv_1/control", graph), (Texts{kTrafficSimulatorNode, kMetricsNode}));
   EXPECT_EQ(listeners("cbv_2/control", graph), Texts());  // there is no slot 2
+  EXPECT_EQ(listeners("cbv_1/rollout", graph), Texts{kMetricsNode});
   EXPECT_EQ(listeners(kTickAckTopic, graph), Texts{kTrafficSimulatorNode});
 }
 
@@ -235,7 +292,8 @@ TEST(SessionGraph, DiffusionPlannerReplacesTheOtherAndSeesTheSlots) {
   const SessionGraph graph = graphOf(scenarioWith("pdm_lite", "diffusion"), {false, false});
   EXPECT_EQ(graph.participants, (Texts{kCbvIdentificationNode, kEgoPlannerNode,
                                        kDiffusionPlannerNode, kMetricsNode, kCameraNode}));
-  EXPECT_EQ(listeners("cbv_1/camera/image_raw", graph), Texts{kDiffusionPlannerNode});
+  EXPECT_EQ(listeners("cbv_1/camera/image_raw", graph),
+            (Texts{kDiffusionPlannerNode, kMetricsNode}));
   EXPECT_EQ(listeners("ego/camera/image_raw", graph), Texts());
   EXPECT_EQ(listeners(kGuidanceTopic, graph), Texts{kMetricsNode});
   EXPECT_EQ(answererOf("cbv_1/control", graph), kDiffusionPlannerNode);
@@ -247,7 +305,8 @@ TEST(SessionGraph, EgoThatSeesHasItsImageAloneAndAllComesBackFromTheMessage) {
   putGraph(graphOf(scenarioWith("diffusion", "pdm_lite"), {true, false}), info);
   const SessionGraph graph = graphOf(info);
   EXPECT_EQ(graph.max_cbv, 3);
-  EXPECT_EQ(listeners("ego/camera/image_raw", graph), (Texts{kEgoPlannerNode, kRecorderNode}));
+  EXPECT_EQ(listeners("ego/camera/image_raw", graph),
+            (Texts{kEgoPlannerNode, kMetricsNode, kRecorderNode}));
   EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts());
 }
 

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/ros/tick_answers.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
@@ -27,6 +28,10 @@ namespace cdiff {
 namespace {
 
 namespace fs = std::filesystem;
+
+nlohmann::json summaryIn(const fs::path& folder) {
+  return nlohmann::json::parse(core::readFile(folder / "summary.json", "summary"));
+}
 
 class Session : public ::testing::Test {
  protected:
@@ -55,8 +60,11 @@ class Session : public ::testing::Test {
 
   fs::path results() const { return folder_ / "ros"; }
   fs::path log() const { return folder_ / "log"; }
-  nlohmann::json summary() const {
-    return nlohmann::json::parse(core::readFile(results() / "summary.json", "summary"));
+  nlohmann::json summary() const { return summaryIn(results()); }
+  /// Source of the last fault; empty when there is none.
+  std::string lastFaultSource() const {
+    const nlohmann::json faults = summary()["faults"];
+    return faults.empty() ? "" : faults.back()["source"].get<std::string>();
   }
   std::string exitCode() const { return core::readFile(results() / "exit_code", "exit code"); }
 
@@ -71,16 +79,52 @@ class Session : public ::testing::Test {
   }
 };
 
-/// The trace of the same session in one process.
-std::string traceInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
+/// The result folder of the same session in one process, with its bag.
+void runInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
   const scenario::SessionSetup setup(scenario::resolveRequest(request));
   scenario::ClosedLoop loop(setup);
   report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
+  ros::SessionBag bag(setup, folder / "session.bag", {"test", "SUMO"});
   loop.addObserver(writer);
+  loop.addObserver(bag);
   const std::atomic<bool> never{false};
   loop.run(never);
   writer.finish(1.0);
+  bag.finish();
+}
+
+/// The trace of the same session in one process.
+std::string traceInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
+  runInOneProcess(request, folder);
   return core::sha256(core::readFile(folder / "trace.csv", "trace"));
+}
+
+/// What a summary says whatever the clock on the wall does.
+nlohmann::json withoutWallClock(nlohmann::json summary) {
+  summary.erase("wall_seconds");
+  summary.erase("real_time_factor");
+  for (auto& [planner, figures] : summary["planner_latency_ms"].items())
+    figures = {{"n", figures["n"]}};
+  return summary;
+}
+
+/// The data: URIs of the images that a report shows.
+std::vector<std::string> picturesIn(const fs::path& folder) {
+  const std::string report = core::readFile(folder / "report.html", "report");
+  std::vector<std::string> pictures;
+  const std::string begin = "data:image/png;base64,";
+  for (std::size_t at = report.find(begin); at != std::string::npos;
+       at = report.find(begin, at + 1))
+    pictures.push_back(report.substr(at, report.find('"', at) - at));
+  return pictures;
+}
+
+/// Number of messages by topic.
+std::map<std::string, int> countsIn(const fs::path& bag_file) {
+  std::map<std::string, int> counts;
+  rosbag::Bag bag(bag_file.string(), rosbag::bagmode::Read);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) ++counts[message.getTopic()];
+  return counts;
 }
 
 TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
@@ -94,7 +138,10 @@ TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.set = {"protocol.time_limit=8"};
-  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  const fs::path alone = folder_ / "one_process";
+  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, alone));
+  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+  EXPECT_EQ(countsIn(results() / "session.bag"), countsIn(alone / "session.bag"));
   EXPECT_GT(summary()["cbv"]["count"], 0) << "the session shows no CBV; choose one that does";
 
   rosbag::Bag bag((results() / "session.bag").string(), rosbag::bagmode::Read);
@@ -157,7 +204,8 @@ TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
   EXPECT_EQ(images.shown, images.occupied);
 }
 
-TEST_F(Session, DiffusionPlannerHasTheTraceOfTheClosedLoopAndItsImagesInTheBag) {
+TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag) {
+  const fs::path alone = folder_ / "one_process";
   const std::string model = testing::writeRandomModel(folder_ / "model");
   const std::string settings = "protocol.time_limit=8 diffusion.model=" + model;
   const std::string log = launch("e2e_cdiff session.launch",
@@ -170,7 +218,12 @@ TEST_F(Session, DiffusionPlannerHasTheTraceOfTheClosedLoopAndItsImagesInTheBag) 
   request.seed = "2";
   request.cbv_planner = "diffusion";
   request.set = core::splitText(settings, ' ');
-  EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
+  runInOneProcess(request, alone);
+  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+  EXPECT_FALSE(summary()["cbv"]["plan"].is_null());
+  EXPECT_FALSE(picturesIn(results()).empty());
+  EXPECT_EQ(picturesIn(results()), picturesIn(alone));
+  EXPECT_EQ(countsIn(results() / "session.bag"), countsIn(alone / "session.bag"));
   EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0) << log;
   EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
   const BagImages images = imagesIn(results() / "session.bag");
@@ -206,14 +259,15 @@ TEST_F(Session, MissingNodeIsNamedAndAResultIsLeft) {
   const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/missing_planner.launch", "");
   EXPECT_EQ(exitCode(), "2\n") << log;
   EXPECT_EQ(summary()["status"], "error");
-  EXPECT_EQ(summary()["faults"].back()["source"], "cbv_planner_node") << summary()["faults"];
+  EXPECT_EQ(lastFaultSource(), "cbv_planner_node") << summary()["faults"] << log;
 }
 
 TEST_F(Session, NodeThatDiesEndsTheSession) {
   const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/dying_metrics.launch", "");
   EXPECT_EQ(exitCode(), "2\n") << log;
   EXPECT_EQ(summary()["status"], "error");
-  EXPECT_EQ(summary()["faults"].back()["source"], "metrics_node") << summary()["faults"];
+  ASSERT_FALSE(summary()["faults"].empty()) << log;
+  EXPECT_EQ(lastFaultSource(), "metrics_node") << summary()["faults"];
 }
 
 TEST_F(Session, BadInputGivesItsExitCodeAndASentence) {

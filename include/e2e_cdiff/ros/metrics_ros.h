@@ -10,17 +10,16 @@
 #include <optional>
 
 #include "diagnostic_updater/diagnostic_updater.h"
-#include "e2e_cdiff/metrics/session_metrics.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/ros/markers.h"
-#include "e2e_cdiff/ros/participant.h"
-#include "e2e_cdiff/ros/tick_answers.h"
+#include "e2e_cdiff/ros/metric_reporter.h"
+#include "e2e_cdiff/ros/observer.h"
 
 namespace cdiff::ros {
 
-class MetricsRos : public Participant {
+class MetricsRos : public Observer {
  public:
-  using Participant::Participant;
+  using Observer::Observer;
 
  protected:
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
@@ -29,11 +28,9 @@ class MetricsRos : public Participant {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void listenToAnswers();
-  void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection,
-               const std::vector<Answer>& answers);
-  void publishReport(const traffic::TrafficSnapshot& snapshot,
-                     const metrics::TickMeasures& measures);
+  void observe(const ::e2e_cdiff::TrafficSnapshot& message,
+               const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
+  void note(const std::vector<scenario::PlannerLatency>& latencies);
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
@@ -41,8 +38,7 @@ class MetricsRos : public Participant {
   std::filesystem::path results_;
   std::unique_ptr<scenario::SessionSetup> setup_;
   std::unique_ptr<report::ResultWriter> writer_;
-  std::unique_ptr<metrics::SessionMetrics> metrics_;
-  TickAnswers answers_;
+  std::unique_ptr<MetricReporter> reporter_;
   SessionMarkers markers_;
   traffic::TrafficSnapshot last_;           ///< last snapshot observed
   std::optional<Clock::time_point> begin_;  ///< first snapshot

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The bag of a session that one process drives: the same topics, stamps and order as the
-/// recorder's, and the images that planners or records were given. While it writes, the file is
-/// called FILE.active.
+/// recorder's, and the images that planners or records were given.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <string>
 
+#include "e2e_cdiff/ros/bag_file.h"
+#include "e2e_cdiff/ros/metric_reporter.h"
 #include "e2e_cdiff/scenario/session_observer.h"
 #include "e2e_cdiff/scenario/session_setup.h"
-#include "rosbag/bag.h"
 
 namespace cdiff::ros {
 
 /// What is added to the name of the planner of an action that carries noise.
 inline constexpr const char* kNoiseMark = "+noise";
-
-/// Topic of the images of a slot; of the ego for -1.
-std::string cameraImageTopic(int slot);
 
 /// Who made the session, for SessionInfo.
 struct BagOrigin {
@@ -43,14 +40,14 @@ class SessionBag : public scenario::SessionObserver {
   void finish();
 
  private:
-  void open(const BagOrigin& origin);
-  void writeImage(const scenario::SlotImage& seen);
-  void writeAction(const planning::PlannedAction& action, const scenario::TickRecord& record);
-  void write(const std::function<void()>& writing);
+  void addActions(const scenario::TickRecord& record, TickMessages& tick) const;
+  void addImages(const scenario::TickRecord& record, TickMessages& tick) const;
+  void addGuidance(const scenario::TickRecord& record, TickMessages& tick) const;
+  std::string plannerOf(int slot) const;
 
   const scenario::SessionSetup& setup_;
-  std::filesystem::path file_;
-  rosbag::Bag bag_;
+  BagFile file_;
+  MetricReporter reporter_;
   std::function<bool(const std::string&)> noisy_;
 };
 

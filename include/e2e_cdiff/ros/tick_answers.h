@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Collects what the other nodes answer to a tick (selection, controls, guidance), whatever the
-/// order of arrival, and says what is still missing. The traffic simulator, the metrics and the
-/// recorder wait by the same rule.
+/// Collects what the other nodes answer to a tick (selection and controls; where expected guidance,
+/// rollouts and images), whatever the order of arrival, and says what is still missing. The traffic
+/// simulator, the metrics and the recorder wait by the same rule.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,10 @@
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
 #include "e2e_cdiff/GuidanceReport.h"
+#include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/ros/image_inbox.h"
 #include "e2e_cdiff/scenario/session_observer.h"
 
 namespace cdiff::ros {
@@ -32,20 +34,33 @@ std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answer
 /// One latency per planning call: all CBVs share theirs.
 std::vector<scenario::PlannerLatency> latenciesOf(const std::vector<Answer>& answers);
 
+/// What a decision needs besides selection and controls.
+struct ExpectedAnswers {
+  bool guidance = false;    ///< a report, where there is a CBV to drive
+  bool rollouts = false;    ///< of every CBV
+  bool ego_image = false;   ///< of the ego
+  bool cbv_images = false;  ///< of every CBV
+};
+
 class TickAnswers {
  public:
   using Selection = ::e2e_cdiff::CbvSelection::ConstPtr;
   using Control = ::e2e_cdiff::ControlAction::ConstPtr;
   using Guidance = ::e2e_cdiff::GuidanceReport::ConstPtr;
+  using Rollout = ::e2e_cdiff::Rollout::ConstPtr;
+  using Image = sensor_msgs::Image::ConstPtr;
 
-  /// `simulation_step` [s] turns the stamp of a control without tick into a tick.
-  explicit TickAnswers(double simulation_step = 0.05) : simulation_step_(simulation_step) {}
-
-  /// From now on a tick with CBVs needs a guidance report too.
-  void expectGuidance() { guidance_expected_ = true; }
+  /// `simulation_step` [s] turns a stamp without tick into a tick; `camera` says what images must
+  /// be like.
+  explicit TickAnswers(double simulation_step = 0.05, const ExpectedAnswers& expected = {},
+                       const rendering::CameraOptions& camera = {})
+      : simulation_step_(simulation_step), expected_(expected), images_(camera, simulation_step) {}
 
   void add(const Selection& selection);
   void add(const Guidance& guidance);
+  void addRollout(int slot, const Rollout& rollout);
+  /// `slot`: kEgoSlot for the ego.
+  void addImage(int slot, const Image& image) { images_.add(slot, image); }
   /// A control that carries a stamp but no tick counts for the tick of its stamp; one with neither
   /// for `otherwise`.
   void addEgo(const Control& control, std::uint64_t otherwise = 0);
@@ -58,8 +73,14 @@ class TickAnswers {
   Control ego(std::uint64_t tick) const;
   Control cbv(int slot, std::uint64_t tick) const;
   Guidance guidance(std::uint64_t tick) const;
+  Rollout rollout(int slot, std::uint64_t tick) const;
+  Image image(int slot, std::uint64_t tick) const { return images_.find(slot, tick); }
+  /// What the vehicles that were answered for saw, in the order of their answers; an image that is
+  /// not as it must be is left out.
+  std::vector<scenario::SlotImage> images(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   /// Answers of planners to a decision: the ego's, then those of assigned CBVs by slot; those that
-  /// are missing are left out. With guidance where a report came.
+  /// are missing are left out. With guidance and
+  /// rollouts where they came.
   std::vector<Answer> answers(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   /// A control and the tick that it answers.
   struct TimedControl {
@@ -76,12 +97,15 @@ class TickAnswers {
 
  private:
   void addGuidance(Answer& answer, std::uint64_t tick) const;
+  std::vector<std::string> missingOf(int slot, std::uint64_t tick) const;
   std::uint64_t tickOf(const ::e2e_cdiff::ControlAction& control, std::uint64_t otherwise) const;
   double simulation_step_;
-  bool guidance_expected_ = false;
+  ExpectedAnswers expected_;
+  ImageInbox images_;
   std::map<std::uint64_t, Guidance> guidance_;
   std::map<std::uint64_t, Selection> selections_;
   std::map<std::uint64_t, std::map<int, Control>> controls_;  ///< by tick, then slot
+  std::map<std::uint64_t, std::map<int, Rollout>> rollouts_;  ///< by tick, then slot
 };
 
 /// Whether a snapshot holds a vehicle.

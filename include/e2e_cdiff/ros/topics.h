@@ -56,6 +56,9 @@ struct SessionGraph {
   /// Whether camera_node publishes images of the slots, or of the ego.
   bool imagesOfCbvs() const { return has(kCameraNode) && (cbvsSee() || show_cameras); }
   bool imagesOfEgo() const { return has(kCameraNode) && (ego_sees || show_cameras); }
+  /// Whether these images are what the planner of the CBVs, or of the ego, plans from.
+  bool cbvsPlanFromImages() const { return has(kCameraNode) && cbvsSee(); }
+  bool egoPlansFromImages() const { return has(kCameraNode) && ego_sees; }
 };
 
 /// Nodes that listen to a topic in this session, by name; a publisher waits for them before the

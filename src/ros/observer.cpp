@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/observer.h"
+
+namespace cdiff::ros {
+
+namespace msgs = ::e2e_cdiff;
+
+void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
+                               const ImageInterest& images) {
+  const bool guided = graph().cbvsSee();
+  const ExpectedAnswers expected{guided, true, images.ego, images.cbvs};
+  answers_ = TickAnswers(options.simulation_step, expected, options.camera);
+  listen<msgs::CbvSelection>(kSelectionTopic,
+                             [this](const auto& message) { answers_.add(message); });
+  listen<msgs::ControlAction>(kEgoControlTopic,
+                              [this](const auto& message) { answers_.addEgo(message); });
+  if (guided) {
+    listen<msgs::GuidanceReport>(kGuidanceTopic,
+                                 [this](const auto& message) { answers_.add(message); });
+  }
+  if (images.ego) listenToImages(kEgoSlot);
+  for (int slot = 0; slot < graph().max_cbv; ++slot) {
+    listenToSlot(slot);
+    if (images.cbvs) listenToImages(slot);
+  }
+}
+
+void Observer::listenToSlot(int slot) {
+  listen<msgs::ControlAction>(
+      cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); });
+  listen<msgs::Rollout>(cbvRolloutTopic(slot),
+                        [this, slot](const auto& message) { answers_.addRollout(slot, message); });
+}
+
+void Observer::listenToImages(int slot) {
+  listen<sensor_msgs::Image>(
+      imageTopic(slot), [this, slot](const auto& message) { answers_.addImage(slot, message); });
+}
+
+}  // namespace cdiff::ros
