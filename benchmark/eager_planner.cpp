@@ -6,6 +6,7 @@
 #include <ATen/Parallel.h>
 
 #include "benchmark.h"
+#include "e2e_cdiff/traffic/rollout.h"
 #include "networks.h"
 
 namespace cdiff::benchmark {
