@@ -31,6 +31,9 @@ ScenarioOptions collectionScenario(ScenarioOptions scenario, const CollectionOpt
   const core::RandomStream random(static_cast<std::uint64_t>(scenario.seed), "collection_session");
   const core::RandomKey key{core::hashText(scenario.name), 0, 0};
   scenario.max_cbv = options.vehicles;
+  for (std::string* planner : {&scenario.ego_planner, &scenario.cbv_planner}) {
+    if (planning::seesImages(*planner)) *planner = "pdm_lite";
+  }
   scenario.protocol.time_limit = options.duration;
   scenario.protocol.blocked_time = kEgoBlockedTime;
   scenario.protocol.deviation_distance = kEgoDeviation;

@@ -16,8 +16,8 @@ namespace {
 scenario::ScenarioOptions scenarioFor(const std::string& node,
                                       const std::filesystem::path& results) {
   scenario::ScenarioOptions options = scenario::loadScenario("crossing_left_turn");
+  options.cbv_planner = node == kDiffusionPlannerNode ? "diffusion" : "pdm_lite";
   if (node != kDiffusionPlannerNode) return options;
-  options.cbv_planner = "diffusion";
   options.diffusion.model = testing::writeRandomModel(results / "model");
   return options;
 }
