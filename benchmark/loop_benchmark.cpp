@@ -27,6 +27,7 @@ scenario::ScenarioOptions town05(std::int64_t seed) {
   request.route = "25318";
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
   request.seed = std::to_string(seed);
+  request.cbv_planner = "pdm_lite";  // the loop, not the denoising
   request.set = {"traffic.density=50", "traffic.forget_distance=160", "max_cbv=2",
                  "protocol.blocked_time=1000", "protocol.time_limit=60"};
   return scenario::resolveRequest(request);
@@ -131,7 +132,7 @@ std::vector<double> nodeGraphLoop(const fs::path& folder) {
                                 (data / "bench2drive/bench2drive220.xml").string() +
                                 "' route:=25318 network:='" +
                                 (data / "carla_towns/Town05.net.xml").string() +
-                                "' set:='traffic.density=50 traffic.forget_distance=160 "
+                                "' cbv_planner:=pdm_lite set:='traffic.density=50 traffic.forget_distance=160 "
                                 "protocol.blocked_time=1000' seed:=1 "
                                 "record:=true results:='" +
                                 folder.string() + "' >/dev/null 2>&1";
