@@ -43,6 +43,17 @@ std::string figureRows(const metrics::SessionMeasures& measures) {
          row("2D-TTC minimum", measureText(measures.ttc_2d.minimum, 2));
 }
 
+/// Wall time from image (or snapshot) to command.
+std::string latencyRows(const std::map<std::string, LatencyFigures>& latencies) {
+  std::string text;
+  for (const auto& [planner, figures] : latencies) {
+    text += row("latency " + planner, "p50 " + core::formatFixed(figures.median, 1) + " ms, p95 " +
+                                          core::formatFixed(figures.percentile_95, 1) +
+                                          " ms (n = " + std::to_string(figures.n) + ")");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string measureText(const metrics::Measure& measure, int decimals) {
@@ -55,7 +66,8 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 }
 
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
-  std::string text = headRows(result) + figureRows(result.measures);
+  std::string text = headRows(result) + figureRows(result.measures) +
+                     latencyRows(result.latencies);
   if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));
   text += row("verdict", result.verdict.passed          ? "passed"
                          : endedByItself(result.status) ? "FAILED"
