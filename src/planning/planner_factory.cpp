@@ -6,6 +6,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/planning/diffusion_planner.h"
 #include "e2e_cdiff/planning/pdm_lite.h"
+#include "e2e_cdiff/planning/two_stage_pid.h"
 
 namespace cdiff::planning {
 namespace {
@@ -19,8 +20,9 @@ struct Entry {
   bool sees;    ///< needs images
 };
 
-std::unique_ptr<Planner> makeDiffusion(const PlannerOptions& options,
-                                       const PlanningContext& context) {
+/// Throws InputError if the camera has not the size of the model's images.
+std::unique_ptr<DiffusionPlanner> makeSeeing(const PlannerOptions& options,
+                                             const PlanningContext& context) {
   auto planner = std::make_unique<DiffusionPlanner>(options.diffusion, options.guidance,
                                                     options.vehicle, context);
   const diffusion::Architecture& sizes = planner->model().architecture;
@@ -35,6 +37,16 @@ std::unique_ptr<Planner> makeDiffusion(const PlannerOptions& options,
   return planner;
 }
 
+std::unique_ptr<Planner> makeDiffusion(const PlannerOptions& options,
+                                       const PlanningContext& context) {
+  return makeSeeing(options, context);
+}
+
+std::unique_ptr<Planner> makeTwoStagePid(const PlannerOptions& options,
+                                         const PlanningContext& context) {
+  return std::make_unique<TwoStagePid>(makeSeeing(options, context), options.two_stage_pid);
+}
+
 std::unique_ptr<Planner> makePdmLite(const PlannerOptions& options,
                                      const PlanningContext& context) {
   return std::make_unique<PdmLite>(options.pdm_lite, options.vehicle, context);
@@ -44,6 +56,7 @@ std::unique_ptr<Planner> makePdmLite(const PlannerOptions& options,
 constexpr Entry kPlanners[] = {
     {"diffusion", &makeDiffusion, true, true},
     {"pdm_lite", &makePdmLite, false, false},
+    {"two_stage_pid", &makeTwoStagePid, true, true},
 };
 
 const Entry* findEntry(const std::string& name) {

@@ -121,6 +121,8 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   visitor.group({"pdm_lite", "", "Planner pdm_lite."}, pdm_lite);
   visitor.group({"diffusion", "", "Planner diffusion."}, diffusion);
+  visitor.group({"two_stage_pid", "", "Tracker of planner two_stage_pid, which plans as diffusion."},
+                two_stage_pid);
   visitor.text({"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
                guidance_profile, {});
   visitor.group({"guidance", "", "Guidance objectives; defaults are the profile's."}, guidance);
@@ -144,6 +146,7 @@ void ScenarioOptions::validate() const {
   route.validate();
   cbv.validate();
   pdm_lite.validate();
+  two_stage_pid.validate();
   guidance.validate();
   camera.validate();
   vehicle.validate();
@@ -159,7 +162,7 @@ void ScenarioOptions::validate() const {
   if (mode == "safety_critical" && !planning::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
-        cbv_planner + "' drives naturalistically only; expected diffusion");
+        cbv_planner + "' drives naturalistically only; expected diffusion or two_stage_pid");
   }
   const bool file = demand != "generated" && demand != "none";
   if (file && !fs::is_regular_file(demand)) {

@@ -35,6 +35,18 @@ TEST_F(PlannerFactory, MakesEveryPlannerThatItNames) {
   for (const std::string& name : names) EXPECT_NE(makePlanner(name, {}, context_), nullptr) << name;
 }
 
+TEST_F(PlannerFactory, TwoStagePidIsGuidedAndSees) {
+  EXPECT_TRUE(canBeGuided("two_stage_pid"));
+  EXPECT_TRUE(seesImages("two_stage_pid"));
+  EXPECT_TRUE(makePlanner("two_stage_pid", {}, context_)->needsImages());
+  PlannerOptions options;
+  options.two_stage_pid.look_ahead_maximum = 1.0;
+  EXPECT_THROW(makePlanner("two_stage_pid", options, context_), core::InputError);
+  options = {};
+  options.camera.width = 80;
+  EXPECT_THROW(makePlanner("two_stage_pid", options, context_), core::InputError);
+}
+
 TEST_F(PlannerFactory, NamesTheNearestPlanner) {
   EXPECT_EQ(errorOf("pdmlite"),
             "unknown planner 'pdmlite'; the nearest known planner is 'pdm_lite'");

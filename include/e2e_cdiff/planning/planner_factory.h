@@ -12,6 +12,7 @@
 #include "e2e_cdiff/planning/diffusion_options.h"
 #include "e2e_cdiff/planning/pdm_lite_options.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/trajectory_tracker.h"
 #include "e2e_cdiff/rendering/camera_options.h"
 
 namespace cdiff::planning {
@@ -19,7 +20,8 @@ namespace cdiff::planning {
 /// Options of all planners; each takes its own.
 struct PlannerOptions {
   PdmLiteOptions pdm_lite;
-  DiffusionOptions diffusion;
+  DiffusionOptions diffusion;  ///< of two_stage_pid too
+  TrajectoryTrackerOptions two_stage_pid;
   guidance::GuidanceOptions guidance;  ///< of planners that can be guided
   dynamics::BicycleModelOptions vehicle;
   rendering::CameraOptions camera;  ///< that planners which see look through

@@ -45,6 +45,7 @@ struct ScenarioOptions {
   cbv::CbvOptions cbv;
   planning::PdmLiteOptions pdm_lite;
   planning::DiffusionOptions diffusion;
+  planning::TrajectoryTrackerOptions two_stage_pid;
   std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
   guidance::GuidanceOptions guidance;  ///< the profile's values, with what the scenario changes
   rendering::CameraOptions camera;     ///< that planners see through
@@ -62,7 +63,7 @@ struct ScenarioOptions {
   /// Throws InputError for fields that contradict each other.
   void validate() const;
   planning::PlannerOptions plannerOptions() const {
-    return {pdm_lite, diffusion, guidance, vehicle, camera};
+    return {pdm_lite, diffusion, two_stage_pid, guidance, vehicle, camera};
   }
 };
 

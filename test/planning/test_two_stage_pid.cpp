@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "course.h"
+#include "e2e_cdiff/planning/two_stage_pid.h"
+#include "support/random_model.h"
+
+namespace cdiff::planning {
+namespace {
+
+/// A straight road with an ego at the origin and two CBVs ahead; the model is random.
+class TwoStagePidTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("cdiff_two_stage_model_" + std::to_string(::getpid()));
+    cdiff::testing::writeRandomModel(folder_);
+  }
+  static void TearDownTestSuite() { std::filesystem::remove_all(folder_); }
+
+  TwoStagePidTest() {
+    for (const double x : {0.0, 30.0, 60.0}) {
+      traffic::Vehicle vehicle = testing::vehicleAt("v" + core::formatNumber(x), x, 0.0, 0.3, 5.0);
+      vehicle.role = x == 0.0 ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kCbv;
+      vehicle.cbv_slot = static_cast<int>(x / 30.0) - 1;
+      snapshot_.vehicles.push_back(vehicle);
+    }
+    for (int shade : {0, 40}) {
+      traffic::CameraImage image;
+      image.width = 160;
+      image.height = 96;
+      for (int i = 0; i < 160 * 96 * 3; ++i)
+        image.rgb.push_back(static_cast<std::uint8_t>(shade + i % 97));
+      images_.push_back(image);
+    }
+  }
+
+  std::vector<PlanningTask> tasks() {
+    return {{0, &snapshot_.vehicles[1], &route_, 8.0, &images_[0]},
+            {1, &snapshot_.vehicles[2], &route_, 8.0, &images_[1]}};
+  }
+
+  std::unique_ptr<DiffusionPlanner> makeDiffusion() const {
+    DiffusionOptions options;
+    options.model = folder_.string();
+    return std::make_unique<DiffusionPlanner>(options, guidance_, dynamics::BicycleModelOptions{},
+                                              context_);
+  }
+  TwoStagePid makePlanner() const { return {makeDiffusion(), {}}; }
+
+  void goTo(std::uint64_t tick) {
+    snapshot_.tick = tick;
+    for (traffic::CameraImage& image : images_) image.tick = tick;
+  }
+
+  /// What a tracker of its own answers to a plan.
+  static traffic::ControlAction tracked(TrajectoryTracker& tracker, const traffic::Vehicle& vehicle,
+                                        const PlannedAction& plan) {
+    Eigen::MatrixX2d places(static_cast<Eigen::Index>(plan.rollout.size()), 2);
+    for (Eigen::Index row = 0; row < places.rows(); ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      places.row(row) = vehicle.state.pose().toBody(plan.rollout[i].state.position).transpose();
+    }
+    return tracker.track(vehicle.state.speed, places);
+  }
+
+  inline static std::filesystem::path folder_;
+  map::RoadNetwork network_ =
+      testing::makeNetwork({{"road", testing::straight(-50.0, 0.0, 250.0, 0.0)}});
+  map::DrivableArea area_{network_};
+  map::Route route_ = testing::routeAlong(network_, {"road"});
+  PlanningContext context_{network_, area_};
+  guidance::GuidanceOptions guidance_ = guidance::loadProfile("naturalistic");
+  traffic::TrafficSnapshot snapshot_;
+  std::vector<traffic::CameraImage> images_;
+};
+
+TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
+  TwoStagePid planner = makePlanner();
+  const auto diffusion = makeDiffusion();
+  TrajectoryTracker trackers[2];
+  for (const std::uint64_t tick : {0U, 2U, 4U}) {
+    goTo(tick);
+    const auto actions = planner.plan(snapshot_, tasks());
+    const auto plans = diffusion->plan(snapshot_, tasks());
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(actions[i].fault, "");
+      EXPECT_TRUE(actions[i].action.valid());
+      EXPECT_EQ(actions[i].action, tracked(trackers[i], snapshot_.vehicles[i + 1], plans[i]));
+      EXPECT_EQ(actions[i].state_mismatch, plans[i].state_mismatch);
+      EXPECT_GT(actions[i].state_mismatch, 0.0);
+      EXPECT_EQ(actions[i].guidance.objectives.size(), 3U);
+      ASSERT_EQ(actions[i].rollout.size(), 32U);
+      for (std::size_t k = 0; k < 32; ++k) {
+        EXPECT_EQ(actions[i].rollout[k].state.position, plans[i].rollout[k].state.position);
+        EXPECT_EQ(actions[i].rollout[k].action, plans[i].rollout[k].action);
+      }
+    }
+  }
+}
+
+TEST_F(TwoStagePidTest, SameCallsSameActionsAndEachVehicleAlone) {
+  TwoStagePid first = makePlanner();
+  TwoStagePid second = makePlanner();
+  TwoStagePid alone = makePlanner();
+  for (const std::uint64_t tick : {0U, 2U, 4U}) {
+    goTo(tick);
+    const auto one = first.plan(snapshot_, tasks());
+    const auto two = second.plan(snapshot_, tasks());
+    EXPECT_EQ(one[0].action, two[0].action);
+    EXPECT_EQ(one[1].action, two[1].action);
+    EXPECT_EQ(one[1].action, alone.plan(snapshot_, {tasks()[1]})[0].action);
+  }
+}
+
+TEST_F(TwoStagePidTest, FaultBrakesThatVehicleAloneAndItsTrackerStartsAnew) {
+  TwoStagePid planner = makePlanner();
+  const auto diffusion = makeDiffusion();
+  TrajectoryTracker tracker;
+  for (const std::uint64_t tick : {0U, 2U, 4U}) {
+    goTo(tick);
+    std::vector<PlanningTask> asked = tasks();
+    traffic::CameraImage wrong_size = images_[0];
+    wrong_size.width = 80;
+    if (tick == 2) asked[0].image = &wrong_size;
+    const auto actions = planner.plan(snapshot_, asked);
+    const auto plans = diffusion->plan(snapshot_, asked);
+    EXPECT_EQ(actions[1].action, tracked(tracker, snapshot_.vehicles[2], plans[1]));
+    if (tick == 2) {
+      EXPECT_EQ(actions[0].action, traffic::ControlAction::failSafe());
+      EXPECT_NE(actions[0].fault.find("the image is 80 x 96"), std::string::npos);
+    } else {
+      TrajectoryTracker fresh;
+      EXPECT_EQ(actions[0].action, tracked(fresh, snapshot_.vehicles[1], plans[0])) << tick;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cdiff::planning
