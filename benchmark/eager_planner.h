@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The same guided sampling with libtorch's eager execution: what the planner would take without code
-/// of its own.
+/// The same guided sampling with libtorch's eager execution: what the planner would take without
+/// code of its own.
 #pragma once
 
 namespace cdiff::benchmark {

@@ -128,14 +128,14 @@ std::vector<double> nodeGraphLoop(const fs::path& folder) {
   const fs::path data = dataFolder();
   std::vector<double> rates;
   for (int repetition = 0; repetition < 3; ++repetition) {
-    const std::string command = std::string("'") + script + "' bench2drive:='" +
-                                (data / "bench2drive/bench2drive220.xml").string() +
-                                "' route:=25318 network:='" +
-                                (data / "carla_towns/Town05.net.xml").string() +
-                                "' cbv_planner:=pdm_lite set:='traffic.density=50 traffic.forget_distance=160 "
-                                "protocol.blocked_time=1000' seed:=1 "
-                                "record:=true results:='" +
-                                folder.string() + "' >/dev/null 2>&1";
+    const std::string command =
+        std::string("'") + script + "' bench2drive:='" +
+        (data / "bench2drive/bench2drive220.xml").string() + "' route:=25318 network:='" +
+        (data / "carla_towns/Town05.net.xml").string() +
+        "' cbv_planner:=pdm_lite set:='traffic.density=50 traffic.forget_distance=160 "
+        "protocol.blocked_time=1000' seed:=1 "
+        "record:=true results:='" +
+        folder.string() + "' >/dev/null 2>&1";
     if (std::system(command.c_str()) != 0)
       throw core::SimulatorError("the session of the node graph failed: " + command);
     const auto summary = nlohmann::json::parse(core::readFile(folder / "summary.json", "summary"));

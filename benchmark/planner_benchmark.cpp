@@ -68,8 +68,8 @@ class Scene {
       images_[i].height = 96;
       images_[i].rgb.resize(160 * 96 * 3);
       for (std::size_t j = 0; j < images_[i].rgb.size(); ++j) {
-        images_[i].rgb[j] = static_cast<std::uint8_t>(
-            random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
+        images_[i].rgb[j] =
+            static_cast<std::uint8_t>(random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
       }
     }
   }
@@ -83,9 +83,9 @@ std::unique_ptr<planning::DiffusionPlanner> makePlanner(const Scene& scene,
                                                         const std::string& mode) {
   planning::DiffusionOptions options;
   options.sampler.mode = mode;
-  return std::make_unique<planning::DiffusionPlanner>(
-      options, scene.setup().options().guidance, scene.setup().options().vehicle,
-      scene.setup().planningContext());
+  return std::make_unique<planning::DiffusionPlanner>(options, scene.setup().options().guidance,
+                                                      scene.setup().options().vehicle,
+                                                      scene.setup().planningContext());
 }
 
 /// Milliseconds of planning `count` vehicles in one call, ascending.
@@ -118,9 +118,7 @@ double singlesTime(Scene& scene) {
   return median(times);
 }
 
-double p95(const std::vector<double>& ascending) {
-  return ascending[ascending.size() * 95 / 100];
-}
+double p95(const std::vector<double>& ascending) { return ascending[ascending.size() * 95 / 100]; }
 
 void addEager(Figures& figures) {
 #ifdef E2E_CDIFF_EAGER
@@ -150,7 +148,8 @@ void benchmarkPlanner(Figures& figures) {
   figures.push_back({"planner_real_time_cached_p50", median(cached), "ms", "<=5"});
   figures.push_back({"planner_real_time_cached_p95", p95(cached), "ms", ""});
   figures.push_back({"planner_eight_cbvs_cached_p50", median(batch), "ms", "<=25"});
-  figures.push_back({"planner_eight_in_batch_per_eight_singles", median(batch) / singles, "", "<=0.75"});
+  figures.push_back(
+      {"planner_eight_in_batch_per_eight_singles", median(batch) / singles, "", "<=0.75"});
   addEager(figures);
 }
 

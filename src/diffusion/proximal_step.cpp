@@ -12,12 +12,12 @@ using traffic::kActionColumns;
 
 /// Descent of one sample, in u.
 struct Descent {
-  std::vector<float> center;    ///< x_hat
-  std::vector<double> u;        ///< best so far
-  std::vector<double> slope;    ///< gradient at u
-  double value = 0.0;           ///< J + |u|^2 / 2 at u
-  std::vector<double> trial;    ///< being evaluated
-  double length = 0.0;          ///< of the step that led to `trial`
+  std::vector<float> center;  ///< x_hat
+  std::vector<double> u;      ///< best so far
+  std::vector<double> slope;  ///< gradient at u
+  double value = 0.0;         ///< J + |u|^2 / 2 at u
+  std::vector<double> trial;  ///< being evaluated
+  double length = 0.0;        ///< of the step that led to `trial`
   bool clipped = false;
 };
 

@@ -16,8 +16,8 @@ struct ProximalOptions {
 };
 
 /// Gradient descent in u = (x - x_hat) / r with Barzilai-Borwein step lengths; a step that does not
-/// lower the sum is halved. Changes the batch's actions and states; answers whether the trust region
-/// acted, by sample. `radius` [T, 3] is r_k.
+/// lower the sum is halved. Changes the batch's actions and states; answers whether the trust
+/// region acted, by sample. `radius` [T, 3] is r_k.
 std::vector<bool> proximalStep(const ProximalOptions& options, const std::vector<float>& radius,
                                int k, StateBranch& branch, CleanObjective& objective,
                                SamplingBatch& batch);

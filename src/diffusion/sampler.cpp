@@ -34,8 +34,8 @@ class Run {
         batch_(requests.size(), denoiser.architecture().horizon),
         results_(requests.size()) {}
 
-  /// Pure noise, or the previous plan noised to k. Its noise is that of step K + 1, which no reverse
-  /// step draws.
+  /// Pure noise, or the previous plan noised to k. Its noise is that of step K + 1, which no
+  /// reverse step draws.
   void start(int k, bool warm);
   void ddpm(CleanObjective* objective);
   void ddim(const std::vector<int>& steps, const SamplerOptions& options,
@@ -170,8 +170,7 @@ void Run::ddim(const std::vector<int>& steps, const SamplerOptions& options,
     batch_.predict(denoiser_, branch_, k);
     if (guidesAny(objective, k)) {
       const std::vector<float> radius = proximalRadius(schedule_.alphaBar(k), spread);
-      countGuided(*objective, k,
-                  proximalStep(proximal, radius, k, branch_, *objective, batch_));
+      countGuided(*objective, k, proximalStep(proximal, radius, k, branch_, *objective, batch_));
     }
     if (i + 1 < steps.size()) jump(k, steps[i + 1]);
   }
@@ -201,10 +200,10 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
 
 void SamplerOptions::validate(int diffusion_steps) const {
   const auto refuse = [&](const char* key, std::int64_t value) {
-    throw core::InputError("key 'diffusion.sampler." + std::string(key) + "' is " +
-                           std::to_string(value) + "; the model has K = " +
-                           std::to_string(diffusion_steps) + " diffusion steps, so at most " +
-                           std::to_string(diffusion_steps) + " is expected");
+    throw core::InputError(
+        "key 'diffusion.sampler." + std::string(key) + "' is " + std::to_string(value) +
+        "; the model has K = " + std::to_string(diffusion_steps) + " diffusion steps, so at most " +
+        std::to_string(diffusion_steps) + " is expected");
   };
   if (steps > diffusion_steps) refuse("steps", steps);
   if (warm_start_step > diffusion_steps) refuse("warm_start_step", warm_start_step);
@@ -229,10 +228,10 @@ std::vector<int> Sampler::visitedSteps(bool warm) const {
   }
   const int first = warm ? static_cast<int>(options_.warm_start_step)
                          : std::max(1, schedule_.steps() - kSkippedSteps);
-  const int count =
-      std::min(first, static_cast<int>(warm ? options_.warm_steps : options_.steps));
+  const int count = std::min(first, static_cast<int>(warm ? options_.warm_steps : options_.steps));
   for (int i = 0; i < count; ++i) {
-    steps.push_back(static_cast<int>(std::lround(static_cast<double>(first) * (count - i) / count)));
+    steps.push_back(
+        static_cast<int>(std::lround(static_cast<double>(first) * (count - i) / count)));
   }
   return steps;
 }

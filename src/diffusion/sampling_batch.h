@@ -17,7 +17,9 @@ class SamplingBatch {
 
   std::size_t count() const { return count_; }
   Eigen::Index horizon() const { return horizon_; }
-  std::size_t cells() const { return static_cast<std::size_t>(horizon_) * traffic::kRolloutColumns; }
+  std::size_t cells() const {
+    return static_cast<std::size_t>(horizon_) * traffic::kRolloutColumns;
+  }
   float* noisy(std::size_t sample) { return noisy_.data() + sample * cells(); }
   float* actions(std::size_t sample);
   float* states(std::size_t sample);

@@ -42,17 +42,16 @@ void ExactStateBranch::predict(const float* actions, int, float* states) {
     for (Eigen::Index t = 0; t < horizon; ++t) {
       for (int c = 0; c < kActionColumns; ++c) {
         const int column = kStateColumns + c;
-        rollout(t, column) =
-            static_cast<double>(actions[cell(b, horizon, t, c, kActionColumns)]) *
-                normalizer_.scale(t, column) +
-            normalizer_.mean(t, column);
+        rollout(t, column) = static_cast<double>(actions[cell(b, horizon, t, c, kActionColumns)]) *
+                                 normalizer_.scale(t, column) +
+                             normalizer_.mean(t, column);
       }
     }
     rollout_.rollOut(speeds_[b], rollout);
     for (Eigen::Index t = 0; t < horizon; ++t) {
       for (int c = 0; c < kStateColumns; ++c) {
-        states[cell(b, horizon, t, c, kStateColumns)] = static_cast<float>(
-            (rollout(t, c) - normalizer_.mean(t, c)) / normalizer_.scale(t, c));
+        states[cell(b, horizon, t, c, kStateColumns)] =
+            static_cast<float>((rollout(t, c) - normalizer_.mean(t, c)) / normalizer_.scale(t, c));
       }
     }
   }

@@ -26,8 +26,8 @@ bool isFinite(const traffic::VehicleState& state) {
          std::isfinite(state.heading) && std::isfinite(state.speed);
 }
 
-/// Mean distance of two plans in the plane over their common rows, the second one `shift` rows later
-/// [m].
+/// Mean distance of two plans in the plane over their common rows, the second one `shift` rows
+/// later [m].
 double planDistance(const Rollout& first, const Rollout& second) {
   const Eigen::Index rows = std::min(first.rows(), second.rows());
   return (first.topLeftCorner(rows, 2) - second.topLeftCorner(rows, 2)).rowwise().norm().mean();
@@ -65,9 +65,9 @@ traffic::ControlAction executableAction(const Rollout& rollout, Eigen::Index row
 struct DiffusionPlanner::Memory {
   RouteFollower follower;
   ImageWatch watch;
-  std::optional<Rollout> plan;   ///< of the last decision
+  std::optional<Rollout> plan;  ///< of the last decision
   std::uint64_t plan_tick = 0;
-  std::vector<float> features;   ///< of the last image
+  std::vector<float> features;  ///< of the last image
   std::uint64_t features_hash = 0;
 };
 
@@ -78,10 +78,10 @@ struct DiffusionPlanner::Situation {
   diffusion::Context context;
   guidance::GuidanceScene scene;
   guidance::OtherMotion other;
-  std::optional<Rollout> previous;                ///< last plan as seen from here, metric
-  std::optional<diffusion::Trajectory> warm;      ///< the same, normalised, where it fits
+  std::optional<Rollout> previous;            ///< last plan as seen from here, metric
+  std::optional<diffusion::Trajectory> warm;  ///< the same, normalised, where it fits
   std::unique_ptr<guidance::TotalObjective> objective;
-  Rollout plan;                                   ///< the chosen one
+  Rollout plan;  ///< the chosen one
   guidance::GuidanceReport report;
 };
 
@@ -144,10 +144,10 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
 void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
   constexpr double kJump = 0.5;  // [m] and [m/s]
   const Memory& memory = *situation.memory;
-  const auto period = static_cast<std::uint64_t>(
-      std::llround(context_.decision_period / context_.simulation_step));
-  const auto shift = static_cast<Eigen::Index>(
-      std::llround(context_.decision_period / traffic::kRolloutStep));
+  const auto period =
+      static_cast<std::uint64_t>(std::llround(context_.decision_period / context_.simulation_step));
+  const auto shift =
+      static_cast<Eigen::Index>(std::llround(context_.decision_period / traffic::kRolloutStep));
   if (!memory.plan || memory.plan_tick + period != tick || shift < 1) return;
   const Rollout& last = *memory.plan;
   Rollout moved = last;
@@ -217,8 +217,8 @@ void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& 
       contexts.push_back(situation->context);
       speeds.push_back(situation->context.speed);
       diffusion::SampleRequest request;
-      request.key = {core::hashText(situation->task->vehicle->id),
-                     static_cast<std::uint32_t>(tick), 0};
+      request.key = {core::hashText(situation->task->vehicle->id), static_cast<std::uint32_t>(tick),
+                     0};
       request.candidate = candidate;
       request.warm = situation->warm ? &*situation->warm : nullptr;
       requests.push_back(request);
@@ -234,7 +234,8 @@ void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& 
   }
   GuidedBatch guided(model_.normalizer, objectives);
   const auto samples = sampler_.sample(denoiser_, *branch, requests, &guided);
-  for (std::size_t i = 0; i < situations.size(); ++i) choose(*situations[i], samples, i * candidates);
+  for (std::size_t i = 0; i < situations.size(); ++i)
+    choose(*situations[i], samples, i * candidates);
 }
 
 void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTrajectory>& samples,
@@ -246,8 +247,8 @@ void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTra
     plans.push_back(model_.normalizer.denormalize(samples[first + i].clean));
     scores.push_back(count > 1 ? situation.objective->score(plans.back()) : 0.0);
   }
-  auto chosen = static_cast<std::size_t>(std::min_element(scores.begin(), scores.end()) -
-                                         scores.begin());
+  auto chosen =
+      static_cast<std::size_t>(std::min_element(scores.begin(), scores.end()) - scores.begin());
   if (situation.previous && count > 1) {
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < count; ++i) {
@@ -264,8 +265,8 @@ void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTra
   situation.report.chosen = static_cast<std::int64_t>(chosen);
   const SampledTrajectory& sample = samples[first + chosen];
   if (sample.guided_steps > 0) {
-    situation.report.trust_region_share = static_cast<double>(sample.trust_region_hits) /
-                                          static_cast<double>(sample.guided_steps);
+    situation.report.trust_region_share =
+        static_cast<double>(sample.trust_region_hits) / static_cast<double>(sample.guided_steps);
   }
 }
 
@@ -280,8 +281,7 @@ PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
     driven.row(row).tail<traffic::kActionColumns>() << action.throttle, action.steer, action.brake;
     traffic::VehicleState state = start;
     state.position = start.pose().toMap(situation.plan.row(row).head<2>().transpose());
-    state.heading =
-        core::wrapAngle(start.heading + situation.plan(row, traffic::kRolloutHeading));
+    state.heading = core::wrapAngle(start.heading + situation.plan(row, traffic::kRolloutHeading));
     state.speed = std::max(0.0, situation.plan(row, traffic::kRolloutSpeed));
     planned.rollout.push_back({state, action});
   }

@@ -10,9 +10,7 @@ GuidedBatch::GuidedBatch(const diffusion::Normalizer& normalizer,
                          std::vector<guidance::TotalObjective*> objectives)
     : normalizer_(normalizer), objectives_(std::move(objectives)) {}
 
-bool GuidedBatch::actsAt(std::size_t sample, int k) const {
-  return objectives_[sample]->actsAt(k);
-}
+bool GuidedBatch::actsAt(std::size_t sample, int k) const { return objectives_[sample]->actsAt(k); }
 
 double GuidedBatch::evaluate(std::size_t sample, int k, const diffusion::Trajectory& clean,
                              diffusion::Trajectory& gradient) {

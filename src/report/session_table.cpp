@@ -66,8 +66,7 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 }
 
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
-  std::string text = headRows(result) + figureRows(result.measures) +
-                     latencyRows(result.latencies);
+  std::string text = headRows(result) + figureRows(result.measures) + latencyRows(result.latencies);
   if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));
   text += row("verdict", result.verdict.passed          ? "passed"
                          : endedByItself(result.status) ? "FAILED"

@@ -59,7 +59,8 @@ std::string inferenceBlock(const scenario::ScenarioOptions& options) {
     return "";
   using diffusion::CpuDenoiser;
   return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
-         line(1, "model_files_sha256", quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
+         line(1, "model_files_sha256",
+              quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
          line(1, "encoder_instruction_set", quoted(diffusion::ImageEncoder::instructionSet())) +
          line(1, "denoiser_instruction_set",
               quoted(CpuDenoiser::toText(CpuDenoiser::bestInstructionSet())));
@@ -76,7 +77,8 @@ std::string sessionYaml(const scenario::SessionSetup& setup, const RunFacts& fac
          line(0, "deterministic", facts.deterministic ? "true" : "false") + "seeds:\n" +
          line(1, "root", std::to_string(options.seed)) + "simulator:\n" +
          line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
-         machineBlock() + inferenceBlock(options) + "scenario:\n" + indented(core::dumpOptions(options));
+         machineBlock() + inferenceBlock(options) + "scenario:\n" +
+         indented(core::dumpOptions(options));
 }
 
 }  // namespace cdiff::report

@@ -121,10 +121,12 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   visitor.group({"pdm_lite", "", "Planner pdm_lite."}, pdm_lite);
   visitor.group({"diffusion", "", "Planner diffusion."}, diffusion);
-  visitor.group({"two_stage_pid", "", "Tracker of planner two_stage_pid, which plans as diffusion."},
-                two_stage_pid);
-  visitor.text({"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
-               guidance_profile, {});
+  visitor.group(
+      {"two_stage_pid", "", "Tracker of planner two_stage_pid, which plans as diffusion."},
+      two_stage_pid);
+  visitor.text(
+      {"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
+      guidance_profile, {});
   visitor.group({"guidance", "", "Guidance objectives; defaults are the profile's."}, guidance);
   visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);

@@ -71,8 +71,8 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   // below everything else.
   const ScenarioOptions first = applyRequest(request, {});
   ScenarioOptions base;
-  base.guidance = guidance::loadProfile(first.guidance_profile.empty() ? first.mode
-                                                                       : first.guidance_profile);
+  base.guidance =
+      guidance::loadProfile(first.guidance_profile.empty() ? first.mode : first.guidance_profile);
   const ScenarioOptions options = applyRequest(request, base);
   options.validate();
   return options;

@@ -35,8 +35,12 @@ SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork 
       ego_route_(map::matchRoute(network_, ego_route_points)) {}
 
 planning::PlanningContext SessionSetup::planningContext() const {
-  return {network_, drivable_area_, static_cast<std::uint64_t>(options_.seed),
-          options_.simulation_step, options_.decision_period, &ego_route_};
+  return {network_,
+          drivable_area_,
+          static_cast<std::uint64_t>(options_.seed),
+          options_.simulation_step,
+          options_.decision_period,
+          &ego_route_};
 }
 
 std::uint64_t SessionSetup::ticksPerDecision() const {

@@ -44,8 +44,8 @@ std::vector<traffic::CameraImage> imagesOf(const TrainingState& state, std::size
   return images;
 }
 
-/// Encodes images: on a CPU by the encoder that drives, one thread per encoder, which is faster than
-/// the one that learns; else by the latter.
+/// Encodes images: on a CPU by the encoder that drives, one thread per encoder, which is faster
+/// than the one that learns; else by the latter.
 class Encoders {
  public:
   explicit Encoders(const TrainingState& state) : state_(state) {

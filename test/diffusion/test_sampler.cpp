@@ -28,8 +28,8 @@ TEST(Sampler, UnguidedDdpmDrawsThePrior) {
 }
 
 // Known bias of the paper's rule (mean - beta_k g, K = 100): it overshoots by up to 27 %. The means
-// are those of an independent run of the same rule on the same problem (1500 samples there: standard
-// error 0.026 s).
+// are those of an independent run of the same rule on the same problem (1500 samples there:
+// standard error 0.026 s).
 TEST(Sampler, PaperModeHasThePapersBias) {
   const struct {
     double s, w, mean;

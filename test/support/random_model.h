@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A model of a given architecture with fixed random weights: it plans nonsense, but always the same.
+/// A model of a given architecture with fixed random weights: it plans nonsense, but always the
+/// same.
 #pragma once
 
 #include <cmath>
@@ -26,11 +27,12 @@ inline std::map<std::string, diffusion::Tensor> randomTensors(
     const bool norm = shape.name.find("norm") != std::string::npos;
     const bool vector = shape.shape.size() == 1;
     for (std::size_t i = 0; i < count; ++i) {
-      const double draw = random.normal({core::hashText(shape.name), 0, 0},
-                                        static_cast<std::uint32_t>(i));
+      const double draw =
+          random.normal({core::hashText(shape.name), 0, 0}, static_cast<std::uint32_t>(i));
       const bool gain = norm && shape.name.back() == 't';  // "...weight"
-      tensor.values.push_back(
-          static_cast<float>(gain ? 1.0 : vector ? 0.1 * draw : draw * std::sqrt(2.0 / fan_in)));
+      tensor.values.push_back(static_cast<float>(gain     ? 1.0
+                                                 : vector ? 0.1 * draw
+                                                          : draw * std::sqrt(2.0 / fan_in)));
     }
     tensors.emplace(shape.name, std::move(tensor));
   }

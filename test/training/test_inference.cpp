@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// What trains and what drives are two implementations of docs/network.md: with the same weights they
-// must give the same figures. Tolerances: float32 sums of up to 4,608 products in another order.
+// What trains and what drives are two implementations of docs/network.md: with the same weights
+// they must give the same figures. Tolerances: float32 sums of up to 4,608 products in another
+// order.
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/diffusion/cpu_denoiser.h"

@@ -14,8 +14,8 @@
 namespace cdiff::diffusion {
 
 struct Model {
-  std::string name;       ///< for records: folder name
-  std::string sha256;     ///< of both data sections
+  std::string name;    ///< for records: folder name
+  std::string sha256;  ///< of both data sections
   Architecture architecture;
   Normalizer normalizer;
   traffic::Rollout spread;  ///< [T, 7] sd of the clean trajectory given its context, normalised
@@ -29,8 +29,8 @@ struct Model {
 /// "spread" are missing or malformed.
 Model loadModel(const std::string& name_or_folder);
 
-/// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder and
-/// denoiser file, one after the other. Throws InputError for an unknown model or missing file.
+/// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder
+/// and denoiser file, one after the other. Throws InputError for an unknown model or missing file.
 std::string modelFilesSha256(const std::string& name_or_folder);
 
 /// Writes both files into `folder`.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Between metric rollouts and the unit scale that is diffused: normalised = (metric - mean) / scale,
-/// cell by cell of [T, 7].
+/// Between metric rollouts and the unit scale that is diffused: normalised = (metric - mean) /
+/// scale, cell by cell of [T, 7].
 #pragma once
 
 #include "e2e_cdiff/traffic/rollout.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Route tokens: points of the route ahead, every `route_spacing` metres from the vehicle's place on
-/// it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20 m;
-/// beyond its end the route goes straight on.
+/// Route tokens: points of the route ahead, every `route_spacing` metres from the vehicle's place
+/// on it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20
+/// m; beyond its end the route goes straight on.
 #pragma once
 
 #include <vector>

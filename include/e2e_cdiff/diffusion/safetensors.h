@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Safetensors files: 8 bytes header length (little endian), JSON header, raw tensors. Strict: every
-/// check happens before anything large is allocated.
+/// Safetensors files: 8 bytes header length (little endian), JSON header, raw tensors. Strict:
+/// every check happens before anything large is allocated.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct SafetensorsFile {
 /// F32. Refused with an InputError that names file, tensor or key and what was expected: no such
 /// file, truncated or trailing bytes, header too long (8 MiB) or not JSON, duplicate or foreign
 /// keys, unknown type, wrong shape, offsets that overlap, leave gaps or do not fit shape and type,
-/// missing or unknown tensors, values that are not finite, metadata "sha256" that is not the hash of
-/// the data section (required).
+/// missing or unknown tensors, values that are not finite, metadata "sha256" that is not the hash
+/// of the data section (required).
 SafetensorsFile readSafetensors(
     const std::filesystem::path& file,
     const std::function<std::vector<TensorShape>(const std::map<std::string, std::string>&)>&

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Guided sampling of a batch of normalised trajectories (paper III-C4 and III-D).
-///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k = gradient
+///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k =
+///  gradient
 ///    of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state branch; no noise
 ///    is added at k = 1.
 ///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
@@ -24,13 +25,13 @@
 namespace cdiff::diffusion {
 
 struct SamplerOptions {
-  std::string mode = "real_time";       ///< paper | real_time | unguided
-  std::int64_t steps = 10;              ///< of real_time
-  std::int64_t inner_iterations = 4;    ///< of the proximal step
-  double trust_region = 2.0;            ///< c
-  bool warm_start = false;              ///< real_time: start from the previous plan where it fits
-  std::int64_t warm_start_step = 50;    ///< diffusion step k that it is noised to
-  std::int64_t warm_steps = 5;          ///< denoising steps from there
+  std::string mode = "real_time";     ///< paper | real_time | unguided
+  std::int64_t steps = 10;            ///< of real_time
+  std::int64_t inner_iterations = 4;  ///< of the proximal step
+  double trust_region = 2.0;          ///< c
+  bool warm_start = false;            ///< real_time: start from the previous plan where it fits
+  std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
+  std::int64_t warm_steps = 5;        ///< denoising steps from there
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError; `diffusion_steps` is K of the model.
@@ -51,13 +52,13 @@ class CleanObjective {
 
 /// One sample to draw.
 struct SampleRequest {
-  core::RandomKey key;             ///< vehicle and decision of its noise
-  std::uint32_t candidate = 0;     ///< index among the samples of that vehicle
+  core::RandomKey key;               ///< vehicle and decision of its noise
+  std::uint32_t candidate = 0;       ///< index among the samples of that vehicle
   const Trajectory* warm = nullptr;  ///< previous plan, shifted to now; nullptr: cold start
 };
 
 struct SampledTrajectory {
-  Trajectory clean;                    ///< [T, 7]
+  Trajectory clean;  ///< [T, 7]
   std::int64_t guided_steps = 0;
   std::int64_t trust_region_hits = 0;  ///< guided steps in which the trust region acted
 };
@@ -69,8 +70,8 @@ class Sampler {
           const traffic::Rollout& spread, const core::RandomStream& noise);
 
   /// Draws all requests as one batch, for the contexts that `denoiser` holds (same order and
-  /// count). Cold or warm starts, not both (std::invalid_argument); modes other than real_time start
-  /// cold. `objective` may be nullptr.
+  /// count). Cold or warm starts, not both (std::invalid_argument); modes other than real_time
+  /// start cold. `objective` may be nullptr.
   std::vector<SampledTrajectory> sample(Denoiser& denoiser, StateBranch& states,
                                         const std::vector<SampleRequest>& requests,
                                         CleanObjective* objective) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// States from actions: the learned state head (paper) or the exact rollout of the vehicle dynamics,
-/// with the vector-Jacobian product of each. Normalised, float32, [B, T, .] row-major.
+/// States from actions: the learned state head (paper) or the exact rollout of the vehicle
+/// dynamics, with the vector-Jacobian product of each. Normalised, float32, [B, T, .] row-major.
 #pragma once
 
 #include <memory>

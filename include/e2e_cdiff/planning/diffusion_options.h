@@ -15,8 +15,8 @@ struct DiffusionOptions {
   std::string conditioning = "image_route";  ///< image_route | image (the paper's)
   std::string state_branch = "learned";      ///< learned | exact
   std::int64_t candidates = 1;               ///< samples per vehicle
-  double hysteresis = 0.1;            ///< a new mode must be better by this share of the score
-  double frozen_image_time = 1.0;     ///< the same image for so long while moving is a fault [s]
+  double hysteresis = 0.1;         ///< a new mode must be better by this share of the score
+  double frozen_image_time = 1.0;  ///< the same image for so long while moving is a fault [s]
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);

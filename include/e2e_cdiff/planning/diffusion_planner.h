@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
-/// future states and throttle, steer and brake out, of which the first action drives. All vehicles of
-/// a decision form one batch.
+/// future states and throttle, steer and brake out, of which the first action drives. All vehicles
+/// of a decision form one batch.
 ///
 /// Choices where the paper leaves them open:
 ///  - the image is encoded once per decision, the denoiser runs on its features;
@@ -10,7 +10,8 @@
 ///    nearest other vehicle, for the ego;
 ///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
 ///    brake the larger one acts;
-///  - of several candidates the one with the lowest weighted objective drives, unless the one nearest
+///  - of several candidates the one with the lowest weighted objective drives, unless the one
+///  nearest
 ///    to the previous plan is no worse by `hysteresis`.
 #pragma once
 

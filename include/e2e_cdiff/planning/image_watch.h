@@ -24,7 +24,8 @@ struct ImageExpectation {
 /// One per vehicle; asked once per decision.
 class ImageWatch {
  public:
-  /// What is wrong with `image` (nullptr: none came) for a decision at `tick`; nullopt when nothing.
+  /// What is wrong with `image` (nullptr: none came) for a decision at `tick`; nullopt when
+  /// nothing.
   std::optional<std::string> fault(const ImageExpectation& expectation,
                                    const traffic::CameraImage* image,
                                    const traffic::VehicleState& state, std::uint64_t tick);
@@ -35,7 +36,7 @@ class ImageWatch {
   bool frozen(const ImageExpectation& expectation, const traffic::CameraImage& image,
               const traffic::VehicleState& state, std::uint64_t tick);
 
-  std::uint64_t hash_ = 0;            ///< of the image seen since `since_tick_`
+  std::uint64_t hash_ = 0;  ///< of the image seen since `since_tick_`
   std::uint64_t since_tick_ = 0;
   Eigen::Vector2d since_position_ = Eigen::Vector2d::Zero();
   bool seen_ = false;

@@ -21,8 +21,8 @@ struct PlanningContext {
   const map::RoadNetwork& network;
   const map::DrivableArea& drivable_area;
   std::uint64_t seed = 1;
-  double simulation_step = 0.05;  ///< [s]
-  double decision_period = 0.1;   ///< [s]
+  double simulation_step = 0.05;          ///< [s]
+  double decision_period = 0.1;           ///< [s]
   const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
 };
 
@@ -30,8 +30,8 @@ struct PlanningContext {
 struct PlanningTask {
   int slot = -1;  ///< slot of a CBV; -1 for the ego
   const traffic::Vehicle* vehicle = nullptr;
-  const map::Route* route = nullptr;  ///< ego route, or the CBV's conflict-aware route
-  double target_speed = 8.0;          ///< v* before the lane's limit [m/s]
+  const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
+  double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
   const traffic::CameraImage* image = nullptr;  ///< its front view, for planners that see
 };
 
@@ -46,8 +46,8 @@ struct PlannedAction {
   int slot = -1;
   std::string vehicle_id;
   traffic::ControlAction action;
-  std::vector<RolloutPoint> rollout;  ///< may be empty
-  std::string fault{};                ///< why `action` is the fail-safe action; empty when none
+  std::vector<RolloutPoint> rollout;    ///< may be empty
+  std::string fault{};                  ///< why `action` is the fail-safe action; empty when none
   guidance::GuidanceReport guidance{};  ///< of planners with guidance
   double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
                                 ///< with the planned actions [m]

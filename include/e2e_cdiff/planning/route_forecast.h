@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where a vehicle whose route is known will be (map frame, SI units): along the route at its present
-/// lateral offset, with its present acceleration for one second and constant speed afterwards.
+/// Where a vehicle whose route is known will be (map frame, SI units): along the route at its
+/// present lateral offset, with its present acceleration for one second and constant speed
+/// afterwards.
 #pragma once
 
 #include <vector>

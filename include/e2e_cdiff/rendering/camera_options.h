@@ -10,14 +10,14 @@
 namespace cdiff::rendering {
 
 struct CameraOptions {
-  std::int64_t width = 160;         ///< [px]
-  std::int64_t height = 96;         ///< [px]
-  double field_of_view = 90.0;      ///< horizontal [deg]
-  double mount_forward = 0.5;       ///< of the box's centre [m]
-  double mount_height = 1.4;        ///< above the road [m]
-  double pitch = 6.0;               ///< downwards [deg]
-  double far_distance = 90.0;       ///< farthest ground and vehicles that are drawn [m]
-  std::int64_t supersampling = 2;   ///< samples per pixel and axis
+  std::int64_t width = 160;        ///< [px]
+  std::int64_t height = 96;        ///< [px]
+  double field_of_view = 90.0;     ///< horizontal [deg]
+  double mount_forward = 0.5;      ///< of the box's centre [m]
+  double mount_height = 1.4;       ///< above the road [m]
+  double pitch = 6.0;              ///< downwards [deg]
+  double far_distance = 90.0;      ///< farthest ground and vehicles that are drawn [m]
+  std::int64_t supersampling = 2;  ///< samples per pixel and axis
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;

@@ -26,8 +26,7 @@ std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& sna
 std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                              const map::Route& route, double target_speed);
 /// Gives each task the image of its slot; tasks without one stay without.
-void attachImages(const std::vector<SlotImage>& images,
-                  std::vector<planning::PlanningTask>& tasks);
+void attachImages(const std::vector<SlotImage>& images, std::vector<planning::PlanningTask>& tasks);
 /// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields
 /// fail-safe actions; the text of the fault goes to `fault` (empty when none).
 std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,

@@ -21,8 +21,8 @@ namespace cdiff::scenario {
 
 /// The scenario as collection runs it: its protocol ends it only after the duration (or with the
 /// ego's route); lights and density of generated demand are drawn from the seed, and every other
-/// seed generates the demand of a scenario that brings a file. PDM-Lite, the expert, takes the place
-/// of planners that learn from it.
+/// seed generates the demand of a scenario that brings a file. PDM-Lite, the expert, takes the
+/// place of planners that learn from it.
 ScenarioOptions collectionScenario(ScenarioOptions scenario, const CollectionOptions& options);
 
 /// Its set-up, with the ego route lengthened by random turns to what the duration needs.
