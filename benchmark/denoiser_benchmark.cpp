@@ -3,14 +3,7 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/diffusion/cpu_denoiser.h"
-
-#if defined(__x86_64__)
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes the undefined operands of its own intrinsics for a mistake (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#include <immintrin.h>
-#endif
+#include "fma_peak.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -54,55 +47,6 @@ double operationsOf(const diffusion::Model& model) {
   return sum;
 }
 
-#if defined(__x86_64__)
-constexpr int kPeakRounds = 50000;  // 0.1 ms: rarely interrupted
-
-/// Fused multiply-adds that wait for no other; returns something that depends on all.
-__attribute__((target("avx512f"))) float fuseAvx512() {
-  const __m512 factor = _mm512_set1_ps(0.5f);
-  const __m512 term = _mm512_set1_ps(0.25f);
-  __m512 sums[8];
-#pragma GCC unroll 8
-  for (int i = 0; i < 8; ++i) sums[i] = _mm512_set1_ps(static_cast<float>(i));
-  for (int round = 0; round < kPeakRounds; ++round) {
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, term);
-  }
-#pragma GCC unroll 8
-  for (int i = 1; i < 8; ++i) sums[0] = _mm512_add_ps(sums[0], sums[i]);
-  return _mm512_cvtss_f32(sums[0]);
-}
-
-__attribute__((target("avx2,fma"))) float fuseAvx2() {
-  const __m256 factor = _mm256_set1_ps(0.5f);
-  const __m256 term = _mm256_set1_ps(0.25f);
-  __m256 sums[8];
-#pragma GCC unroll 8
-  for (int i = 0; i < 8; ++i) sums[i] = _mm256_set1_ps(static_cast<float>(i));
-  for (int round = 0; round < kPeakRounds; ++round) {
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, term);
-  }
-#pragma GCC unroll 8
-  for (int i = 1; i < 8; ++i) sums[0] = _mm256_add_ps(sums[0], sums[i]);
-  return _mm256_cvtss_f32(sums[0]);
-}
-
-/// Operations per second; 0 where it is not measured.
-double peakOf(CpuDenoiser::InstructionSet set) {
-  if (set == CpuDenoiser::InstructionSet::kPlain) return 0.0;
-  const bool wide = set == CpuDenoiser::InstructionSet::kAvx512;
-  std::vector<double> seconds;
-  float result = 0.0f;
-  for (int round = 0; round < 101; ++round) {
-    seconds.push_back(secondsOf([&] { result += wide ? fuseAvx512() : fuseAvx2(); }));
-  }
-  return result == 0.0f ? 0.0 : 8.0 * kPeakRounds * (wide ? 32.0 : 16.0) / median(seconds);
-}
-#else
-double peakOf(CpuDenoiser::InstructionSet) { return 0.0; }
-#endif
-
 struct Times {
   double forward = 0.0;  ///< [s]
   double both = 0.0;     ///< [s], with the pull-back
@@ -131,15 +75,14 @@ void benchmarkDenoiser(Figures& figures) {
   const diffusion::Model model = randomModel();
   const CpuDenoiser::InstructionSet set = CpuDenoiser::bestInstructionSet();
   CpuDenoiser denoiser(model, set);
-  const double peak = peakOf(set);
-  figures.push_back({"fma_peak_" + CpuDenoiser::toText(set), 1e-9 * peak, "GFLOP/s", ""});
+  const double peak = measureFmaPeak();
+  figures.push_back({"fma_peak", 1e-9 * peak, "GFLOP/s", ""});
   for (const std::size_t samples : {1, 8}) {
     const Times times = timesOf(denoiser, samples);
     const std::string prefix = "denoiser_b" + std::to_string(samples);
     const std::string goal = samples == 1 ? "<=1" : "";
     figures.push_back({prefix + "_forward", 1e3 * times.forward, "ms", ""});
     figures.push_back({prefix + "_forward_and_pull_back", 1e3 * times.both, "ms", goal});
-    if (peak == 0.0) continue;
     const double rate = 2.0 * static_cast<double>(samples) * operationsOf(model) / times.both;
     figures.push_back({prefix + "_share_of_peak", 100.0 * rate / peak, "%", ""});
   }

@@ -12,22 +12,10 @@
 #include <map>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
-
-// A signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-void requestStop(int) { stop_requested = true; }
-
-void catchSignals() {
-  stop_requested = false;
-  struct sigaction action {};
-  action.sa_handler = requestStop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 pid_t start(const ChildProcess& child) {
   std::vector<std::string> words = {"cdiff"};
@@ -48,11 +36,11 @@ pid_t start(const ChildProcess& child) {
 
 bool runChildren(std::vector<ChildProcess>& children, int at_a_time,
                  const std::function<void(const ChildProcess&)>& ended) {
-  catchSignals();
+  const std::atomic<bool>& stop = catchStopSignals();
   std::map<pid_t, std::size_t> running;
   std::size_t next = 0;
-  while (!running.empty() || (next < children.size() && !stop_requested)) {
-    if (stop_requested) {
+  while (!running.empty() || (next < children.size() && !stop)) {
+    if (stop) {
       for (const auto& [process, index] : running) ::kill(process, SIGINT);
     } else if (next < children.size() && static_cast<int>(running.size()) < at_a_time) {
       running[start(children[next])] = next;
@@ -68,7 +56,7 @@ bool runChildren(std::vector<ChildProcess>& children, int at_a_time,
     running.erase(found);
     ended(child);
   }
-  return !stop_requested;
+  return !stop;
 }
 
 }  // namespace cdiff::cli

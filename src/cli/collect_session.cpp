@@ -3,7 +3,6 @@
 #include "collect_session.h"
 
 #include <atomic>
-#include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +13,7 @@
 #include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/scenario/collection_loop.h"
 #include "e2e_cdiff/training/shard.h"
+#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -21,25 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-void requestStop(int) { stop_requested = true; }
-
-void catchSignals() {
-  struct sigaction action {};
-  action.sa_handler = requestStop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-void record(const CollectRequest& request, const CollectSettings& settings, const fs::path& file) {
+void record(const CollectRequest& request, const CollectSettings& settings, const fs::path& file,
+            const std::atomic<bool>& stop) {
   const auto setup = scenario::collectionSetup(settings.scenario, settings.collection);
   scenario::CollectionLoop loop(*setup, settings.collection, request.images);
   ros::SessionBag bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
   bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
   loop.addObserver(bag);
-  const traffic::SessionStatus status = loop.run(stop_requested);
+  const traffic::SessionStatus status = loop.run(stop);
   if (status == traffic::SessionStatus::kInterrupted) throw core::Interrupted("interrupted");
   if (status == traffic::SessionStatus::kError)
     throw core::SimulatorError(loop.world().snapshot().faults.back().text);
@@ -100,11 +89,11 @@ fs::path statisticsFile(const CollectRequest& request, const std::string& name) 
 }
 
 int collectSession(const CollectRequest& request) {
-  catchSignals();
+  const std::atomic<bool>& stop = catchStopSignals();
   const CollectSettings settings = resolveCollection(request);
   const std::string name = sessionName(settings);
   const fs::path bag = request.results / "bags" / (name + ".bag");
-  record(request, settings, bag);
+  record(request, settings, bag, stop);
   if (!request.images) return kPassed;
   const ros::DatasetStatistics statistics =
       writeShard(request, settings, bag, shardFile(request, name));

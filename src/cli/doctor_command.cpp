@@ -56,10 +56,11 @@ Finding folder(const std::string& subject, const std::function<fs::path()>& find
 /// The shipped model, and what computes with it on this machine.
 Finding shippedModel() {
   try {
-    const diffusion::Model model = diffusion::loadModel("default");
+    diffusion::loadModel("default");
     return {true, "planner model",
-            "default (" + model.sha256.substr(0, 12) + "), encoder with " +
-                diffusion::ImageEncoder::instructionSet() + ", denoiser with " +
+            "default (" + diffusion::modelFilesSha256("default").substr(0, 12) +
+                "), encoder with " + diffusion::ImageEncoder::instructionSet() +
+                ", denoiser with " +
                 diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())};
   } catch (const std::exception& error) {
     return {false, "planner model", error.what()};

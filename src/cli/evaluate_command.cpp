@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "e2e_cdiff/evaluation/matrix.h"
 #include "e2e_cdiff/evaluation/run_plan.h"
 #include "route_table.h"
+#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -36,18 +36,6 @@ struct EvaluateArguments {
   int jobs = 1;
   bool resume = false;
 };
-
-// A signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-void requestStop(int) { stop_requested = true; }
-
-void catchSignals() {
-  struct sigaction action {};
-  action.sa_handler = requestStop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// The matrix file, or the one that the Bench2Drive arguments stand for.
 MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
@@ -93,8 +81,8 @@ void claimFolder(const fs::path& folder, const MatrixOptions& matrix) {
   core::writeFileAtomically(file, core::dumpOptions(matrix));
 }
 
-int exitCodeOf(const std::vector<RunRecord>& records) {
-  if (stop_requested) return kInterrupted;
+int exitCodeOf(const std::vector<RunRecord>& records, const std::atomic<bool>& stop) {
+  if (stop) return kInterrupted;
   int exit_code = kPassed;
   for (const RunRecord& record : records) {
     if (!record.complete()) return kRunTimeError;
@@ -109,7 +97,7 @@ int evaluate(const EvaluateArguments& arguments) {
       matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
   const fs::path results = fs::absolute(arguments.results);
   claimFolder(results, matrix);
-  catchSignals();
+  const std::atomic<bool>& stop = catchStopSignals();
   BatchProgress progress(plan.size());
   evaluation::ExecutorOptions options;
   options.results = results;
@@ -118,7 +106,7 @@ int evaluate(const EvaluateArguments& arguments) {
   options.retries = static_cast<int>(matrix.retries);
   options.resume = arguments.resume;
   options.ended = [&](const RunRecord& record, bool resumed) { progress.ended(record, resumed); };
-  const auto records = evaluation::executeRuns(plan, options, stop_requested);
+  const auto records = evaluation::executeRuns(plan, options, stop);
   progress.finish();
   evaluation::writeBatchFiles(results, matrix.name, records);
   std::string text = evaluation::batchMarkdown(matrix.name, records);
@@ -127,7 +115,7 @@ int evaluate(const EvaluateArguments& arguments) {
     core::writeFileAtomically(results / "table.md", text);
   }
   std::cout << text;
-  return exitCodeOf(records);
+  return exitCodeOf(records, stop);
 }
 
 }  // namespace

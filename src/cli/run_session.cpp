@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <memory>
 
@@ -13,6 +12,7 @@
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "progress.h"
+#include "stop_signals.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "e2e_cdiff/ros/session_bag.h"
 #endif
@@ -21,19 +21,6 @@ namespace cdiff::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// A signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-void requestStop(int) { stop_requested = true; }
-
-void catchSignals() {
-  stop_requested = false;
-  struct sigaction action {};
-  action.sa_handler = requestStop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// What an earlier session of the node graph left in the folder.
 void removeEarlierSession(const std::filesystem::path& folder) {
@@ -92,7 +79,7 @@ class BagRecord {
 int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
   const std::filesystem::path& folder = output.folder;
   const bool quiet = output.quiet;
-  catchSignals();
+  const std::atomic<bool>& stop = catchStopSignals();
   const scenario::SessionSetup setup(options);
   removeEarlierSession(folder);
   const Clock::time_point begin = Clock::now();
@@ -113,7 +100,7 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
   if (!quiet) loop->addObserver(progress);
   try {
     BagRecord bag(setup, output, *loop);
-    loop->run(stop_requested);
+    loop->run(stop);
     bag.finish();
     return finish(writer, begin, quiet);
   } catch (const std::exception& error) {

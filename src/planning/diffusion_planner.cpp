@@ -26,8 +26,8 @@ bool isFinite(const traffic::VehicleState& state) {
          std::isfinite(state.heading) && std::isfinite(state.speed);
 }
 
-/// Mean distance of two plans in the plane over their common rows, the second one `shift` rows
-/// later [m].
+/// Mean distance of two plans in the plane over their common rows, both seen from the same place
+/// [m].
 double planDistance(const Rollout& first, const Rollout& second) {
   const Eigen::Index rows = std::min(first.rows(), second.rows());
   return (first.topLeftCorner(rows, 2) - second.topLeftCorner(rows, 2)).rowwise().norm().mean();
@@ -139,17 +139,20 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
   situation.scene.other = &situation.other;
 }
 
-/// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
-/// plan said.
+/// The last plan, seen from here one decision later; it is a warm start if the vehicle drives as
+/// fast as the plan said. A decision period that is no whole number of rows has none.
 void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
-  constexpr double kJump = 0.5;  // [m] and [m/s]
+  constexpr double kJump = 0.5;       // [m/s]
+  constexpr double kRounding = 1e-6;  // of a row
   const Memory& memory = *situation.memory;
   const auto period =
       static_cast<std::uint64_t>(std::llround(context_.decision_period / context_.simulation_step));
-  const auto shift =
-      static_cast<Eigen::Index>(std::llround(context_.decision_period / traffic::kRolloutStep));
-  if (!memory.plan || memory.plan_tick + period != tick || shift < 1) return;
+  const double rows = context_.decision_period / traffic::kRolloutStep;
+  const auto shift = static_cast<Eigen::Index>(std::llround(rows));
+  if (!memory.plan || memory.plan_tick + period != tick) return;
   const Rollout& last = *memory.plan;
+  const bool whole = std::abs(rows - static_cast<double>(shift)) < kRounding;
+  if (!whole || shift < 1 || shift > last.rows()) return;
   Rollout moved = last;
   for (Eigen::Index row = 0; row < last.rows(); ++row)
     moved.row(row) = last.row(std::min(row + shift, last.rows() - 1));

@@ -11,7 +11,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/child_process.h"
 #include "e2e_cdiff/evaluation/run_record.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -48,7 +48,7 @@ class EvaluateCommand : public testing::Test {
   static std::size_t lines(const fs::path& file) {
     return core::splitText(core::readFile(file, "file"), '\n').size();
   }
-  test::ScratchFolder scratch_;
+  test::TemporaryFolder scratch_;
 };
 
 TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {

@@ -136,7 +136,7 @@ class ModelFiles : public ::testing::Test {
     EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
   }
 
-  test::TemporaryFolder folder_{"model"};
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ModelFiles, RoundTrip) {

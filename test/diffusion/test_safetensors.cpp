@@ -38,7 +38,7 @@ class Safetensors : public ::testing::Test {
     return test::inputErrorOf([&] { roundTrip(values, type); });
   }
 
-  test::TemporaryFolder folder_{"safetensors"};
+  test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "file.safetensors";
 };
 

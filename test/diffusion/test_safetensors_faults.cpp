@@ -203,7 +203,7 @@ class SafetensorsFaults : public ::testing::Test {
     }
   }
 
-  test::TemporaryFolder folder_{"safetensors_faults"};
+  test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "file.safetensors";
 };
 

@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/executor.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -77,7 +77,7 @@ class ExecutorTest : public testing::Test {
   std::size_t attempts(const std::string& id) const {
     return core::readFile(file(id, "attempts"), "attempts").size() / 8;  // "attempt\n"
   }
-  test::ScratchFolder scratch_;
+  test::TemporaryFolder scratch_;
   ExecutorOptions options_;
   std::atomic<bool> stop_{false};
   std::map<std::string, bool> ends_;  ///< by id: whether it was complete before

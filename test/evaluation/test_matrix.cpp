@@ -9,7 +9,7 @@
 #include "e2e_cdiff/evaluation/matrix.h"
 #include "e2e_cdiff/evaluation/run_plan.h"
 #include "e2e_cdiff/scenario/scenario_options.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -96,7 +96,7 @@ TEST(Plan, NamesWhatIsWrong) {
 }
 
 TEST(Matrix, ResolvesFilesAgainstItsFolder) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   std::ofstream(scratch.path() / "mine.yaml") << "network: arterial_merge\n";
   std::ofstream(scratch.path() / "matrix.yaml") << "scenarios: [mine.yaml, arterial_exit]\n";
   const MatrixOptions matrix = loadMatrix((scratch.path() / "matrix.yaml").string());

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "e2e_cdiff/report/result_writer.h"
-#include "report/scratch_folder.h"
 #include "support/network_text.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::test {
 

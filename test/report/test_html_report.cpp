@@ -17,7 +17,7 @@ using traffic::SessionStatus;
 
 /// The page of the sample session under a scenario name.
 std::string pageOf(const std::string& name, SessionStatus status = SessionStatus::kTimedOut) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   scenario::ScenarioOptions options = test::sampleOptions();
   options.name = name;
   const test::SampleSetup sample(options);
@@ -50,7 +50,7 @@ TEST(HtmlReport, EscapesNamesEverywhere) {
 }
 
 TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
@@ -69,7 +69,7 @@ TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
 
 /// The page of the session with images, plans and guidance.
 std::string seenPage() {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSeenSession(writer, sample.setup);
@@ -166,7 +166,7 @@ TEST(HtmlReport, ShowsRoadTrailsAndConflict) {
 }
 
 TEST(HtmlReport, KeepsALongSessionSmall) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   // 60 vehicles that wobble for 300 s: 90 000 poses.

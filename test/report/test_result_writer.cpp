@@ -17,11 +17,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using traffic::SessionStatus;
 
-std::string textOf(const test::ScratchFolder& scratch, const std::string& name) {
+std::string textOf(const test::TemporaryFolder& scratch, const std::string& name) {
   return core::readFile(scratch.path() / name, name);
 }
 
-Json summaryOf(const test::ScratchFolder& scratch) {
+Json summaryOf(const test::TemporaryFolder& scratch) {
   return Json::parse(textOf(scratch, "summary.json"));
 }
 
@@ -32,7 +32,7 @@ std::vector<std::string> keysOf(const Json& object) {
 }
 
 /// A session of 121 ticks (6 s) with this end; answers the exit code.
-int runSample(const test::ScratchFolder& scratch, SessionStatus status,
+int runSample(const test::TemporaryFolder& scratch, SessionStatus status,
               const scenario::ScenarioOptions& options = test::sampleOptions(),
               const std::vector<traffic::Fault>& faults = {}) {
   const test::SampleSetup sample(options);
@@ -43,7 +43,7 @@ int runSample(const test::ScratchFolder& scratch, SessionStatus status,
 }
 
 TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
   const Json summary = summaryOf(scratch);
   using Keys = std::vector<std::string>;
@@ -74,7 +74,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
 }
 
 TEST(ResultWriter, SummaryTellsWhatHappened) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut);
   const Json summary = summaryOf(scratch);
   EXPECT_EQ(summary["schema_version"], 1);
@@ -115,7 +115,7 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
 }
 
 TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSeenSession(writer, sample.setup);
@@ -146,8 +146,8 @@ TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
 }
 
 TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {
-  const test::ScratchFolder first;
-  const test::ScratchFolder second;
+  const test::TemporaryFolder first;
+  const test::TemporaryFolder second;
   runSample(first, SessionStatus::kTimedOut);
   scenario::ScenarioOptions renamed = test::sampleOptions();
   renamed.name = "another name";
@@ -160,7 +160,7 @@ TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {
 }
 
 TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSession(writer, sample.setup, 10, SessionStatus::kBlocked);  // over before any CBV
@@ -181,7 +181,7 @@ TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
 TEST(ResultWriter, ExitCodesFollowStatusAndVerdict) {
   scenario::ScenarioOptions strict = test::sampleOptions();
   strict.verdict.minimum_route_completion = 90.0;
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kCompleted), 0);
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut, strict), 1);
   EXPECT_EQ(runSample(scratch, SessionStatus::kError, strict), 2);
@@ -192,7 +192,7 @@ TEST(ResultWriter, JunitTellsFailureFromError) {
   scenario::ScenarioOptions options = test::sampleOptions();
   options.name = "a <b> & \"c\"";
   options.verdict.minimum_route_completion = 90.0;
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut, options);
   pugi::xml_document junit;
   ASSERT_TRUE(junit.load_string(textOf(scratch, "junit.xml").c_str()));
@@ -217,7 +217,7 @@ TEST(ResultWriter, JunitTellsFailureFromError) {
 }
 
 TEST(ResultWriter, ARecordThatStopsWhileRunningIsAnError) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kRunning), 2);
   const Json summary = summaryOf(scratch);
   EXPECT_EQ(summary["status"], "error");
@@ -225,7 +225,7 @@ TEST(ResultWriter, ARecordThatStopsWhileRunningIsAnError) {
 }
 
 TEST(ResultWriter, ASessionThatNeverBeganStillHasItsFiles) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path() / "new" / "folder");
   traffic::TrafficSnapshot snapshot;
@@ -244,7 +244,7 @@ TEST(ResultWriter, ASessionThatNeverBeganStillHasItsFiles) {
 }
 
 TEST(ResultWriter, TheSameTickAgainChangesTheStatusOnly) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
@@ -260,7 +260,7 @@ TEST(ResultWriter, TheSameTickAgainChangesTheStatusOnly) {
 }
 
 TEST(ResultWriter, TakesAwayWhatAnEarlierSessionLeft) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   core::writeFileAtomically(scratch.path() / "summary.json", "old");
   core::writeFileAtomically(scratch.path() / "notes.txt", "mine");
   {
@@ -278,7 +278,7 @@ TEST(ResultWriter, SessionYamlHoldsTheScenarioItWasRunWith) {
   options.name = "colon: \"quote\" # hash";
   options.target_speed = 7.25;
   options.verdict.statuses = {"completed"};
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut, options);
   const YAML::Node session = YAML::Load(textOf(scratch, "session.yaml"));
   EXPECT_EQ(session["schema_version"].as<int>(), 1);
@@ -302,7 +302,7 @@ TEST(ResultWriter, SessionYamlHoldsTheScenarioItWasRunWith) {
 TEST(ResultWriter, TableNamesFiguresVerdictAndPaths) {
   scenario::ScenarioOptions options = test::sampleOptions();
   options.verdict.minimum_route_completion = 90.0;
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample(options);
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
@@ -316,7 +316,7 @@ TEST(ResultWriter, TableNamesFiguresVerdictAndPaths) {
 }
 
 TEST(ResultWriter, RefusesAFolderThatIsAFile) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   core::writeFileAtomically(scratch.path() / "file", "");
   const test::SampleSetup sample;
   EXPECT_THROW(ResultWriter(sample.setup, test::sampleFacts(), scratch.path() / "file" / "results"),

@@ -5,7 +5,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/trace_writer.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::report {
 namespace {
@@ -22,7 +22,7 @@ traffic::Vehicle vehicle(const std::string& id, traffic::VehicleRole role, doubl
 }
 
 TEST(TraceWriter, WritesRowsInOrderWithShortestDecimals) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   TraceWriter writer(scratch.path() / "trace.csv");
   traffic::TrafficSnapshot snapshot;
   snapshot.tick = 12;
@@ -38,7 +38,7 @@ TEST(TraceWriter, WritesRowsInOrderWithShortestDecimals) {
 }
 
 TEST(TraceWriter, HashIsThatOfTheFileBeyondOneBuffer) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const auto file = scratch.path() / "trace.csv";
   TraceWriter writer(file);
   traffic::TrafficSnapshot snapshot;
@@ -55,7 +55,7 @@ TEST(TraceWriter, HashIsThatOfTheFileBeyondOneBuffer) {
 }
 
 TEST(TraceWriter, LeavesNothingBehindWhenNotFinished) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   {
     TraceWriter writer(scratch.path() / "trace.csv");
     EXPECT_FALSE(std::filesystem::exists(scratch.path() / "trace.csv"));
@@ -65,7 +65,7 @@ TEST(TraceWriter, LeavesNothingBehindWhenNotFinished) {
 }
 
 TEST(TraceWriter, NamesAPathThatCannotBeWritten) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   try {
     TraceWriter writer(scratch.path() / "missing" / "trace.csv");
     FAIL() << "a missing folder was accepted";

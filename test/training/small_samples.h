@@ -12,29 +12,9 @@
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/diffusion/architecture.h"
 #include "e2e_cdiff/training/shard.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::test {
-
-/// A folder of its own for a test, removed with it.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cdiff_training_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder " + name);
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline training::SampleSchema smallSchema() {
   training::SampleSchema schema;

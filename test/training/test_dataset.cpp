@@ -15,7 +15,7 @@ namespace {
 using core::InputError;
 
 TEST(Dataset, HoldsOutWholeSessions) {
-  const test::ScratchFolder folder;
+  const test::TemporaryFolder folder;
   for (int shard = 0; shard < 2; ++shard) {
     ShardWriter writer(test::smallSchema());
     for (std::size_t i = 0; i < 60; ++i) writer.append(test::smallSample(i % 8, i / 2));
@@ -33,7 +33,7 @@ TEST(Dataset, HoldsOutWholeSessions) {
 }
 
 TEST(Dataset, RefusesASplitWithoutBothPartsAndForeignSchemas) {
-  const test::ScratchFolder folder;
+  const test::TemporaryFolder folder;
   test::writeShard(folder.path() / "a.shard", 4);
   EXPECT_THROW(Dataset(folder.path(), 1e-9), InputError);
   EXPECT_EQ(Dataset(folder.path(), 0.0).validation().size(), 4U);
@@ -49,7 +49,7 @@ TEST(Dataset, NormaliserOfKnownSamples) {
   // Samples 0 and 1 drive 5 and 6 m/s: mean 5.5, sd 0.5 of the speed; x after t + 1 rows is
   // v (t + 1) / 10, so mean 0.55 (t + 1), sd 0.05 (t + 1). y and heading are 0: least sd. Steer is
   // +-0.5: scale 2 x 0.5.
-  const test::ScratchFolder folder;
+  const test::TemporaryFolder folder;
   test::writeShard(folder.path() / "a.shard", 2);
   const diffusion::Normalizer normalizer = fitNormalizer(Dataset(folder.path(), 0.0), true);
   for (int t = 0; t < 8; ++t) {

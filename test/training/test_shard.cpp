@@ -51,7 +51,7 @@ class ShardTest : public testing::Test {
     return changed + core::sha256(changed);
   }
 
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "a.shard";
   std::string content_;
 };

@@ -63,7 +63,7 @@ class StageRunnerTest : public testing::Test {
   }
   Checkpoint stored() const { return readCheckpoint(StageRunner::pathOf(options_.output, "toy")); }
 
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
   TrainingOptions options_;
   std::atomic<bool> stop_{false};
   std::ostringstream log_;

@@ -39,7 +39,7 @@ class TrainerTest : public testing::Test {
     train(options_, stop_, log_);
   }
 
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
   TrainingOptions options_;
   std::atomic<bool> stop_{false};
   std::ostringstream log_;
