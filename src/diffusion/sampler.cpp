@@ -21,6 +21,8 @@ using traffic::kStateColumns;
 /// alpha_bar at K and K - 1 is so small that a few-step sampler divides by almost nothing there.
 constexpr int kSkippedSteps = 2;
 
+int firstDdimStep(int diffusion_steps) { return std::max(1, diffusion_steps - kSkippedSteps); }
+
 /// One run over a batch.
 class Run {
  public:
@@ -199,14 +201,21 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 void SamplerOptions::validate(int diffusion_steps) const {
-  const auto refuse = [&](const char* key, std::int64_t value) {
+  const auto require = [&](const char* key, std::int64_t value, int most, const char* why) {
+    if (value <= most) return;
     throw core::InputError(
         "key 'diffusion.sampler." + std::string(key) + "' is " + std::to_string(value) +
-        "; the model has K = " + std::to_string(diffusion_steps) + " diffusion steps, so at most " +
-        std::to_string(diffusion_steps) + " is expected");
+        "; the model has K = " + std::to_string(diffusion_steps) + " diffusion steps" + why +
+        ", so at most " + std::to_string(most) + " is expected");
   };
-  if (steps > diffusion_steps) refuse("steps", steps);
-  if (warm_start_step > diffusion_steps) refuse("warm_start_step", warm_start_step);
+  require("steps", steps, firstDdimStep(diffusion_steps), " and real_time begins two below K");
+  require("warm_start_step", warm_start_step, diffusion_steps, "");
+  if (warm_start && mode != "real_time") {
+    throw core::InputError(
+        "key 'diffusion.sampler.warm_start' is on; only mode real_time starts "
+        "warm, and mode is " +
+        mode);
+  }
   if (warm_steps > warm_start_step) {
     throw core::InputError("key 'diffusion.sampler.warm_steps' is " + std::to_string(warm_steps) +
                            "; expected at most warm_start_step (" +
@@ -226,8 +235,8 @@ std::vector<int> Sampler::visitedSteps(bool warm) const {
     for (int k = schedule_.steps(); k >= 1; --k) steps.push_back(k);
     return steps;
   }
-  const int first = warm ? static_cast<int>(options_.warm_start_step)
-                         : std::max(1, schedule_.steps() - kSkippedSteps);
+  const int first =
+      warm ? static_cast<int>(options_.warm_start_step) : firstDdimStep(schedule_.steps());
   const int count = std::min(first, static_cast<int>(warm ? options_.warm_steps : options_.steps));
   for (int i = 0; i < count; ++i) {
     steps.push_back(

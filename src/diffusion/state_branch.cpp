@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "e2e_cdiff/dynamics/executable_action.h"
+
 namespace cdiff::diffusion {
 namespace {
 
@@ -48,10 +50,13 @@ void ExactStateBranch::predict(const float* actions, int, float* states) {
       }
     }
     rollout_.rollOut(speeds_[b], rollout);
+    traffic::Rollout executed = rollout;
+    dynamics::makeExecutable(executed);
+    rollout_.rollOut(speeds_[b], executed);
     for (Eigen::Index t = 0; t < horizon; ++t) {
       for (int c = 0; c < kStateColumns; ++c) {
         states[cell(b, horizon, t, c, kStateColumns)] =
-            static_cast<float>((rollout(t, c) - normalizer_.mean(t, c)) / normalizer_.scale(t, c));
+            static_cast<float>((executed(t, c) - normalizer_.mean(t, c)) / normalizer_.scale(t, c));
       }
     }
   }

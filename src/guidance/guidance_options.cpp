@@ -41,12 +41,13 @@ void requireRange(const std::string& key, double value, double maximum) {
                    "; expected a number in [0, " + core::formatNumber(maximum) + "]");
 }
 
-void validateEntry(const WeightedObjective& entry) {
-  requireRange(entry.name + ".weight", entry.weight, kLargestWeight);
-  requireRange(entry.name + ".gradient_cap", entry.gradient_cap, kLargestCap);
+void validateEntry(const WeightedObjective& entry, const std::string& group) {
+  requireRange(group + entry.name + ".weight", entry.weight, kLargestWeight);
+  requireRange(group + entry.name + ".gradient_cap", entry.gradient_cap, kLargestCap);
   if (entry.last_step < 1 || (entry.first_step != 0 && entry.first_step < entry.last_step)) {
-    throw InputError("key '" + entry.name + ".first_step' is " + std::to_string(entry.first_step) +
-                     " and last_step is " + std::to_string(entry.last_step) +
+    throw InputError("key '" + group + entry.name + ".first_step' is " +
+                     std::to_string(entry.first_step) + " and last_step is " +
+                     std::to_string(entry.last_step) +
                      "; diffusion steps count down: expected first_step >= last_step >= 1, or "
                      "first_step 0 to act from the first step on");
   }
@@ -55,6 +56,26 @@ void validateEntry(const WeightedObjective& entry) {
   } catch (const InputError& error) {
     throw InputError("objective '" + entry.name + "': " + error.what());
   }
+}
+
+void requireStep(const std::string& key, std::int64_t step, int diffusion_steps) {
+  if (step <= diffusion_steps) return;
+  throw InputError("key 'guidance." + key + "' is " + std::to_string(step) + "; expected at most " +
+                   std::to_string(diffusion_steps) + ", the model's number of diffusion steps K");
+}
+
+void requireVisit(const WeightedObjective& entry, const std::vector<int>& visited) {
+  std::vector<std::string> names;
+  for (const int step : visited) {
+    if (entry.actsAt(step)) return;
+    names.push_back(std::to_string(step));
+  }
+  throw InputError("key 'guidance." + entry.name + ".last_step' is " +
+                   std::to_string(entry.last_step) + " and first_step is " +
+                   std::to_string(entry.first_step) +
+                   "; the sampler visits none of these diffusion steps, so the objective would "
+                   "never act; visited: " +
+                   core::joinText(names, ", "));
 }
 
 }  // namespace
@@ -111,8 +132,17 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
   }
 }
 
-void GuidanceOptions::validate() const {
-  for (const WeightedObjective& entry : objectives) validateEntry(entry);
+void GuidanceOptions::validate(const std::string& group) const {
+  for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
+}
+
+void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int>& visited) const {
+  for (const WeightedObjective& entry : objectives) {
+    if (!(entry.weight > 0.0)) continue;
+    requireStep(entry.name + ".first_step", entry.first_step, diffusion_steps);
+    requireStep(entry.name + ".last_step", entry.last_step, diffusion_steps);
+    requireVisit(entry, visited);
+  }
 }
 
 GuidanceOptions loadProfile(const std::string& name_or_file) {

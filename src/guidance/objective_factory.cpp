@@ -10,6 +10,7 @@
 #include "e2e_cdiff/guidance/drivable_area_objective.h"
 #include "e2e_cdiff/guidance/route_objective.h"
 #include "e2e_cdiff/guidance/speed_objective.h"
+#include "e2e_cdiff/guidance/traffic_avoidance_objective.h"
 
 namespace cdiff::guidance {
 namespace {
@@ -33,6 +34,8 @@ constexpr Entry kObjectives[] = {
      "Keeps away from the other vehicle."},
     {"collision_seeking", &make<CollisionSeekingObjective>,
      "Approaches the other vehicle once it is near."},
+    {"traffic_avoidance", &make<TrafficAvoidanceObjective>,
+     "Keeps away from the vehicles around but the other one."},
     {"route", &make<RouteObjective>, "Stays near the route."},
     {"comfort", &make<ComfortObjective>, "Moves the pedals and turns gently."},
 };

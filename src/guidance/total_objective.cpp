@@ -17,7 +17,10 @@ double normOf(const Rollout& gradient, const Rollout& scale) {
 }  // namespace
 
 TotalObjective::TotalObjective(const GuidanceOptions& options, const GuidanceScene& scene)
-    : options_(options), scene_(scene), tallies_(options.objectives.size()) {}
+    : options_(options),
+      scene_(scene),
+      tallies_(options.objectives.size()),
+      shares_(options.objectives.size(), 0.0) {}
 
 bool TotalObjective::actsAt(int diffusion_step) const {
   for (const WeightedObjective& entry : options_.objectives) {
@@ -29,46 +32,59 @@ bool TotalObjective::actsAt(int diffusion_step) const {
 double TotalObjective::evaluate(int diffusion_step, const Rollout& rollout, const Rollout& scale,
                                 Rollout& gradient) {
   gradient.setZero(rollout.rows(), traffic::kRolloutColumns);
+  const bool begins = diffusion_step != step_;
+  step_ = diffusion_step;
   double total = 0.0;
   for (std::size_t i = 0; i < options_.objectives.size(); ++i) {
-    if (options_.objectives[i].actsAt(diffusion_step)) {
-      total += addObjective(i, rollout, scale, gradient);
-    }
+    if (!options_.objectives[i].actsAt(diffusion_step)) continue;
+    if (!begins && shares_[i] == 0.0) continue;
+    const double value = weighted(i, rollout);
+    const double norm = normOf(part_, scale);
+    if (begins) shares_[i] = shareOf(i, value, norm);
+    if (shares_[i] == 0.0) continue;
+    if (!std::isfinite(value) || !std::isfinite(norm))
+      return std::numeric_limits<double>::infinity();
+    gradient += shares_[i] * part_;
+    total += shares_[i] * value;
   }
   return total;
 }
 
-double TotalObjective::addObjective(std::size_t index, const Rollout& rollout, const Rollout& scale,
-                                    Rollout& gradient) {
+double TotalObjective::weighted(std::size_t index, const Rollout& rollout) {
   const WeightedObjective& entry = options_.objectives[index];
-  Tally& tally = tallies_[index];
   part_.setZero(rollout.rows(), traffic::kRolloutColumns);
   const double value = entry.weight * entry.objective->evaluate(scene_, rollout, part_);
   part_ *= entry.weight;
-  const double norm = normOf(part_, scale);
+  return value;
+}
+
+double TotalObjective::shareOf(std::size_t index, double value, double norm) {
+  Tally& tally = tallies_[index];
   if (!std::isfinite(value) || !std::isfinite(norm)) {
     ++tally.dropped;
     return 0.0;
   }
   ++tally.steps;
   tally.norm_sum += norm;
-  if (entry.gradient_cap > 0.0 && norm > entry.gradient_cap) {
-    ++tally.capped;
-    part_ *= entry.gradient_cap / norm;
-  }
-  gradient += part_;
-  return value;
+  const double cap = options_.objectives[index].gradient_cap;
+  if (cap <= 0.0 || norm <= cap) return 1.0;
+  ++tally.capped;
+  return cap / norm;
 }
 
-double TotalObjective::score(const Rollout& rollout) const {
+Score TotalObjective::score(const Rollout& rollout) const {
   Rollout unused = Rollout::Zero(rollout.rows(), traffic::kRolloutColumns);
-  double total = 0.0;
+  Score score;
   for (const WeightedObjective& entry : options_.objectives) {
-    if (entry.weight > 0.0) {
-      total += entry.weight * entry.objective->evaluate(scene_, rollout, unused);
+    if (!(entry.weight > 0.0)) continue;
+    const double value = entry.weight * entry.objective->evaluate(scene_, rollout, unused);
+    if (std::isfinite(value)) {
+      score.value += value;
+    } else {
+      ++score.undefined;
     }
   }
-  return std::isfinite(total) ? total : std::numeric_limits<double>::max();
+  return score;
 }
 
 GuidanceReport TotalObjective::report(const Rollout& chosen) const {

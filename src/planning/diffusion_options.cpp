@@ -13,7 +13,7 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
                state_branch, {"learned", "exact"});
   visitor.integer({"candidates", "", "Samples per vehicle and decision."}, candidates, 1, 64);
   visitor.number({"hysteresis", "", "Share of the score by which another mode must be better."},
-                 hysteresis, 0.0, 10.0);
+                 hysteresis, 0.0, 1.0);
   visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
                  frozen_image_time, 0.1, 60.0);
   visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);

@@ -9,9 +9,13 @@
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/diffusion/route_tokens.h"
+#include "e2e_cdiff/dynamics/executable_action.h"
 #include "e2e_cdiff/planning/guided_batch.h"
+#include "e2e_cdiff/planning/last_plan.h"
 #include "e2e_cdiff/planning/motion_forecast.h"
+#include "e2e_cdiff/planning/plan_choice.h"
 #include "e2e_cdiff/planning/route_forecast.h"
+#include "e2e_cdiff/planning/surrounding_vehicles.h"
 
 namespace cdiff::planning {
 namespace {
@@ -19,54 +23,23 @@ namespace {
 using diffusion::SampledTrajectory;
 using traffic::Rollout;
 
-constexpr double kLeastBrake = 0.05;  // below it the sampled brake is noise around none
-
-bool isFinite(const traffic::VehicleState& state) {
-  return state.position.allFinite() && std::isfinite(state.elevation) &&
-         std::isfinite(state.heading) && std::isfinite(state.speed);
+/// Rows of a rollout in a decision period.
+double rowsOf(const PlanningContext& context) {
+  return context.decision_period / traffic::kRolloutStep;
 }
 
-/// Mean distance of two plans in the plane over their common rows, both seen from the same place
-/// [m].
-double planDistance(const Rollout& first, const Rollout& second) {
-  const Eigen::Index rows = std::min(first.rows(), second.rows());
-  return (first.topLeftCorner(rows, 2) - second.topLeftCorner(rows, 2)).rowwise().norm().mean();
-}
-
-const traffic::Vehicle* nearestOther(const traffic::TrafficSnapshot& snapshot,
-                                     const traffic::Vehicle& vehicle) {
-  const traffic::Vehicle* nearest = nullptr;
-  double least = 0.0;
-  for (const traffic::Vehicle& other : snapshot.vehicles) {
-    if (other.id == vehicle.id || traffic::onDifferentLevels(other, vehicle)) continue;
-    const double distance = (other.state.position - vehicle.state.position).norm();
-    if (nearest != nullptr && distance >= least) continue;
-    nearest = &other;
-    least = distance;
-  }
-  return nearest;
+std::uint64_t ticksOf(const PlanningContext& context) {
+  return static_cast<std::uint64_t>(
+      std::llround(context.decision_period / context.simulation_step));
 }
 
 }  // namespace
-
-traffic::ControlAction executableAction(const Rollout& rollout, Eigen::Index row) {
-  traffic::ControlAction action;
-  action.throttle = std::clamp(rollout(row, traffic::kRolloutThrottle), 0.0, 1.0);
-  action.steer = std::clamp(rollout(row, traffic::kRolloutSteer), -1.0, 1.0);
-  action.brake = std::clamp(rollout(row, traffic::kRolloutBrake), 0.0, 1.0);
-  if (action.brake < kLeastBrake || action.brake < action.throttle)
-    action.brake = 0.0;
-  else
-    action.throttle = 0.0;
-  return action;
-}
 
 /// What is remembered of a vehicle between decisions.
 struct DiffusionPlanner::Memory {
   RouteFollower follower;
   ImageWatch watch;
-  std::optional<Rollout> plan;  ///< of the last decision
-  std::uint64_t plan_tick = 0;
+  std::optional<LastPlan> plan;
   std::vector<float> features;  ///< of the last image
   std::uint64_t features_hash = 0;
 };
@@ -80,8 +53,8 @@ struct DiffusionPlanner::Situation {
   guidance::OtherMotion other;
   std::optional<Rollout> previous;            ///< last plan as seen from here, metric
   std::optional<diffusion::Trajectory> warm;  ///< the same, normalised, where it fits
-  std::unique_ptr<guidance::TotalObjective> objective;
-  Rollout plan;  ///< the chosen one
+  std::vector<std::unique_ptr<guidance::TotalObjective>> objectives;  ///< one per candidate
+  Rollout plan;                                                       ///< the chosen one
   guidance::GuidanceReport report;
 };
 
@@ -100,7 +73,10 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       sampler_(options.sampler, schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle) {
-  guidance_.validate();
+  guidance_.validate("guidance.");
+  if (options.sampler.mode != "unguided") {
+    guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false));
+  }
 }
 
 DiffusionPlanner::~DiffusionPlanner() = default;
@@ -119,13 +95,18 @@ std::optional<std::string> DiffusionPlanner::faultOf(const PlanningTask& task, s
   return std::nullopt;
 }
 
-/// For a CBV the ego along its route; for the ego the nearest other vehicle.
+/// For a CBV the other is the ego along its route; for the ego the nearest other vehicle. The
+/// vehicles around both are the traffic.
 void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation) {
   const traffic::Vehicle& vehicle = *situation.task->vehicle;
   const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
   const traffic::Vehicle* ego = snapshot.ego();
   const bool about_ego = situation.task->slot >= 0;
-  const traffic::Vehicle* other = about_ego ? ego : nearestOther(snapshot, vehicle);
+  const traffic::Vehicle* other = about_ego ? ego : nearestVehicle(snapshot, vehicle);
+  for (const traffic::Vehicle* near : vehiclesAround(snapshot, vehicle, other)) {
+    situation.scene.traffic.push_back(
+        {near->state, near->dimensions, forecastMotion(*near, context_.network, vehicle_, steps)});
+  }
   if (other == nullptr || !isFinite(other->state) || traffic::onDifferentLevels(*other, vehicle))
     return;
   situation.other.now = other->state;
@@ -139,30 +120,17 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
   situation.scene.other = &situation.other;
 }
 
-/// The last plan, seen from here one decision later; it is a warm start if the vehicle drives as
-/// fast as the plan said. A decision period that is no whole number of rows has none.
+/// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
+/// plan said, on its way to the same goal.
 void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
-  constexpr double kJump = 0.5;       // [m/s]
-  constexpr double kRounding = 1e-6;  // of a row
-  const Memory& memory = *situation.memory;
-  const auto period =
-      static_cast<std::uint64_t>(std::llround(context_.decision_period / context_.simulation_step));
-  const double rows = context_.decision_period / traffic::kRolloutStep;
-  const auto shift = static_cast<Eigen::Index>(std::llround(rows));
-  if (!memory.plan || memory.plan_tick + period != tick) return;
-  const Rollout& last = *memory.plan;
-  const bool whole = std::abs(rows - static_cast<double>(shift)) < kRounding;
-  if (!whole || shift < 1 || shift > last.rows()) return;
-  Rollout moved = last;
-  for (Eigen::Index row = 0; row < last.rows(); ++row)
-    moved.row(row) = last.row(std::min(row + shift, last.rows() - 1));
-  const double speed = situation.task->vehicle->state.speed;
-  const double expected = last(shift - 1, traffic::kRolloutSpeed);
-  exact_.rollOut(speed, moved);
-  situation.previous = moved;
-  if (options_.sampler.mode == "real_time" && options_.sampler.warm_start &&
-      std::abs(speed - expected) < kJump)
-    situation.warm = model_.normalizer.normalize(moved);
+  const std::optional<LastPlan>& last = situation.memory->plan;
+  if (!last || last->tick() + ticksOf(context_) != tick) return;
+  const PlanningTask& task = *situation.task;
+  const double rows = rowsOf(context_);
+  situation.previous = last->continued(rows, exact_, task.vehicle->state);
+  if (situation.previous && options_.sampler.warm_start &&
+      last->holds(std::lround(rows), task.vehicle->state, task.route))
+    situation.warm = model_.normalizer.normalize(*situation.previous);
 }
 
 /// Encodes an image unless it is the one of the last decision, as before a standing vehicle.
@@ -203,68 +171,60 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   }
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, *situation);
-  situation->objective = std::make_unique<guidance::TotalObjective>(guidance_, scene);
+  for (std::int64_t i = 0; i < options_.candidates; ++i) {
+    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(guidance_, scene));
+  }
   return situation;
+}
+
+std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
+    const std::vector<diffusion::Context>& contexts) {
+  if (options_.state_branch == "learned")
+    return std::make_unique<diffusion::LearnedStateBranch>(denoiser_);
+  std::vector<double> speeds;
+  for (const diffusion::Context& context : contexts) speeds.push_back(context.speed);
+  return std::make_unique<diffusion::ExactStateBranch>(vehicle_, model_.normalizer, speeds);
 }
 
 /// Samples one batch: all candidates of all `situations`.
 void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& situations) {
   if (situations.empty()) return;
-  const auto candidates = static_cast<std::uint32_t>(options_.candidates);
   std::vector<diffusion::Context> contexts;
-  std::vector<double> speeds;
   std::vector<diffusion::SampleRequest> requests;
   std::vector<guidance::TotalObjective*> objectives;
   for (const Situation* situation : situations) {
-    for (std::uint32_t candidate = 0; candidate < candidates; ++candidate) {
+    for (std::size_t candidate = 0; candidate < situation->objectives.size(); ++candidate) {
       contexts.push_back(situation->context);
-      speeds.push_back(situation->context.speed);
       diffusion::SampleRequest request;
       request.key = {core::hashText(situation->task->vehicle->id), static_cast<std::uint32_t>(tick),
                      0};
-      request.candidate = candidate;
+      request.candidate = static_cast<std::uint32_t>(candidate);
       request.warm = situation->warm ? &*situation->warm : nullptr;
       requests.push_back(request);
-      objectives.push_back(situation->objective.get());
+      objectives.push_back(situation->objectives[candidate].get());
     }
   }
   denoiser_.setContexts(contexts);
-  std::unique_ptr<diffusion::StateBranch> branch;
-  if (options_.state_branch == "exact") {
-    branch = std::make_unique<diffusion::ExactStateBranch>(vehicle_, model_.normalizer, speeds);
-  } else {
-    branch = std::make_unique<diffusion::LearnedStateBranch>(denoiser_);
-  }
+  const auto branch = stateBranch(contexts);
   GuidedBatch guided(model_.normalizer, objectives);
   const auto samples = sampler_.sample(denoiser_, *branch, requests, &guided);
+  const auto candidates = static_cast<std::size_t>(options_.candidates);
   for (std::size_t i = 0; i < situations.size(); ++i)
     choose(*situations[i], samples, i * candidates);
 }
 
 void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTrajectory>& samples,
                               std::size_t first) const {
-  const auto count = static_cast<std::size_t>(options_.candidates);
   std::vector<Rollout> plans;
-  std::vector<double> scores;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<guidance::Score> scores;
+  for (std::size_t i = 0; i < situation.objectives.size(); ++i) {
     plans.push_back(model_.normalizer.denormalize(samples[first + i].clean));
-    scores.push_back(count > 1 ? situation.objective->score(plans.back()) : 0.0);
+    scores.push_back(situation.objectives[i]->score(plans.back()));
   }
-  auto chosen =
-      static_cast<std::size_t>(std::min_element(scores.begin(), scores.end()) - scores.begin());
-  if (situation.previous && count > 1) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-      if (planDistance(plans[i], *situation.previous) <
-          planDistance(plans[nearest], *situation.previous))
-        nearest = i;
-    }
-    const double margin = options_.hysteresis * std::abs(scores[nearest]);
-    if (scores[nearest] - scores[chosen] <= margin) chosen = nearest;
-  }
+  const std::size_t chosen = choosePlan(plans, scores, situation.previous, options_.hysteresis);
   situation.plan = plans[chosen];
-  situation.report = situation.objective->report(situation.plan);
-  situation.report.candidates = static_cast<std::int64_t>(count);
+  situation.report = situation.objectives[chosen]->report(situation.plan);
+  situation.report.candidates = options_.candidates;
   situation.report.chosen = static_cast<std::int64_t>(chosen);
   const SampledTrajectory& sample = samples[first + chosen];
   if (sample.guided_steps > 0) {
@@ -276,12 +236,13 @@ void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTra
 PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
   const PlanningTask& task = *situation.task;
   const traffic::VehicleState& start = task.vehicle->state;
-  PlannedAction planned{task.slot, task.vehicle->id, executableAction(situation.plan, 0), {}};
-  planned.guidance = situation.report;
   Rollout driven = situation.plan;
+  dynamics::makeExecutable(driven);
+  PlannedAction planned{
+      task.slot, task.vehicle->id, dynamics::executableAction(situation.plan, 0), {}};
+  planned.guidance = situation.report;
   for (Eigen::Index row = 0; row < driven.rows(); ++row) {
-    const traffic::ControlAction action = executableAction(situation.plan, row);
-    driven.row(row).tail<traffic::kActionColumns>() << action.throttle, action.steer, action.brake;
+    const traffic::ControlAction action = dynamics::executableAction(situation.plan, row);
     traffic::VehicleState state = start;
     state.position = start.pose().toMap(situation.plan.row(row).head<2>().transpose());
     state.heading = core::wrapAngle(start.heading + situation.plan(row, traffic::kRolloutHeading));
@@ -297,7 +258,12 @@ PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
 void DiffusionPlanner::followEgo(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego == nullptr || context_.ego_route == nullptr || context_.ego_route->empty()) return;
-  if (isFinite(ego->state)) ego_follower_.update(*context_.ego_route, ego->state.position);
+  if (!isFinite(ego->state)) return;
+  constexpr double kFastest = 40.0;  // [m/s]
+  const auto skipped = static_cast<double>(snapshot.tick - std::min(snapshot.tick, ego_tick_));
+  ego_follower_.update(*context_.ego_route, ego->state.position,
+                       kFastest * skipped * context_.simulation_step);
+  ego_tick_ = snapshot.tick;
 }
 
 void DiffusionPlanner::rememberOnly(const std::vector<PlanningTask>& tasks) {
@@ -319,8 +285,8 @@ void DiffusionPlanner::conclude(std::uint64_t tick, const Situation& situation,
     return;
   }
   planned = actionOf(situation);
-  situation.memory->plan = situation.plan;
-  situation.memory->plan_tick = tick;
+  const PlanningTask& task = *situation.task;
+  situation.memory->plan.emplace(situation.plan, tick, task.vehicle->state, task.route);
 }
 
 std::vector<PlannedAction> DiffusionPlanner::plan(const traffic::TrafficSnapshot& snapshot,

@@ -62,12 +62,13 @@ void RouteFollower::start(const map::Route& route, const Eigen::Vector2d& positi
   arc_length_ = at_start ? near.arc_length : route.path().project(position).arc_length;
 }
 
-void RouteFollower::update(const map::Route& route, const Eigen::Vector2d& position) {
+void RouteFollower::update(const map::Route& route, const Eigen::Vector2d& position, double reach) {
   constexpr double kWindowAhead = 15.0;
   constexpr double kWindowBehind = 5.0;
   if (!knows(route)) start(route, position);
+  const double ahead = std::max(kWindowAhead, reach);
   const double found =
-      extendedProjection(route, position, arc_length_ - kWindowBehind, arc_length_ + kWindowAhead);
+      extendedProjection(route, position, arc_length_ - kWindowBehind, arc_length_ + ahead);
   arc_length_ = std::max(arc_length_, found);
 }
 

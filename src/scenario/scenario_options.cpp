@@ -149,7 +149,7 @@ void ScenarioOptions::validate() const {
   cbv.validate();
   pdm_lite.validate();
   two_stage_pid.validate();
-  guidance.validate();
+  guidance.validate("guidance.");
   camera.validate();
   vehicle.validate();
   if (!isMultiple(simulation_step, 0.05)) {

@@ -26,6 +26,8 @@ class GuidanceWorld {
     scene_.route_arc_length = 40.0;
     scene_.state = placed(40.0, 0.0, 0.0, 8.0);
     setOther(52.0, 1.0);
+    addTraffic(51.0, 0.4, 0.1);
+    addTraffic(44.0, 3.0, 2.8);
   }
   GuidanceWorld(const GuidanceWorld&) = delete;
   GuidanceWorld& operator=(const GuidanceWorld&) = delete;
@@ -48,6 +50,14 @@ class GuidanceWorld {
     other_.now = placed(x, y, 0.0, 0.0);
     other_.predicted.assign(static_cast<std::size_t>(kRows), other_.now);
     scene_.other = &other_;
+  }
+
+  /// One more vehicle stands there, for all rows.
+  void addTraffic(double x, double y, double heading) {
+    guidance::OtherMotion vehicle;
+    vehicle.now = placed(x, y, heading, 0.0);
+    vehicle.predicted.assign(static_cast<std::size_t>(kRows), vehicle.now);
+    scene_.traffic.push_back(vehicle);
   }
 
  private:

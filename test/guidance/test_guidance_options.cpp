@@ -121,14 +121,40 @@ TEST(GuidanceOptions, AWindowThatEndsBeforeItBeginsIsRefused) {
   EXPECT_EQ(errorOf("speed:\n  first_step: 20\n  last_step: 20\n"), "no error");
 }
 
+std::string windowError(std::int64_t first_step, std::int64_t last_step,
+                        const std::vector<int>& visited) {
+  GuidanceOptions options;
+  WeightedObjective& speed = options.find("speed");
+  speed.weight = 1.0;
+  speed.first_step = first_step;
+  speed.last_step = last_step;
+  try {
+    options.validateWindows(100, visited);
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(GuidanceOptions, AWindowThatCannotActIsRefused) {
+  const std::vector<int> visited = {98, 50, 10};
+  EXPECT_EQ(windowError(0, 1, visited), "no error");
+  EXPECT_EQ(windowError(20, 5, visited), "no error");
+  expectParts(windowError(101, 1, visited), {"guidance.speed.first_step", "101", "at most 100"});
+  expectParts(windowError(0, 150, visited), {"guidance.speed.last_step", "150", "at most 100"});
+  expectParts(windowError(9, 1, visited), {"guidance.speed.last_step", "98, 50, 10"});
+  expectParts(windowError(49, 11, visited), {"98, 50, 10"});
+}
+
 TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
   const std::map<std::string, std::set<std::string>> expected = {
+      {"ablation_all", {"speed", "drivable_area", "collision_avoidance"}},
       {"ablation_collision", {"collision_avoidance"}},
       {"ablation_drivable", {"drivable_area"}},
       {"ablation_speed", {"speed"}},
-      {"naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
+      {"naturalistic", {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance"}},
       {"none", {}},
-      {"safety_critical", {"speed", "drivable_area", "collision_seeking"}}};
+      {"safety_critical", {"speed", "drivable_area", "collision_seeking", "traffic_avoidance"}}};
   std::vector<std::string> names;
   for (const auto& [name, active] : expected) {
     names.push_back(name);
@@ -139,7 +165,8 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
 
 TEST(Profiles, AblationsUseTheWeightsOfNaturalistic) {
   GuidanceOptions naturalistic = loadProfile("naturalistic");
-  for (const std::string name : {"ablation_collision", "ablation_drivable", "ablation_speed"}) {
+  for (const std::string name :
+       {"ablation_all", "ablation_collision", "ablation_drivable", "ablation_speed"}) {
     const GuidanceOptions ablation = loadProfile(name);
     for (const WeightedObjective& entry : ablation.objectives) {
       if (entry.weight == 0.0) continue;

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/guidance/objective_factory.h"
 #include "e2e_cdiff/guidance/route_objective.h"
 #include "e2e_cdiff/guidance/speed_objective.h"
+#include "e2e_cdiff/guidance/traffic_avoidance_objective.h"
 #include "guidance/guidance_world.h"
 
 namespace cdiff::guidance {
@@ -41,6 +42,38 @@ TEST(SpeedObjective, IsTheSumOfSquaresAndPullsToTheTarget) {
   SpeedObjective half;
   half.factor = 0.5;
   EXPECT_DOUBLE_EQ(valueOf(half, world.scene(), rollout), 1.0 + 25.0);
+}
+
+TEST(TrafficAvoidanceObjective, CountsWhatIsMissingOfTheGapToALeader) {
+  GuidanceWorld world;
+  world.scene().traffic.clear();
+  world.addTraffic(60.0, 0.0, 0.0);  // 20 m ahead; A = 4.5 + 4, B = 1.8 + 0.3
+  const TrafficAvoidanceObjective objective;
+  EXPECT_EQ(valueOf(objective, world.scene(), standing(11.4, 0, 0, 0, 1)), 0.0);
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(13.5, 0, 0, 0, 1)), 4.0, 1e-9);
+  const double window = std::pow(1.0 - 0.25, 2);
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(13.5, 1.05, 0, 0, 1)), 4.0 * window, 1e-9);
+  EXPECT_EQ(valueOf(objective, world.scene(), standing(13.5, 2.1, 0, 0, 1)), 0.0);
+}
+
+TEST(TrafficAvoidanceObjective, DrawsAPlanThroughALeaderBackBehindIt) {
+  GuidanceWorld world;
+  world.scene().traffic.clear();
+  world.addTraffic(60.0, 0.0, 0.05);
+  const Rollout beyond = standing(27.0, 0.0);
+  EXPECT_LT(descended(TrafficAvoidanceObjective(), world.scene(), beyond)(0, traffic::kRolloutX),
+            27.0);
+}
+
+TEST(TrafficAvoidanceObjective, LeavesPassingTrafficAloneAndEvadesWhoComesNear) {
+  GuidanceWorld world;
+  world.scene().traffic.clear();
+  world.addTraffic(50.0, 3.2, core::kPi);  // oncoming in the next lane
+  const TrafficAvoidanceObjective objective;
+  EXPECT_EQ(valueOf(objective, world.scene(), standing(10.0, 0.0)), 0.0);
+  const Rollout near = standing(9.0, 1.6);
+  EXPECT_GT(valueOf(objective, world.scene(), near), 0.0);
+  EXPECT_LT(descended(objective, world.scene(), near)(0, traffic::kRolloutY), 1.6);
 }
 
 TEST(DrivableAreaObjective, CountsWhatIsMissingOfTheMargin) {

@@ -82,7 +82,7 @@ TEST(TotalObjective, IsTheWeightedSum) {
   }
   EXPECT_NEAR(total.value, value, 1e-9);
   EXPECT_LT((total.gradient - gradient).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_NEAR(TotalObjective(options, world.scene()).score(rollout), value, 1e-9);
+  EXPECT_NEAR(TotalObjective(options, world.scene()).score(rollout).value, value, 1e-9);
 }
 
 TEST(TotalObjective, AllZeroWeightsGiveExactlyZero) {
@@ -137,7 +137,7 @@ TEST(TotalObjective, WindowsOpenAndClose) {
   const TotalObjective total(options, world.scene());
   EXPECT_TRUE(total.actsAt(30));
   EXPECT_FALSE(total.actsAt(9));
-  EXPECT_EQ(total.score(rollout), 9.0 * test::kRows);  // whatever the window
+  EXPECT_EQ(total.score(rollout).value, 9.0 * test::kRows);  // whatever the window
 }
 
 TEST(TotalObjective, CapsTheNormInNormalisedUnits) {
@@ -191,12 +191,59 @@ TEST(TotalObjective, NotFiniteIsLeftOutAndCounted) {
   }
 }
 
-TEST(TotalObjective, ACandidateWithoutAScoreRanksLast) {
+/// Not finite where a row is faster than 10 m/s.
+class FragileObjective : public Objective {
+ public:
+  void describe(core::OptionsVisitor&) override {}
+  double evaluate(const GuidanceScene&, const Rollout& rollout, Rollout&) const override {
+    return rollout.col(traffic::kRolloutSpeed).maxCoeff() > 10.0 ? kNan : 5.0;
+  }
+  std::unique_ptr<Objective> clone() const override {
+    return std::make_unique<FragileObjective>(*this);
+  }
+};
+
+TEST(TotalObjective, BecomingUndefinedWithinAStepIsNoImprovement) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(0.0, 0.0, 0.0);
+  options.objectives.push_back({"fragile", 1.0, 0, 1, 0.0, std::make_unique<FragileObjective>()});
+  const Rollout slow = test::standing(0.0, 0.0, 0.0, 5.0);
+  const Rollout fast = test::standing(0.0, 0.0, 0.0, 11.0);
+  TotalObjective total(options, world.scene());
+  Rollout gradient;
+  EXPECT_EQ(total.evaluate(50, slow, kUnitScale, gradient), 5.0);
+  EXPECT_EQ(total.evaluate(50, fast, kUnitScale, gradient),
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(total.evaluate(40, fast, kUnitScale, gradient), 0.0);  // a new step: left out
+  EXPECT_EQ(total.evaluate(40, slow, kUnitScale, gradient), 0.0);  // of the whole step
+  EXPECT_EQ(total.report(slow).objectives[0].dropped, 1);
+}
+
+TEST(TotalObjective, TheCapScalesValueAndGradientAlikeWithinAStep) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(1.0, 0.0, 0.0);
+  options.find("speed").gradient_cap = 3.0;
+  TotalObjective total(options, world.scene());
+  Rollout rollout = test::standing(0.0, 0.0, 0.0, 8.0);
+  rollout(0, traffic::kRolloutSpeed) = 5.0;  // J = 9, |g| = 6: c = 0.5
+  Rollout gradient;
+  EXPECT_DOUBLE_EQ(total.evaluate(50, rollout, kUnitScale, gradient), 4.5);
+  rollout(0, traffic::kRolloutSpeed) = 7.0;  // J = 1, |g| = 2: below the cap, c stays
+  EXPECT_DOUBLE_EQ(total.evaluate(50, rollout, kUnitScale, gradient), 0.5);
+  EXPECT_DOUBLE_EQ(gradient(0, traffic::kRolloutSpeed), -1.0);
+  EXPECT_DOUBLE_EQ(total.evaluate(49, rollout, kUnitScale, gradient), 1.0);
+}
+
+TEST(TotalObjective, ACandidateWithAnUndefinedObjectiveRanksLast) {
   GuidanceWorld world;
   GuidanceOptions options = withWeights(0.5, 0.0, 0.0);
+  const Score whole = TotalObjective(options, world.scene()).score(test::wandering(0));
   addBroken(options, kNan, 0.0);
-  EXPECT_EQ(TotalObjective(options, world.scene()).score(test::wandering(0)),
-            std::numeric_limits<double>::max());
+  const Score broken = TotalObjective(options, world.scene()).score(test::wandering(0));
+  EXPECT_EQ(broken.undefined, 1U);
+  EXPECT_EQ(broken.value, whole.value);
+  EXPECT_TRUE(whole < broken);
+  EXPECT_FALSE(broken < whole);
 }
 
 TEST(TotalObjective, RaisingAWeightRaisesItsShareOfTheGradient) {

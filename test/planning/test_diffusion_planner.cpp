@@ -87,7 +87,7 @@ TEST_F(DiffusionPlannerTest, PlansAWholeRolloutForEveryVehicle) {
     EXPECT_TRUE(planned.action.valid());
     ASSERT_EQ(planned.rollout.size(), 32U);
     EXPECT_EQ(planned.rollout.front().action, planned.action);
-    ASSERT_EQ(planned.guidance.objectives.size(), 3U);
+    ASSERT_EQ(planned.guidance.objectives.size(), 4U);
     EXPECT_GE(planned.state_mismatch, 0.0);
   }
   EXPECT_FALSE(actions[0].action == actions[1].action);
@@ -180,18 +180,6 @@ TEST_F(DiffusionPlannerTest, UnknownModelNamesWhatIsThere) {
   DiffusionOptions options;
   options.model = "no_such_model";
   EXPECT_THROW(DiffusionPlanner(options, guidance_, {}, context_), core::InputError);
-}
-
-TEST(ExecutableAction, ClampsAndLetsTheLargerPedalAct) {
-  traffic::Rollout rollout = traffic::Rollout::Zero(1, traffic::kRolloutColumns);
-  const auto act = [&](double throttle, double steer, double brake) {
-    rollout.row(0).tail<3>() << throttle, steer, brake;
-    return executableAction(rollout, 0);
-  };
-  EXPECT_EQ(act(0.6, 0.1, 0.3), (traffic::ControlAction{0.6, 0.1, 0.0}));
-  EXPECT_EQ(act(0.2, -0.1, 0.3), (traffic::ControlAction{0.0, -0.1, 0.3}));
-  EXPECT_EQ(act(0.0, 0.0, 0.04), (traffic::ControlAction{0.0, 0.0, 0.0}));
-  EXPECT_EQ(act(1.4, -1.2, -0.3), (traffic::ControlAction{1.0, -1.0, 0.0}));
 }
 
 }  // namespace

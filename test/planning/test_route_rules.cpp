@@ -135,6 +135,17 @@ TEST(RouteFollower, GoesStraightOnBeyondTheEnds) {
   EXPECT_NEAR(follower.arcLength(), route.length() + 4.0, 1e-9);
 }
 
+TEST(RouteFollower, CatchesUpAfterAGapAsFarAsItMayReach) {
+  const auto network = makeNetwork({{"road", {{0.0, 0.0, 0.0}, {200.0, 0.0, 0.0}}}});
+  const map::Route route = routeAlong(network, {"road"});
+  RouteFollower follower;
+  follower.update(route, {5.0, 0.0});
+  follower.update(route, {65.0, 0.0});
+  EXPECT_NEAR(follower.arcLength(), 20.0, 1e-9);
+  follower.update(route, {65.0, 0.0}, 60.0);
+  EXPECT_NEAR(follower.arcLength(), 65.0, 1e-9);
+}
+
 TEST(RouteFollower, FollowsARouteThatCrossesItselfInOrder) {
   // Along +x, round a square and back over the start along +y at (40, 0): the crossing lies at 40 m
   // and at 220 m.

@@ -34,7 +34,9 @@ class LearnedStateBranch : public StateBranch {
   Denoiser& denoiser_;
 };
 
-/// ActionRollout through the normaliser; `speeds` [m/s] of the batch.
+/// States of the actions as they are executed (dynamics::makeExecutable) by ActionRollout through
+/// the normaliser; `speeds` [m/s] of the batch. The gradient is that of the rollout without the
+/// choice of a pedal (straight-through): also the pedal that does not act yet can be moved.
 class ExactStateBranch : public StateBranch {
  public:
   ExactStateBranch(const dynamics::BicycleModelOptions& vehicle, const Normalizer& normalizer,

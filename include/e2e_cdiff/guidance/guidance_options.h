@@ -41,7 +41,11 @@ struct GuidanceOptions {
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);
   void describe(core::OptionsVisitor& visitor);
-  void validate() const;
+  /// Throws InputError; `group` is put before the keys that it names ("guidance.").
+  void validate(const std::string& group = "") const;
+  /// Throws InputError naming the key of an active objective whose window reaches beyond
+  /// `diffusion_steps`, the model's K, or holds none of the steps that the sampler visits.
+  void validateWindows(int diffusion_steps, const std::vector<int>& visited) const;
 };
 
 /// Reads a profile by file name, or by the name of one in config/guidance. Throws InputError naming

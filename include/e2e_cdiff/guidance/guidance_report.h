@@ -9,12 +9,13 @@
 
 namespace cdiff::guidance {
 
-/// One objective over the denoising steps of one decision.
+/// One objective over the denoising steps of the sample that was chosen.
 struct ObjectiveReport {
   std::string name;
   double weight = 0.0;
   double value = 0.0;          ///< J of the rollout that was chosen (unweighted)
-  double gradient_norm = 0.0;  ///< mean over active steps of |w dJ/d tau|, normalised units
+  double gradient_norm = 0.0;  ///< mean over active steps of |w dJ/d tau| where the step begins,
+                               ///< before the cap, normalised units
   double capped_share = 0.0;   ///< of active steps in which the gradient cap acted, [0, 1]
   std::int64_t dropped = 0;    ///< steps in which it was not finite and left out
 };

@@ -13,7 +13,7 @@
 
 namespace cdiff::guidance {
 
-/// The vehicle that collision objectives are about (the ego, for a CBV) over the horizon.
+/// Another vehicle over the horizon.
 struct OtherMotion {
   traffic::VehicleState now;
   traffic::VehicleDimensions dimensions;
@@ -27,7 +27,10 @@ struct GuidanceScene {
   const map::DrivableArea* drivable_area = nullptr;  ///< never null
   const map::Route* route = nullptr;                 ///< null: no route
   double route_arc_length = 0.0;                     ///< of the vehicle on it [m]
-  const OtherMotion* other = nullptr;                ///< null: nobody to avoid or seek
+  /// The vehicle that collision objectives are about (the ego, for a CBV); null: nobody to avoid
+  /// or seek.
+  const OtherMotion* other = nullptr;
+  std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level
 };
 
 /// Map-frame position of a rollout row.

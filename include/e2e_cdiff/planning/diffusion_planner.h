@@ -32,9 +32,6 @@
 
 namespace cdiff::planning {
 
-/// Throttle, steer and brake that the vehicle executes for a row of a rollout.
-traffic::ControlAction executableAction(const traffic::Rollout& rollout, Eigen::Index row);
-
 class DiffusionPlanner : public Planner {
  public:
   /// Loads the model. Throws InputError for a bad model or bad options.
@@ -61,6 +58,8 @@ class DiffusionPlanner : public Planner {
                                          const PlanningTask& task, Memory& memory);
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
+  std::unique_ptr<diffusion::StateBranch> stateBranch(
+      const std::vector<diffusion::Context>& contexts);
   void solve(std::uint64_t tick, const std::vector<Situation*>& situations);
   void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
               std::size_t first) const;
@@ -78,6 +77,7 @@ class DiffusionPlanner : public Planner {
   diffusion::Sampler sampler_;
   dynamics::ActionRollout exact_;
   RouteFollower ego_follower_;
+  std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
   std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
 };
 
