@@ -191,8 +191,6 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"steps", "", "Denoising steps of real_time."}, steps, 1, 1000);
   visitor.integer({"inner_iterations", "", "Descent steps of each proximal step of real_time."},
                   inner_iterations, 1, 50);
-  visitor.number({"trust_region", "", "Farthest proximal step in units of r_k."}, trust_region,
-                 0.01, 100.0);
   visitor.flag({"warm_start", "", "real_time: start from the previous plan where it still fits."},
                warm_start);
   visitor.integer({"warm_start_step", "", "Diffusion step that the previous plan is noised to."},

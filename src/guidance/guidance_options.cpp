@@ -19,6 +19,8 @@ using core::InputError;
 
 constexpr double kLargestWeight = 1000.0;
 constexpr double kLargestCap = 1e6;
+constexpr double kLeastRegion = 0.01;
+constexpr double kLargestRegion = 100.0;
 constexpr std::int64_t kLastDiffusionStep = 10000;
 
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
@@ -103,7 +105,7 @@ GuidanceOptions::GuidanceOptions() {
   }
 }
 
-GuidanceOptions::GuidanceOptions(const GuidanceOptions& other) {
+GuidanceOptions::GuidanceOptions(const GuidanceOptions& other) : trust_region(other.trust_region) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -113,6 +115,7 @@ GuidanceOptions::GuidanceOptions(const GuidanceOptions& other) {
 GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   GuidanceOptions copy(other);
   objectives = std::move(copy.objectives);
+  trust_region = copy.trust_region;
   return *this;
 }
 
@@ -127,12 +130,20 @@ WeightedObjective& GuidanceOptions::find(const std::string& name) {
 }
 
 void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number(
+      {"trust_region", "",
+       "Farthest that a step of sampler mode real_time moves an action, in units of r_k."},
+      trust_region, kLeastRegion, kLargestRegion);
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }
 }
 
 void GuidanceOptions::validate(const std::string& group) const {
+  if (!(trust_region >= kLeastRegion && trust_region <= kLargestRegion)) {
+    throw InputError("key '" + group + "trust_region' is " + core::formatNumber(trust_region) +
+                     "; expected a number in [0.01, 100]");
+  }
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }
 

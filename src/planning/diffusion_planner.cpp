@@ -23,6 +23,13 @@ namespace {
 using diffusion::SampledTrajectory;
 using traffic::Rollout;
 
+diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
+                                         const guidance::GuidanceOptions& guidance) {
+  diffusion::SamplerOptions sampler = options.sampler;
+  sampler.trust_region = guidance.trust_region;
+  return sampler;
+}
+
 /// Rows of a rollout in a decision period.
 double rowsOf(const PlanningContext& context) {
   return context.decision_period / traffic::kRolloutStep;
@@ -70,7 +77,7 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
       encoder_(model_),
       denoiser_(model_),
-      sampler_(options.sampler, schedule_, model_.spread,
+      sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle) {
   guidance_.validate("guidance.");

@@ -47,13 +47,13 @@ TEST(SpeedObjective, IsTheSumOfSquaresAndPullsToTheTarget) {
 TEST(TrafficAvoidanceObjective, CountsWhatIsMissingOfTheGapToALeader) {
   GuidanceWorld world;
   world.scene().traffic.clear();
-  world.addTraffic(60.0, 0.0, 0.0);  // 20 m ahead; A = 4.5 + 4, B = 1.8 + 0.3
+  world.addTraffic(60.0, 0.0, 0.0);  // 20 m ahead; A = 4.5 + 4, B = 1.8 + 0.8
   const TrafficAvoidanceObjective objective;
   EXPECT_EQ(valueOf(objective, world.scene(), standing(11.4, 0, 0, 0, 1)), 0.0);
   EXPECT_NEAR(valueOf(objective, world.scene(), standing(13.5, 0, 0, 0, 1)), 4.0, 1e-9);
   const double window = std::pow(1.0 - 0.25, 2);
-  EXPECT_NEAR(valueOf(objective, world.scene(), standing(13.5, 1.05, 0, 0, 1)), 4.0 * window, 1e-9);
-  EXPECT_EQ(valueOf(objective, world.scene(), standing(13.5, 2.1, 0, 0, 1)), 0.0);
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(13.5, 1.3, 0, 0, 1)), 4.0 * window, 1e-9);
+  EXPECT_EQ(valueOf(objective, world.scene(), standing(13.5, 2.6, 0, 0, 1)), 0.0);
 }
 
 TEST(TrafficAvoidanceObjective, DrawsAPlanThroughALeaderBackBehindIt) {

@@ -28,7 +28,7 @@ struct SamplerOptions {
   std::string mode = "real_time";     ///< paper | real_time | unguided
   std::int64_t steps = 10;            ///< of real_time
   std::int64_t inner_iterations = 4;  ///< of the proximal step
-  double trust_region = 2.0;          ///< c
+  double trust_region = 2.0;          ///< c; a matter of guidance, so its options set it
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits
   std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
   std::int64_t warm_steps = 5;        ///< denoising steps from there

@@ -37,6 +37,8 @@ struct GuidanceOptions {
   GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;
 
   std::vector<WeightedObjective> objectives;  ///< in the factory's order
+  double trust_region = 2.0;  ///< farthest that a step of sampler mode real_time moves an action,
+                              ///< in units of r_k
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);

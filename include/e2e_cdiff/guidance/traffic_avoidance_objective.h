@@ -17,7 +17,7 @@ namespace cdiff::guidance {
 class TrafficAvoidanceObjective : public Objective {
  public:
   double longitudinal_gap = 4.0;  ///< between bumpers [m]
-  double lateral_gap = 0.3;       ///< between sides [m]
+  double lateral_gap = 0.8;       ///< between sides [m]
 
   void describe(core::OptionsVisitor& visitor) override;
   double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
