@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/suite/suite.h"
 
 namespace cdiff::cli {
 namespace {
@@ -22,6 +23,7 @@ constexpr const char* kSessionCommand = "collect_session";
 struct CollectArguments {
   CollectRequest request;
   std::vector<std::string> scenarios;
+  std::string suite;  ///< name or folder
   int seeds = 1;
   int first_seed = 1;
   int jobs = 1;
@@ -41,10 +43,19 @@ std::vector<std::string> wordsOf(const CollectRequest& request) {
   return words;
 }
 
+/// Those named and those of the suite; all that are shipped when none is asked for.
+std::vector<std::string> scenariosOf(const CollectArguments& arguments) {
+  std::vector<std::string> scenarios = arguments.scenarios;
+  if (!arguments.suite.empty()) {
+    for (const std::string& file : suite::scenarioFiles(suite::loadSuite(arguments.suite)))
+      scenarios.push_back(file);
+  }
+  return scenarios.empty() ? scenario::shippedScenarios() : scenarios;
+}
+
 std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
   std::vector<CollectRequest> sessions;
-  const std::vector<std::string> scenarios =
-      arguments.scenarios.empty() ? scenario::shippedScenarios() : arguments.scenarios;
+  const std::vector<std::string> scenarios = scenariosOf(arguments);
   for (int i = 0; i < arguments.seeds; ++i) {
     for (const std::string& name : scenarios) {
       CollectRequest request = arguments.request;
@@ -157,6 +168,7 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
       ->add_option("--scenarios", arguments->scenarios,
                    "Scenarios, names or files (default: all that are shipped)")
       ->delimiter(',');
+  command->add_option("--suite", arguments->suite, "Route suite, name or folder: its scenarios");
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
       ->check(CLI::Range(1, 100000));
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")
