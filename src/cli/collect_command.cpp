@@ -43,23 +43,39 @@ std::vector<std::string> wordsOf(const CollectRequest& request) {
   return words;
 }
 
-/// Those named and those of the suite; all that are shipped when none is asked for.
-std::vector<std::string> scenariosOf(const CollectArguments& arguments) {
-  std::vector<std::string> scenarios = arguments.scenarios;
+/// A scenario and what is set for it alone.
+struct CollectScenario {
+  std::string name;
+  std::vector<std::string> set;
+};
+
+/// Those named and those of the suite, whose traffic stays as the suite has it; all that are
+/// shipped when none is asked for.
+std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
+  std::vector<CollectScenario> scenarios;
+  for (const std::string& name : arguments.scenarios) scenarios.push_back({name, {}});
   if (!arguments.suite.empty()) {
-    for (const std::string& file : suite::scenarioFiles(suite::loadSuite(arguments.suite)))
-      scenarios.push_back(file);
+    const suite::Suite routes = suite::loadSuite(arguments.suite);
+    for (const suite::SuiteRoute& route : routes.routes) {
+      const std::string density = std::to_string(suite::vehiclesAt(route.density));
+      scenarios.push_back(
+          {fs::weakly_canonical(routes.scenarioFile(route)).string(),
+           {"collection.minimum_density=" + density, "collection.maximum_density=" + density}});
+    }
   }
-  return scenarios.empty() ? scenario::shippedScenarios() : scenarios;
+  if (!scenarios.empty()) return scenarios;
+  for (const std::string& name : scenario::shippedScenarios()) scenarios.push_back({name, {}});
+  return scenarios;
 }
 
 std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
   std::vector<CollectRequest> sessions;
-  const std::vector<std::string> scenarios = scenariosOf(arguments);
+  const std::vector<CollectScenario> scenarios = scenariosOf(arguments);
   for (int i = 0; i < arguments.seeds; ++i) {
-    for (const std::string& name : scenarios) {
+    for (const CollectScenario& scenario : scenarios) {
       CollectRequest request = arguments.request;
-      request.scenario = name;
+      request.scenario = scenario.name;
+      request.set.insert(request.set.begin(), scenario.set.begin(), scenario.set.end());
       request.seed = arguments.first_seed + i;
       sessions.push_back(request);
     }

@@ -51,9 +51,9 @@ RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws) {
     ArmPlan arm;
     arm.name = "arm" + std::to_string(i);
     arm.inner = "crossing";
-    arm.line = shape.draw({0.0, 0.0}, headings[static_cast<std::size_t>(i)], draws);
     arm.lanes = main ? spec.lanes : side_lanes;
     arm.speed = main ? main_speed : side_speed;
+    arm.line = shape.draw({0.0, 0.0}, headings[static_cast<std::size_t>(i)], arm.speed, draws);
     arm.priority = main && !equal ? 9 : 5;
     addArm(arm, plan);
   }

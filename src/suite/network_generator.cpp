@@ -17,13 +17,15 @@ double drawLargeSpeed(Draws& draws) {
   return draws.pick(std::array<double, 4>{11.11, 13.89, 16.67, 19.44});
 }
 
-Line ArmShape::draw(const Eigen::Vector2d& start, double heading, Draws& draws) const {
+Line ArmShape::draw(const Eigen::Vector2d& start, double heading, double speed,
+                    Draws& draws) const {
   constexpr double kStraight = 45.0;  // before the bend [m]
   constexpr double kBendShare = 0.7;
+  constexpr double kSideways = 3.0;  // [m/s^2]
   RoadLine road(start, heading);
   road.straight(draws.uniform(kStraight, kStraight + 20.0));
   const double length = draws.uniform(60.0, 90.0);
-  const double radius = draws.uniform(25.0, 90.0);
+  const double radius = draws.uniform(1.0, 2.0) * speed * speed / kSideways;
   const double angle = draws.uniform(15.0, 50.0) * core::kPi / 180.0;
   if (draws.chance(kBendShare)) road.arc(radius, side_ * angle);
   road.straight(length);

@@ -24,8 +24,9 @@ double drawLargeSpeed(Draws& draws);
 class ArmShape {
  public:
   ArmShape(bool elevation, Draws& draws) : side_(draws.sign()), elevation_(elevation) {}
-  /// The middle of a road of 120 to 170 m away from `start`; straight for its first 45 m.
-  Line draw(const Eigen::Vector2d& start, double heading, Draws& draws) const;
+  /// The middle of a road of some 110 to 240 m away from `start`: straight for its first 45 m, then
+  /// often a bend that can be driven at `speed` [m/s] with 3 m/s^2 to the side.
+  Line draw(const Eigen::Vector2d& start, double heading, double speed, Draws& draws) const;
 
  private:
   double side_;

@@ -37,8 +37,8 @@ class Roundabout {
       const Eigen::Vector2d place = radius_ * geometry::direction(angle);
       plan_.nodes.push_back({ring(i), {place.x(), place.y(), 0.0}, "priority"});
       const double speed = drawSmallSpeed(draws);
-      addRoad(i, shape.draw((radius_ + straightFrom()) * geometry::direction(angle), angle, draws),
-              speed);
+      const Eigen::Vector2d begin = (radius_ + straightFrom()) * geometry::direction(angle);
+      addRoad(i, shape.draw(begin, angle, speed, draws), speed);
     }
     for (int i = 0; i < spec_.arms; ++i) addRing(i);
     for (int i = 0; i < spec_.arms; ++i) connect(i);

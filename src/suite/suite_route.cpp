@@ -123,8 +123,8 @@ const std::vector<std::string>& densities() {
 }
 
 int vehiclesAt(const std::string& density) {
-  if (density == "low") return 10;
-  return density == "medium" ? 18 : 28;
+  if (density == "low") return 9;
+  return density == "medium" ? 12 : 16;
 }
 
 std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedWay& way,

@@ -51,13 +51,13 @@ std::vector<NetworkSpec> testNetworks() {
 std::vector<RouteWish> testRoutes() {
   return {{"left", "medium", "test_crossing"},
           {"left", "medium", "test_t_junction"},
-          {"left", "high", "test_signals"},
-          {"right", "medium", "test_t_junction"},
-          {"right", "low", "test_right_before_left"},
-          {"right", "high", "test_district"},
+          {"left", "medium", "test_signals"},
+          {"right", "high", "test_t_junction"},
+          {"right", "medium", "test_right_before_left"},
+          {"right", "low", "test_district"},
           {"straight", "medium", "test_crossing"},
-          {"straight", "high", "test_signals"},
-          {"roundabout", "medium", "test_roundabout"},
+          {"straight", "medium", "test_signals"},
+          {"roundabout", "low", "test_roundabout"},
           {"merge", "high", "test_merge"}};
 }
 

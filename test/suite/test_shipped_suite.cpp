@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
@@ -76,34 +76,46 @@ TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
   const double end = route.junctionStretches().back().second;
   const double turn = core::radiansToDegrees(
       core::wrapAngle(route.path().headingAt(end + 3.0) - route.path().headingAt(begin - 3.0)));
-  if (planned.manoeuvre == "left") EXPECT_NEAR(turn, 90.0, 45.0);
-  if (planned.manoeuvre == "right") EXPECT_NEAR(turn, -90.0, 45.0);
-  if (planned.manoeuvre == "straight") EXPECT_NEAR(turn, 0.0, 25.0);
-  if (planned.manoeuvre == "roundabout") EXPECT_GE(route.junctionStretches().size(), 2U);
-  if (planned.manoeuvre == "merge") EXPECT_NE(route.edges().front().find("ramp"), std::string::npos);
+  if (planned.manoeuvre == "left") {
+    EXPECT_NEAR(turn, 90.0, 45.0);
+  }
+  if (planned.manoeuvre == "right") {
+    EXPECT_NEAR(turn, -90.0, 45.0);
+  }
+  if (planned.manoeuvre == "straight") {
+    EXPECT_NEAR(turn, 0.0, 25.0);
+  }
+  if (planned.manoeuvre == "roundabout") {
+    EXPECT_GE(route.junctionStretches().size(), 2U);
+  }
+  if (planned.manoeuvre == "merge") {
+    EXPECT_NE(route.edges().front().find("ramp"), std::string::npos);
+  }
 }
 
 /// Alone on the road PDM-Lite drives all of it, on the road.
 TEST_P(TestRoute, IsDrivenWholeByPdmLiteAlone) {
   const scenario::SessionSetup setup(scenarioOf(GetParam(), {"demand=none"}));
   struct OffRoad : scenario::SessionObserver {
-    explicit OffRoad(const map::DrivableArea& area) : area(area) {}
+    explicit OffRoad(const scenario::SessionSetup& setup)
+        : metrics({}, setup.drivableArea(), setup.egoRoute()) {}
     void observe(const scenario::TickRecord& record) override {
-      for (const traffic::Vehicle& vehicle : record.snapshot->vehicles) {
-        ++ticks;
-        const auto corners = traffic::boxOf(vehicle).corners();
-        for (const Eigen::Vector2d& corner : corners)
-          outside += area.signedDistance(corner, vehicle.state.elevation) < -0.05;
-      }
+      const auto measures = metrics.observe(*record.snapshot, record.selection);
+      outside += measures.ego_off_road;
+      completion = measures.route_completion_percent;
+      ++ticks;
     }
-    const map::DrivableArea& area;
+    metrics::SessionMetrics metrics;
+    double completion = 0.0;
     int ticks = 0;
     int outside = 0;
-  } off_road(setup.drivableArea());
+  } off_road(setup);
+  const std::atomic<bool> stop{false};
   scenario::ClosedLoop loop(setup);
   loop.addObserver(off_road);
-  EXPECT_EQ(loop.run({false}), traffic::SessionStatus::kCompleted);
+  EXPECT_EQ(loop.run(stop), traffic::SessionStatus::kCompleted);
   EXPECT_GT(off_road.ticks, 100);
+  EXPECT_EQ(off_road.completion, 100.0);
   EXPECT_EQ(off_road.outside, 0);
 }
 

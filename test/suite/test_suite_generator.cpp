@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/suite/suite_generator.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -11,6 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/scenario/session_setup.h"
+#include "e2e_cdiff/suite/suite_generator.h"
 #include "support/sumo_network.h"
 
 namespace cdiff::suite {
@@ -85,7 +84,9 @@ TEST_F(TrainingSuite, SameSeedGivesTheSameBytesAndAnotherSeedOthers) {
   const Suite other = generateSuite("train", 77, folder_->path() / "other");
   for (const auto& [path, hash] : hashesOf(other.folder)) {
     const bool network = path.find(".net.xml") != std::string::npos;
-    if (network) EXPECT_NE(first.at(path), hash) << path;
+    if (network) {
+      EXPECT_NE(first.at(path), hash) << path;
+    }
   }
 }
 
