@@ -73,7 +73,7 @@ MatrixOptions loadMatrix(const std::string& name_or_file) {
   const fs::path folder = file.parent_path();
   for (std::string& scenario : matrix.scenarios) resolveAgainst(folder, scenario);
   for (std::string& profile : matrix.guidance_profiles) resolveAgainst(folder, profile);
-  resolveAgainst(folder, matrix.suite);
+  if (fs::exists(folder / matrix.suite / "suite.yaml")) resolveAgainst(folder, matrix.suite);
   resolveAgainst(folder, matrix.bench2drive.file);
   resolveAgainst(folder, matrix.bench2drive.networks);
   return matrix;

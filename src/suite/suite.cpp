@@ -23,12 +23,12 @@ fs::path suitesFolder() { return core::shareFolder() / "config" / "suites"; }
 
 fs::path findSuite(const std::string& name_or_folder) {
   if (fs::exists(fs::path(name_or_folder) / kManifest)) return fs::absolute(name_or_folder);
+  if (fs::exists(suitesFolder() / name_or_folder / kManifest))
+    return suitesFolder() / name_or_folder;
   if (fs::is_directory(name_or_folder)) {
     throw InputError("folder '" + name_or_folder + "' holds no " + kManifest +
                      "; expected a suite, as 'cdiff suite train --results DIR' makes it");
   }
-  if (fs::exists(suitesFolder() / name_or_folder / kManifest))
-    return suitesFolder() / name_or_folder;
   const std::vector<std::string> known = shippedSuites();
   throw InputError("suite '" + name_or_folder +
                    "' is neither the folder of a suite nor a shipped suite; the nearest shipped "

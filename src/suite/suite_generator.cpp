@@ -2,11 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/suite/suite_generator.h"
 
-#include <algorithm>
-#include <memory>
+#include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/suite/network_build.h"
 #include "suite_specs.h"
 
@@ -77,6 +77,7 @@ class Generator {
       Draws draws(random_, kFirstRouteCounter + 2 * number + 1);
       std::optional<SuiteRoute> route = planRoute(graph, way, draws);
       if (!route || route->manoeuvre != wish.manoeuvre) continue;
+      if (!places_.insert(placeOf(*route, built.plan.name)).second) continue;
       route->name = kind_ + "_" + wish.manoeuvre + "_" + std::to_string(++named_[wish.manoeuvre]);
       route->network = built.plan.name;
       route->density = wish.density;
@@ -84,6 +85,12 @@ class Generator {
       return route;
     }
     return std::nullopt;
+  }
+
+  /// Equal for routes that are the same.
+  static std::string placeOf(const SuiteRoute& route, const std::string& network) {
+    return network + " " + core::joinText(route.edges, " ") + " " +
+           core::formatNumber(route.start_offset) + " " + core::formatNumber(route.end_offset);
   }
 
   static std::string purposeOf(const std::string& manoeuvre) {
@@ -103,6 +110,7 @@ class Generator {
   Suite suite_;
   std::vector<BuiltNetwork> networks_;
   std::map<std::string, std::size_t> next_network_;  ///< for each manoeuvre
+  std::set<std::string> places_;                     ///< of the routes so far
   std::map<std::string, int> named_;                 ///< routes of each manoeuvre so far
 };
 
