@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/child_process.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -32,7 +32,7 @@ class SuiteCommand : public testing::Test {
     const std::string output = core::readFile(scratch_.path() / "output", "output");
     EXPECT_NE(output.find(part), std::string::npos) << part << "\nin\n" << output;
   }
-  test::ScratchFolder scratch_;
+  test::TemporaryFolder scratch_;
 };
 
 TEST_F(SuiteCommand, MakesASuiteThatAMatrixDrives) {

@@ -13,7 +13,7 @@
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "e2e_cdiff/suite/suite_generator.h"
-#include "support/sumo_network.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::suite {
 namespace {

@@ -7,7 +7,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/suite/suite.h"
-#include "support/sumo_network.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::suite {
 namespace {

@@ -10,7 +10,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 #include "e2e_cdiff/suite/suite_generator.h"
-#include "support/sumo_network.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::suite {
 namespace {
