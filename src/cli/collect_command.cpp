@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/suite/suite.h"
 
 namespace cdiff::cli {
 namespace {
@@ -22,6 +23,7 @@ constexpr const char* kSessionCommand = "collect_session";
 struct CollectArguments {
   CollectRequest request;
   std::vector<std::string> scenarios;
+  std::string suite;  ///< name or folder
   int seeds = 1;
   int first_seed = 1;
   int jobs = 1;
@@ -41,14 +43,39 @@ std::vector<std::string> wordsOf(const CollectRequest& request) {
   return words;
 }
 
+/// A scenario and what is set for it alone.
+struct CollectScenario {
+  std::string name;
+  std::vector<std::string> set;
+};
+
+/// Those named and those of the suite, whose traffic stays as the suite has it; all that are
+/// shipped when none is asked for.
+std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
+  std::vector<CollectScenario> scenarios;
+  for (const std::string& name : arguments.scenarios) scenarios.push_back({name, {}});
+  if (!arguments.suite.empty()) {
+    const suite::Suite routes = suite::loadSuite(arguments.suite);
+    for (const suite::SuiteRoute& route : routes.routes) {
+      const std::string density = std::to_string(suite::vehiclesAt(route.density));
+      scenarios.push_back(
+          {fs::weakly_canonical(routes.scenarioFile(route)).string(),
+           {"collection.minimum_density=" + density, "collection.maximum_density=" + density}});
+    }
+  }
+  if (!scenarios.empty()) return scenarios;
+  for (const std::string& name : scenario::shippedScenarios()) scenarios.push_back({name, {}});
+  return scenarios;
+}
+
 std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
   std::vector<CollectRequest> sessions;
-  const std::vector<std::string> scenarios =
-      arguments.scenarios.empty() ? scenario::shippedScenarios() : arguments.scenarios;
+  const std::vector<CollectScenario> scenarios = scenariosOf(arguments);
   for (int i = 0; i < arguments.seeds; ++i) {
-    for (const std::string& name : scenarios) {
+    for (const CollectScenario& scenario : scenarios) {
       CollectRequest request = arguments.request;
-      request.scenario = name;
+      request.scenario = scenario.name;
+      request.set.insert(request.set.begin(), scenario.set.begin(), scenario.set.end());
       request.seed = arguments.first_seed + i;
       sessions.push_back(request);
     }
@@ -157,6 +184,7 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
       ->add_option("--scenarios", arguments->scenarios,
                    "Scenarios, names or files (default: all that are shipped)")
       ->delimiter(',');
+  command->add_option("--suite", arguments->suite, "Route suite, name or folder: its scenarios");
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
       ->check(CLI::Range(1, 100000));
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")

@@ -46,6 +46,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"schema_version", "", "Version of this file format."}, schema_version, 1, 1);
   visitor.text({"name", "", "Name of the evaluation in results."}, name, {});
   visitor.list({"scenarios", "", "Shipped scenarios or scenario files."}, scenarios);
+  visitor.text({"suite", "", "Shipped route suite or folder of one; each route a scenario."}, suite,
+               {});
   visitor.group({"bench2drive", "", "Bench2Drive routes, each a scenario of its own."},
                 bench2drive);
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
@@ -71,6 +73,7 @@ MatrixOptions loadMatrix(const std::string& name_or_file) {
   const fs::path folder = file.parent_path();
   for (std::string& scenario : matrix.scenarios) resolveAgainst(folder, scenario);
   for (std::string& profile : matrix.guidance_profiles) resolveAgainst(folder, profile);
+  if (fs::exists(folder / matrix.suite / "suite.yaml")) resolveAgainst(folder, matrix.suite);
   resolveAgainst(folder, matrix.bench2drive.file);
   resolveAgainst(folder, matrix.bench2drive.networks);
   return matrix;

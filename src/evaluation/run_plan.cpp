@@ -12,6 +12,7 @@
 #include "e2e_cdiff/map/route_source.h"
 #include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/scenario/session_request.h"
+#include "e2e_cdiff/suite/suite.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -57,9 +58,18 @@ std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) 
   return levels;
 }
 
+/// Those named, then those of the suite.
+std::vector<std::string> scenariosOf(const MatrixOptions& matrix) {
+  std::vector<std::string> scenarios = matrix.scenarios;
+  if (matrix.suite.empty()) return scenarios;
+  for (const std::string& file : suite::scenarioFiles(suite::loadSuite(matrix.suite)))
+    scenarios.push_back(file);
+  return scenarios;
+}
+
 std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std::string& source) {
   std::vector<ScenarioLevel> levels;
-  for (const std::string& name : matrix.scenarios) {
+  for (const std::string& name : scenariosOf(matrix)) {
     scenario::SessionRequest request;
     request.scenario = name;
     levels.push_back({fs::is_regular_file(name) ? fs::path(name).stem().string() : name, request});
@@ -68,7 +78,8 @@ std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std
     for (ScenarioLevel& level : bench2DriveLevels(matrix.bench2drive)) levels.push_back(level);
   }
   if (levels.empty()) {
-    throw InputError(source + ": the matrix is empty; give scenarios: [...] or a bench2drive.file");
+    throw InputError(source +
+                     ": the matrix is empty; give scenarios: [...], a suite or a bench2drive.file");
   }
   return levels;
 }

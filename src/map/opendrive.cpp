@@ -6,7 +6,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
-#include "process.h"
+#include "e2e_cdiff/map/process.h"
 
 namespace cdiff::map {
 namespace {

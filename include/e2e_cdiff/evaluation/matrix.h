@@ -26,6 +26,7 @@ struct MatrixOptions {
   std::int64_t schema_version = 1;
   std::string name = "evaluation";
   std::vector<std::string> scenarios;  ///< shipped names or files
+  std::string suite;                   ///< name or folder of a route suite; each route a scenario
   Bench2DriveOptions bench2drive;
   std::vector<std::string> ego_planners;
   std::vector<std::string> cbv_planners;

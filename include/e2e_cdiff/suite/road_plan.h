@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A road network as netconvert's plain-XML sources describe it: nodes, edges with their lines in
+/// the map frame [m], connections, and the ways through it that a route may take.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace cdiff::suite {
+
+struct PlanNode {
+  std::string id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  std::string type;  ///< priority, right_before_left, traffic_light; empty at the end of a road
+};
+
+struct PlanEdge {
+  std::string id;
+  std::string from;
+  std::string to;
+  int lanes = 1;
+  double speed = 13.89;  ///< limit [m/s]
+  int priority = 5;
+  std::vector<Eigen::Vector3d> shape;  ///< [m]; empty: straight from node to node
+  bool centered = false;               ///< whether the shape is the edge's middle, else its left
+};
+
+struct PlanConnection {
+  std::string from;
+  std::string to;
+  int from_lane = 0;
+  int to_lane = 0;
+  bool far_view = false;  ///< onto a roundabout: the ring is seen from 15 m
+};
+
+struct PlanRoundabout {
+  std::vector<std::string> nodes;
+  std::vector<std::string> edges;
+};
+
+/// Edges in driving order that a route may take.
+struct PlannedWay {
+  std::vector<std::string> edges;
+  std::string purpose;  ///< roundabout or merge; empty: told by the angle it turns
+};
+
+struct RoadPlan {
+  std::string name;
+  std::string text;  ///< one sentence about what was drawn
+  std::vector<PlanNode> nodes;
+  std::vector<PlanEdge> edges;
+  std::vector<PlanConnection> connections;  ///< of these edges only; others are netconvert's
+  std::vector<PlanRoundabout> roundabouts;
+  std::vector<PlannedWay> ways;
+};
+
+/// The plain-XML sources; coordinates with two decimals. No connections: an empty text.
+std::string nodesXml(const RoadPlan& plan);
+std::string edgesXml(const RoadPlan& plan);
+std::string connectionsXml(const RoadPlan& plan);
+
+}  // namespace cdiff::suite

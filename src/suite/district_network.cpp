@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <array>
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/geometry/pose.h"
+#include "network_kinds.h"
+
+namespace cdiff::suite {
+namespace {
+
+/// Two rows of crossings with streets between and around them.
+class District {
+ public:
+  District(const NetworkSpec& spec, Draws& draws)
+      : spec_(spec), columns_(draws.whole(2, 3)), main_row_(draws.whole(0, 1)), draws_(draws) {}
+
+  RoadPlan plan() {
+    plan_.name = spec_.name;
+    plan_.text = "District of " + std::to_string(2 * columns_) + " crossings, its streets drawn";
+    for (int row = 0; row < 2; ++row) {
+      for (int column = 0; column < columns_; ++column) addCrossing(row, column);
+    }
+    main_speed_ = drawLargeSpeed(draws_);
+    for (int row = 0; row < 2; ++row) addStreetAlong(row);
+    for (int column = 0; column < columns_; ++column) addStreetAcross(column);
+    addWays();
+    return plan_;
+  }
+
+ private:
+  struct Road {
+    std::string from;
+    std::string to;
+  };
+  static std::string crossing(int row, int column) {
+    return "c" + std::to_string(row) + std::to_string(column);
+  }
+
+  void addCrossing(int row, int column) {
+    constexpr double kSpacing = 110.0;  // [m]
+    constexpr double kShift = 14.0;     // [m]
+    const Eigen::Vector3d place(column * kSpacing + draws_.uniform(-kShift, kShift),
+                                row * kSpacing + draws_.uniform(-kShift, kShift), 0.0);
+    const std::array<const char*, 3> types = {"priority", "traffic_light", "right_before_left"};
+    const int type = row == main_row_ ? draws_.whole(0, 1) : draws_.whole(0, 2);
+    plan_.nodes.push_back({crossing(row, column), place, types[static_cast<std::size_t>(type)]});
+  }
+
+  void addStreet(const std::string& from, const std::string& to, bool main, double speed) {
+    const int lanes = main ? spec_.lanes : 1;
+    plan_.edges.push_back({from + "_" + to, from, to, lanes, speed, main ? 9 : 5, {}, false});
+    plan_.edges.push_back({to + "_" + from, to, from, lanes, speed, main ? 9 : 5, {}, false});
+    roads_.push_back({from, to});
+    roads_.push_back({to, from});
+  }
+
+  /// A street from a crossing out of the district.
+  std::string addEnd(const std::string& name, int row, int column, double heading) {
+    const Eigen::Vector3d from =
+        plan_.nodes[static_cast<std::size_t>(row * columns_ + column)].position;
+    const Eigen::Vector2d way =
+        draws_.uniform(95.0, 130.0) * geometry::direction(heading + draws_.uniform(-0.25, 0.25));
+    const double height = spec_.elevation ? draws_.uniform(-3.0, 3.0) : 0.0;
+    plan_.nodes.push_back({name, {from.x() + way.x(), from.y() + way.y(), height}, ""});
+    return name;
+  }
+
+  void addStreetAlong(int row) {
+    const bool main = row == main_row_;
+    const double speed = main ? main_speed_ : drawSmallSpeed(draws_);
+    const std::string number = std::to_string(row);
+    addStreet(addEnd("w" + number, row, 0, core::kPi), crossing(row, 0), main, speed);
+    for (int column = 0; column + 1 < columns_; ++column)
+      addStreet(crossing(row, column), crossing(row, column + 1), main, speed);
+    addStreet(crossing(row, columns_ - 1), addEnd("e" + number, row, columns_ - 1, 0.0), main,
+              speed);
+  }
+
+  void addStreetAcross(int column) {
+    const double speed = drawSmallSpeed(draws_);
+    const std::string number = std::to_string(column);
+    addStreet(addEnd("s" + number, 0, column, -0.5 * core::kPi), crossing(0, column), false, speed);
+    addStreet(crossing(0, column), crossing(1, column), false, speed);
+    addStreet(crossing(1, column), addEnd("n" + number, 1, column, 0.5 * core::kPi), false, speed);
+  }
+
+  void addWays() {
+    for (const Road& in : roads_) {
+      for (const Road& out : roads_) {
+        if (in.to != out.from || in.from == out.to) continue;
+        plan_.ways.push_back({{in.from + "_" + in.to, out.from + "_" + out.to}, ""});
+      }
+    }
+  }
+
+  const NetworkSpec& spec_;
+  int columns_;
+  int main_row_;
+  Draws& draws_;
+  double main_speed_ = 13.89;  ///< [m/s]
+  RoadPlan plan_;
+  std::vector<Road> roads_;
+};
+
+}  // namespace
+
+RoadPlan drawDistrict(const NetworkSpec& spec, Draws& draws) {
+  return District(spec, draws).plan();
+}
+
+}  // namespace cdiff::suite

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/suite/network_generator.h"
+
+#include <array>
+
+#include "e2e_cdiff/core/angle.h"
+#include "network_kinds.h"
+
+namespace cdiff::suite {
+
+double drawSmallSpeed(Draws& draws) {
+  return draws.pick(std::array<double, 3>{8.33, 11.11, 13.89});
+}
+
+double drawLargeSpeed(Draws& draws) {
+  return draws.pick(std::array<double, 4>{11.11, 13.89, 16.67, 19.44});
+}
+
+Line ArmShape::draw(const Eigen::Vector2d& start, double heading, double speed,
+                    Draws& draws) const {
+  constexpr double kStraight = 45.0;  // before the bend [m]
+  constexpr double kBendShare = 0.7;
+  constexpr double kSideways = 3.0;  // [m/s^2]
+  RoadLine road(start, heading);
+  road.straight(draws.uniform(kStraight, kStraight + 20.0));
+  const double length = draws.uniform(60.0, 90.0);
+  const double radius = draws.uniform(1.0, 2.0) * speed * speed / kSideways;
+  const double angle = draws.uniform(15.0, 50.0) * core::kPi / 180.0;
+  if (draws.chance(kBendShare)) road.arc(radius, side_ * angle);
+  road.straight(length);
+  const double height = draws.sign() * draws.uniform(2.0, 5.0);
+  return elevation_ ? climbing(road.points(), kStraight, height) : road.points();
+}
+
+void addArm(const ArmPlan& arm, RoadPlan& plan) {
+  plan.nodes.push_back({arm.name, arm.line.back(), ""});
+  plan.edges.push_back({arm.name + "_in", arm.name, arm.inner, arm.lanes, arm.speed, arm.priority,
+                        reversed(arm.line), false});
+  plan.edges.push_back({arm.name + "_out", arm.inner, arm.name, arm.lanes, arm.speed, arm.priority,
+                        arm.line, false});
+}
+
+RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws) {
+  switch (spec.kind) {
+    case NetworkKind::kRoundabout:
+      return drawRoundabout(spec, draws);
+    case NetworkKind::kMerge:
+      return drawMerge(spec, draws);
+    case NetworkKind::kDistrict:
+      return drawDistrict(spec, draws);
+    case NetworkKind::kCrossing:
+      break;
+  }
+  return drawCrossing(spec, draws);
+}
+
+}  // namespace cdiff::suite

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/geometry/pose.h"
+#include "network_kinds.h"
+
+namespace cdiff::suite {
+namespace {
+
+constexpr double kDegree = core::kPi / 180.0;
+constexpr double kLaneWidth = 3.5;                ///< [m]
+constexpr double kEntryRadius = 12.0;             ///< [m]
+constexpr double kEntryAngle = 32.0 * kDegree;    ///< turned away before the ring
+constexpr double kTrim = 22.0 * kDegree;          ///< of the ring, on both sides of an arm
+constexpr double kEntryGap = 3.3;                 ///< from an entry's end to the ring's middle [m]
+constexpr double kLeastSpacing = 62.0 * kDegree;  ///< between arms
+
+/// A roundabout of which everything is drawn; ring nodes stand where the arms' middles meet it.
+class Roundabout {
+ public:
+  Roundabout(const NetworkSpec& spec, Draws& draws)
+      : spec_(spec),
+        radius_(spec.lanes > 1 ? draws.uniform(26.0, 34.0)
+                               : draws.uniform(spec.arms > 4 ? 24.0 : 18.0, 30.0)),
+        ring_speed_(radius_ > 24.0 ? 8.33 : 6.94) {
+    drawAngles(draws);
+  }
+
+  RoadPlan plan(Draws& draws) {
+    plan_.name = spec_.name;
+    plan_.text = "Roundabout with " + std::to_string(spec_.lanes) + " lane(s), its roads drawn";
+    const ArmShape shape(spec_.elevation, draws);
+    for (int i = 0; i < spec_.arms; ++i) {
+      const double angle = angles_[static_cast<std::size_t>(i)];
+      const Eigen::Vector2d place = radius_ * geometry::direction(angle);
+      plan_.nodes.push_back({ring(i), {place.x(), place.y(), 0.0}, "priority"});
+      const double speed = drawSmallSpeed(draws);
+      const Eigen::Vector2d begin = (radius_ + straightFrom()) * geometry::direction(angle);
+      addRoad(i, shape.draw(begin, angle, speed, draws), speed);
+    }
+    for (int i = 0; i < spec_.arms; ++i) addRing(i);
+    for (int i = 0; i < spec_.arms; ++i) connect(i);
+    addWays();
+    PlanRoundabout whole;
+    for (int i = 0; i < spec_.arms; ++i) {
+      whole.nodes.push_back(ring(i));
+      whole.edges.push_back(ringEdge(i));
+    }
+    plan_.roundabouts.push_back(whole);
+    return plan_;
+  }
+
+ private:
+  std::string ring(int i) const { return "ring" + std::to_string(i % spec_.arms); }
+  /// From ring node i to the next, counter-clockwise.
+  std::string ringEdge(int i) const { return "ring_edge" + std::to_string(i % spec_.arms); }
+  static std::string arm(int i) { return "arm" + std::to_string(i); }
+  double halfRoad() const { return 0.5 * spec_.lanes * kLaneWidth; }
+  /// Where, outside the ring's middle, entries begin to turn away [m].
+  double straightFrom() const {
+    return kEntryGap + halfRoad() - 0.5 * kLaneWidth + kEntryRadius * std::sin(kEntryAngle);
+  }
+
+  void drawAngles(Draws& draws) {
+    const double spare = 2.0 * core::kPi - spec_.arms * kLeastSpacing;
+    double sum = 0.0;
+    std::vector<double> shares;
+    for (int i = 0; i < spec_.arms; ++i) sum += shares.emplace_back(draws.uniform(0.3, 1.0));
+    double angle = draws.uniform(0.0, 2.0 * core::kPi);
+    for (const double share : shares) {
+      angles_.push_back(angle);
+      angle += kLeastSpacing + spare * share / sum;
+    }
+    angles_.push_back(angles_.front() + 2.0 * core::kPi);
+  }
+
+  /// Entry and exit leave the road's middle line to their own sides.
+  void addRoad(int i, const Line& middle, double speed) {
+    const double heading = angles_[static_cast<std::size_t>(i)] + core::kPi;
+    plan_.nodes.push_back({arm(i), middle.back(), ""});
+    Line entry = beside(reversed(middle), -halfRoad());
+    Line exit = reversed(beside(middle, -halfRoad()));
+    extend(entry, heading, -kEntryAngle);
+    extend(exit, heading, kEntryAngle);
+    plan_.edges.push_back({arm(i) + "_in", arm(i), ring(i), spec_.lanes, speed, 3, entry, true});
+    plan_.edges.push_back(
+        {arm(i) + "_out", ring(i), arm(i), spec_.lanes, speed, 3, reversed(exit), true});
+  }
+
+  static void extend(Line& line, double heading, double angle) {
+    const RoadLine curve = RoadLine(line.back().head<2>(), heading).arc(kEntryRadius, angle);
+    line.insert(line.end(), curve.points().begin() + 1, curve.points().end());
+  }
+
+  void addRing(int i) {
+    const double begin = angles_[static_cast<std::size_t>(i)] + kTrim;
+    const double end = angles_[static_cast<std::size_t>(i) + 1] - kTrim;
+    const Line arc = RoadLine(radius_ * geometry::direction(begin), begin + 0.5 * core::kPi)
+                         .arc(radius_, end - begin)
+                         .points();
+    plan_.edges.push_back(
+        {ringEdge(i), ring(i), ring(i + 1), spec_.lanes, ring_speed_, 9, arc, true});
+  }
+
+  /// The outer of two lanes leaves at the next exit, so that no exit crosses another lane.
+  void connect(int i) {
+    const std::string before = ringEdge(i + spec_.arms - 1);
+    const int inner = spec_.lanes - 1;
+    plan_.connections.push_back({before, ringEdge(i), inner, inner});
+    for (int lane = 0; lane < spec_.lanes; ++lane) {
+      plan_.connections.push_back({before, arm(i) + "_out", lane, lane});
+      plan_.connections.push_back({arm(i) + "_in", ringEdge(i), lane, lane, true});
+    }
+  }
+
+  void addWays() {
+    for (int from = 0; from < spec_.arms; ++from) {
+      PlannedWay way{{arm(from) + "_in"}, "roundabout"};
+      for (int passed = 0; passed + 1 < spec_.arms; ++passed) {
+        way.edges.push_back(ringEdge(from + passed));
+        PlannedWay whole = way;
+        whole.edges.push_back(arm((from + passed + 1) % spec_.arms) + "_out");
+        plan_.ways.push_back(whole);
+      }
+    }
+  }
+
+  const NetworkSpec& spec_;
+  double radius_;
+  double ring_speed_;
+  std::vector<double> angles_;  ///< of the arms, the first again a turn later
+  RoadPlan plan_;
+};
+
+}  // namespace
+
+RoadPlan drawRoundabout(const NetworkSpec& spec, Draws& draws) {
+  return Roundabout(spec, draws).plan(draws);
+}
+
+}  // namespace cdiff::suite

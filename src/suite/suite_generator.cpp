@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/suite/suite_generator.h"
+
+#include <set>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/suite/network_build.h"
+#include "suite_specs.h"
+
+namespace cdiff::suite {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+constexpr std::uint32_t kFirstRouteCounter = 1000;  ///< networks have the counters below
+
+/// A drawn network and its way, ready for routes.
+struct BuiltNetwork {
+  RoadPlan plan;
+  map::RoadNetwork network;
+};
+
+class Generator {
+ public:
+  Generator(const std::string& kind, std::int64_t seed, const fs::path& folder)
+      : kind_(kind), random_(static_cast<std::uint64_t>(seed), "suite " + kind), folder_(folder) {
+    suite_.name = kind;
+    suite_.seed = seed;
+    suite_.folder = folder;
+  }
+
+  Suite generate() {
+    const std::vector<NetworkSpec> specs = networkSpecs(kind_);
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      Draws draws(random_, static_cast<std::uint32_t>(i));
+      const RoadPlan plan = drawNetwork(specs[i], draws);
+      const std::string text = buildNetwork(plan, folder_ / "networks" / plan.name);
+      networks_.push_back({plan, map::RoadNetwork::fromText(text, plan.name)});
+    }
+    for (const RouteWish& wish : routeWishes(kind_)) addRoute(wish);
+    writeFiles();
+    return suite_;
+  }
+
+ private:
+  /// Networks in which the wish has not been looked for longest come first.
+  void addRoute(const RouteWish& wish) {
+    std::size_t& next = next_network_[wish.manoeuvre];
+    for (std::size_t tried = 0; tried < networks_.size(); ++tried) {
+      const BuiltNetwork& built = networks_[next++ % networks_.size()];
+      if (!wish.network.empty() && wish.network != built.plan.name) continue;
+      const std::optional<SuiteRoute> route = findRoute(built, wish);
+      if (!route) continue;
+      suite_.routes.push_back(*route);
+      return;
+    }
+    throw InputError("suite " + kind_ + " with seed " + std::to_string(suite_.seed) +
+                     ": no route for manoeuvre " + wish.manoeuvre +
+                     (wish.network.empty() ? "" : " on network " + wish.network) +
+                     "; try another seed");
+  }
+
+  /// The first fitting way from a drawn one on.
+  std::optional<SuiteRoute> findRoute(const BuiltNetwork& built, const RouteWish& wish) {
+    const map::LaneGraph graph(built.network);
+    const auto number = static_cast<std::uint32_t>(suite_.routes.size());
+    Draws order(random_, kFirstRouteCounter + 2 * number);
+    const std::size_t count = built.plan.ways.size();
+    const int first = order.whole(0, static_cast<int>(count) - 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PlannedWay& way = built.plan.ways[(static_cast<std::size_t>(first) + i) % count];
+      if (way.purpose != purposeOf(wish.manoeuvre)) continue;
+      Draws draws(random_, kFirstRouteCounter + 2 * number + 1);
+      std::optional<SuiteRoute> route = planRoute(graph, way, draws);
+      if (!route || route->manoeuvre != wish.manoeuvre) continue;
+      if (!places_.insert(placeOf(*route, built.plan.name)).second) continue;
+      route->name = kind_ + "_" + wish.manoeuvre + "_" + std::to_string(++named_[wish.manoeuvre]);
+      route->network = built.plan.name;
+      route->density = wish.density;
+      route->seed = number + 1;
+      return route;
+    }
+    return std::nullopt;
+  }
+
+  /// Equal for routes that are the same.
+  static std::string placeOf(const SuiteRoute& route, const std::string& network) {
+    return network + " " + core::joinText(route.edges, " ") + " " +
+           core::formatNumber(route.start_offset) + " " + core::formatNumber(route.end_offset);
+  }
+
+  static std::string purposeOf(const std::string& manoeuvre) {
+    return manoeuvre == "roundabout" || manoeuvre == "merge" ? manoeuvre : "";
+  }
+
+  void writeFiles() const {
+    fs::create_directories(folder_ / "scenarios");
+    for (const SuiteRoute& route : suite_.routes)
+      core::writeFileAtomically(suite_.scenarioFile(route), scenarioText(route));
+    core::writeFileAtomically(folder_ / "suite.yaml", manifestText(suite_));
+  }
+
+  std::string kind_;
+  core::RandomStream random_;
+  fs::path folder_;
+  Suite suite_;
+  std::vector<BuiltNetwork> networks_;
+  std::map<std::string, std::size_t> next_network_;  ///< for each manoeuvre
+  std::set<std::string> places_;                     ///< of the routes so far
+  std::map<std::string, int> named_;                 ///< routes of each manoeuvre so far
+};
+
+void requireEmpty(const fs::path& folder) {
+  if (!fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder))) return;
+  throw InputError("'" + folder.string() +
+                   "' is there already; give --results a folder that is new or empty");
+}
+
+}  // namespace
+
+Suite generateSuite(const std::string& kind, std::int64_t seed, const fs::path& folder) {
+  const fs::path target = fs::absolute(folder).lexically_normal();
+  requireEmpty(target);
+  const fs::path work = target.string() + ".part";
+  fs::remove_all(work);
+  Suite suite = Generator(kind, seed, work).generate();
+  fs::remove(target);
+  fs::rename(work, target);
+  suite.folder = target;
+  return suite;
+}
+
+}  // namespace cdiff::suite
