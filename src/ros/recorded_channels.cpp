@@ -28,14 +28,14 @@ std::string wrongType(const BagConnection& connection) {
 }
 
 std::optional<Channel> channelOfSlot(const BagConnection& connection, const std::string& topic,
-                                     int slot, const SessionGraph& graph) {
+                                     int slot, const SessionGraph& graph, bool all_images) {
   const bool ego = slot == kEgoSlot;
   if (topic == (ego ? kEgoControlTopic : cbvControlTopic(slot)))
     return Channel{ChannelKind::kControl, slot, wrongType<msgs::ControlAction>(connection)};
   if (!ego && topic == cbvRolloutTopic(slot))
     return Channel{ChannelKind::kRollout, slot, wrongType<msgs::Rollout>(connection)};
   const bool seen = ego ? graph.egoPlansFromImages() : graph.cbvsPlanFromImages();
-  if (seen && topic == imageTopic(slot))
+  if ((seen || all_images) && topic == imageTopic(slot))
     return Channel{ChannelKind::kImage, slot, wrongType<sensor_msgs::Image>(connection)};
   return std::nullopt;
 }
@@ -61,7 +61,7 @@ bool endsWith(const std::string& text, const std::string& end) {
 }  // namespace
 
 Channel channelOf(const BagConnection& connection, const std::string& topic,
-                  const SessionGraph& graph) {
+                  const SessionGraph& graph, bool all_images) {
   if (topic == kSessionTopic)
     return {ChannelKind::kSession, kEgoSlot, wrongType<msgs::SessionInfo>(connection)};
   if (topic == kTrafficTopic)
@@ -71,7 +71,8 @@ Channel channelOf(const BagConnection& connection, const std::string& topic,
   if (topic == kGuidanceTopic && graph.cbvsSee())
     return {ChannelKind::kGuidance, kEgoSlot, wrongType<msgs::GuidanceReport>(connection)};
   for (int slot = kEgoSlot; slot < graph.max_cbv; ++slot) {
-    if (const auto channel = channelOfSlot(connection, topic, slot, graph)) return *channel;
+    if (const auto channel = channelOfSlot(connection, topic, slot, graph, all_images))
+      return *channel;
   }
   return {};
 }

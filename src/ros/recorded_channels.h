@@ -31,9 +31,10 @@ struct Channel {
 };
 
 /// What a topic (name without the session's namespace) holds; kOther for what no figure is made of.
-/// `graph` says how many slots there are and whose images planners saw.
+/// `graph` says how many slots there are and whose images planners saw; `all_images`: those of
+/// others count too.
 Channel channelOf(const BagConnection& connection, const std::string& topic,
-                  const SessionGraph& graph);
+                  const SessionGraph& graph, bool all_images);
 
 /// Namespace of the recorded session with its last slash: topic of the first connection of
 /// SessionInfo's type, less its name. Throws InputError listing what the bag holds when none is of

@@ -48,8 +48,8 @@ struct RecordedSession::Channels {
   std::map<const BagConnection*, Channel> known;
 };
 
-RecordedSession::RecordedSession(const std::filesystem::path& bag)
-    : reader_(bag), channels_(std::make_unique<Channels>()) {
+RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImages images)
+    : reader_(bag), images_(images), channels_(std::make_unique<Channels>()) {
   try {
     readInfo();
     setup_ = setupOf(*info_);
@@ -110,7 +110,8 @@ void RecordedSession::take(const BagMessage& message) {
     const std::string& topic = message.connection->topic;
     Channel channel;
     if (topic.compare(0, prefix_.size(), prefix_) == 0)
-      channel = channelOf(*message.connection, topic.substr(prefix_.size()), graph_);
+      channel = channelOf(*message.connection, topic.substr(prefix_.size()), graph_,
+                          images_ == RecordedImages::kAll);
     if (!channel.wrong_type.empty()) find(channel.wrong_type);
     channels_->known[message.connection] = channel;
   }
@@ -185,7 +186,8 @@ void RecordedSession::takeSelection(const BagMessage& message) {
 /// The last snapshot waits for the end of the file, so that it can name all that was found.
 bool RecordedSession::frontIsReady() const {
   if (snapshots_.empty() || !running(*snapshots_.front())) return false;
-  return snapshots_.size() > kWindow || answers_.missing(*snapshots_.front()).empty();
+  if (snapshots_.size() > kWindow) return true;
+  return images_ == RecordedImages::kSeen && answers_.missing(*snapshots_.front()).empty();
 }
 
 RecordedSession::Snapshot RecordedSession::next() {
@@ -231,6 +233,7 @@ void RecordedSession::checkAnswers(const msgs::TrafficSnapshot& snapshot) {
   if (!unanswered_.empty() && !broke(snapshot)) find(unanswered_);
   unanswered_.clear();
   if (!running(snapshot) || setup_->options().real_time_factor > 0.0) return;
+  if (images_ == RecordedImages::kAll) return;
   const std::vector<std::string> missing = answers_.missing(snapshot);
   if (!missing.empty())
     unanswered_ = tickText(snapshot.tick) + " lacks " + core::joinText(missing, ", ");

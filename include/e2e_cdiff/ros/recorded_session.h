@@ -24,16 +24,25 @@ namespace cdiff::ros {
 /// Source of faults that a damaged bag causes.
 inline constexpr const char* kBagSource = "bag";
 
+/// Which images of a recording are read.
+enum class RecordedImages {
+  kSeen,  ///< those that planners saw; a decision waits for them as in the session
+  kAll    ///< whatever was recorded; nothing is said of answers that are missing
+};
+
 class RecordedSession {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
 
   /// Throws InputError naming the file when it is no bag, or holds no session that can be read.
-  explicit RecordedSession(const std::filesystem::path& bag);
+  explicit RecordedSession(const std::filesystem::path& bag,
+                           RecordedImages images = RecordedImages::kSeen);
   ~RecordedSession();
 
   const ::e2e_cdiff::SessionInfo& info() const { return *info_; }
   const scenario::SessionSetup& setup() const { return *setup_; }
+  /// The set-up to keep; call it when no further snapshot is wanted, and nothing after it.
+  std::unique_ptr<scenario::SessionSetup> takeSetup() { return std::move(setup_); }
   /// Who took part; of a session that one process drove, the nodes that would have.
   const SessionGraph& graph() const { return graph_; }
 
@@ -64,6 +73,7 @@ class RecordedSession {
   void copyDamage();
 
   BagReader reader_;
+  RecordedImages images_;
   std::unique_ptr<Channels> channels_;
   std::string prefix_;
   ::e2e_cdiff::SessionInfo::ConstPtr info_;
