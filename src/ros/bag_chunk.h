@@ -15,7 +15,8 @@ struct ChunkText {
 };
 
 /// `size` is what the chunk's header says it holds, 0 when its recording was cut off; compressed
-/// data know it themselves. Data that end early give what came before, wrong data (checksum,
+/// data know it themselves. Data that end early give the whole blocks before the end (rosbag writes
+/// a chunk as one lz4 block), wrong data (checksum,
 /// format) nothing; what lies behind their end does not matter.
 ChunkText decompressChunk(std::string_view compression, std::string_view data, std::uint64_t size);
 

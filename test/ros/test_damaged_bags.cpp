@@ -316,7 +316,7 @@ TEST_F(DamagedBags, ACutOffRecordingGivesAllThatWasWritten) {
   }
 }
 
-TEST_F(DamagedBags, ABagThatWasNeverClosedIsReadToItsLastBlock) {
+TEST_F(DamagedBags, ABagThatWasNeverClosedIsReadToItsLastChunk) {
   // As a recorder leaves FILE.active when it is killed: the file header without an index, the last
   // chunk's header without its sizes.
   const auto chunks = chunksOf(bytes_);

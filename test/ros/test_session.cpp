@@ -287,10 +287,10 @@ TEST_F(Session, ReplayLaunchOfACutOffBagHasTheResultOfTheCommandLine) {
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.cbv_planner = "pdm_lite";
-  request.set = {"protocol.time_limit=8"};
+  request.set = {"protocol.time_limit=20"};
   const fs::path live = folder_ / "live";
   runInOneProcess(request, live);
-  fs::resize_file(live / "session.bag", fs::file_size(live / "session.bag") / 2);
+  fs::resize_file(live / "session.bag", fs::file_size(live / "session.bag") * 3 / 4);
   const ros::ReplayResult offline = ros::replayBag(live / "session.bag", folder_ / "offline");
   EXPECT_EQ(offline.exit_code, 2);
   EXPECT_FALSE(offline.findings.empty());
