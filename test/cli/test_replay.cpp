@@ -9,7 +9,7 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/child_process.h"
-#include "report/scratch_folder.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -67,7 +67,7 @@ class ReplayCommand : public testing::Test {
   nlohmann::json summary() const {
     return nlohmann::json::parse(core::readFile(replayed() / "summary.json", "summary"));
   }
-  test::ScratchFolder scratch_;
+  test::TemporaryFolder scratch_;
 };
 
 TEST_F(ReplayCommand, HasTheResultOfARuleDrivenSessionWithoutItsNetworkFile) {

@@ -17,7 +17,7 @@
 #include "ros/recorded_bag.h"
 #include "std_msgs/Float64.h"
 #include "std_msgs/String.h"
-#include "support/sumo_network.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::ros {
 namespace {
