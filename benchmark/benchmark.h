@@ -44,5 +44,7 @@ void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 void benchmarkPlanner(Figures& figures);
+/// Where the benchmarks are built with ROS.
+void benchmarkReplay(Figures& figures);
 
 }  // namespace cdiff::benchmark

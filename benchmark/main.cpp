@@ -45,9 +45,12 @@ void writeJson(const Figures& figures, const std::string& file) {
 }
 
 int run(const std::string& name, const std::string& json) {
-  const std::map<std::string, void (*)(Figures&)> known = {
+  std::map<std::string, void (*)(Figures&)> known = {
       {"camera", benchmarkCamera}, {"denoiser", benchmarkDenoiser}, {"encoder", benchmarkEncoder},
       {"loop", benchmarkLoop},     {"map", benchmarkMap},           {"planner", benchmarkPlanner}};
+#ifdef E2E_CDIFF_WITH_ROS
+  known["replay"] = benchmarkReplay;
+#endif
   if (!name.empty() && known.count(name) == 0) {
     std::vector<std::string> names;
     for (const auto& entry : known) names.push_back(entry.first);

@@ -20,6 +20,9 @@ int main(int argc, char** argv) {
   cdiff::cli::addDoctorCommand(program, exit_code);
   cdiff::cli::addReportCommand(program, exit_code);
   cdiff::cli::addSuiteCommand(program, exit_code);
+#ifdef E2E_CDIFF_WITH_ROS
+  cdiff::cli::addReplayCommand(program, exit_code);
+#endif
 #ifdef E2E_CDIFF_WITH_COLLECT
   cdiff::cli::addCollectCommand(program, exit_code);
 #endif

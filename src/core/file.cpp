@@ -36,16 +36,15 @@ fs::path libraryFolder() {
                    "; check that the folder exists and is writable");
 }
 
-void writeAll(int descriptor, std::string_view content, const fs::path& path) {
+/// Whether everything went to the disk; else errno says why not.
+bool writeAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      ::close(descriptor);
-      failWriting(path);
-    }
+    if (written < 0) return false;
     content.remove_prefix(static_cast<std::size_t>(written));
   }
+  return ::fsync(descriptor) == 0 || errno == EINVAL;
 }
 
 fs::path firstEnvironmentFolder() {
@@ -74,10 +73,15 @@ void writeFileAtomically(const fs::path& path, std::string_view content) {
   const fs::path temporary = path.string() + ".tmp." + std::to_string(::getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor < 0) failWriting(path);
-  writeAll(descriptor, content, path);
-  ::fsync(descriptor);
-  ::close(descriptor);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) failWriting(path);
+  const bool written = writeAll(descriptor, content);
+  const int reason = errno;
+  const bool closed = ::close(descriptor) == 0;
+  if (written && closed && ::rename(temporary.c_str(), path.c_str()) == 0) return;
+  if (!written) errno = reason;
+  const int cause = errno;
+  ::unlink(temporary.c_str());
+  errno = cause;
+  failWriting(path);
 }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {

@@ -54,10 +54,12 @@ std::string machineBlock() {
 }
 
 /// What the bytes of a planned action depend on besides the scenario: model and instruction sets.
-std::string inferenceBlock(const scenario::ScenarioOptions& options) {
+std::string inferenceBlock(const scenario::ScenarioOptions& options, const RunFacts& facts) {
   if (!planning::seesImages(options.cbv_planner) && !planning::seesImages(options.ego_planner))
     return "";
   using diffusion::CpuDenoiser;
+  if (!facts.recorded_by.empty())  // nothing was inferred here; the model may not even be here
+    return "inference:\n" + line(1, "model", quoted(options.diffusion.model));
   return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
          line(1, "model_files_sha256",
               quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
@@ -74,10 +76,11 @@ std::string sessionYaml(const scenario::SessionSetup& setup, const RunFacts& fac
          line(1, "version", quoted(packageVersion())) +
          line(1, "revision", quoted(packageRevision())) +
          line(0, "deployment", quoted(facts.deployment)) +
+         (facts.recorded_by.empty() ? "" : line(0, "recorded_by", quoted(facts.recorded_by))) +
          line(0, "deterministic", facts.deterministic ? "true" : "false") + "seeds:\n" +
          line(1, "root", std::to_string(options.seed)) + "simulator:\n" +
          line(1, "version", quoted(facts.simulator_version)) + networkBlock(setup.import()) +
-         machineBlock() + inferenceBlock(options) + "scenario:\n" +
+         machineBlock() + inferenceBlock(options, facts) + "scenario:\n" +
          indented(core::dumpOptions(options));
 }
 

@@ -6,27 +6,23 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/replay.h"
 #include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/session_parts.h"
+#include "e2e_cdiff/ros/tick_record.h"
 
 namespace cdiff::ros {
 namespace {
 
-/// The last state with the end that nobody told: as World::end would have made it.
-traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double step,
-                                    Ending ending) {
-  traffic::TrafficSnapshot snapshot = last;
-  snapshot.tick += 1;
-  snapshot.time = static_cast<double>(snapshot.tick) * step;
-  snapshot.decision_tick = false;
-  snapshot.contacts.clear();
-  snapshot.removed.clear();
-  const bool stopped = ending == Ending::kStopped;
-  snapshot.status = stopped ? traffic::SessionStatus::kInterrupted : traffic::SessionStatus::kError;
-  snapshot.faults = {
-      {last.tick, kTrafficSimulatorNode,
-       stopped ? "interrupted; no last snapshot came" : "the node left the session"}};
-  return snapshot;
+/// The end of a session whose last snapshot never came.
+traffic::TrafficSnapshot untoldEnd(const traffic::TrafficSnapshot& last, double step,
+                                   Ending ending) {
+  if (ending == Ending::kStopped) {
+    return endedAfter(last, step, traffic::SessionStatus::kInterrupted,
+                      {0, kTrafficSimulatorNode, "interrupted; no last snapshot came"});
+  }
+  return endedAfter(last, step, traffic::SessionStatus::kError,
+                    {0, kTrafficSimulatorNode, "the node left the session"});
 }
 
 }  // namespace
@@ -34,9 +30,8 @@ traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double
 void MetricsRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const bool deterministic = setup_->options().real_time_factor == 0.0;
-  const report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
   results_ = info.results_folder;
-  writer_ = std::make_unique<report::ResultWriter>(*setup_, facts, results_);
+  writer_ = std::make_unique<report::ResultWriter>(*setup_, factsOf(info, deterministic), results_);
   reporter_ = std::make_unique<MetricReporter>(*setup_);
   reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
@@ -51,37 +46,16 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
 bool MetricsRos::handle(const Snapshot& message, bool superseded) {
   if (!superseded && !answered(*message)) return false;
   if (!begin_) begin_ = Clock::now();
-  const traffic::TrafficSnapshot snapshot = fromMsg(*message);
-  std::optional<cbv::CbvSelection> selection;
-  if (const auto answer = answers().selection(message->tick))
-    selection = fromMsg(*answer, setup_->network());
-  observe(*message, snapshot, selection ? &*selection : nullptr);
+  const TickRecordView tick(*message, answers(), setup_->network());
+  writer_->observe(tick.record());
+  note(tick.record().latencies);
+  if (const auto report = reporter_->observe(tick.snapshot(), tick.record().selection))
+    reports_.publish(report);
   acknowledge(message->tick);
-  show(snapshot, selection ? &*selection : nullptr);
+  show(tick.snapshot(), tick.selection());
   forgetUntil(message->tick);
-  last_ = snapshot;
+  last_ = tick.snapshot();
   return true;
-}
-
-void MetricsRos::observe(const msgs::TrafficSnapshot& message,
-                         const traffic::TrafficSnapshot& snapshot,
-                         const cbv::CbvSelection* selection) {
-  scenario::TickRecord record;
-  record.snapshot = &snapshot;
-  std::vector<planning::PlannedAction> actions;
-  std::vector<scenario::SlotImage> images;
-  if (snapshot.decision_tick) {
-    const std::vector<Answer> given = answers().answers(message);
-    actions = actionsOf(given);
-    images = answers().images(message);
-    record.selection = selection;
-    record.actions = &actions;
-    record.images = &images;
-    record.latencies = latenciesOf(given);
-  }
-  writer_->observe(record);
-  note(record.latencies);
-  if (const auto report = reporter_->observe(snapshot, record.selection)) reports_.publish(report);
 }
 
 void MetricsRos::note(const std::vector<scenario::PlannerLatency>& latencies) {
@@ -119,7 +93,7 @@ double MetricsRos::wallSeconds() const {
 int MetricsRos::conclude(Ending ending) {
   if (ending != Ending::kFinalSnapshot) {
     const traffic::TrafficSnapshot snapshot =
-        endedAfter(last_, setup_->options().simulation_step, ending);
+        untoldEnd(last_, setup_->options().simulation_step, ending);
     scenario::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/replay.h"
 #include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/ros/tick_answers.h"
 #include "e2e_cdiff/ros/topics.h"
@@ -231,6 +232,73 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   std::set<::ros::Time> decisions;
   for (const auto& [topic, stamp] : images.occupied) decisions.insert(stamp);
   EXPECT_EQ(images.guided, decisions);
+}
+
+/// `metrics` of a summary as it is written.
+std::string metricsTextIn(const fs::path& folder) {
+  const std::string text = core::readFile(folder / "summary.json", "summary");
+  const std::size_t begin = text.find("\n  \"metrics\":");
+  return text.substr(begin, text.find("\n  \"planner_latency_ms\"", begin) - begin);
+}
+
+/// Expects the result of a replay to be the live one but for what the wall clock says.
+void expectSameResult(const fs::path& replayed, const fs::path& live) {
+  EXPECT_NE(metricsTextIn(live), "");
+  EXPECT_EQ(metricsTextIn(replayed), metricsTextIn(live));
+  nlohmann::json both[2] = {summaryIn(replayed), summaryIn(live)};
+  for (nlohmann::json& summary : both) {
+    summary.erase("wall_seconds");
+    summary.erase("real_time_factor");
+  }
+  EXPECT_EQ(both[0], both[1]);
+  EXPECT_EQ(core::sha256(core::readFile(replayed / "trace.csv", "trace")),
+            core::sha256(core::readFile(live / "trace.csv", "trace")));
+  EXPECT_EQ(picturesIn(replayed), picturesIn(live));
+}
+
+TEST_F(Session, ReplayOfTheNodeGraphsBagHasItsResultOnTheCommandLineAndFromRoslaunch) {
+  const std::string model = testing::writeRandomModel(folder_ / "model");
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=crossing_left_turn seed:=2 record:=true "
+                                 "cbv_planner:=diffusion set:=\"protocol.time_limit=8 "
+                                 "diffusion.model=" +
+                                     model + "\"");
+  ASSERT_EQ(exitCode(), "0\n") << log;
+  const fs::path live = folder_ / "live";
+  fs::rename(results(), live);
+  fs::remove_all(folder_ / "model");  // the bag alone must do
+  const ros::ReplayResult offline = ros::replayBag(live / "session.bag", folder_ / "offline");
+  EXPECT_EQ(offline.exit_code, 0);
+  EXPECT_EQ(core::joinText(offline.findings, "; "), "");
+  expectSameResult(folder_ / "offline", live);
+  const std::string replay_log =
+      launch("e2e_cdiff replay.launch", "rate:=0 bag:=" + (live / "session.bag").string());
+  ASSERT_EQ(exitCode(), "0\n") << replay_log;
+  expectSameResult(results(), live);
+  const std::string session = core::readFile(results() / "session.yaml", "session");
+  EXPECT_NE(session.find("deployment: \"replay.launch\"\nrecorded_by: \"roslaunch of e2e_cdiff "),
+            std::string::npos)
+      << session;
+  EXPECT_TRUE(fs::exists(live / "session.bag"));
+}
+
+TEST_F(Session, ReplayLaunchOfACutOffBagHasTheResultOfTheCommandLine) {
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.cbv_planner = "pdm_lite";
+  request.set = {"protocol.time_limit=20"};
+  const fs::path live = folder_ / "live";
+  runInOneProcess(request, live);
+  fs::resize_file(live / "session.bag", fs::file_size(live / "session.bag") * 3 / 4);
+  const ros::ReplayResult offline = ros::replayBag(live / "session.bag", folder_ / "offline");
+  EXPECT_EQ(offline.exit_code, 2);
+  EXPECT_FALSE(offline.findings.empty());
+  const std::string log =
+      launch("e2e_cdiff replay.launch", "rate:=0 bag:=" + (live / "session.bag").string());
+  EXPECT_EQ(exitCode(), "2\n") << log;
+  EXPECT_NE(log.find("the recording ends at tick"), std::string::npos) << log;
+  expectSameResult(results(), folder_ / "offline");
 }
 
 TEST_F(Session, WholeRoundaboutHasTheTraceOfTheClosedLoop) {

@@ -25,6 +25,8 @@ struct RunFacts {
   std::string deployment;         ///< "cdiff run" or "roslaunch"
   std::string simulator_version;  ///< "SUMO 1.15.0"
   bool deterministic = true;      ///< false when wall-clock time replaced an answer
+  std::string recorded_by =
+      {};  ///< who made the recording that this session is told from; else empty
 };
 
 /// References must outlive the value.

@@ -28,8 +28,6 @@ class MetricsRos : public Observer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void observe(const ::e2e_cdiff::TrafficSnapshot& message,
-               const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void note(const std::vector<scenario::PlannerLatency>& latencies);
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "e2e_cdiff/ros/replay.h"
+
+namespace cdiff::cli {
+namespace {
+
+struct ReplayArguments {
+  std::string bag;
+  std::string results;
+  bool quiet = false;
+};
+
+int replay(const ReplayArguments& arguments) {
+  const ros::ReplayResult result = ros::replayBag(arguments.bag, arguments.results);
+  for (const std::string& finding : result.findings)
+    std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
+  if (!result.findings.empty())
+    std::cerr << "cdiff: the recording is damaged; the result is made of what there is\n";
+  if (!arguments.quiet) std::cout << result.table << std::flush;
+  return result.exit_code;
+}
+
+}  // namespace
+
+void addReplayCommand(CLI::App& program, int& exit_code) {
+  auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* command =
+      program.add_subcommand("replay", "Compute a session's result again from its bag alone");
+  command->add_option("bag", arguments->bag, "session.bag, also one whose recording was cut off")
+      ->required();
+  command->add_option("--results", arguments->results, "Result folder")->required();
+  command->add_flag("--quiet", arguments->quiet, "No table");
+  command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/replay.h"
+
+#include <chrono>
+#include <optional>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/tick_record.h"
+
+namespace cdiff::ros {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kRecordedBy = ", recorded by ";
+
+void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& message,
+              const std::vector<scenario::SessionObserver*>& observers) {
+  const TickRecordView tick(message, session.answers(), session.setup().network());
+  for (scenario::SessionObserver* observer : observers) observer->observe(tick.record());
+}
+
+[[noreturn]] void refuseEmpty(const std::filesystem::path& bag, const RecordedSession& session) {
+  std::string text = "bag '" + bag.string() +
+                     "' holds a session, but nothing to evaluate: no snapshot of it can be used";
+  for (const std::string& finding : session.findings()) text += "; " + finding;
+  throw core::InputError(text);
+}
+
+}  // namespace
+
+std::size_t showTicks(RecordedSession& session,
+                      const std::vector<scenario::SessionObserver*>& observers) {
+  std::size_t count = 0;
+  for (; const auto message = session.next(); ++count) showTick(session, *message, observers);
+  return count;
+}
+
+std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionInfo& recorded) {
+  return by + kRecordedBy + recorded.deployment + " of e2e_cdiff " + recorded.package_version;
+}
+
+report::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic) {
+  report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
+  const std::size_t at = info.deployment.find(kRecordedBy);
+  if (at == std::string::npos) return facts;
+  facts.deployment = info.deployment.substr(0, at);
+  facts.recorded_by = info.deployment.substr(at + std::string(kRecordedBy).size());
+  return facts;
+}
+
+ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results) {
+  const Clock::time_point begin = Clock::now();
+  RecordedSession session(bag);
+  const auto first = session.next();
+  if (!first) refuseEmpty(bag, session);
+  ::e2e_cdiff::SessionInfo info;
+  info.deployment = replayDeployment(kReplayCommand, session.info());
+  info.simulator_version = session.info().simulator_version;
+  const bool deterministic = session.setup().options().real_time_factor == 0.0;
+  report::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
+  try {
+    showTick(session, *first, {&writer});
+    showTicks(session, {&writer});
+    writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
+  } catch (const std::exception& error) {  // of the disk, whatever its type
+    throw core::Error(error.what());
+  }
+  const bool whole = session.findings().empty();
+  return {whole ? writer.exitCode() : 2, writer.table(), session.findings()};
+}
+
+}  // namespace cdiff::ros

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/tick_record.h"
+
+#include "e2e_cdiff/ros/conversions.h"
+
+namespace cdiff::ros {
+
+TickRecordView::TickRecordView(const msgs::TrafficSnapshot& message, const TickAnswers& answers,
+                               const map::RoadNetwork& network)
+    : snapshot_(fromMsg(message)) {
+  if (const auto answer = answers.selection(message.tick)) selection_ = fromMsg(*answer, network);
+  record_.snapshot = &snapshot_;
+  if (!snapshot_.decision_tick) return;
+  const std::vector<Answer> given = answers.answers(message);
+  actions_ = actionsOf(given);
+  images_ = answers.images(message);
+  record_.selection = selection();
+  record_.actions = &actions_;
+  record_.images = &images_;
+  record_.latencies = latenciesOf(given);
+}
+
+traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double simulation_step,
+                                    traffic::SessionStatus status, const traffic::Fault& fault) {
+  traffic::TrafficSnapshot snapshot = last;
+  snapshot.tick += 1;
+  snapshot.time = static_cast<double>(snapshot.tick) * simulation_step;
+  snapshot.decision_tick = false;
+  snapshot.contacts.clear();
+  snapshot.removed.clear();
+  snapshot.status = status;
+  snapshot.faults = {{last.tick, fault.source, fault.text}};
+  return snapshot;
+}
+
+}  // namespace cdiff::ros

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <thread>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/evaluation/child_process.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReplayCommand : public testing::Test {
+ protected:
+  fs::path live() const { return scratch_.path() / "live"; }
+  fs::path bag() const { return live() / "session.bag"; }
+  fs::path replayed() const { return scratch_.path() / "replayed"; }
+  std::string output() const {
+    return core::readFile(scratch_.path() / "output", "output of cdiff");
+  }
+
+  /// Exit code of a program.
+  int run(const std::string& program, const std::vector<std::string>& arguments) const {
+    ChildProcess process(program, arguments, scratch_.path() / "output");
+    std::optional<int> exit_code = process.poll();
+    for (; !exit_code; exit_code = process.poll())
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return *exit_code;
+  }
+  int replay() const {
+    return run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", replayed().string()});
+  }
+  void record(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--record", "--quiet", "--results", live().string()});
+    ASSERT_EQ(run(CDIFF_PROGRAM, arguments), 0) << output();
+  }
+  void expectSameFile(
+      const char* name,
+      const std::vector<std::pair<std::string, std::string>>& wall_clock_and_origin) const {
+    std::string texts[2] = {core::readFile(live() / name, name),
+                            core::readFile(replayed() / name, name)};
+    for (std::string& text : texts) {
+      for (const auto& [pattern, replacement] : wall_clock_and_origin)
+        text = std::regex_replace(text, std::regex(pattern), replacement);
+    }
+    EXPECT_TRUE(texts[0] == texts[1]) << name << " differs";
+  }
+  void expectSameResult() const {
+    expectSameFile("trace.csv", {});
+    expectSameFile("summary.json", {{"\n  \"(wall_seconds|real_time_factor)\": [^\n]*", ""}});
+    expectSameFile("junit.xml", {{" time=\"[0-9.]+\"", ""}});
+    expectSameFile("report.html", {{"[0-9.]+ times real time", ""},
+                                   {"cdiff (run|replay), deterministic", "deterministic"}});
+    expectSameFile(
+        "session.yaml",
+        {{"deployment: \"cdiff run\"\n", ""},
+         {"deployment: \"cdiff replay\"\nrecorded_by: \"cdiff run of e2e_cdiff .*\"\n", ""},
+         {"  (model_files_sha256|(en|de)(coder|noiser)_instruction_set): .*\n", ""}});
+  }
+  nlohmann::json summary() const {
+    return nlohmann::json::parse(core::readFile(replayed() / "summary.json", "summary"));
+  }
+  test::TemporaryFolder scratch_;
+};
+
+TEST_F(ReplayCommand, HasTheResultOfARuleDrivenSessionWithoutItsNetworkFile) {
+  const fs::path network = scratch_.path() / "mine.net.xml";
+  fs::copy_file(
+      core::shareFolder() / "networks" / "crossing_district" / "crossing_district.net.xml",
+      network);
+  record({"crossing_left_turn", "--network", network.string(), "--seed", "2", "--cbv-planner",
+          "pdm_lite", "--set", "protocol.time_limit=15"});
+  fs::remove(network);
+  EXPECT_EQ(replay(), 0) << output();
+  EXPECT_GT(summary()["cbv"]["count"], 0) << "the session shows no CBV; choose one that does";
+  expectSameResult();
+}
+
+TEST_F(ReplayCommand, HasTheResultOfASafetyCriticalSessionOfTheDiffusionPlanner) {
+  record({"roundabout_cross", "--mode", "safety_critical", "--seed", "1", "--cbv-planner",
+          "diffusion", "--set", "protocol.time_limit=10"});
+  EXPECT_EQ(replay(), 0) << output();
+  EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0);
+  EXPECT_FALSE(summary()["guidance"].is_null());
+  expectSameResult();
+}
+
+TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
+  record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
+          "protocol.time_limit=4"});
+  EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string()}), 3);
+  EXPECT_NE(output().find("--results"), std::string::npos) << output();
+  EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", "none.bag", "--results", replayed().string()}), 3);
+  EXPECT_NE(output().find("none.bag"), std::string::npos) << output();
+  EXPECT_FALSE(fs::exists(replayed()));
+  // A folder that cannot be: its parent is a file.
+  EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", bag().string() + "/in"}), 3);
+  EXPECT_NE(output().find("cannot make the result folder"), std::string::npos) << output();
+
+  fs::resize_file(bag(), fs::file_size(bag()) - 100);
+  EXPECT_EQ(replay(), 2) << output();
+  EXPECT_NE(output().find("the recording is damaged"), std::string::npos) << output();
+  EXPECT_EQ(summary()["status"], "timed_out");
+}
+
+TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
+  record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
+          "protocol.time_limit=4"});
+  // No file may grow beyond the limit (in KiB): as a disk that is full.
+  for (const char* limit : {"1", "20", "60"}) {
+    fs::remove_all(replayed());
+    const std::string command = std::string("trap '' XFSZ; ulimit -f ") + limit + "; exec '" +
+                                CDIFF_PROGRAM + "' replay '" + bag().string() + "' --results '" +
+                                replayed().string() + "'";
+    const int exit_code = run("/bin/bash", {"-c", command});
+    EXPECT_TRUE(exit_code == 2 || exit_code == 3) << exit_code;
+    EXPECT_NE(output().find("cannot write"), std::string::npos) << limit << ": " << output();
+    for (const auto& entry : fs::directory_iterator(replayed())) {
+      const std::string name = entry.path().filename();
+      EXPECT_TRUE(name == "session.yaml" || name == "trace.csv" || name == "summary.json" ||
+                  name == "junit.xml")
+          << name;
+    }
+    EXPECT_FALSE(fs::exists(replayed() / "report.html"));
+  }
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation

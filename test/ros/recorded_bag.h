@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A real short session with its bag, and bags made of it: messages left out, changed, or added.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/session_bag.h"
+#include "e2e_cdiff/scenario/closed_loop.h"
+#include "e2e_cdiff/scenario/session_request.h"
+#include "rosbag/bag.h"
+#include "rosbag/view.h"
+
+namespace cdiff::test {
+
+/// Result folder and bag of a session of crossing_left_turn that ends by its time limit; `settings`
+/// are keys of the scenario.
+inline void recordSession(const std::filesystem::path& folder,
+                          const std::vector<std::string>& settings) {
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.set = settings;
+  const scenario::SessionSetup setup(scenario::resolveRequest(request));
+  scenario::ClosedLoop loop(setup);
+  report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
+  ros::SessionBag bag(setup, folder / "session.bag", {"test", "SUMO"});
+  loop.addObserver(writer);
+  loop.addObserver(bag);
+  const std::atomic<bool> never{false};
+  loop.run(never);
+  writer.finish(1.0);
+  bag.finish();
+}
+
+/// Called with each message in order; writes to the new bag what that shall hold.
+using BagEdit = std::function<void(const rosbag::MessageInstance& message, rosbag::Bag& to)>;
+
+/// Writes a message as it is.
+inline void keep(const rosbag::MessageInstance& message, rosbag::Bag& to) {
+  to.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+}
+
+inline void editBag(const std::filesystem::path& from, const std::filesystem::path& to,
+                    const BagEdit& edit) {
+  const rosbag::Bag source(from.string(), rosbag::bagmode::Read);
+  rosbag::Bag target(to.string(), rosbag::bagmode::Write);
+  target.setCompression(rosbag::compression::LZ4);
+  for (const rosbag::MessageInstance& message : rosbag::View(source)) edit(message, target);
+  target.close();
+}
+
+}  // namespace cdiff::test
