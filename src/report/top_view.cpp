@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/line_chart.h"
+#include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/markup.h"
 
 namespace cdiff::report {

@@ -7,7 +7,7 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/html_report.h"
-#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 #include "report/seen_session.h"
 
 namespace cdiff::report {
