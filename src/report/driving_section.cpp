@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/driving_section.h"
 
+#include <cmath>
+
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/histogram_chart.h"
 #include "e2e_cdiff/report/markup.h"
@@ -12,7 +14,8 @@ namespace {
 
 std::string sampleText(const std::string& who, const Histogram& sample, const std::string& unit) {
   if (sample.n() == 0) return who + ": none";
-  std::string text = who + ": mean " + core::formatFixed(*sample.mean(), 2);
+  std::string text =
+      who + ": mean " + core::formatFixed(std::round(100.0 * *sample.mean()) / 100.0 + 0.0, 2);
   if (const auto deviation = sample.standardDeviation()) {
     text += " ± " + core::formatFixed(*deviation, 2);
   }

@@ -50,9 +50,6 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .banner .story { margin-top: 6px; }
 .stage { display: grid; gap: 14px 20px; grid-template-columns: minmax(0, 1fr); }
 @media (min-width: 980px) { .stage { grid-template-columns: minmax(0, 1fr) 330px; } }
-@media (max-width: 1300px) { #top-view text { font-size: 17px; } }
-@media (max-width: 600px) { #top-view text { font-size: 30px; } .chart text { font-size: 16px; }
-  main { padding: 14px 12px 40px; } }
 .sights { min-width: 0; }
 #sights { display: grid; gap: 10px; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); }
 #sights[hidden] { display: none; }
@@ -64,12 +61,12 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .sight .nothing[hidden] { display: none; }
 .sight figcaption { color: var(--soft); font-size: .88rem; margin-top: 3px; overflow-wrap: anywhere; }
 #moment { font-size: .84rem; width: 100%; }
-#moment th, #moment td { padding: 4px 8px 4px 0; }
+#moment[hidden] { display: none; }
 #moment td:first-child { border-left: 5px solid var(--own); padding-left: 7px;
-  overflow-wrap: anywhere; }
-.keys { flex-basis: 100%; font-size: .85rem; margin: 0; }
+  overflow-wrap: anywhere; min-width: 6em; }
+.keys { font-size: .85rem; margin: 0; }
 .map { border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--ground); }
-#top-view { display: block; width: 100%; height: auto; --zoom: 1; }
+#top-view { display: block; width: 100%; height: auto; --zoom: 1; --pin: 1; }
 #top-view.moving { cursor: grabbing; }
 svg path, svg circle { fill: none; stroke-linejoin: round; stroke-linecap: round;
   vector-effect: non-scaling-stroke; }
@@ -95,11 +92,11 @@ svg path.north { fill: var(--text); }
 svg text { fill: var(--text); font-size: 12px; }
 svg text.name { font-size: 13px; font-weight: 600; paint-order: stroke; stroke: var(--halo);
   stroke-width: 3px; stroke-linejoin: round; }
-.pin { transform: scale(calc(1 / var(--zoom))); }
-.controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
-.controls[hidden] { display: none; }
-.controls input[type=range] { flex: 1 1 260px; accent-color: var(--ego); }
-.controls output { min-width: 19em; font-variant-numeric: tabular-nums; }
+.pin { transform: scale(calc(var(--pin) / var(--zoom))); }
+.controls { margin: 10px 0; }
+.controls .row { display: flex; flex-wrap: wrap; gap: 8px 14px; align-items: center; margin: 6px 0; }
+.controls input[type=range] { flex: 1 1 220px; min-width: 0; accent-color: var(--ego); }
+.controls output { min-width: 17em; font-variant-numeric: tabular-nums; }
 .controls .group { display: inline-flex; gap: 4px; }
 select { font: inherit; color: inherit; background: var(--panel); border: 1px solid var(--line);
   border-radius: 6px; padding: 3px 6px; }
@@ -111,7 +108,7 @@ button { font: inherit; color: inherit; background: var(--panel); border: 1px so
   font-size: .88rem; }
 .legend .item { display: inline-flex; gap: 6px; align-items: center; }
 .legend svg { width: 28px; height: 14px; }
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr));
+.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 440px), 1fr));
   gap: 10px 24px; }
 .chart { margin: 0; min-width: 0; }
 .chart figcaption { font-weight: 600; font-size: .92rem; margin-bottom: 2px; }
@@ -165,6 +162,14 @@ tr.skipped td { color: var(--soft); }
 details { margin-top: 14px; } summary { cursor: pointer; font-weight: 600; }
 pre { background: var(--panel); border-radius: 8px; padding: 12px 14px; overflow-x: auto;
   font-size: .85rem; }
+@media (max-width: 1300px) { #top-view { --pin: 1.4; } }
+@media (max-width: 600px) {
+  #top-view { --pin: 2.2; } #top-view .frame text { font-size: 24px; }
+  .chart text, .plan-view text { font-size: 17px; }
+  main { padding: 14px 12px 40px; }
+  .banner { padding: 12px; gap: 10px; }
+  .figures { grid-template-columns: 1fr 1fr; }
+}
 @media print {
   main { max-width: none; padding: 0; }
   body { font-size: 12px; }

@@ -46,7 +46,7 @@ std::string sights(const SessionResult& result) {
     for (const int slot : slotsOf(result)) html += sight(slot);
     html += "</div>\n";
   }
-  return html + "<p class=\"note\">" + escapeMarkup(sightNote(result)) + "</p>\n";
+  return html + "<p class=\"note\">" + escapeMarkup(sightNote(result)) + "</p>\n</div>\n";
 }
 
 std::string momentTable() {
@@ -69,25 +69,26 @@ std::string paceChoice() {
 }
 
 std::string controls() {
-  return "<div class=\"controls\" id=\"controls\" hidden>\n<button type=\"button\" id=\"play\">"
-         "Play</button>\n<input type=\"range\" id=\"time\" min=\"0\" value=\"0\" step=\"1\" "
-         "aria-label=\"Time of the session\">\n<output id=\"now\" for=\"time\"></output>\n" +
+  return "<div class=\"controls\" id=\"controls\" hidden>\n<div class=\"row\"><button "
+         "type=\"button\" id=\"play\">Play</button>\n<input type=\"range\" id=\"time\" min=\"0\" "
+         "value=\"0\" step=\"1\" aria-label=\"Time of the session\">\n<output id=\"now\" "
+         "for=\"time\"></output></div>\n<div class=\"row\">" +
          paceChoice() +
          "<span class=\"group\"><button type=\"button\" id=\"closer\" aria-label=\"Zoom in\">+"
          "</button><button type=\"button\" id=\"farther\" aria-label=\"Zoom "
          "out\">−</button><button "
          "type=\"button\" id=\"whole\">Whole picture</button></span>\n<label><input "
-         "type=\"checkbox\" id=\"follow\"> follow the ego</label>\n<p class=\"note keys\">Keys: "
-         "space plays and pauses, ← and → step, with shift by 1 s, Home and End. The address "
-         "with #t=12.5 opens the page at 12.5 s.</p>\n</div>\n";
+         "type=\"checkbox\" id=\"follow\"> follow the ego</label></div>\n<p class=\"note "
+         "keys\">Keys: space plays and pauses, ← and → step, with shift by 1 s, Home and End. The "
+         "address with #t=12.5 opens the page at 12.5 s.</p>\n</div>\n";
 }
 
 }  // namespace
 
 std::string stageHtml(const SessionResult& result, const MapCanvas& canvas) {
   return "<div class=\"stage\">\n<div>\n<div class=\"map\">\n" + topViewSvg(result, canvas) +
-         "</div>\n" + controls() + "</div>\n" + sights(result) + momentTable() +
-         "</div>\n</div>\n" + topViewLegend(canvas);
+         "</div>\n" + controls() + momentTable() + "</div>\n" + sights(result) + "</div>\n" +
+         topViewLegend(canvas);
 }
 
 }  // namespace cdiff::report
