@@ -97,7 +97,7 @@ std::string videoError(const fs::path& folder, std::uint64_t last, Change change
 
 void expectColor(const std::array<int, 3>& pixel, const std::array<int, 3>& wanted) {
   // Coding loses a little; the colours of roles differ by more than 100 in some channel.
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], wanted[i], 24) << "channel " << i;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], wanted[i], 15) << "channel " << i;
 }
 
 TEST(SessionVideo, HasEveryTenthOfASecondAndTheVerdict) {
