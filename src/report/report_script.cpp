@@ -140,6 +140,7 @@ const char kReportScript[] = R"JS(
     }
     for (const [index, box] of boxes) if (!seen.has(index)) box.style.display = "none";
     now.textContent = text;
+    slider.setAttribute("aria-valuetext", text);
     moveCursors(data.times[frame]);
     fillMoment(frame);
     showSights(frame);

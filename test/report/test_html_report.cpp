@@ -137,7 +137,7 @@ TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
 
 TEST(HtmlReport, SaysWhyThereIsNoFrontView) {
   EXPECT_NE(seenPage().find("in more pixels than its planner gets"), std::string::npos);
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   scenario::ScenarioOptions options = test::sampleOptions();
   options.cbv_planner = "pdm_lite";
   const test::SampleSetup sample(options);
@@ -149,7 +149,7 @@ TEST(HtmlReport, SaysWhyThereIsNoFrontView) {
 }
 
 TEST(HtmlReport, ASessionWithoutTicksHasAPage) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   writer.finish(0.0);

@@ -12,7 +12,7 @@ namespace {
 using traffic::SessionStatus;
 
 std::vector<std::string> storyUntil(std::uint64_t last, bool touch = false) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   for (std::uint64_t tick = 0; tick <= last; ++tick) {
@@ -49,7 +49,7 @@ TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {
 }
 
 TEST(SessionStory, SaysWhenNothingHappened) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   writer.finish(0.0);

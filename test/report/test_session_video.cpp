@@ -101,7 +101,7 @@ void expectColor(const std::array<int, 3>& pixel, const std::array<int, 3>& want
 }
 
 TEST(SessionVideo, HasEveryTenthOfASecondAndTheVerdict) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   ASSERT_EQ(videoError(scratch.path(), 60), "");
   const fs::path file = scratch.path() / kVideoFile;
   // Ticks 0, 2 ... 60, then the verdict.
@@ -120,7 +120,7 @@ TEST(SessionVideo, HasEveryTenthOfASecondAndTheVerdict) {
 }
 
 TEST(SessionVideo, ShowsACbvWhereItIs) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   ASSERT_EQ(videoError(scratch.path(), 60,
                        [](traffic::TrafficSnapshot& snapshot) {
                          snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
@@ -137,8 +137,8 @@ TEST(SessionVideo, ShowsACbvWhereItIs) {
 }
 
 TEST(SessionVideo, EqualSessionsGiveEqualFiles) {
-  const test::ScratchFolder first;
-  const test::ScratchFolder second;
+  const test::TemporaryFolder first;
+  const test::TemporaryFolder second;
   ASSERT_EQ(videoError(first.path(), 20), "");
   ASSERT_EQ(videoError(second.path(), 20), "");
   EXPECT_EQ(core::readFile(first.path() / kVideoFile, "video"),
@@ -153,14 +153,14 @@ TEST(SessionVideo, StrangeSessionsHaveOneToo) {
     snapshot.vehicles[2].state.position.x() = std::numeric_limits<double>::infinity();
     if (snapshot.tick > 6) snapshot.vehicles.clear();
   };
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   EXPECT_EQ(videoError(scratch.path(), 10, strange), "");
   EXPECT_EQ(streamOf(scratch.path() / kVideoFile),
             "h264,1280,720,yuv420p,10/1," + std::to_string(6 + kVerdictFrames) + "\n");
 }
 
 TEST(SessionVideo, ASessionWithoutTicksHasTheVerdictAlone) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   SessionVideo video(sample.setup, scratch.path());
@@ -183,7 +183,7 @@ void expectWholeResult(const fs::path& folder) {
 }
 
 TEST(SessionVideo, WithoutTheEncoderTheSessionIsWhole) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const SearchPath nothing("/nonexistent");
   const std::string error = videoError(scratch.path(), 20);
   EXPECT_NE(error.find("install the Debian package ffmpeg"), std::string::npos) << error;
@@ -199,12 +199,12 @@ std::string fakeEncoder(const fs::path& folder, const std::string& script) {
 }
 
 TEST(SessionVideo, AnEncoderThatFailsIsQuoted) {
-  const test::ScratchFolder tools;
+  const test::TemporaryFolder tools;
   for (const char* script :
        {"echo 'No space left on device' >&2; exit 1",                   // before any frame
         "cat > /dev/null; echo 'No space left on device' >&2; exit 1",  // after the last one
         "cat > /dev/null; echo 'No space left on device' >&2; exit 0"}) {
-    const test::ScratchFolder scratch;
+    const test::TemporaryFolder scratch;
     const SearchPath path(fakeEncoder(tools.path(), script));
     const std::string error = videoError(scratch.path(), 20);
     EXPECT_NE(error.find("session.mp4' was not written"), std::string::npos) << error;
@@ -214,7 +214,7 @@ TEST(SessionVideo, AnEncoderThatFailsIsQuoted) {
 }
 
 TEST(VideoEncoder, AFolderThatIsNotThereIsNamed) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const fs::path file = scratch.path() / "missing" / "a.mp4";
   VideoEncoder encoder(file, {64, 64, 10});
   const std::vector<std::uint8_t> frame(3 * 64 * 64, 128);
@@ -229,7 +229,7 @@ TEST(VideoEncoder, AFolderThatIsNotThereIsNamed) {
 }
 
 TEST(VideoEncoder, ReplacesAnEarlierVideoOnlyWhenFinished) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   const fs::path file = scratch.path() / "a.mp4";
   const std::vector<std::uint8_t> frame(3 * 64 * 64, 128);
   {
