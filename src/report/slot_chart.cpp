@@ -7,6 +7,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/reason_text.h"
 #include "e2e_cdiff/report/top_view.h"
 
 namespace cdiff::report {
@@ -42,8 +43,8 @@ std::string bar(std::size_t index, const SessionResult& result, const Rows& rows
   std::string svg = "<path class=\"stay " + style + "\" d=\"M" + shortNumber(x) + " " +
                     shortNumber(rows.y(record.slot)) + "h" + shortNumber(width) + "\"><title>" +
                     escapeMarkup(name) + ", " + core::formatFixed(begin, 2) + " to " +
-                    core::formatFixed(end, 2) + " s: " + escapeMarkup(record.release_reason) +
-                    "</title></path>";
+                    core::formatFixed(end, 2) +
+                    " s: " + escapeMarkup(releaseText(record.release_reason)) + "</title></path>";
   const double letters = 7.0 * static_cast<double>(name.size());  // [pixels]
   const double left = std::max(kChartLeft, std::min(x, kChartWidth - kChartRight - letters));
   return svg + chartText("mark-text", left, rows.y(record.slot) - 10.0, name) + "\n";
