@@ -77,8 +77,10 @@ Json viewLists(const SessionResult& result) {
   }
   Json lists = Json::object();
   for (const FrontView& view : result.front_views.views()) {
+    const auto vehicle = indices.find(view.vehicle_id);
+    if (vehicle == indices.end()) continue;  // it came and went between two frames
     lists[std::to_string(view.slot)].push_back(
-        {hundredths(view.time), indices.at(view.vehicle_id), base64(view.jpeg)});
+        {hundredths(view.time), vehicle->second, base64(view.jpeg)});
   }
   return lists;
 }
@@ -90,6 +92,34 @@ std::size_t firstShown(const Json& times, const Timeline& timeline) {
   if (!gap) return shown;
   while (shown > 0 && times[shown].get<double>() > gap->time + kRounding) --shown;
   return shown;
+}
+
+/// Index of the style that each vehicle has as CBV.
+std::vector<std::size_t> cbvStyles(const SessionResult& result) {
+  std::vector<std::size_t> styles;
+  for (const TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
+    styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
+  }
+  return styles;
+}
+
+void addVehicles(Json& data, const SessionResult& result) {
+  for (const TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
+  }
+}
+
+void addFrames(Json& data, const SessionResult& result, const MapCanvas& canvas) {
+  const std::vector<std::size_t> cbv_styles = cbvStyles(result);
+  const auto& frames = result.timeline.frames();
+  const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i % stride != 0 && i + 1 != frames.size()) continue;
+    data["times"].push_back(hundredths(frames[i].time));
+    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
+    data["moments"].push_back(momentNumbers(frames[i]));
+  }
 }
 
 /// `<` never appears, so no text can end the script element.
@@ -108,7 +138,6 @@ std::string safeInScript(const std::string& json) {
 }  // namespace
 
 std::string playbackJson(const SessionResult& result, const MapCanvas& canvas) {
-  const Timeline& timeline = result.timeline;
   Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
                {"vehicles", Json::array()},
                {"times", Json::array()},
@@ -116,21 +145,9 @@ std::string playbackJson(const SessionResult& result, const MapCanvas& canvas) {
                {"moments", Json::array()},
                {"period", result.front_views.period()},
                {"views", viewLists(result)}};
-  std::vector<std::size_t> cbv_styles;
-  for (const TimelineVehicle& vehicle : timeline.vehicles()) {
-    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
-    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
-    cbv_styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
-  }
-  const auto& frames = timeline.frames();
-  const std::size_t stride = 1 + poseCount(timeline) / kMostPoses;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i % stride != 0 && i + 1 != frames.size()) continue;
-    data["times"].push_back(hundredths(frames[i].time));
-    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
-    data["moments"].push_back(momentNumbers(frames[i]));
-  }
-  data["start"] = firstShown(data["times"], timeline);
+  addVehicles(data, result);
+  addFrames(data, result, canvas);
+  data["start"] = firstShown(data["times"], result.timeline);
   return safeInScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

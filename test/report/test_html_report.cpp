@@ -135,6 +135,27 @@ TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
   EXPECT_EQ(data["start"], 30);  // they approach until the end
 }
 
+TEST(HtmlReport, ACbvBetweenTwoFramesDoesNoHarm) {
+  const test::TemporaryFolder scratch;
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.report.front_view_rate = 10.0;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  for (std::uint64_t tick = 0; tick <= 4; ++tick) {  // frames at 0 and 4, a view at 2
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
+    snapshot.vehicles[1].cbv_slot = 0;
+    if (tick != 2) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+    if (tick == 4) snapshot.status = SessionStatus::kTimedOut;
+    scenario::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  EXPECT_EQ(writer.result().front_views.views().size(), 1u);
+  writer.finish(1.0);
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "report.html"));
+}
+
 TEST(HtmlReport, SaysWhyThereIsNoFrontView) {
   EXPECT_NE(seenPage().find("in more pixels than its planner gets"), std::string::npos);
   const test::TemporaryFolder scratch;
