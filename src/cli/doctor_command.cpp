@@ -42,6 +42,12 @@ Finding program(const std::string& name, const std::string& package) {
   return {found, name, found ? "found" : "missing: apt-get install " + package};
 }
 
+/// Only videos need it.
+Finding encoder() {
+  return {true, "ffmpeg",
+          inPath("ffmpeg") ? "found" : "missing: no videos; to have them, apt-get install ffmpeg"};
+}
+
 Finding folder(const std::string& subject, const std::function<fs::path()>& find) {
   try {
     const fs::path path = find();
@@ -87,6 +93,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
                                            folder("package share", core::shareFolder),
                                            folder("cache folder", core::cacheFolder),
                                            shippedModel(),
+                                           encoder(),
                                            rosIp()};
     for (const Finding& finding : findings) {
       std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text

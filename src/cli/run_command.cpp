@@ -58,6 +58,7 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--results", arguments->results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
   command->add_flag("--record", arguments->record, "Also write session.bag, for replay and rviz");
+  command->add_flag("--video", request.video, "Also write session.mp4: front view beside top view");
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "progress.h"
 #include "stop_signals.h"
@@ -25,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 /// What an earlier session of the node graph left in the folder.
 void removeEarlierSession(const std::filesystem::path& folder) {
   std::error_code ignored;
-  for (const char* name : {"session.bag", "session.bag.active", "exit_code"}) {
+  for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile}) {
     std::filesystem::remove(folder / name, ignored);
   }
 }
@@ -74,6 +75,35 @@ class BagRecord {
 #endif
 };
 
+/// session.mp4 of a session that asks for it.
+class VideoRecord {
+ public:
+  VideoRecord(const scenario::SessionSetup& setup, const std::filesystem::path& folder,
+              scenario::ClosedLoop& loop) {
+    if (!setup.options().video) return;
+    video_ = std::make_unique<report::SessionVideo>(setup, folder);
+    loop.addObserver(*video_);
+    tell();
+  }
+  /// `exit_code` of the session, or that of an error at run time when its video is missing.
+  int finish(const report::ResultWriter& writer, int exit_code) {
+    if (!video_) return exit_code;
+    video_->finish(writer.result());
+    tell();
+    const bool judged = exit_code == kPassed || exit_code == kVerdictFailed;
+    return told_ && judged ? static_cast<int>(kRunTimeError) : exit_code;
+  }
+
+ private:
+  void tell() {
+    if (told_ || video_->error().empty()) return;
+    std::cerr << "cdiff: " << video_->error() << "; the other results are not affected\n";
+    told_ = true;
+  }
+  std::unique_ptr<report::SessionVideo> video_;
+  bool told_ = false;
+};
+
 }  // namespace
 
 int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
@@ -100,9 +130,11 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
   if (!quiet) loop->addObserver(progress);
   try {
     BagRecord bag(setup, output, *loop);
+    VideoRecord video(setup, folder, *loop);
     loop->run(stop);
     bag.finish();
-    return finish(writer, begin, quiet);
+    const int exit_code = finish(writer, begin, quiet);
+    return video.finish(writer, exit_code);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
     // whatever its type.

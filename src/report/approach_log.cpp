@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 
 namespace cdiff::report {
 

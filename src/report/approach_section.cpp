@@ -5,24 +5,15 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/rendering/front_camera.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/plan_picture.h"
-#include "e2e_cdiff/report/png_data_uri.h"
 #include "e2e_cdiff/report/top_view.h"
 
 namespace cdiff::report {
 namespace {
 
 constexpr double kLookBack = 3.0;  // from the closest approach to the plan that is shown [s]
-
-/// The camera of the planners with more pixels.
-rendering::FrontCamera cameraForPeople(const SessionResult& result) {
-  rendering::CameraOptions options = result.setup.options().camera;
-  options.width = 640;
-  options.height = 384;
-  return {options, result.setup.network()};
-}
 
 std::string view(const traffic::CameraImage& image, const std::string& style,
                  const std::string& caption) {
@@ -98,7 +89,7 @@ std::vector<const Approach*> shownApproaches(const ApproachLog& log) {
 std::string approachSection(const SessionResult& result) {
   const std::vector<const Approach*> shown = shownApproaches(result.approaches);
   if (shown.empty()) return "<p class=\"note\">No CBV was driven near the ego.</p>\n";
-  rendering::FrontCamera camera = cameraForPeople(result);
+  rendering::FrontCamera camera = cameraForPeople(result.setup, 640, 384);
   std::string html;
   const std::size_t count = result.approaches.approaches().size();
   if (count > shown.size()) {

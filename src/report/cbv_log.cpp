@@ -56,7 +56,10 @@ void CbvLog::observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSel
     const bool driven = vehicle != nullptr && vehicle->role == traffic::VehicleRole::kCbv;
     if (driven) ++record.decisions_driven;
   }
-  for (const cbv::RejectedCandidate& candidate : selection.rejected) ++rejected_[candidate.reason];
+  for (const cbv::RejectedCandidate& candidate : selection.rejected) {
+    ++rejected_[candidate.reason];
+    ++rejected_vehicles_[candidate.reason][candidate.vehicle_id];
+  }
 }
 
 CbvRecord& CbvLog::recordOf(const cbv::CbvAssignment& assignment) {

@@ -6,13 +6,15 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/approach_section.h"
+#include "e2e_cdiff/report/driving_section.h"
 #include "e2e_cdiff/report/guidance_section.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/playback.h"
 #include "e2e_cdiff/report/report_style.h"
 #include "e2e_cdiff/report/report_tables.h"
 #include "e2e_cdiff/report/session_charts.h"
-#include "e2e_cdiff/report/top_view.h"
+#include "e2e_cdiff/report/session_story.h"
+#include "e2e_cdiff/report/stage.h"
 
 namespace cdiff::report {
 namespace {
@@ -55,7 +57,9 @@ std::string banner(const SessionResult& result) {
     html += "<p>the session ended with status '" + std::string(traffic::toText(result.status)) +
             (all ? "' and every rule was met</p>" : "' and every rule that applies was met</p>");
   }
-  return html + "</div></div>\n</header>\n";
+  html += "<p class=\"story\">";
+  for (const std::string& sentence : sessionStory(result)) html += escapeMarkup(sentence) + " ";
+  return html + "</p></div></div>\n</header>\n";
 }
 
 std::string figure(const std::string& name, const std::string& value, const std::string& unit,
@@ -98,22 +102,6 @@ std::string figures(const SessionResult& result) {
          "</div>\n";
 }
 
-/// Buttons and slider; shown by the script, so that the page makes sense without it.
-std::string playbackControls() {
-  return "<div class=\"controls\" id=\"controls\" hidden>\n<button type=\"button\" id=\"play\">"
-         "Play</button>\n<input type=\"range\" id=\"time\" min=\"0\" value=\"0\" step=\"1\" "
-         "aria-label=\"Time of the session\">\n<output id=\"now\" for=\"time\"></output>\n<span "
-         "class=\"group\"><button type=\"button\" id=\"closer\" aria-label=\"Zoom in\">+</button>"
-         "<button type=\"button\" id=\"farther\" aria-label=\"Zoom out\">−</button><button "
-         "type=\"button\" id=\"whole\">Whole picture</button></span>\n<label><input "
-         "type=\"checkbox\" id=\"follow\"> follow the ego</label>\n</div>\n";
-}
-
-std::string topView(const SessionResult& result, const MapCanvas& canvas) {
-  return "<div class=\"map\">\n" + topViewSvg(result, canvas) + "</div>\n" + playbackControls() +
-         topViewLegend(canvas);
-}
-
 std::string planSection(const PlanLog& plans) {
   if (plans.empty()) return "<p class=\"note\">No plan of a CBV was shown.</p>\n";
   return planTable(plans) +
@@ -134,14 +122,15 @@ std::string configuration(const SessionResult& result) {
 std::string htmlReport(const SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
   return head(result) + "<body>\n<main>\n" + banner(result) + figures(result) +
-         section("From above", topView(result, canvas)) +
+         section("What happened", stageHtml(result, canvas)) +
          section("Over time", sessionCharts(result)) +
+         section("Distributions", drivingSection(result)) +
          section("Closest approach", approachSection(result)) +
          section("Plans against what was driven", planSection(result.plans)) +
          section("Guidance", guidanceSection(result)) + section("Rules", ruleTable(result)) +
          section("Metrics", metricTable(result.measures)) +
          section("Critical background vehicles", selectionTable(result)) +
-         section("Rejected candidates", rejectionTable(result.cbv)) +
+         section("Why others were no CBVs", rejectionTable(result.cbv)) +
          section("Contacts", contactTable(result.timeline)) +
          section("Planner latency", latencyTable(result.latencies)) +
          section("Faults", faultTable(result.faults)) +

@@ -2,10 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/playback.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 #include "e2e_cdiff/report/top_view.h"
 
 namespace cdiff::report {
@@ -21,7 +24,13 @@ std::size_t poseCount(const Timeline& timeline) {
   return count;
 }
 
-long rounded(double value) { return std::lround(value); }
+constexpr float kLongestTime = 100.0F;  // to a collision [s]
+constexpr double kRounding = 1e-6;      // [s]
+
+/// 0 where there is no number.
+long rounded(double value) { return std::isfinite(value) ? std::lround(value) : 0; }
+
+double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
 
 /// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
 /// [0.1 m/s].
@@ -44,6 +53,75 @@ Json frameNumbers(const TimelineFrame& frame, const MapCanvas& canvas,
   return numbers;
 }
 
+/// Seven numbers per driven vehicle: index, slot (-1: the ego), throttle, brake, steer [%], gap
+/// [cm] and 2D-TTC [0.01 s], both negative where not defined.
+Json momentNumbers(const TimelineFrame& frame) {
+  Json numbers = Json::array();
+  for (const TimelinePose& pose : frame.poses) {
+    if (pose.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    numbers.push_back(pose.vehicle);
+    numbers.push_back(pose.slot);
+    for (const float value : {pose.throttle, pose.brake, pose.steer, pose.gap,
+                              std::min(pose.time_to_collision, kLongestTime)}) {
+      numbers.push_back(rounded(100.0 * static_cast<double>(value)));
+    }
+  }
+  return numbers;
+}
+
+/// By slot: [time [s], vehicle index, JPEG].
+Json viewLists(const SessionResult& result) {
+  std::map<std::string, std::size_t> indices;
+  for (const TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    indices.emplace(vehicle.id, indices.size());
+  }
+  Json lists = Json::object();
+  for (const FrontView& view : result.front_views.views()) {
+    const auto vehicle = indices.find(view.vehicle_id);
+    if (vehicle == indices.end()) continue;  // it came and went between two frames
+    lists[std::to_string(view.slot)].push_back(
+        {hundredths(view.time), vehicle->second, base64(view.jpeg)});
+  }
+  return lists;
+}
+
+/// The frame that the page shows first: the closest approach, else the last.
+std::size_t firstShown(const Json& times, const Timeline& timeline) {
+  const auto& gap = timeline.smallestGap();
+  std::size_t shown = times.empty() ? 0 : times.size() - 1;
+  if (!gap) return shown;
+  while (shown > 0 && times[shown].get<double>() > gap->time + kRounding) --shown;
+  return shown;
+}
+
+/// Index of the style that each vehicle has as CBV.
+std::vector<std::size_t> cbvStyles(const SessionResult& result) {
+  std::vector<std::size_t> styles;
+  for (const TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
+    styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
+  }
+  return styles;
+}
+
+void addVehicles(Json& data, const SessionResult& result) {
+  for (const TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
+  }
+}
+
+void addFrames(Json& data, const SessionResult& result, const MapCanvas& canvas) {
+  const std::vector<std::size_t> cbv_styles = cbvStyles(result);
+  const auto& frames = result.timeline.frames();
+  const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i % stride != 0 && i + 1 != frames.size()) continue;
+    data["times"].push_back(hundredths(frames[i].time));
+    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
+    data["moments"].push_back(momentNumbers(frames[i]));
+  }
+}
+
 /// `<` never appears, so no text can end the script element.
 std::string safeInScript(const std::string& json) {
   std::string safe;
@@ -60,24 +138,16 @@ std::string safeInScript(const std::string& json) {
 }  // namespace
 
 std::string playbackJson(const SessionResult& result, const MapCanvas& canvas) {
-  const Timeline& timeline = result.timeline;
   Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
                {"vehicles", Json::array()},
                {"times", Json::array()},
-               {"frames", Json::array()}};
-  std::vector<std::size_t> cbv_styles;
-  for (const TimelineVehicle& vehicle : timeline.vehicles()) {
-    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
-    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
-    cbv_styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
-  }
-  const auto& frames = timeline.frames();
-  const std::size_t stride = 1 + poseCount(timeline) / kMostPoses;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i % stride != 0 && i + 1 != frames.size()) continue;
-    data["times"].push_back(std::round(100.0 * frames[i].time) / 100.0);
-    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
-  }
+               {"frames", Json::array()},
+               {"moments", Json::array()},
+               {"period", result.front_views.period()},
+               {"views", viewLists(result)}};
+  addVehicles(data, result);
+  addFrames(data, result, canvas);
+  data["start"] = firstShown(data["times"], result.timeline);
   return safeInScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

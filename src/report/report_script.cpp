@@ -13,6 +13,7 @@ const char kReportScript[] = R"JS(
   const slider = document.getElementById("time");
   const play = document.getElementById("play");
   const now = document.getElementById("now");
+  const pace = document.getElementById("pace");
   const follow = document.getElementById("follow");
   const full = view.viewBox.baseVal;
   const whole = { x: 0, y: 0, w: full.width, h: full.height };
@@ -62,6 +63,66 @@ const char kReportScript[] = R"JS(
       cursor.style.visibility = "visible";
     }
   };
+  const speedOf = function (numbers, index) {
+    for (let i = 0; i < numbers.length; i += 6) if (numbers[i] === index) return numbers[i + 5] / 10;
+    return null;
+  };
+  const cell = function (row, text, style) {
+    const element = row.insertCell();
+    element.textContent = text;
+    element.className = style;
+  };
+  const fillMoment = function (frame) {
+    const body = document.querySelector("#moment tbody"), numbers = data.moments[frame];
+    body.replaceChildren();
+    for (let i = 0; i < numbers.length; i += 7) {
+      const row = body.insertRow(), index = numbers[i], slot = numbers[i + 1];
+      row.className = slot < 0 ? "ego" : styleOf(data.frames[frame], index);
+      const speed = speedOf(data.frames[frame], index);
+      cell(row, slot < 0 ? "ego" : data.vehicles[index][0], "");
+      cell(row, speed === null ? "–" : speed.toFixed(1), "number");
+      for (let k = 2; k < 5; ++k) cell(row, (numbers[i + k] / 100).toFixed(2), "number");
+      for (let k = 5; k < 7; ++k) {
+        cell(row, numbers[i + k] < 0 ? "–" : (numbers[i + k] / 100).toFixed(2), "number");
+      }
+    }
+  };
+  const styleOf = function (numbers, index) {
+    for (let i = 0; i < numbers.length; i += 6)
+      if (numbers[i] === index) return data.styles[numbers[i + 1]];
+    return "cbv";
+  };
+  const vehicleInSlot = function (frame, slot) {
+    const numbers = data.moments[frame];
+    for (let i = 0; i < numbers.length; i += 7) if (numbers[i + 1] === slot) return numbers[i];
+    return null;
+  };
+  const viewAt = function (slot, index, time) {
+    let found = null;
+    for (const view of data.views[slot] || []) {
+      if (view[0] > time + 0.005) break;
+      if (view[1] === index && time - view[0] < 1.5 * data.period) found = view;
+    }
+    return found;
+  };
+  const showSights = function (frame) {
+    for (const sight of document.querySelectorAll(".sight")) {
+      const slot = Number(sight.dataset.slot), index = vehicleInSlot(frame, slot);
+      const view = index === null ? null : viewAt(slot, index, data.times[frame]);
+      const image = sight.querySelector("img"), nothing = sight.querySelector(".nothing");
+      image.hidden = view === null;
+      nothing.hidden = view !== null;
+      nothing.textContent = index === null ? `No CBV in slot ${slot}` : "No picture yet";
+      sight.className = "sight " + (index === null ? "" : styleOf(data.frames[frame], index));
+      let text = `Slot ${slot}`;
+      if (index !== null) text += ": " + data.vehicles[index][0];
+      if (view !== null) {
+        image.setAttribute("src", "data:image/jpeg;base64," + view[2]);
+        text += ` at ${view[0].toFixed(1)} s`;
+      }
+      sight.querySelector("figcaption").textContent = text;
+    }
+  };
   const draw = function (frame) {
     const numbers = data.frames[frame], seen = new Set();
     let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
@@ -79,30 +140,74 @@ const char kReportScript[] = R"JS(
     }
     for (const [index, box] of boxes) if (!seen.has(index)) box.style.display = "none";
     now.textContent = text;
+    slider.setAttribute("aria-valuetext", text);
     moveCursors(data.times[frame]);
+    fillMoment(frame);
+    showSights(frame);
   };
 
+  const frameAt = function (time) {
+    let best = 0;
+    data.times.forEach(function (value, i) {
+      if (Math.abs(value - time) < Math.abs(data.times[best] - time)) best = i;
+    });
+    return best;
+  };
   let playing = false, began = 0, offset = 0;
-  const stop = function () { playing = false; play.textContent = "Play"; };
-  const show = function (frame) { slider.value = frame; draw(frame); };
+  const address = function () {
+    try {
+      history.replaceState(null, "", "#t=" + data.times[Number(slider.value)]);
+    } catch (refused) { /* some browsers allow no addresses in files */ }
+  };
+  const stop = function () {
+    if (playing) address();
+    playing = false;
+    play.textContent = "Play";
+  };
+  const show = function (frame) {
+    slider.value = Math.min(Math.max(frame, 0), last);
+    draw(Number(slider.value));
+  };
+  const go = function (frame) { stop(); show(frame); address(); };
+  const begin = function () {
+    began = performance.now();
+    offset = data.times[Number(slider.value)];
+  };
   const tick = function (clock) {
     if (!playing) return;
-    const time = offset + (clock - began) / 1000;
+    const time = offset + Number(pace.value) * (clock - began) / 1000;
     let frame = Number(slider.value);
     while (frame < last && data.times[frame + 1] <= time) ++frame;
     if (frame !== Number(slider.value)) show(frame);
     if (frame === last) stop(); else requestAnimationFrame(tick);
   };
-  play.addEventListener("click", function () {
+  const toggle = function () {
     if (playing) { stop(); return; }
     if (Number(slider.value) === last) show(0);
     playing = true;
     play.textContent = "Pause";
-    began = performance.now();
-    offset = data.times[Number(slider.value)];
+    begin();
     requestAnimationFrame(tick);
+  };
+  play.addEventListener("click", toggle);
+  pace.addEventListener("change", begin);
+  slider.addEventListener("input", function () { go(Number(slider.value)); });
+  const keys = {
+    ArrowLeft: (second) => second ? frameAt(data.times[Number(slider.value)] - 1)
+                                  : Number(slider.value) - 1,
+    ArrowRight: (second) => second ? frameAt(data.times[Number(slider.value)] + 1)
+                                   : Number(slider.value) + 1,
+    Home: () => 0,
+    End: () => last,
+  };
+  document.addEventListener("keydown", function (event) {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target.closest("button, select, summary, a, input[type=checkbox]")) return;
+    if (event.key === " ") toggle();
+    else if (event.key in keys) go(keys[event.key](event.shiftKey));
+    else return;
+    event.preventDefault();
   });
-  slider.addEventListener("input", function () { stop(); draw(Number(slider.value)); });
   document.getElementById("closer").addEventListener("click", () => zoomTo(zoom * 1.6));
   document.getElementById("farther").addEventListener("click", () => zoomTo(zoom / 1.6));
   document.getElementById("whole").addEventListener("click", function () {
@@ -140,20 +245,24 @@ const char kReportScript[] = R"JS(
       const frame = chart.getBoundingClientRect(), left = Number(chart.dataset.left);
       const x = (event.clientX - frame.left) * chart.viewBox.baseVal.width / frame.width;
       const share = (x - left) / (Number(chart.dataset.right) - left);
-      const time = share * Number(chart.dataset.duration);
-      let best = 0;
-      data.times.forEach(function (value, i) {
-        if (Math.abs(value - time) < Math.abs(data.times[best] - time)) best = i;
-      });
-      stop();
-      show(best);
+      go(frameAt(share * Number(chart.dataset.duration)));
     });
   }
 
+  const fromAddress = function () {
+    const asked = /^#t=(\d+(?:\.\d+)?)$/.exec(location.hash);
+    if (asked) { stop(); show(frameAt(Number(asked[1]))); }
+    return asked !== null;
+  };
+  window.addEventListener("hashchange", fromAddress);
+
   slider.max = last;
-  document.getElementById("controls").hidden = false;
+  for (const id of ["controls", "sights", "moment"]) {
+    const part = document.getElementById(id);
+    if (part) part.hidden = false;
+  }
   layer.replaceChildren();
-  show(last);
+  if (!fromAddress()) show(data.start);
 })();
 )JS";
 

@@ -14,7 +14,7 @@ const char kReportStyleSheet[] = R"CSS(
   --passed: #1b6e36; --passed-back: #e2f4e6; --failed: #a31919; --failed-back: #fde8e6;
   --error: #7a4a00; --error-back: #fdf0d5;
 }
-@media (prefers-color-scheme: dark) {
+@media screen and (prefers-color-scheme: dark) {
   :root {
     --page: #14171a; --text: #e6e9ec; --soft: #9aa4ae; --line: #343a41; --panel: #1d2125;
     --ground: #181c1a; --road: #363c43; --edge: #5b636c; --lane: #555d66; --halo: #14171a;
@@ -27,7 +27,7 @@ const char kReportStyleSheet[] = R"CSS(
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--page); color: var(--text);
   font: 15px/1.45 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
-main { max-width: 1160px; margin: 0 auto; padding: 20px 24px 60px; }
+main { max-width: 1440px; margin: 0 auto; padding: 20px 24px 60px; }
 h1 { font-size: 1.6rem; margin: 0; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .sub { margin: 2px 0 14px; color: var(--soft); overflow-wrap: anywhere; }
@@ -47,8 +47,26 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .figure .name, .figure .under { color: var(--soft); font-size: .85rem; overflow-wrap: anywhere; }
 .figure .value { font-size: 1.45rem; font-weight: 600; font-variant-numeric: tabular-nums; }
 .figure small { font-size: .9rem; font-weight: 400; }
+.banner .story { margin-top: 6px; }
+.stage { display: grid; gap: 14px 20px; grid-template-columns: minmax(0, 1fr); }
+@media (min-width: 980px) { .stage { grid-template-columns: minmax(0, 1fr) 330px; } }
+.sights { min-width: 0; }
+#sights { display: grid; gap: 10px; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); }
+#sights[hidden] { display: none; }
+.sight { margin: 0; min-width: 0; border-left: 5px solid var(--own, var(--line)); padding-left: 8px; }
+.sight img { display: block; width: 100%; height: auto; border-radius: 6px; }
+.sight img[hidden] { display: none; }
+.sight .nothing { margin: 0; aspect-ratio: 5 / 3; display: grid; place-items: center;
+  color: var(--soft); background: var(--panel); border-radius: 6px; }
+.sight .nothing[hidden] { display: none; }
+.sight figcaption { color: var(--soft); font-size: .88rem; margin-top: 3px; overflow-wrap: anywhere; }
+#moment { font-size: .84rem; width: 100%; }
+#moment[hidden] { display: none; }
+#moment td:first-child { border-left: 5px solid var(--own); padding-left: 7px;
+  overflow-wrap: anywhere; min-width: 6em; }
+.keys { font-size: .85rem; margin: 0; }
 .map { border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--ground); }
-#top-view { display: block; width: 100%; height: auto; --zoom: 1; }
+#top-view { display: block; width: 100%; height: auto; --zoom: 1; --pin: 1; }
 #top-view.moving { cursor: grabbing; }
 svg path, svg circle { fill: none; stroke-linejoin: round; stroke-linecap: round;
   vector-effect: non-scaling-stroke; }
@@ -74,12 +92,15 @@ svg path.north { fill: var(--text); }
 svg text { fill: var(--text); font-size: 12px; }
 svg text.name { font-size: 13px; font-weight: 600; paint-order: stroke; stroke: var(--halo);
   stroke-width: 3px; stroke-linejoin: round; }
-.pin { transform: scale(calc(1 / var(--zoom))); }
-.controls { display: flex; flex-wrap: wrap; gap: 10px; align-items: center; margin: 10px 0; }
-.controls[hidden] { display: none; }
-.controls input[type=range] { flex: 1 1 260px; accent-color: var(--ego); }
-.controls output { min-width: 19em; font-variant-numeric: tabular-nums; }
+.pin { transform: scale(calc(var(--pin) / var(--zoom))); }
+.controls { margin: 10px 0; }
+.controls .row { display: flex; flex-wrap: wrap; gap: 8px 14px; align-items: center; margin: 6px 0; }
+.controls input[type=range] { flex: 1 1 220px; min-width: 0; accent-color: var(--ego); }
+.controls output { min-width: 17em; font-variant-numeric: tabular-nums; }
 .controls .group { display: inline-flex; gap: 4px; }
+select { font: inherit; color: inherit; background: var(--panel); border: 1px solid var(--line);
+  border-radius: 6px; padding: 3px 6px; }
+:focus-visible { outline: 2px solid var(--bg); outline-offset: 2px; }
 button { font: inherit; color: inherit; background: var(--panel); border: 1px solid var(--line);
   border-radius: 6px; padding: 4px 12px; cursor: pointer; }
 #play { min-width: 5.2em; }
@@ -87,11 +108,14 @@ button { font: inherit; color: inherit; background: var(--panel); border: 1px so
   font-size: .88rem; }
 .legend .item { display: inline-flex; gap: 6px; align-items: center; }
 .legend svg { width: 28px; height: 14px; }
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr));
+.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 440px), 1fr));
   gap: 10px 24px; }
 .chart { margin: 0; min-width: 0; }
 .chart figcaption { font-weight: 600; font-size: .92rem; margin-bottom: 2px; }
 .chart svg { display: block; width: 100%; height: auto; }
+svg path.bars { stroke-width: 1.8; stroke: var(--own); fill: var(--own); fill-opacity: .18; }
+svg path.stay { stroke: var(--own); stroke-width: 9; stroke-linecap: butt; }
+.chart .note { font-size: .88rem; }
 .chart path.grid { stroke: var(--line); stroke-width: 1; }
 .chart text { fill: var(--soft); }
 svg text.end { text-anchor: end; } svg text.middle { text-anchor: middle; }
@@ -138,10 +162,25 @@ tr.skipped td { color: var(--soft); }
 details { margin-top: 14px; } summary { cursor: pointer; font-weight: 600; }
 pre { background: var(--panel); border-radius: 8px; padding: 12px 14px; overflow-x: auto;
   font-size: .85rem; }
+@media (max-width: 1300px) { #top-view { --pin: 1.4; } }
+@media (max-width: 600px) {
+  #top-view { --pin: 2.2; } #top-view .frame text { font-size: 24px; }
+  .chart text, .plan-view text { font-size: 17px; }
+  main { padding: 14px 12px 40px; }
+  .banner { padding: 12px; gap: 10px; }
+  .figures { grid-template-columns: 1fr 1fr; }
+}
 @media print {
   main { max-width: none; padding: 0; }
+  body { font-size: 12px; }
+  .controls, .scroll { overflow: visible; }
   .controls { display: none; }
-  section, .figure, tr { break-inside: avoid; }
+  .stage { grid-template-columns: minmax(0, 1fr); }
+  #sights { grid-template-columns: repeat(3, 1fr); }
+  .charts { grid-template-columns: 1fr 1fr; }
+  .figure, .chart, .map, .sight, .views, .approach h3, tr { break-inside: avoid; }
+  h2, h3 { break-after: avoid; }
+  th, td { padding-right: 8px; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )CSS";

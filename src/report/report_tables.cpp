@@ -7,6 +7,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/build_info.h"
 #include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/reason_text.h"
 #include "e2e_cdiff/report/summary.h"
 
 namespace cdiff::report {
@@ -47,6 +48,18 @@ class Table {
   std::vector<bool> numeric_;
   std::string html_;
 };
+
+/// At most three ids, highest count first.
+std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& counts) {
+  std::vector<std::pair<std::string, std::size_t>> rows(counts.begin(), counts.end());
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& left, const auto& right) { return left.second > right.second; });
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, rows.size()); ++i) {
+    ids.push_back(rows[i].first + " (" + std::to_string(rows[i].second) + ")");
+  }
+  return ids;
+}
 
 void measureRow(Table& table, const std::string& name, const metrics::Measure& measure) {
   table.row({name, measure.value ? fixed(*measure.value, 3) : "–", measure.unit,
@@ -102,7 +115,7 @@ std::string selectionTable(const SessionResult& result) {
          junction ? "junction or beyond" : "before junction",
          std::to_string(record.decisions_driven),
          record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
-         record.release_reason + (other ? " with " + *other : ""),
+         releaseText(record.release_reason) + (other ? " (" + *other + ")" : ""),
          fixed(record.routeCompletionPercent(), 1),
          record.conflict_point_passed ? "passed" : "not reached"});
   }
@@ -151,8 +164,12 @@ std::string rejectionTable(const CbvLog& cbv) {
                                                         cbv.rejected().end());
   std::stable_sort(rows.begin(), rows.end(),
                    [](const auto& left, const auto& right) { return left.second > right.second; });
-  Table table({"Reason", "#Candidates, over all decisions"});
-  for (const auto& [reason, count] : rows) table.row({reason, std::to_string(count)});
+  Table table({"Reason", "#Times, over all decisions", "#Vehicles", "Most often", "Meaning"});
+  for (const auto& [reason, count] : rows) {
+    const auto& vehicles = cbv.rejectedVehicles().at(reason);
+    table.row({reason, std::to_string(count), std::to_string(vehicles.size()),
+               core::joinText(mostOften(vehicles), ", "), rejectionText(reason)});
+  }
   return table.html();
 }
 

@@ -62,7 +62,9 @@ class ResultWriter::Record {
         metrics_(metricsOptions(setup), setup.drivableArea(), setup.egoRoute()),
         timeline_(setup.options().simulation_step),
         plans_(setup.options().simulation_step),
-        result_{setup, timeline_, cbv_, approaches_, plans_, guidance_, facts} {
+        front_views_(setup),
+        result_{setup,     timeline_,    cbv_,     approaches_, plans_,
+                guidance_, front_views_, driving_, facts} {
     core::writeFileAtomically(folder_ / "session.yaml", sessionYaml(setup, facts));
   }
 
@@ -82,6 +84,8 @@ class ResultWriter::Record {
     approaches_.observe(record);
     plans_.observe(record);
     guidance_.observe(record);
+    front_views_.observe(snapshot);
+    driving_.observe(snapshot);
   }
 
   const Verdict& finish(double wall_seconds) {
@@ -121,6 +125,8 @@ class ResultWriter::Record {
   ApproachLog approaches_;
   PlanLog plans_;
   GuidanceLog guidance_;
+  FrontViewLog front_views_;
+  DrivingLog driving_;
   LatencyLog latencies_;
   SessionResult result_;
   std::optional<std::uint64_t> last_tick_;

@@ -9,6 +9,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/line_chart.h"
 #include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/slot_chart.h"
 #include "e2e_cdiff/report/top_view.h"
 
 namespace cdiff::report {
@@ -18,6 +19,7 @@ using traffic::VehicleRole;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostPoints = 1500;  // of a line
+constexpr double kLongestTime = 10.0;      // to a collision that is worth a look [s]
 
 /// What a chart shows of a pose; not a number where there is nothing.
 using Quantity = std::function<double(const TimelinePose&)>;
@@ -99,6 +101,20 @@ std::string gapChart(const SessionResult& result, const std::vector<Subject>& su
   return chartSvg(chart);
 }
 
+std::string collisionTimeChart(const SessionResult& result, std::vector<Subject> subjects) {
+  // The ego's line, with anyone, lies below those of the CBVs.
+  std::stable_partition(subjects.begin(), subjects.end(),
+                        [](const Subject& subject) { return subject.role == VehicleRole::kCbv; });
+  Chart chart = chartOf(result, subjects, [](const TimelinePose& pose) {
+    const auto seconds = static_cast<double>(pose.time_to_collision);
+    return seconds < 0.0 || seconds > kLongestTime ? kNothing : seconds;
+  });
+  chart.title = "2D-TTC: each CBV with the ego; the ego with anyone; up to 10 s";
+  chart.unit = "s";
+  chart.least_top = kLongestTime;
+  return chartSvg(chart);
+}
+
 std::string commandChart(const SessionResult& result, const std::vector<Subject>& subjects,
                          const std::string& title, float TimelinePose::*command) {
   Chart chart = chartOf(result, subjects, [command](const TimelinePose& pose) {
@@ -130,6 +146,8 @@ std::string sessionCharts(const SessionResult& result) {
   std::string html =
       legend(result, subjects) + "<div class=\"charts\">\n" + speedChart(result, subjects);
   if (result.timeline.smallestGap()) html += gapChart(result, subjects);
+  html += collisionTimeChart(result, subjects);
+  if (!result.cbv.records().empty()) html += slotChart(result);
   return html + commandChart(result, subjects, "Throttle", &TimelinePose::throttle) +
          commandChart(result, subjects, "Brake", &TimelinePose::brake) +
          commandChart(result, subjects, "Steering, positive left", &TimelinePose::steer) +

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "e2e_cdiff/metrics/interaction_measures.h"
+#include "e2e_cdiff/metrics/ttc_2d.h"
+
 namespace cdiff::report {
 namespace {
 
@@ -17,7 +20,21 @@ std::optional<double> gapToEgo(const traffic::Vehicle* ego, const traffic::Vehic
   return geometry::distance(ego->box(), vehicle.box());
 }
 
-TimelinePose poseOf(const traffic::Vehicle& vehicle, const traffic::Vehicle* ego) {
+metrics::MovingBox movingBox(const traffic::Vehicle& vehicle) {
+  return {vehicle.box(), vehicle.state.velocity()};
+}
+
+/// 2D-TTC [s] as the metrics define it: of the ego with anyone, of a CBV with the ego.
+std::optional<double> timeToCollision(const traffic::TrafficSnapshot& snapshot,
+                                      const traffic::Vehicle* ego,
+                                      const traffic::Vehicle& vehicle) {
+  if (ego == nullptr) return std::nullopt;
+  if (&vehicle == ego) return metrics::interactionOf(*ego, snapshot, {}).ttc_2d;
+  if (traffic::onDifferentLevels(*ego, vehicle)) return std::nullopt;
+  return metrics::timeToCollision2d(movingBox(*ego), movingBox(vehicle));
+}
+
+TimelinePose poseOf(const traffic::Vehicle& vehicle) {
   TimelinePose pose;
   pose.x = vehicle.state.position.x();
   pose.y = vehicle.state.position.y();
@@ -30,10 +47,17 @@ TimelinePose poseOf(const traffic::Vehicle& vehicle, const traffic::Vehicle* ego
     pose.steer = static_cast<float>(vehicle.applied_action->steer);
     pose.brake = static_cast<float>(vehicle.applied_action->brake);
   }
-  if (vehicle.role == traffic::VehicleRole::kCbv) {
-    pose.gap = static_cast<float>(gapToEgo(ego, vehicle).value_or(-1.0));
-  }
   return pose;
+}
+
+/// What a pose of ego or CBV says beyond that of a background vehicle.
+void addEncounter(TimelinePose& pose, const traffic::TrafficSnapshot& snapshot,
+                  const traffic::Vehicle* ego, const traffic::Vehicle& vehicle) {
+  pose.time_to_collision =
+      static_cast<float>(timeToCollision(snapshot, ego, vehicle).value_or(-1.0));
+  if (vehicle.role != traffic::VehicleRole::kCbv) return;
+  pose.slot = vehicle.cbv_slot;
+  pose.gap = static_cast<float>(gapToEgo(ego, vehicle).value_or(-1.0));
 }
 
 }  // namespace
@@ -56,8 +80,10 @@ void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
   frame.poses.reserve(snapshot.vehicles.size());
   const traffic::Vehicle* ego = snapshot.ego();
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
-    frame.poses.push_back(poseOf(vehicle, ego));
-    frame.poses.back().vehicle = indexOf(vehicle);
+    TimelinePose& pose = frame.poses.emplace_back(poseOf(vehicle));
+    pose.vehicle = indexOf(vehicle);
+    const bool background = vehicle.role == traffic::VehicleRole::kBackground;
+    if (!background) addEncounter(pose, snapshot, ego, vehicle);
   }
   frames_.push_back(std::move(frame));
 }

@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/line_chart.h"
+#include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/markup.h"
 
 namespace cdiff::report {
@@ -16,8 +16,9 @@ namespace {
 
 using traffic::VehicleRole;
 
-constexpr double kLabelHeight = 15.0;  // [pixels]
-constexpr double kLabelWidth = 70.0;   // [pixels]
+constexpr double kLabelHeight = 15.0;         // [pixels]
+constexpr double kLabelWidth = 70.0;          // [pixels]
+const Eigen::Vector2d kGoalLabel(10.0, 4.0);  // from the goal [pixels]
 
 std::string path(const std::string& style, const std::string& data, const std::string& title = {}) {
   if (data.empty()) return {};
@@ -91,7 +92,8 @@ std::string egoRoute(const SessionResult& result, const MapCanvas& canvas) {
   const std::string data = canvas.line(inPlane(points));
   const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
   return path("route", data, "ego route") +
-         pin(goal, "<circle class=\"goal\" r=\"6\"/>" + label(10.0, 4.0, "goal"));
+         pin(goal,
+             "<circle class=\"goal\" r=\"6\"/>" + label(kGoalLabel.x(), kGoalLabel.y(), "goal"));
 }
 
 std::string conflictRoutes(const SessionResult& result, const MapCanvas& canvas) {
@@ -189,6 +191,8 @@ std::string finalBoxes(const SessionResult& result, const MapCanvas& canvas) {
 std::string conflictPoints(const SessionResult& result, const MapCanvas& canvas) {
   std::string svg;
   std::vector<Eigen::Vector2d> taken;  // places of names
+  const auto& route = result.setup.egoRoute().path().points();
+  if (!route.empty()) taken.push_back(canvas.toPixels(route.back().head<2>()) + kGoalLabel);
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
     const CbvRecord& record = result.cbv.records()[i];
     const Eigen::Vector2d pixel = canvas.toPixels(record.conflict_point.position.head<2>());

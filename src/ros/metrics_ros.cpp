@@ -32,6 +32,9 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   results_ = info.results_folder;
   writer_ = std::make_unique<report::ResultWriter>(*setup_, factsOf(info, deterministic), results_);
+  if (setup_->options().video) {
+    video_ = std::make_unique<report::SessionVideo>(*setup_, results_);
+  }
   reporter_ = std::make_unique<MetricReporter>(*setup_);
   reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
   marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
@@ -48,6 +51,7 @@ bool MetricsRos::handle(const Snapshot& message, bool superseded) {
   if (!begin_) begin_ = Clock::now();
   const TickRecordView tick(*message, answers(), setup_->network());
   writer_->observe(tick.record());
+  if (video_) video_->observe(tick.record());
   note(tick.record().latencies);
   if (const auto report = reporter_->observe(tick.snapshot(), tick.record().selection))
     reports_.publish(report);
@@ -97,11 +101,21 @@ int MetricsRos::conclude(Ending ending) {
     scenario::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);
+    if (video_) video_->observe(record);
   }
   writer_->finish(wallSeconds());
   std::cout << writer_->table() << std::flush;
-  writeExitCode(results_, writer_->exitCode());
-  return writer_->exitCode();
+  const int exit_code = finishVideo(writer_->exitCode());
+  writeExitCode(results_, exit_code);
+  return exit_code;
+}
+
+int MetricsRos::finishVideo(int exit_code) {
+  if (!video_) return exit_code;
+  video_->finish(writer_->result());
+  if (video_->error().empty()) return exit_code;
+  ROS_ERROR("%s; the other results are not affected", video_->error().c_str());
+  return exit_code < 2 ? 2 : exit_code;
 }
 
 }  // namespace cdiff::ros

@@ -79,6 +79,7 @@ scenario::SessionRequest sessionRequest(const Parameters& parameters) {
   request.ego_planner = parameters.text("ego_planner");
   request.cbv_planner = parameters.text("cbv_planner");
   request.seed = parameters.text("seed");
+  request.video = parameters.flag("video", false);
   request.set = core::splitText(parameters.text("set"), ' ');
   request.set_source = "parameter ~set";
   if (request.scenario.empty() && request.bench2drive.empty())

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/session_video.h"
 
 namespace cdiff::ros {
 namespace {
@@ -40,7 +41,7 @@ fs::path makeResultFolder(const std::string& given, const scenario::ScenarioOpti
   if (error)
     throw core::InputError("cannot make the result folder '" + folder.string() +
                            "': " + error.message());
-  for (const char* name : {"session.bag", "session.bag.active", "exit_code"})
+  for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile})
     fs::remove(folder / name, error);
   return folder;
 }

@@ -19,7 +19,7 @@ using traffic::SessionStatus;
 std::vector<std::string> knownParameters() {
   return {"scenario",      "bench2drive",    "route",   "network", "mode",   "ego_planner",
           "cbv_planner",   "seed",           "set",     "record",  "folder", "participants",
-          "start_timeout", "answer_timeout", "results", "camera"};
+          "start_timeout", "answer_timeout", "results", "camera",  "video"};
 }
 
 /// Relative paths in parameters are meant from where the user started the session.

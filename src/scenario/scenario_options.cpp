@@ -102,6 +102,11 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
                statuses);
 }
 
+void ReportOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"front_view_rate", "1/s", "Pictures of each CBV's front view in report.html."},
+                 front_view_rate, 0.0, 10.0);
+}
+
 void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"schema_version", "", "Version of this format."}, schema_version, 1, 1);
   visitor.text({"name", "", "Name of the scenario in results."}, name, {});
@@ -133,6 +138,9 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
   visitor.group({"protocol", "", "When a session ends."}, protocol);
   visitor.group({"verdict", "", "When a session passes."}, verdict);
+  visitor.group({"report", "", "What report.html holds."}, report);
+  visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
+               video);
   visitor.number({"target_speed", "m/s", "Speed that planners aim at, capped by the lane's limit."},
                  target_speed, 0.5, 40.0);
   visitor.number({"simulation_step", "s", "Simulation step."}, simulation_step, 0.05, 0.1);

@@ -59,6 +59,7 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
   apply("ego_planner", request.ego_planner);
   apply("cbv_planner", request.cbv_planner);
   apply("seed", request.seed);
+  if (request.video) options.video = true;
   for (const std::string& assignment : request.set)
     core::overrideOption(assignment, request.set_source, options);
   return options;

@@ -7,7 +7,7 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/html_report.h"
-#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 #include "report/seen_session.h"
 
 namespace cdiff::report {
@@ -112,6 +112,83 @@ TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
   EXPECT_LT(page.size(), 3'000'000u);
 }
 
+TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
+  const auto data =
+      nlohmann::json::parse(between(pageOf("crossing"), "id=\"playback\">", "</script>"));
+  // bg_1 is a CBV after tick 52; every 8th tick to 120: 56, 64 ... 120.
+  ASSERT_EQ(data["views"].size(), 1u);
+  const auto& views = data["views"]["0"];
+  ASSERT_EQ(views.size(), 9u);
+  EXPECT_DOUBLE_EQ(views[0][0], 2.8);
+  EXPECT_EQ(data["vehicles"][views[0][1].get<std::size_t>()][0], "bg_1");
+  EXPECT_EQ(views[0][2].get<std::string>().substr(0, 4), "/9j/");  // JPEG begins with FF D8 FF
+  EXPECT_DOUBLE_EQ(data["period"], 0.4);
+  // The ego alone, then the ego and bg_1: index, slot, throttle, brake, steer, gap, 2D-TTC.
+  ASSERT_EQ(data["moments"].size(), 31u);
+  ASSERT_EQ(data["moments"][0].size(), 7u);
+  ASSERT_EQ(data["moments"][30].size(), 14u);
+  const auto moment = data["moments"][30].get<std::vector<int>>();
+  EXPECT_EQ(moment[1], -1);
+  EXPECT_EQ(moment[2], 25);
+  EXPECT_EQ(moment[8], 0);
+  EXPECT_EQ(moment[12], 4957);   // sqrt((49 - 3.15)^2 + (22 - 3.15)^2) m
+  EXPECT_EQ(data["start"], 30);  // they approach until the end
+}
+
+TEST(HtmlReport, ACbvBetweenTwoFramesDoesNoHarm) {
+  const test::TemporaryFolder scratch;
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.report.front_view_rate = 10.0;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  for (std::uint64_t tick = 0; tick <= 4; ++tick) {  // frames at 0 and 4, a view at 2
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
+    snapshot.vehicles[1].cbv_slot = 0;
+    if (tick != 2) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+    if (tick == 4) snapshot.status = SessionStatus::kTimedOut;
+    scenario::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  EXPECT_EQ(writer.result().front_views.views().size(), 1u);
+  writer.finish(1.0);
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "report.html"));
+}
+
+TEST(HtmlReport, SaysWhyThereIsNoFrontView) {
+  EXPECT_NE(seenPage().find("in more pixels than its planner gets"), std::string::npos);
+  const test::TemporaryFolder scratch;
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.cbv_planner = "pdm_lite";
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 60, SessionStatus::kTimedOut);
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_NE(page.find("its planner pdm_lite sees no images"), std::string::npos);
+}
+
+TEST(HtmlReport, ASessionWithoutTicksHasAPage) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  writer.finish(0.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_NE(page.find("class=\"banner error\""), std::string::npos);
+  EXPECT_NE(page.find("The session ended before its first tick."), std::string::npos);
+  EXPECT_NE(page.find("No vehicle was selected as CBV: no front view."), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(HtmlReport, TellsWhatHappenedUnderTheVerdict) {
+  const std::string banner = between(pageOf("crossing"), "class=\"banner passed\"", "</header>");
+  EXPECT_NE(banner.find("bg_1 was the only CBV"), std::string::npos);
+  EXPECT_NE(banner.find("Nobody touched the ego."), std::string::npos);
+}
+
+TEST(HtmlReport, EqualSessionsGiveEqualPages) { EXPECT_EQ(seenPage(), seenPage()); }
+
 TEST(HtmlReport, ShowsViewsWithoutImagesAndPlans) {
   const std::string page = pageOf("crossing");
   const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
@@ -124,7 +201,10 @@ TEST(HtmlReport, NeedsNothingFromOutside) {
   const std::string page = pageOf("crossing");
   EXPECT_EQ(countOf(page, "http"), countOf(page, "http://www.w3.org/2000/svg"));
   EXPECT_EQ(countOf(page, "src="), countOf(page, "src=\"data:image/png;base64,"));
-  EXPECT_EQ(page.find("@import"), std::string::npos);
+  for (const char* loader :
+       {"@import", "url(", "<link", "<iframe", "fetch(", "XMLHttp", "import("}) {
+    EXPECT_EQ(page.find(loader), std::string::npos) << loader;
+  }
 }
 
 TEST(HtmlReport, ShowsTheVerdictFirst) {
@@ -169,12 +249,16 @@ TEST(HtmlReport, KeepsALongSessionSmall) {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
-  // 60 vehicles that wobble for 300 s: 90 000 poses.
-  for (std::uint64_t tick = 0; tick <= 6000; tick += 4) {
+  // 60 vehicles that wobble for 1500 s: 450 000 poses, and 3750 front views.
+  constexpr std::uint64_t kLast = 30000;
+  for (std::uint64_t tick = 0; tick <= kLast; tick += 4) {
     traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
     snapshot.tick = tick;
     snapshot.time = 0.05 * static_cast<double>(tick);
-    snapshot.status = tick == 6000 ? SessionStatus::kTimedOut : SessionStatus::kRunning;
+    snapshot.status = tick == kLast ? SessionStatus::kTimedOut : SessionStatus::kRunning;
+    snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
+    snapshot.vehicles[1].cbv_slot = 0;
+    snapshot.vehicles[1].state.position.y() = -60.0 + 0.003 * static_cast<double>(tick);
     for (int i = 0; i < 60; ++i) {
       const Eigen::Vector2d position(20.0 + 2.5 * i + std::sin(0.3 * static_cast<double>(tick)),
                                      2.0);
@@ -186,7 +270,7 @@ TEST(HtmlReport, KeepsALongSessionSmall) {
     writer.observe(record);
   }
   writer.finish(1.0);
-  EXPECT_LT(std::filesystem::file_size(scratch.path() / "report.html"), 3'000'000u);
+  EXPECT_LT(std::filesystem::file_size(scratch.path() / "report.html"), 6'000'000u);
 }
 
 }  // namespace

@@ -84,5 +84,24 @@ TEST(Timeline, PutsAContactMidway) {
   EXPECT_FALSE(timeline.contacts()[1].position.has_value());
 }
 
+TEST(Timeline, KnowsTheTimeToCollision) {
+  Timeline timeline(0.05);
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {
+      test::sampleVehicle("ego", traffic::VehicleRole::kEgo, {0.0, 0.0}, 0.0, 8.0),
+      test::sampleVehicle("a", traffic::VehicleRole::kCbv, {24.5, 0.0}, 0.0, 3.0),
+      test::sampleVehicle("b", traffic::VehicleRole::kCbv, {-24.5, 0.0}, 0.0, 3.0),
+      test::sampleVehicle("c", traffic::VehicleRole::kBackground, {12.5, 0.0}, 0.0, 0.0)};
+  timeline.observe(snapshot);
+  const auto& poses = timeline.frames()[0].poses;
+  // Gaps of 8 m at 8 m/s to c, of 20 m at 5 m/s to a; b falls behind.
+  EXPECT_NEAR(poses[0].time_to_collision, 1.0, 1e-6);
+  EXPECT_NEAR(poses[1].time_to_collision, 4.0, 1e-6);
+  EXPECT_LT(poses[2].time_to_collision, 0.0);
+  EXPECT_LT(poses[3].time_to_collision, 0.0);
+  EXPECT_EQ(poses[0].slot, -1);
+  EXPECT_EQ(poses[1].slot, 0);
+}
+
 }  // namespace
 }  // namespace cdiff::report

@@ -53,6 +53,10 @@ class CbvLog {
   const std::vector<CbvRecord>& records() const { return records_; }
   /// Candidates rejected, over all decisions, by reason.
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
+  /// The same for each vehicle: by reason, then by id.
+  const std::map<std::string, std::map<std::string, std::size_t>>& rejectedVehicles() const {
+    return rejected_vehicles_;
+  }
 
  private:
   struct Stay {
@@ -67,6 +71,7 @@ class CbvLog {
   std::vector<CbvRecord> records_;
   std::map<int, Stay> open_;  ///< slot -> its present stay
   std::map<std::string, std::size_t> rejected_;
+  std::map<std::string, std::map<std::string, std::size_t>> rejected_vehicles_;
 };
 
 }  // namespace cdiff::report

@@ -11,6 +11,8 @@
 #include "e2e_cdiff/metrics/session_measures.h"
 #include "e2e_cdiff/report/approach_log.h"
 #include "e2e_cdiff/report/cbv_log.h"
+#include "e2e_cdiff/report/driving_log.h"
+#include "e2e_cdiff/report/front_view_log.h"
 #include "e2e_cdiff/report/guidance_log.h"
 #include "e2e_cdiff/report/latency_log.h"
 #include "e2e_cdiff/report/plan_log.h"
@@ -37,6 +39,8 @@ struct SessionResult {
   const ApproachLog& approaches;
   const PlanLog& plans;
   const GuidanceLog& guidance;
+  const FrontViewLog& front_views;
+  const DrivingLog& driving;
   RunFacts facts;
   traffic::SessionStatus status = traffic::SessionStatus::kError;
   double simulated_seconds = 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame),
-/// contacts, and the smallest gap between ego and CBVs over all ticks.
+/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame) with
+/// times to collision, contacts, and the smallest gap between ego and CBVs over all ticks.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,10 @@ struct TimelinePose {
   bool driven = false;        ///< whether the three commands are there
   std::uint32_t vehicle = 0;  ///< index in Timeline::vehicles()
   traffic::VehicleRole role = traffic::VehicleRole::kBackground;
+  int slot = -1;      ///< of a CBV
   float gap = -1.0F;  ///< of a CBV to the ego's box [m]; negative: not defined
+  /// 2D-TTC [s] of a CBV and the ego; of the ego and any vehicle; negative: not defined.
+  float time_to_collision = -1.0F;
 };
 
 struct TimelineFrame {
@@ -61,6 +64,7 @@ class Timeline {
   explicit Timeline(double simulation_step);
   void observe(const traffic::TrafficSnapshot& snapshot);
 
+  /// In order of appearance.
   const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
   const std::vector<TimelineFrame>& frames() const { return frames_; }
   const std::vector<TimelineContact>& contacts() const { return contacts_; }

@@ -11,6 +11,7 @@
 
 #include "diagnostic_updater/diagnostic_updater.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/ros/markers.h"
 #include "e2e_cdiff/ros/metric_reporter.h"
 #include "e2e_cdiff/ros/observer.h"
@@ -32,10 +33,12 @@ class MetricsRos : public Observer {
   void show(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection* selection);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   double wallSeconds() const;
+  int finishVideo(int exit_code);
 
   std::filesystem::path results_;
   std::unique_ptr<scenario::SessionSetup> setup_;
   std::unique_ptr<report::ResultWriter> writer_;
+  std::unique_ptr<report::SessionVideo> video_;  ///< where the scenario asks for it
   std::unique_ptr<MetricReporter> reporter_;
   SessionMarkers markers_;
   traffic::TrafficSnapshot last_;           ///< last snapshot observed

@@ -29,6 +29,13 @@ struct VerdictOptions {
   void describe(core::OptionsVisitor& visitor);
 };
 
+/// What the report holds.
+struct ReportOptions {
+  double front_view_rate = 2.5;  ///< pictures a second of each CBV's front view; 0: none
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
 struct ScenarioOptions {
   std::int64_t schema_version = 1;
   std::string name = "unnamed";
@@ -53,6 +60,8 @@ struct ScenarioOptions {
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
   VerdictOptions verdict;
+  ReportOptions report;
+  bool video = false;             ///< also write session.mp4
   double target_speed = 8.0;      ///< v* [m/s], capped by the lane's limit
   double simulation_step = 0.05;  ///< [s]
   double decision_period = 0.1;   ///< [s], a multiple of simulation_step

@@ -20,6 +20,7 @@ struct SessionRequest {
   std::string ego_planner;
   std::string cbv_planner;
   std::string seed;
+  bool video = false;                ///< session.mp4 too
   std::vector<std::string> set;      ///< "key=value" each, applied last
   std::string set_source = "--set";  ///< how the user knows `set`, for errors
 };

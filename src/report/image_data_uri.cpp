@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -8,6 +8,29 @@
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::report {
+namespace {
+
+constexpr int kJpegQuality = 72;
+
+std::vector<std::uint8_t> encoded(const traffic::CameraImage& image, const char* format,
+                                  const std::vector<int>& settings) {
+  if (!isWhole(image)) {
+    throw core::InputError("an image of " + std::to_string(image.width) + " x " +
+                           std::to_string(image.height) + " pixels has " +
+                           std::to_string(image.rgb.size()) + " bytes");
+  }
+  cv::Mat blue_first(image.height, image.width, CV_8UC3);
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    blue_first.data[i] = image.rgb[i + 2];
+    blue_first.data[i + 1] = image.rgb[i + 1];
+    blue_first.data[i + 2] = image.rgb[i];
+  }
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(format, blue_first, bytes, settings);
+  return bytes;
+}
+
+}  // namespace
 
 bool isWhole(const traffic::CameraImage& image) {
   if (image.width <= 0 || image.height <= 0) return false;
@@ -32,20 +55,12 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::string pngDataUri(const traffic::CameraImage& image) {
-  if (!isWhole(image)) {
-    throw core::InputError("an image of " + std::to_string(image.width) + " x " +
-                           std::to_string(image.height) + " pixels has " +
-                           std::to_string(image.rgb.size()) + " bytes");
-  }
-  cv::Mat blue_first(image.height, image.width, CV_8UC3);
-  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
-    blue_first.data[i] = image.rgb[i + 2];
-    blue_first.data[i + 1] = image.rgb[i + 1];
-    blue_first.data[i + 2] = image.rgb[i];
-  }
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", blue_first, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  return "data:image/png;base64," + base64(png);
+  return "data:image/png;base64," +
+         base64(encoded(image, ".png", {cv::IMWRITE_PNG_COMPRESSION, 9}));
+}
+
+std::vector<std::uint8_t> jpegOf(const traffic::CameraImage& image) {
+  return encoded(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
 }
 
 }  // namespace cdiff::report

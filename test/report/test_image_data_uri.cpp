@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/report/png_data_uri.h"
+#include "e2e_cdiff/report/image_data_uri.h"
 
 namespace cdiff::report {
 namespace {
@@ -28,7 +28,7 @@ std::vector<std::uint8_t> decoded(const std::string& text) {
   return bytes;
 }
 
-TEST(PngDataUri, Base64HasTheTestVectorsOfRfc4648) {
+TEST(ImageDataUri, Base64HasTheTestVectorsOfRfc4648) {
   EXPECT_EQ(base64(bytesOf("")), "");
   EXPECT_EQ(base64(bytesOf("f")), "Zg==");
   EXPECT_EQ(base64(bytesOf("fo")), "Zm8=");
@@ -39,7 +39,7 @@ TEST(PngDataUri, Base64HasTheTestVectorsOfRfc4648) {
   EXPECT_EQ(base64({255, 255, 254}), "///+");
 }
 
-TEST(PngDataUri, DecodesToTheImage) {
+TEST(ImageDataUri, DecodesToTheImage) {
   traffic::CameraImage image{3, 2, 0, {}};
   for (int i = 0; i < 18; ++i) image.rgb.push_back(static_cast<std::uint8_t>(13 * i));
   const std::string uri = pngDataUri(image);
@@ -58,7 +58,7 @@ TEST(PngDataUri, DecodesToTheImage) {
   }
 }
 
-TEST(PngDataUri, RefusesAnImageThatIsNotWhole) {
+TEST(ImageDataUri, RefusesAnImageThatIsNotWhole) {
   EXPECT_THROW(pngDataUri({}), core::InputError);
   EXPECT_THROW(pngDataUri({2, 2, 0, {1, 2, 3}}), core::InputError);
 }

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/session_story.h"
+
+#include <set>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/scenario/world.h"
+
+namespace cdiff::report {
+namespace {
+
+std::string way(const SessionResult& result) {
+  if (result.timeline.frames().empty()) return "The session ended before its first tick.";
+  return "The ego drove " + core::formatFixed(result.measures.route_completion_percent, 1) +
+         " % of its route in " + core::formatFixed(result.simulated_seconds, 1) + " s.";
+}
+
+std::string approach(const SessionResult& result) {
+  std::set<std::string> vehicles;
+  for (const CbvRecord& record : result.cbv.records()) vehicles.insert(record.vehicle_id);
+  if (vehicles.empty()) return "No vehicle was selected as CBV.";
+  const std::string count = vehicles.size() == 1
+                                ? *vehicles.begin() + " was the only CBV"
+                                : std::to_string(vehicles.size()) + " vehicles were CBVs";
+  const auto& gap = result.timeline.smallestGap();
+  if (!gap) return count + "; none was driven on the ego's level.";
+  const std::string who = vehicles.size() == 1 ? " and came" : "; " + gap->vehicle_id + " came";
+  if (gap->distance <= 0.0) {
+    return count + who + " into contact at " + core::formatFixed(gap->time, 2) + " s.";
+  }
+  return count + who + (vehicles.size() == 1 ? " as near as " : " nearest, ") +
+         core::formatFixed(gap->distance, 2) + " m between the outlines, at " +
+         core::formatFixed(gap->time, 2) + " s.";
+}
+
+std::string contact(const SessionResult& result) {
+  std::size_t with_ego = 0;
+  const TimelineContact* first = nullptr;
+  for (const TimelineContact& contact : result.timeline.contacts()) {
+    if (contact.first != scenario::kEgoId && contact.second != scenario::kEgoId) continue;
+    if (first == nullptr) first = &contact;
+    ++with_ego;
+  }
+  if (first == nullptr) return "Nobody touched the ego.";
+  const std::string& other = first->first == scenario::kEgoId ? first->second : first->first;
+  return other + " and the ego touched at " + core::formatFixed(first->time, 2) + " s" +
+         (with_ego > 1 ? ", the first of " + std::to_string(with_ego) + " contacts of the ego."
+                       : ".");
+}
+
+}  // namespace
+
+std::vector<std::string> sessionStory(const SessionResult& result) {
+  if (result.timeline.frames().empty()) return {way(result)};
+  return {way(result), approach(result), contact(result)};
+}
+
+}  // namespace cdiff::report

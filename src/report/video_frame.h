@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// One picture of the video: a head line, the front view of a CBV above a table of ego and CBVs,
+/// and the world from above; at the end the verdict over it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/rendering/front_camera.h"
+#include "e2e_cdiff/report/session_result.h"
+#include "video_map.h"
+
+namespace cdiff::report {
+
+class VideoFrame {
+ public:
+  // [pixels]
+  static constexpr int kFrameWidth = 1280;
+  static constexpr int kFrameHeight = 720;
+
+  /// `setup` must outlive the frame.
+  explicit VideoFrame(const scenario::SessionSetup& setup);
+  /// Every tick in order.
+  void observe(const scenario::TickRecord& record);
+  /// The last tick; height x width x 3 bytes: blue, green, red.
+  std::vector<std::uint8_t> draw();
+  /// The same under the verdict and what happened.
+  std::vector<std::uint8_t> drawVerdict(const SessionResult& result);
+
+ private:
+  void drawScene();
+  void drawHead();
+  void drawFrontView();
+  void drawTable();
+  void drawRow(const traffic::Vehicle& vehicle, int y);
+  std::vector<std::uint8_t> bytes() const;
+
+  const scenario::SessionSetup& setup_;
+  rendering::FrontCamera camera_;
+  VideoMap map_;
+  traffic::TrafficSnapshot snapshot_;  ///< the last one
+  cv::Mat picture_;
+};
+
+}  // namespace cdiff::report

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The world from above around the ego as pixels, for the video: drivable area, lanes, ego route,
+/// trails of the last seconds, conflict points, contacts, vehicles. Map frame, north up, a fixed
+/// scale.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "e2e_cdiff/report/map_canvas.h"
+#include "e2e_cdiff/scenario/session_observer.h"
+#include "e2e_cdiff/scenario/session_setup.h"
+
+namespace cdiff::report {
+
+class VideoMap {
+ public:
+  /// `setup` must outlive the map. `size` (width, height) [pixels].
+  VideoMap(const scenario::SessionSetup& setup, const cv::Size& size);
+  /// Every tick in order.
+  void observe(const scenario::TickRecord& record);
+  /// Draws the last tick into `picture`, 8-bit blue, green, red, of the map's size. The ego's
+  /// centre lies in the middle; without an ego, what was there last.
+  void draw(cv::Mat picture) const;
+
+ private:
+  using Polygons = std::vector<std::vector<cv::Point>>;
+  void drawRoad(cv::Mat picture, const MapCanvas& canvas) const;
+  void drawRoute(cv::Mat picture, const MapCanvas& canvas) const;
+  void drawTrails(cv::Mat picture, const MapCanvas& canvas) const;
+  void drawMarks(cv::Mat picture, const MapCanvas& canvas) const;
+  void drawVehicle(cv::Mat picture, const MapCanvas& canvas, const traffic::Vehicle& vehicle) const;
+  void drawScale(cv::Mat picture, const MapCanvas& canvas) const;
+  const std::vector<Points>& ringsAt(double elevation) const;
+
+  /// Where a vehicle was and when [s].
+  using Trail = std::deque<std::pair<double, Eigen::Vector2d>>;
+  struct Mark {
+    double time = 0.0;  ///< [s]
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  };
+  const scenario::SessionSetup& setup_;
+  cv::Size size_;
+  std::vector<Points> lanes_;
+  mutable std::map<int, std::vector<Points>> rings_;  ///< by whole metres of elevation
+  traffic::TrafficSnapshot snapshot_;                 ///< the last one
+  Eigen::Vector2d center_ = Eigen::Vector2d::Zero();
+  double elevation_ = 0.0;  ///< of the ego [m]
+  std::map<std::string, Trail> trails_;
+  std::vector<cbv::CbvAssignment> assignments_;
+  std::deque<Mark> contacts_;
+};
+
+}  // namespace cdiff::report
