@@ -53,7 +53,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                   "ego", "cbv", "guidance", "guidance_trust_region_share", "metrics",
                   "planner_latency_ms", "faults", "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]),
-            Keys({"route_completion_percent", "driving_score", "collisions", "off_road_percent"}));
+            Keys({"route_completion_percent", "driving_score", "protocol", "penalty", "infractions",
+                  "blocked", "collisions", "off_road_percent"}));
   EXPECT_EQ(
       keysOf(summary["cbv"]),
       Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
