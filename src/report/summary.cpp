@@ -47,8 +47,11 @@ Json egoObject(const metrics::SessionMeasures& measures) {
                  {"protocol", measures.protocol}};
   addMeasure(object, "penalty", measures.penalty);
   object["infractions"] = Json::object();
-  for (const auto& [name, measure] : measures.infractions)
+  object["infractions_n"] = Json::object();
+  for (const auto& [name, measure] : measures.infractions) {
     addMeasure(object["infractions"], name, measure);
+    object["infractions_n"][name] = measure.n;
+  }
   object["blocked"] = measures.blocked;
   object["collisions"] = measures.ego_collisions;
   addMeasure(object, "off_road_percent", measures.ego_off_road_percent);

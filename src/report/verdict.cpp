@@ -63,11 +63,10 @@ Check collisionCheck(const scenario::VerdictOptions& rules, std::size_t collisio
                                   : found + "; at most " + core::formatNumber(limit) + " allowed");
 }
 
-/// A limit on one of the ego's infractions; `what` it did, as in "the ego ran 2 red lights".
+/// A limit on one of the ego's infractions.
 struct InfractionRule {
   std::string infraction;
-  std::string did;
-  std::string what;
+  std::string text;  ///< what is counted, in a sentence
   double limit;
   int decimals;
 };
@@ -81,20 +80,20 @@ Check infractionCheck(const InfractionRule& rule, const metrics::SessionMeasures
             rule.infraction + " of the ego is not defined: " + reason};
   }
   const double value = *found->second.value;
-  const std::string text =
-      "the ego " + rule.did + " " + core::formatFixed(value, rule.decimals) + " " + rule.what;
+  const std::string unit = found->second.unit.empty() ? "" : " " + found->second.unit;
+  const std::string text = rule.text + ": " + core::formatFixed(value, rule.decimals) + unit;
   return judged(rule.infraction, value <= rule.limit,
                 rule.limit >= kNoLimit
                     ? text + "; no limit is set"
-                    : text + "; at most " + core::formatNumber(rule.limit) + " allowed");
+                    : text + "; at most " + core::formatNumber(rule.limit) + unit + " allowed");
 }
 
 std::vector<Check> infractionChecks(const scenario::VerdictOptions& rules,
                                     const metrics::SessionMeasures& measures) {
   const InfractionRule all[] = {
-      {"red_lights", "ran", "red lights", rules.maximum_red_lights, 0},
-      {"stop_signs", "did not stop at", "stop signs", rules.maximum_stop_signs, 0},
-      {"outside_lanes_percent", "drove", "% of its way outside the lanes",
+      {"red_lights", "red lights that the ego ran", rules.maximum_red_lights, 0},
+      {"stop_signs", "stop signs that the ego did not obey", rules.maximum_stop_signs, 0},
+      {"outside_lanes_percent", "share of its way that the ego drove outside the lanes",
        rules.maximum_outside_lanes_percent, 2}};
   std::vector<Check> checks;
   for (const InfractionRule& rule : all) checks.push_back(infractionCheck(rule, measures));
