@@ -116,7 +116,7 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
 }
 
 TEST(ResultWriter, SummaryTellsTheEgosInfractions) {
-  const test::ScratchFolder scratch;
+  const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kBlocked);
   const Json ego = summaryOf(scratch)["ego"];
   EXPECT_EQ(ego["protocol"], "rift_dev10");
