@@ -125,7 +125,7 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
   const bool deterministic = options.real_time_factor == 0.0;
   report::ResultWriter writer(setup, {"cdiff run", loop->world().simulatorVersion(), deterministic},
                               folder);
-  Progress progress(options.protocol.time_limit);
+  Progress progress(scenario::longestTime(options.protocol, setup.egoRoute()));
   loop->addObserver(writer);
   if (!quiet) loop->addObserver(progress);
   try {

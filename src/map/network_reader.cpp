@@ -206,6 +206,8 @@ void NetworkReader::readConnection(const pugi::xml_node& node) {
   connection.signal_link = static_cast<int>(number(node, "linkIndex", -1.0, element));
   const std::string direction = node.attribute("dir").value();
   if (!direction.empty()) connection.direction = direction.front();
+  const std::string state = node.attribute("state").value();
+  if (!state.empty()) connection.state = state.front();
   const std::string via = node.attribute("via").value();
   if (!via.empty()) {
     connection.to = network_.findLane(via);

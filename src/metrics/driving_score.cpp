@@ -45,24 +45,25 @@ double productOfFactors(const Infractions& infractions, bool minimum_speed) {
   return product;
 }
 
-double sumOfCharges(const Infractions& infractions) {
+double sumOfCharges(const Infractions& infractions, bool minimum_speed) {
   double sum = 0.0;
   for (const Kind& kind : kindsOf(infractions))
     sum += kind.charge * static_cast<double>(kind.count);
+  if (!minimum_speed) return sum;
   for (const double deficit : speedDeficits(infractions)) sum += 0.4 * deficit;
   return sum;
 }
 
 }  // namespace
 
-double infractionPenalty(const Infractions& infractions, ScoreRules rules) {
+double infractionPenalty(const Infractions& infractions, const ScoreRules& rules) {
   const double inside = std::clamp(1.0 - infractions.outside_lanes_percent / 100.0, 0.0, 1.0);
-  if (rules == ScoreRules::kLeaderboard21) return inside / (1.0 + sumOfCharges(infractions));
-  return inside * productOfFactors(infractions, rules == ScoreRules::kLeaderboard20);
+  if (rules.charges) return inside / (1.0 + sumOfCharges(infractions, rules.speed_counts));
+  return inside * productOfFactors(infractions, rules.speed_counts);
 }
 
 double drivingScore(double route_completion_percent, const Infractions& infractions,
-                    ScoreRules rules) {
+                    const ScoreRules& rules) {
   return std::max(0.0, route_completion_percent * infractionPenalty(infractions, rules));
 }
 

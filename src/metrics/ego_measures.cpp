@@ -2,27 +2,30 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/ego_measures.h"
 
-#include "e2e_cdiff/metrics/driving_score.h"
+#include <utility>
 
 namespace cdiff::metrics {
 
 EgoMeasures::EgoMeasures(const map::Route& route, double completion_percent,
-                         double completion_distance) {
+                         double completion_distance, EgoInfractions infractions)
+    : infractions_(std::move(infractions)) {
   if (!route.empty()) progress_.emplace(route, completion_percent, completion_distance);
 }
 
-void EgoMeasures::observe(const traffic::Vehicle& ego, bool off_road) {
+void EgoMeasures::observe(const traffic::Vehicle& ego, bool off_road,
+                          const traffic::TrafficSnapshot& snapshot) {
   id_ = ego.id;
   const Eigen::Vector2d position = ego.state.position;
   if (!position.allFinite()) return;
   if (progress_) progress_->update(position);
   off_road_.add(off_road);
-  if (last_position_) {
-    const double moved = (position - *last_position_).norm();
-    distance_ += moved;
-    if (off_road) outside_distance_ += moved;
-  }
-  last_position_ = position;
+  infractions_.observe(ego, snapshot, progress_ ? progress_->arcLength() : 0.0);
+}
+
+void EgoMeasures::countCollision(const traffic::TrafficSnapshot& snapshot,
+                                 const traffic::Contact& contact) {
+  ++collisions_;
+  infractions_.countCollision(snapshot, contact.first == id_ ? contact.second : contact.first);
 }
 
 double EgoMeasures::routeCompletionPercent() const {
@@ -31,15 +34,8 @@ double EgoMeasures::routeCompletionPercent() const {
 
 Measure EgoMeasures::offRoadPercent() const { return off_road_.measure("the ego was never seen"); }
 
-double EgoMeasures::outsidePercent() const {
-  return distance_ > 0.0 ? 100.0 * outside_distance_ / distance_ : 0.0;
-}
-
 double EgoMeasures::drivingScore() const {
-  Infractions infractions;
-  infractions.vehicle_collisions = collisions_;
-  infractions.outside_lanes_percent = outsidePercent();
-  return metrics::drivingScore(routeCompletionPercent(), infractions, ScoreRules::kRiftDev10);
+  return infractions_.drivingScore(routeCompletionPercent());
 }
 
 }  // namespace cdiff::metrics

@@ -98,12 +98,14 @@ class SessionMetrics::Accumulator {
               const map::Route& ego_route)
       : options_(options),
         drivable_area_(drivable_area),
-        ego_(ego_route, options.completion_percent, options.completion_distance) {}
+        ego_(ego_route, options.completion_percent, options.completion_distance,
+             EgoInfractions(options.network, ego_route, options.infractions)) {}
 
   TickMeasures observe(const TrafficSnapshot& snapshot) {
     TickMeasures tick;
     if (const Vehicle* ego = snapshot.ego()) observeEgo(*ego, snapshot, tick);
     tick.route_completion_percent = ego_.routeCompletionPercent();
+    blocked_ = snapshot.status == traffic::SessionStatus::kBlocked;
     observeContacts(snapshot);
     observeCbvs(snapshot, tick);
     return tick;
@@ -114,6 +116,10 @@ class SessionMetrics::Accumulator {
     result.route_completion_percent = ego_.routeCompletionPercent();
     result.driving_score = ego_.drivingScore();
     result.ego_collisions = ego_.collisions();
+    result.protocol = options_.protocol;
+    result.blocked = blocked_;
+    result.penalty = ego_.infractions().penalty();
+    result.infractions = ego_.infractions().measures();
     result.ego_off_road_percent = ego_.offRoadPercent();
     result.cbv_count = cbvs_.count();
     result.cbv_decisions = cbvs_.decisions();
@@ -143,7 +149,7 @@ class SessionMetrics::Accumulator {
   void observeEgo(const Vehicle& ego, const TrafficSnapshot& snapshot, TickMeasures& tick) {
     tick.ego_speed = ego.state.speed;
     tick.ego_off_road = offRoad(ego);
-    ego_.observe(ego, tick.ego_off_road);
+    ego_.observe(ego, tick.ego_off_road, snapshot);
     const Interaction interaction = interactionOf(
         ego, snapshot, {options_.ttc_radius, options_.ttc_limit, snapshot.decision_tick});
     tick.ttc_2d = interaction.ttc_2d;
@@ -172,7 +178,7 @@ class SessionMetrics::Accumulator {
   void observeContacts(const TrafficSnapshot& snapshot) {
     for (const traffic::Contact& contact : snapshot.contacts) {
       const bool with_ego = contact.first == ego_.id() || contact.second == ego_.id();
-      if (with_ego) ego_.countCollision();
+      if (with_ego) ego_.countCollision(snapshot, contact);
       bool with_cbv = false;
       for (const std::string* id : {&contact.first, &contact.second}) {
         if (!isCbv(snapshot, *id)) continue;
@@ -198,6 +204,7 @@ class SessionMetrics::Accumulator {
   SessionMetricsOptions options_;
   const map::DrivableArea& drivable_area_;
   EgoMeasures ego_;
+  bool blocked_ = false;  ///< by the last snapshot
   CbvMeasures cbvs_;
   RiftMeasures rift_;
   SampleStatistics times_;

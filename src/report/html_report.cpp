@@ -85,7 +85,8 @@ std::string figures(const SessionResult& result) {
   return "<div class=\"figures\">\n" +
          figure("Route completion", core::formatFixed(measures.route_completion_percent, 1), "%",
                 traffic::toText(result.status)) +
-         figure("Driving score", core::formatFixed(measures.driving_score, 1), "", "of 100") +
+         figure("Driving score", core::formatFixed(measures.driving_score, 1), "",
+                "of 100, by " + measures.protocol) +
          figure("Ego collisions", std::to_string(measures.ego_collisions), "",
                 std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
          figure("CBVs", std::to_string(measures.cbv_count), "",
@@ -129,6 +130,7 @@ std::string htmlReport(const SessionResult& result) {
          section("Plans against what was driven", planSection(result.plans)) +
          section("Guidance", guidanceSection(result)) + section("Rules", ruleTable(result)) +
          section("Metrics", metricTable(result.measures)) +
+         section("Infractions of the ego", infractionTable(result.measures)) +
          section("Critical background vehicles", selectionTable(result)) +
          section("Why others were no CBVs", rejectionTable(result.cbv)) +
          section("Contacts", contactTable(result.timeline)) +

@@ -94,6 +94,13 @@ std::string metricTable(const metrics::SessionMeasures& measures) {
   return table.html();
 }
 
+std::string infractionTable(const metrics::SessionMeasures& measures) {
+  Table table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
+  for (const auto& [name, measure] : measures.infractions) measureRow(table, name, measure);
+  measureRow(table, "Penalty", measures.penalty);
+  return table.html();
+}
+
 std::string selectionTable(const SessionResult& result) {
   if (result.cbv.records().empty()) {
     return "<p class=\"note\">No vehicle was selected as CBV.</p>\n";

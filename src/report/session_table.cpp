@@ -31,7 +31,9 @@ std::string headRows(const SessionResult& result) {
 
 std::string figureRows(const metrics::SessionMeasures& measures) {
   return row("route completion", core::formatFixed(measures.route_completion_percent, 1) + " %") +
-         row("driving score", core::formatFixed(measures.driving_score, 1)) +
+         row("driving score", core::formatFixed(measures.driving_score, 1) + " by " +
+                                  measures.protocol + ", penalty " +
+                                  measureText(measures.penalty, 3)) +
          row("ego collisions", std::to_string(measures.ego_collisions)) +
          row("CBVs", std::to_string(measures.cbv_count) + " over " +
                          std::to_string(measures.cbv_decisions) + " decisions") +

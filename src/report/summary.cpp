@@ -44,7 +44,16 @@ Json distributionObject(const metrics::DistributionMeasure& distribution) {
 Json egoObject(const metrics::SessionMeasures& measures) {
   Json object = {{"route_completion_percent", measures.route_completion_percent},
                  {"driving_score", measures.driving_score},
-                 {"collisions", measures.ego_collisions}};
+                 {"protocol", measures.protocol}};
+  addMeasure(object, "penalty", measures.penalty);
+  object["infractions"] = Json::object();
+  object["infractions_n"] = Json::object();
+  for (const auto& [name, measure] : measures.infractions) {
+    addMeasure(object["infractions"], name, measure);
+    object["infractions_n"][name] = measure.n;
+  }
+  object["blocked"] = measures.blocked;
+  object["collisions"] = measures.ego_collisions;
   addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
   return object;
 }

@@ -7,20 +7,9 @@
 #include "e2e_cdiff/ros/conversions.h"
 
 namespace cdiff::ros {
-namespace {
-
-metrics::SessionMetricsOptions metricsOptions(const scenario::ScenarioOptions& options) {
-  metrics::SessionMetricsOptions result;
-  result.simulation_step = options.simulation_step;
-  result.completion_percent = options.protocol.completion_percent;
-  result.completion_distance = options.protocol.completion_distance;
-  return result;
-}
-
-}  // namespace
-
 MetricReporter::MetricReporter(const scenario::SessionSetup& setup)
-    : metrics_(metricsOptions(setup.options()), setup.drivableArea(), setup.egoRoute()) {}
+    : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
+      protocol_(setup.options().protocol.preset) {}
 
 msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnapshot& snapshot,
                                                      const cbv::CbvSelection* selection) {
@@ -28,6 +17,7 @@ msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnaps
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
   if (!snapshot.decision_tick && !final) return nullptr;
   msgs::MetricReport report = toMsg(measures, snapshot);
+  report.protocol = protocol_;
   if (final) report.measures = toMsg(metrics_.measures());
   return boost::make_shared<const msgs::MetricReport>(report);
 }

@@ -116,6 +116,8 @@ std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
       toMsg("ego_route_completion", number(measures.route_completion_percent, "%")),
       toMsg("ego_driving_score", number(measures.driving_score, "")),
       toMsg("ego_collisions", number(static_cast<double>(measures.ego_collisions), "")),
+      toMsg("ego_penalty", measures.penalty),
+      toMsg("ego_blocked", number(measures.blocked ? 1.0 : 0.0, "")),
       toMsg("ego_off_road", measures.ego_off_road_percent),
       toMsg("cbv_count", number(static_cast<double>(measures.cbv_count), "")),
       toMsg("cbv_off_road_rate", measures.cbv_off_road_rate_percent),
@@ -129,6 +131,8 @@ std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
       toMsg("speed_shapiro_wilk", measures.speed_shapiro_wilk),
       toMsg("acceleration_shapiro_wilk", measures.acceleration_shapiro_wilk),
       toMsg("speed_wasserstein", measures.speed_wasserstein)};
+  for (const auto& [name, measure] : measures.infractions)
+    all.push_back(toMsg("ego_infractions/" + name, measure));
   for (const auto& [name, measure] : measures.rift_compat)
     all.push_back(toMsg("rift_compat/" + name, measure));
   return all;

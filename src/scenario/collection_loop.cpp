@@ -35,8 +35,10 @@ ScenarioOptions collectionScenario(ScenarioOptions scenario, const CollectionOpt
     if (planning::seesImages(*planner)) *planner = "pdm_lite";
   }
   scenario.protocol.time_limit = options.duration;
+  scenario.protocol.time_limit_speed_percent = 0.0;
   scenario.protocol.blocked_time = kEgoBlockedTime;
   scenario.protocol.deviation_distance = kEgoDeviation;
+  scenario.protocol.deviation_percent = 100.0;
   const bool own_lights = random.uniform(key, kLights) < options.program_lights_share;
   scenario.lights = own_lights ? "program" : "green";
   const bool file = scenario.demand != "generated" && scenario.demand != "none";

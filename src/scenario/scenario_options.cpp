@@ -94,8 +94,17 @@ void checkDemandFile(const std::string& file) {
 void VerdictOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"minimum_route_completion", "%", "Least route completion of the ego."},
                  minimum_route_completion, 0.0, 100.0);
+  visitor.number({"minimum_driving_score", "%", "Least driving score of the ego."},
+                 minimum_driving_score, 0.0, 100.0);
   visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego."},
                  maximum_ego_collisions, 0.0, kInfinite);
+  visitor.number({"maximum_red_lights", "", "Most red lights that the ego runs."},
+                 maximum_red_lights, 0.0, kInfinite);
+  visitor.number({"maximum_stop_signs", "", "Most stop signs that the ego does not obey."},
+                 maximum_stop_signs, 0.0, kInfinite);
+  visitor.number(
+      {"maximum_outside_lanes_percent", "%", "Largest share of its way outside the lanes."},
+      maximum_outside_lanes_percent, 0.0, 100.0);
   visitor.number({"maximum_cbv_off_road_percent", "%", "Highest off-road rate of the CBVs."},
                  maximum_cbv_off_road_percent, 0.0, 100.0);
   visitor.list({"statuses", "", "Final statuses that pass; empty: all but error and interrupted."},

@@ -68,12 +68,13 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
-  // Which profile applies is only known when everything was read; the profile's values then lie
-  // below everything else.
+  // Which profile and which protocol apply is only known when everything was read; their values
+  // then lie below everything else.
   const ScenarioOptions first = applyRequest(request, {});
   ScenarioOptions base;
   base.guidance =
       guidance::loadProfile(first.guidance_profile.empty() ? first.mode : first.guidance_profile);
+  base.protocol = loadProtocol(first.protocol.preset);
   const ScenarioOptions options = applyRequest(request, base);
   options.validate();
   return options;

@@ -207,6 +207,15 @@ TEST(HtmlReport, NeedsNothingFromOutside) {
   }
 }
 
+TEST(HtmlReport, ShowsTheInfractionsWithTheirProtocol) {
+  const std::string page = pageOf("crossing");
+  EXPECT_NE(page.find("Infraction by rift_dev10"), std::string::npos);
+  EXPECT_NE(page.find("of 100, by rift_dev10"), std::string::npos);
+  EXPECT_NE(page.find("<td>vehicle_collisions</td><td class=\"number\">0.000</td>"),
+            std::string::npos);
+  EXPECT_NE(page.find("these sessions have no pedestrians"), std::string::npos);
+}
+
 TEST(HtmlReport, ShowsTheVerdictFirst) {
   const std::string page = pageOf("crossing");
   const std::size_t banner = page.find("class=\"banner passed\"");

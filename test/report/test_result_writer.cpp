@@ -53,7 +53,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                   "ego", "cbv", "guidance", "guidance_trust_region_share", "metrics",
                   "planner_latency_ms", "faults", "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]),
-            Keys({"route_completion_percent", "driving_score", "collisions", "off_road_percent"}));
+            Keys({"route_completion_percent", "driving_score", "protocol", "penalty", "infractions",
+                  "infractions_n", "blocked", "collisions", "off_road_percent"}));
   EXPECT_EQ(
       keysOf(summary["cbv"]),
       Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
@@ -112,6 +113,30 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   EXPECT_DOUBLE_EQ(latency["max"], 2.2);
   EXPECT_EQ(latency["n"], 61);
   EXPECT_EQ(summary["verdict"], Json::parse(R"({"passed": true, "failures": []})"));
+}
+
+TEST(ResultWriter, SummaryTellsTheEgosInfractions) {
+  const test::TemporaryFolder scratch;
+  runSample(scratch, SessionStatus::kBlocked);
+  const Json ego = summaryOf(scratch)["ego"];
+  EXPECT_EQ(ego["protocol"], "rift_dev10");
+  EXPECT_EQ(ego["penalty"], 1.0);
+  EXPECT_EQ(ego["driving_score"], ego["route_completion_percent"]);
+  EXPECT_EQ(ego["blocked"], true);
+  const Json& found = ego["infractions"];
+  for (const char* name :
+       {"vehicle_collisions", "red_lights", "stop_signs", "outside_lanes_percent"})
+    EXPECT_EQ(found[name], 0.0) << name;
+  // 48 of 190 m: five of 20 stretches (9.5 m, 24 ticks). The background drives 6 and 10 m/s, from
+  // tick 53 on (the 5th of the third stretch) 10 m/s; the ego 8 m/s: 100, 100, 8 x 24 / (4 x 8 + 20
+  // x 10), 80 and 80 %.
+  EXPECT_EQ(found["minimum_speed_missed"], 3.0);
+  EXPECT_NEAR(found["minimum_speed_percent"].get<double>(), (360.0 + 19200.0 / 232.0) / 5.0, 1e-9);
+  EXPECT_EQ(ego["infractions_n"]["minimum_speed_missed"], 5);
+  EXPECT_EQ(ego["infractions_n"]["outside_lanes_percent"], 121);
+  EXPECT_EQ(ego["infractions_n"]["pedestrian_collisions"], 0);
+  EXPECT_TRUE(found["pedestrian_collisions"].is_null());
+  EXPECT_EQ(found["pedestrian_collisions_reason"], "these sessions have no pedestrians");
 }
 
 TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
@@ -198,7 +223,7 @@ TEST(ResultWriter, JunitTellsFailureFromError) {
   ASSERT_TRUE(junit.load_string(textOf(scratch, "junit.xml").c_str()));
   pugi::xml_node suite = junit.child("testsuites").child("testsuite");
   EXPECT_STREQ(suite.attribute("name").value(), "a <b> & \"c\"");
-  EXPECT_EQ(suite.attribute("tests").as_int(), 5);
+  EXPECT_EQ(suite.attribute("tests").as_int(), 9);
   EXPECT_EQ(suite.attribute("failures").as_int(), 1);
   EXPECT_EQ(suite.attribute("errors").as_int(), 0);
   const pugi::xml_node failed =
@@ -210,7 +235,7 @@ TEST(ResultWriter, JunitTellsFailureFromError) {
   suite = junit.child("testsuites").child("testsuite");
   EXPECT_EQ(suite.attribute("failures").as_int(), 0);
   EXPECT_EQ(suite.attribute("errors").as_int(), 1);
-  EXPECT_EQ(suite.attribute("skipped").as_int(), 4);
+  EXPECT_EQ(suite.attribute("skipped").as_int(), 8);
   const pugi::xml_node session = suite.find_child_by_attribute("testcase", "name", "session");
   EXPECT_NE(std::string(session.child("error").attribute("message").value()).find("SUMO <died>"),
             std::string::npos);

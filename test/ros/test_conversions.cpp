@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
@@ -188,6 +189,22 @@ TEST(Conversions, SessionInfoRebuildsTheSameSetup) {
   EXPECT_EQ(back.egoRoute().path().points(), setup.egoRoute().path().points());
   EXPECT_EQ(back.egoRoute().lanes(), setup.egoRoute().lanes());
   EXPECT_EQ(fromMsg(overTheWire(toPathMsg(setup.egoRoute()))), setup.egoRoute().path().points());
+}
+
+TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
+  metrics::SessionMeasures measures;
+  measures.blocked = true;
+  measures.penalty = {0.42, 7, "", ""};
+  measures.infractions["red_lights"] = {1.0, 2, "", ""};
+  measures.infractions["static_collisions"] = {std::nullopt, 0, "", "none"};
+  std::map<std::string, msgs::Measure> found;
+  for (const msgs::Measure& measure : toMsg(measures)) found[measure.name] = measure;
+  EXPECT_EQ(found.at("ego_penalty").value, 0.42);
+  EXPECT_EQ(found.at("ego_blocked").value, 1.0);
+  EXPECT_EQ(found.at("ego_infractions/red_lights").value, 1.0);
+  EXPECT_EQ(found.at("ego_infractions/red_lights").n, 2U);
+  EXPECT_FALSE(found.at("ego_infractions/static_collisions").defined);
+  EXPECT_EQ(found.at("ego_infractions/static_collisions").reason, "none");
 }
 
 TEST(Conversions, UndefinedFiguresAreNan) {

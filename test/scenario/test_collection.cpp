@@ -206,5 +206,18 @@ TEST(CollectionOptions, ContradictionsAreInputErrors) {
   EXPECT_THROW(options.validate(), core::InputError);
 }
 
+TEST(CollectionScenario, EndsByTheDurationUnderEveryProtocol) {
+  for (const std::string& preset : shippedProtocols()) {
+    ScenarioOptions scenario;
+    scenario.protocol = loadProtocol(preset);
+    CollectionOptions options;
+    options.duration = 25.0;
+    const SessionSetup setup(loadScenario("crossing_straight"));
+    const ProtocolOptions protocol = collectionScenario(scenario, options).protocol;
+    EXPECT_EQ(longestTime(protocol, setup.egoRoute()), 25.0) << preset;
+    EXPECT_EQ(protocol.deviation_percent, 100.0) << preset;
+  }
+}
+
 }  // namespace
 }  // namespace cdiff::scenario

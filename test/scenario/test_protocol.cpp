@@ -60,6 +60,32 @@ TEST_F(Protocol, DeviatedBeyondThirtyMetres) {
   EXPECT_EQ(at(1.0, 30.1, 5.0), SessionStatus::kDeviated);
 }
 
+// 30 % of 100 m: progress made 15 m off the route from x = 10 m on has used it up beyond x = 40 m.
+TEST_F(Protocol, DeviatedAfterThirtyPercentFifteenMetresAway) {
+  EXPECT_EQ(at(10.0, 0.0, 5.0), SessionStatus::kRunning);
+  for (int x = 11; x <= 40; ++x) ASSERT_EQ(at(x, 15.0, 5.0), SessionStatus::kRunning) << x;
+  EXPECT_EQ(at(41.0, 14.9, 5.0), SessionStatus::kRunning);  // near enough not to count
+  EXPECT_EQ(at(42.0, 15.0, 5.0), SessionStatus::kDeviated);
+}
+
+// 10 % of the lane's 10 m/s: every metre allows 1 s more.
+TEST_F(Protocol, TheTimeLimitGrowsWithTheProgress) {
+  ProtocolOptions options;
+  options.time_limit = 5.0;
+  options.time_limit_speed_percent = 10.0;
+  EXPECT_NEAR(longestTime(options, route_), 105.0, 1e-9);
+  ProtocolMonitor monitor(options, route_);
+  EXPECT_EQ(monitor.update(test::snapshotWithEgo(99, {3.0, 0.0, 0.0, 5.0})),
+            SessionStatus::kRunning);
+  // 3 m allow 8 s, 160 ticks.
+  EXPECT_EQ(monitor.update(test::snapshotWithEgo(159, {3.0, 0.0, 0.0, 5.0})),
+            SessionStatus::kRunning);
+  EXPECT_EQ(monitor.update(test::snapshotWithEgo(160, {3.0, 0.0, 0.0, 5.0})),
+            SessionStatus::kTimedOut);
+  options.time_limit_speed_percent = 0.0;
+  EXPECT_EQ(longestTime(options, route_), 5.0);
+}
+
 // 40 s at 0.05 s a tick are 800 ticks.
 TEST_F(Protocol, TimedOutAtFortySeconds) {
   tick_ = 799;

@@ -47,11 +47,12 @@ class NetworkText {
   }
 
   /// From lane to lane ("edge_0" style ids) through an internal lane, as SUMO writes it: two
-  /// records.
+  /// records. `attributes` of the first, e.g. `state="s"`.
   NetworkText& connection(const std::string& from, const std::string& to,
-                          const std::string& via = "", char direction = 's') {
-    connections_ +=
-        record(from, to, direction) + (via.empty() ? "" : " via=\"" + via + "\"") + "/>\n";
+                          const std::string& via = "", char direction = 's',
+                          const std::string& attributes = "") {
+    connections_ += record(from, to, direction) + (via.empty() ? "" : " via=\"" + via + "\"") +
+                    (attributes.empty() ? "" : " " + attributes) + "/>\n";
     if (!via.empty()) connections_ += record(via, to, direction) + "/>\n";
     return *this;
   }

@@ -28,6 +28,7 @@ struct LaneLink {
   std::string signal_id;   ///< traffic light that controls the link; empty when none
   int signal_link = -1;    ///< its position in the light's state text
   char direction = 's';    ///< SUMO's letter: s l r L R t
+  char state = '-';  ///< SUMO's right of way: M m = s (stop) w (all-way stop) o O Z; - unknown
 };
 
 struct Lane {

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Driving score [%] of CARLA's leaderboard: route completion x penalty, never negative; the
-/// penalty is a product of factors (2.0) or 1 / (1 + sum of charges) (2.1). RIFT and Bench2Drive
-/// use 2.0 without the minimum speed.
+/// penalty is a product of factors (2.0) or 1 / (1 + sum of charges) (2.1).
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 namespace cdiff::metrics {
 
-enum class ScoreRules {
-  kLeaderboard20,  ///< factors, minimum speed counts
-  kLeaderboard21,  ///< charges, minimum speed counts
-  kRiftDev10       ///< factors of 2.0, minimum speed does not count
+/// Defaults: those of RIFT and Bench2Drive.
+struct ScoreRules {
+  bool charges = false;       ///< 1 / (1 + sum of charges) instead of a product of factors
+  bool speed_counts = false;  ///< whether the minimum speed enters
 };
 
 /// What happened on a route.
@@ -28,14 +26,14 @@ struct Infractions {
   std::size_t yields_failed = 0;  ///< to emergency vehicles
   std::vector<double>
       minimum_speed_percent;           ///< per checkpoint: own mean speed / that of the traffic [%]
-  double outside_lanes_percent = 0.0;  ///< part of the driven distance outside the lanes, 0 to 100
+  double outside_lanes_percent = 0.0;  ///< part of the completed route outside the lanes, 0 to 100
 };
 
 /// In [0, 1]; 1 without infractions.
-double infractionPenalty(const Infractions& infractions, ScoreRules rules);
+double infractionPenalty(const Infractions& infractions, const ScoreRules& rules);
 
 /// In percent, from a route completion in percent.
 double drivingScore(double route_completion_percent, const Infractions& infractions,
-                    ScoreRules rules);
+                    const ScoreRules& rules);
 
 }  // namespace cdiff::metrics

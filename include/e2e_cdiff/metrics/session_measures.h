@@ -29,7 +29,11 @@ struct SessionMeasures {
   // Ego.
   double route_completion_percent = 0.0;
   double driving_score = 0.0;
-  std::size_t ego_collisions = 0;
+  std::size_t ego_collisions = 0;  ///< contacts of the ego, charged or not
+  std::string protocol;            ///< preset whose rules the score and the infractions follow
+  bool blocked = false;            ///< the session ended because the ego stood still
+  Measure penalty;                 ///< of the infractions, in [0, 1]
+  std::map<std::string, Measure> infractions;  ///< by name, see EgoInfractions::measures
   Measure ego_off_road_percent;  ///< share of ticks with the ego's centre off the drivable area
   // CBVs, all slots together.
   std::size_t cbv_count = 0;           ///< vehicles that were driven as CBV

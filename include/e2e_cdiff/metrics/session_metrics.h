@@ -6,23 +6,28 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 #include "e2e_cdiff/metrics/session_measures.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::metrics {
 
 struct SessionMetricsOptions {
-  double simulation_step = 0.05;      ///< [s]
-  double completion_percent = 99.0;   ///< of the protocol
-  double completion_distance = 10.0;  ///< of the protocol [m]
-  double ttc_radius = 60.0;           ///< vehicles considered for 2D-TTC [m]
-  double ttc_limit = 3600.0;          ///< a longer 2D-TTC counts as never [s]
-  double target_speed = 8.0;          ///< that CBVs aim at, capped by the lane's limit [m/s]
-  const map::RoadNetwork* network = nullptr;  ///< for that limit; nullptr: target_speed alone
+  double simulation_step = 0.05;        ///< [s]
+  double completion_percent = 99.0;     ///< of the protocol
+  double completion_distance = 10.0;    ///< of the protocol [m]
+  std::string protocol = "rift_dev10";  ///< name of the preset
+  InfractionOptions infractions;        ///< its rules for the ego
+  double ttc_radius = 60.0;             ///< vehicles considered for 2D-TTC [m]
+  double ttc_limit = 3600.0;            ///< a longer 2D-TTC counts as never [s]
+  double target_speed = 8.0;            ///< that CBVs aim at, capped by the lane's limit [m/s]
+  const map::RoadNetwork* network =
+      nullptr;  ///< for that limit and the ego's infractions; nullptr: without
 };
 
 /// Figures of one tick, for the live topic.

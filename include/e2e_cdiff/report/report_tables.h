@@ -11,6 +11,8 @@ namespace cdiff::report {
 
 std::string ruleTable(const SessionResult& result);
 std::string metricTable(const metrics::SessionMeasures& measures);
+/// The ego's infractions and penalty by the protocol.
+std::string infractionTable(const metrics::SessionMeasures& measures);
 std::string selectionTable(const SessionResult& result);
 /// Distances between plans and what was driven, by CBV.
 std::string planTable(const PlanLog& plans);

@@ -3,6 +3,8 @@
 /// The session's metrics as messages: one report per decision, and one with all figures at the end.
 #pragma once
 
+#include <string>
+
 #include "e2e_cdiff/MetricReport.h"
 #include "e2e_cdiff/metrics/session_metrics.h"
 #include "e2e_cdiff/scenario/session_setup.h"
@@ -21,6 +23,7 @@ class MetricReporter {
 
  private:
   metrics::SessionMetrics metrics_;
+  std::string protocol_;  ///< preset
 };
 
 }  // namespace cdiff::ros

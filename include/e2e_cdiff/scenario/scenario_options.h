@@ -20,9 +20,13 @@ namespace cdiff::scenario {
 
 /// When a session passes.
 struct VerdictOptions {
-  double minimum_route_completion = 0.0;  ///< of the ego [%]
-  double maximum_ego_collisions = 1e9;
-  double maximum_cbv_off_road_percent = 100.0;  ///< [%]
+  double minimum_route_completion = 0.0;         ///< of the ego [%]
+  double minimum_driving_score = 0.0;            ///< of the ego, by the protocol [%]
+  double maximum_ego_collisions = 1e9;           ///< contacts
+  double maximum_red_lights = 1e9;               ///< run by the ego
+  double maximum_stop_signs = 1e9;               ///< not obeyed by the ego
+  double maximum_outside_lanes_percent = 100.0;  ///< of the ego's way along its route [%]
+  double maximum_cbv_off_road_percent = 100.0;   ///< [%]
   std::vector<std::string>
       statuses;  ///< allowed final statuses; empty: all but error and interrupted
 
