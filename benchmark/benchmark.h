@@ -43,6 +43,7 @@ void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
+void benchmarkMetrics(Figures& figures);
 void benchmarkPlanner(Figures& figures);
 /// Where the benchmarks are built with ROS.
 void benchmarkReplay(Figures& figures);

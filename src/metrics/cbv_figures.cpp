@@ -27,12 +27,14 @@ constexpr FigureDefinition kRows[] = {
      [](const M& m) { return m.cbv_off_road_rate_percent; }},
     {"cbv_corner_off_road_percent", "/cbv/corner_off_road_rate_percent",
      "Off-road rate of CBVs, any corner", "%", kLower,
-     "100 x CBV ticks with the centre or any corner of the box off the drivable area of its level / "
+     "100 x CBV ticks with the centre or any corner of the box off the drivable area of its level "
+     "/ "
      "CBV ticks; never below the rate by the centre.",
      "RIFT does not look at corners.",
      [](const M& m) { return m.cbv_corner_off_road_rate_percent; }},
     {"cbv_collisions", "/cbv/collisions", "Collisions of CBVs", "count", kNeither,
-     "Contacts of a CBV's box with any other vehicle's box on the same level; a contact of two CBVs "
+     "Contacts of a CBV's box with any other vehicle's box on the same level; a contact of two "
+     "CBVs "
      "counts once.",
      "RIFT counts at most one collision per CBV, and one for each of two CBVs that collide.",
      [](const M& m) { return countMeasure(m.cbv_collisions); }},
@@ -52,9 +54,11 @@ constexpr FigureDefinition kRows[] = {
     {"cbv_uncomfortable_percent", "/cbv/uncomfortable_rate_percent", "Uncomfortable rate of CBVs",
      "%", kLower,
      "100 x CBV decisions that are not within -4.05 < longitudinal acceleration < 2.40 m/s^2, "
-     "|lateral acceleration| < 4.89 m/s^2 and |jerk| < 8.37 m/s^3 / CBV decisions (nuPlan's limits); "
+     "|lateral acceleration| < 4.89 m/s^2 and |jerk| < 8.37 m/s^3 / CBV decisions (nuPlan's "
+     "limits); "
      "lateral acceleration = speed x yaw rate.",
-     "RIFT takes the acceleration before a CBV's first decision as 0, so that its first jerk can be "
+     "RIFT takes the acceleration before a CBV's first decision as 0, so that its first jerk can "
+     "be "
      "beyond the limit.",
      [](const M& m) { return m.cbv_uncomfortable_rate_percent; }},
     {"cbv_speed_error_mps", "/cbv/speed_error_mps", "Speed error of CBVs", "m/s", kLower,

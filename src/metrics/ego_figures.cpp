@@ -19,7 +19,8 @@ constexpr FigureDefinition kRows[] = {
      "Route completion x infraction penalty by the rules of the protocol (CARLA leaderboard).", "",
      [](const M& m) { return numberMeasure(m.driving_score, ""); }},
     {"ego_collisions", "/ego/collisions", "Collisions of the ego", "count", kLower,
-     "Contacts of the ego's box with any other vehicle's box on the same level; the same pair counts "
+     "Contacts of the ego's box with any other vehicle's box on the same level; the same pair "
+     "counts "
      "again only after 5 s without overlap.",
      "", [](const M& m) { return countMeasure(m.ego_collisions); }},
     {"ego_off_road_percent", "/ego/off_road_percent", "Ego off the road", "%", kLower,

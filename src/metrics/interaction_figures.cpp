@@ -13,7 +13,8 @@ constexpr auto kNeither = Direction::kNeither;
 constexpr FigureDefinition kRows[] = {
     {"ttc_mean_s", "/metrics/ttc_2d_s/mean", "2D-TTC, mean", "s", kHigher,
      "Mean over decision ticks of the ego's smallest 2D time to collision: the first time at which "
-     "its oriented box and that of any vehicle within 60 m on its level touch, both keeping velocity "
+     "its oriented box and that of any vehicle within 60 m on its level touch, both keeping "
+     "velocity "
      "and heading; decisions without a contact ahead within 3600 s are left out (paper's 2D-TTC).",
      "RIFT casts rays from corners onto bow-tie outlines, keeps times below 5 s at ego speeds of 3 "
      "to 10 m/s, and averages the midpoints of 0.5 s bins.",
@@ -44,7 +45,8 @@ constexpr FigureDefinition kRows[] = {
     {"ttc_lon_lat_mean_s", "/metrics/ttc_lon_lat_s/mean",
      "Smaller of longitudinal and lateral TTC, mean", "s", kHigher,
      "Mean over decision ticks of the ego's smallest time to collision by the paper's wording: in "
-     "the ego's frame the smaller of gap / closing speed along and across, boxes taken as parallel, "
+     "the ego's frame the smaller of gap / closing speed along and across, boxes taken as "
+     "parallel, "
      "each valid where the other direction overlaps at that time; vehicles as for ttc_mean_s.",
      "RIFT does not report it.", [](const M& m) { return m.ttc_lon_lat.mean; }},
     {"ttc_lon_lat_std_s", "/metrics/ttc_lon_lat_s/std",
@@ -62,8 +64,10 @@ constexpr FigureDefinition kRows[] = {
     {"post_encroachment_mean_s", "/metrics/post_encroachment_s/mean",
      "Post-encroachment time, mean over CBVs", "s", kHigher,
      "Mean over CBVs of the post-encroachment time with the ego: the time between the first one's "
-     "box leaving and the second one's box entering a place, the shortest over all places that both "
-     "boxes sweep; 0 for a contact, the net time gap for one behind the other, absent above 10 s (as "
+     "box leaving and the second one's box entering a place, the shortest over all places that "
+     "both "
+     "boxes sweep; 0 for a contact, the net time gap for one behind the other, absent above 10 s "
+     "(as "
      "in FHWA's SSAM, Gettman et al. 2008).",
      "RIFT does not compute it.", [](const M& m) { return m.post_encroachment.mean; }},
     {"post_encroachment_std_s", "/metrics/post_encroachment_s/std",

@@ -23,7 +23,8 @@ void MetricsOptions::describe(core::OptionsVisitor& visitor) {
 void MetricsOptions::validate() const {
   if (speed_target == "file" && speed_target_file.empty() && speed_target_samples.empty()) {
     throw core::InputError(
-        "key 'metrics.speed_target' is 'file', but 'metrics.speed_target_file' is empty; expected a "
+        "key 'metrics.speed_target' is 'file', but 'metrics.speed_target_file' is empty; expected "
+        "a "
         "file of speeds [m/s], one a line, or {\"cases\": [{\"x\": [...]}]}");
   }
   samples();

@@ -12,7 +12,8 @@ constexpr auto kLower = Direction::kLowerIsBetter;
 constexpr auto kNeither = Direction::kNeither;
 
 constexpr const char* kRepeats =
-    "RIFT adds the whole history of each living CBV again at every tick (sample i of an n-tick life "
+    "RIFT adds the whole history of each living CBV again at every tick (sample i of an n-tick "
+    "life "
     "counts n - i times) and takes mean and deviation from the midpoints of its bins.";
 constexpr const char* kResamples =
     "RIFT draws 3000 values (NumPy's stream of seed 0) from a histogram in which early samples are "
@@ -43,7 +44,8 @@ constexpr FigureDefinition kRows[] = {
      "The smallest of the same magnitudes.", "",
      [](const M& m) { return m.cbv_acceleration.minimum; }},
     {"cbv_jerk_mean_mps3", "/metrics/jerk_mps3/mean", "Jerk of CBVs, mean", "m/s^3", kNeither,
-     "Mean of the jerk of CBVs: change of the magnitude of acceleration from one CBV decision to the "
+     "Mean of the jerk of CBVs: change of the magnitude of acceleration from one CBV decision to "
+     "the "
      "next / decision period, signed; a vehicle's first decision as CBV has none.",
      "RIFT takes the acceleration before the first decision as 0 and adds histories again at every "
      "tick (bins from -10 to 10 m/s^3).",
@@ -75,11 +77,13 @@ constexpr FigureDefinition kRows[] = {
      [](const M& m) { return m.acceleration_shapiro_wilk; }},
     {"acceleration_shapiro_wilk_p", "/metrics/acceleration_shapiro_wilk_p/value",
      "Shapiro-Wilk p of CBV accelerations", "", kNeither,
-     "Probability of a W as small as acceleration_shapiro_wilk for a normal sample of the same size.",
+     "Probability of a W as small as acceleration_shapiro_wilk for a normal sample of the same "
+     "size.",
      "RIFT reports W alone.", [](const M& m) { return m.acceleration_shapiro_wilk_p; }},
     {"speed_wasserstein_mps", "/metrics/speed_wasserstein_mps/value",
      "Wasserstein distance of CBV speeds to the target", "m/s", kLower,
-     "1-Wasserstein distance between the speeds of CBVs at CBV decisions and the target that is named "
+     "1-Wasserstein distance between the speeds of CBVs at CBV decisions and the target that is "
+     "named "
      "beside it: speeds of background vehicles within 150 m of the ego at decisions of the same "
      "session (default), a normal distribution (exact integral), or the samples of a file (paper's "
      "S-WD).",

@@ -15,8 +15,8 @@ namespace {
 using geometry::OrientedBox;
 using traffic::Vehicle;
 
-/// Convex set of (s, u): the first box has gone the share s of its way, the second the share u. Each
-/// of the eight cuts adds at most one corner to the unit square.
+/// Convex set of (s, u): the first box has gone the share s of its way, the second the share u.
+/// Each of the eight cuts adds at most one corner to the unit square.
 using Shares = boost::container::static_vector<Eigen::Vector2d, 16>;
 
 /// The part with normal . (s, u) <= bound.
@@ -55,8 +55,8 @@ bool farApart(const SweptBox& first, const SweptBox& second) {
   const auto radius = [](const SweptBox& way) {
     return 0.5 * (std::hypot(way.box.length, way.box.width) + way.offset.norm());
   };
-  const Eigen::Vector2d between = second.box.center + 0.5 * second.offset - first.box.center -
-                                  0.5 * first.offset;
+  const Eigen::Vector2d between =
+      second.box.center + 0.5 * second.offset - first.box.center - 0.5 * first.offset;
   const double sum = radius(first) + radius(second);
   return between.squaredNorm() > sum * sum;
 }
@@ -109,8 +109,8 @@ const SweptBox* PostEncroachmentTimes::extend(Track& track, const Vehicle* vehic
 void PostEncroachmentTimes::compare(Track& cbv, const SweptBox& ego_way,
                                     const SweptBox& cbv_way) const {
   const double best = cbv.seconds.value_or(limit_);
-  const double apart = std::abs(cbv_way.begin - ego_way.begin) -
-                       std::max(ego_way.duration, cbv_way.duration);
+  const double apart =
+      std::abs(cbv_way.begin - ego_way.begin) - std::max(ego_way.duration, cbv_way.duration);
   if (apart > best || farApart(ego_way, cbv_way) ||
       traffic::onDifferentLevels(ego_way.elevation, cbv_way.elevation)) {
     return;
@@ -162,9 +162,10 @@ DistributionMeasure PostEncroachmentTimes::measure() const {
   for (const auto& [id, cbv] : cbvs_) {
     if (cbv.seconds) statistics.add(*cbv.seconds);
   }
-  return statistics.measure("s", cbvs_.empty() ? std::string(kNoCbv)
-                                               : "no CBV was ever at one place with the ego within " +
-                                                     std::to_string(std::lround(limit_)) + " s");
+  return statistics.measure("s", cbvs_.empty()
+                                     ? std::string(kNoCbv)
+                                     : "no CBV was ever at one place with the ego within " +
+                                           std::to_string(std::lround(limit_)) + " s");
 }
 
 }  // namespace cdiff::metrics

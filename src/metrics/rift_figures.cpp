@@ -12,10 +12,10 @@ constexpr auto kLower = Direction::kLowerIsBetter;
 constexpr auto kNeither = Direction::kNeither;
 
 /// Row of a key of rift_compat.
-#define RIFT_FIGURE(key, label, unit, direction, definition)                             \
-  {                                                                                      \
-    "rift_compat_" key, "/metrics/rift_compat/" key "/value", "RIFT: " label, unit,      \
-        direction, definition, "", [](const M& m) { return riftMeasure(m, key); }        \
+#define RIFT_FIGURE(key, label, unit, direction, definition)                                   \
+  {                                                                                            \
+    "rift_compat_" key, "/metrics/rift_compat/" key "/value", "RIFT: " label, unit, direction, \
+        definition, "", [](const M& m) { return riftMeasure(m, key); }                         \
   }
 
 Measure riftMeasure(const M& measures, const char* key) {
@@ -42,16 +42,18 @@ constexpr FigureDefinition kRows[] = {
                 "Variance of the same bins' midpoints."),
     RIFT_FIGURE("collisions_per_km", "CPK", "1/km", kNeither,
                 "1000 x CBVs that collided / distance over decision ticks in metres."),
-    RIFT_FIGURE("jerk_mean_mps3", "jerk, mean", "m/s^3", kNeither,
-                "Mean of (magnitude of acceleration - the last one) / decision period, the first last "
-                "one being 0, from 2 m/s^3 bins from -10 to 10, histories repeated."),
+    RIFT_FIGURE(
+        "jerk_mean_mps3", "jerk, mean", "m/s^3", kNeither,
+        "Mean of (magnitude of acceleration - the last one) / decision period, the first last "
+        "one being 0, from 2 m/s^3 bins from -10 to 10, histories repeated."),
     RIFT_FIGURE("jerk_std_mps3", "jerk, standard deviation", "m/s^3", kLower,
                 "Square root of the variance of that jerk histogram's midpoints."),
     RIFT_FIGURE("off_road_rate_percent", "ORR", "%", kLower,
                 "100 x CBV decisions with the centre off the drivable area / CBV decisions."),
-    RIFT_FIGURE("reached_progress_m", "RP", "m", kHigher,
-                "Sum over CBVs of the distance between successive decisions; a sum, so it grows with "
-                "the time driven as CBV."),
+    RIFT_FIGURE(
+        "reached_progress_m", "RP", "m", kHigher,
+        "Sum over CBVs of the distance between successive decisions; a sum, so it grows with "
+        "the time driven as CBV."),
     RIFT_FIGURE("speed_mean_mps", "speed, mean", "m/s", kNeither,
                 "Mean speed from the midpoints of RIFT's bins below 14 m/s, histories repeated."),
     RIFT_FIGURE("speed_shapiro_wilk", "S-SW", "", kHigher,
@@ -60,10 +62,11 @@ constexpr FigureDefinition kRows[] = {
                 "Square root of the variance of RIFT's histogram of speeds."),
     RIFT_FIGURE("speed_wasserstein_mps", "S-WD", "m/s", kLower,
                 "sqrt((mean - 8.5)^2 + deviation^2) of RIFT's histogram of speeds."),
-    RIFT_FIGURE("ttc_2d_s", "RTTC, mean", "s", kHigher,
-                "Per decision the smallest over vehicles within 60 m of RIFT's ray cast with bow-tie "
-                "outlines, rounded to 0.01 s; mean of 0.5 s bins below 5 s at ego speeds of 3 to 10 "
-                "m/s."),
+    RIFT_FIGURE(
+        "ttc_2d_s", "RTTC, mean", "s", kHigher,
+        "Per decision the smallest over vehicles within 60 m of RIFT's ray cast with bow-tie "
+        "outlines, rounded to 0.01 s; mean of 0.5 s bins below 5 s at ego speeds of 3 to 10 "
+        "m/s."),
     RIFT_FIGURE("ttc_2d_variance_s2", "RTTC, variance", "s^2", kNeither,
                 "Variance of the RTTC bins' midpoints; RIFT prints it after +-."),
     RIFT_FIGURE("uncomfortable_rate_percent", "UC", "%", kLower,

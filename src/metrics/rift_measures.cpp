@@ -134,9 +134,9 @@ std::map<std::string, Measure> RiftMeasures::measures() const {
   result["off_road_rate_percent"] = off_road_.measure(kNoCbv);
   result["uncomfortable_rate_percent"] = uncomfortable_.measure(kNoCbv);
   result["collisions_per_km"] = collisionsPerKilometre(collided_.size(), distance_, driven_.size());
-  result["reached_progress_m"] = histogramMeasure(
-      "m", driven_.size(),
-      driven_.empty() ? std::nullopt : std::optional<double>(distance_), kNoCbv);
+  result["reached_progress_m"] =
+      histogramMeasure("m", driven_.size(),
+                       driven_.empty() ? std::nullopt : std::optional<double>(distance_), kNoCbv);
   return result;
 }
 

@@ -40,17 +40,6 @@ fs::path preparedFolder(const fs::path& folder) {
   return folder;
 }
 
-metrics::SessionMetricsOptions metricsOptions(const scenario::SessionSetup& setup) {
-  const scenario::ScenarioOptions& options = setup.options();
-  metrics::SessionMetricsOptions metrics;
-  metrics.simulation_step = options.simulation_step;
-  metrics.completion_percent = options.protocol.completion_percent;
-  metrics.completion_distance = options.protocol.completion_distance;
-  metrics.target_speed = options.target_speed;
-  metrics.network = &setup.network();
-  return metrics;
-}
-
 }  // namespace
 
 /// What is gathered while the session runs.
@@ -59,7 +48,7 @@ class ResultWriter::Record {
   Record(const scenario::SessionSetup& setup, const RunFacts& facts, const fs::path& folder)
       : folder_(preparedFolder(folder)),
         trace_(folder_ / "trace.csv"),
-        metrics_(metricsOptions(setup), setup.drivableArea(), setup.egoRoute()),
+        metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
         timeline_(setup.options().simulation_step),
         plans_(setup.options().simulation_step),
         result_{setup, timeline_, cbv_, approaches_, plans_, guidance_, facts} {

@@ -2,25 +2,26 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/metric_reporter.h"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
+#include <cmath>
 
 #include "e2e_cdiff/ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
 
-metrics::SessionMetricsOptions metricsOptions(const scenario::ScenarioOptions& options) {
-  metrics::SessionMetricsOptions result;
-  result.simulation_step = options.simulation_step;
-  result.completion_percent = options.protocol.completion_percent;
-  result.completion_distance = options.protocol.completion_distance;
-  return result;
+/// Figures of the whole session go out once in a simulated second.
+std::uint64_t decisionsPerReport(const scenario::SessionSetup& setup) {
+  const double decisions = 1.0 / setup.options().decision_period;
+  return static_cast<std::uint64_t>(std::max(1L, std::lround(decisions)));
 }
 
 }  // namespace
 
 MetricReporter::MetricReporter(const scenario::SessionSetup& setup)
-    : metrics_(metricsOptions(setup.options()), setup.drivableArea(), setup.egoRoute()) {}
+    : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
+      decisions_per_report_(decisionsPerReport(setup)) {}
 
 msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnapshot& snapshot,
                                                      const cbv::CbvSelection* selection) {
@@ -28,7 +29,11 @@ msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnaps
   const bool final = snapshot.status != traffic::SessionStatus::kRunning;
   if (!snapshot.decision_tick && !final) return nullptr;
   msgs::MetricReport report = toMsg(measures, snapshot);
-  if (final) report.measures = toMsg(metrics_.measures());
+  const bool due = snapshot.decision_tick && decisions_++ % decisions_per_report_ == 0;
+  if (due || final) {
+    session_ = metrics_.measures();
+    report.measures = toMsg(session_);
+  }
   return boost::make_shared<const msgs::MetricReport>(report);
 }
 

@@ -43,6 +43,18 @@ planning::PlanningContext SessionSetup::planningContext() const {
           &ego_route_};
 }
 
+metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
+  metrics::SessionMetricsOptions options;
+  options.simulation_step = options_.simulation_step;
+  options.decision_period = options_.decision_period;
+  options.completion_percent = options_.protocol.completion_percent;
+  options.completion_distance = options_.protocol.completion_distance;
+  options.target_speed = options_.target_speed;
+  options.network = &network_;
+  options.metrics = options_.metrics;
+  return options;
+}
+
 std::uint64_t SessionSetup::ticksPerDecision() const {
   return static_cast<std::uint64_t>(
       std::llround(options_.decision_period / options_.simulation_step));

@@ -77,7 +77,8 @@ TEST(ComfortMeasures, BeginsAnewAfterAGap) {
 TEST(ComfortMeasures, JudgesJerk) {
   // 0 to 0.8 m/s^2 in 0.1 s is 8 m/s^3, 0.8 to 1.7 is 9: one of three decisions.
   ComfortMeasures comfort(0.1);
-  for (const double acceleration : {0.0, 0.8, 1.7}) observe(comfort, {moving("a", 5, acceleration)});
+  for (const double acceleration : {0.0, 0.8, 1.7})
+    observe(comfort, {moving("a", 5, acceleration)});
   EXPECT_NEAR(*comfort.uncomfortableRatePercent().value, 100.0 / 3.0, 1e-9);
 }
 

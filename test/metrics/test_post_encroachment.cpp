@@ -33,9 +33,9 @@ PostEncroachmentTimes driven(const Drive& ego, const Drive& cbv, int ticks, doub
   PostEncroachmentTimes times(limit);
   for (int tick = 0; tick <= ticks; ++tick) {
     const double time = kStep * tick;
-    times.observe(test::snapshot(static_cast<std::uint64_t>(tick),
-                                 {ego.at(time, test::ego(0, 0, 0)),
-                                  cbv.at(time, test::cbv("a", 0, 0, 0))}));
+    times.observe(
+        test::snapshot(static_cast<std::uint64_t>(tick),
+                       {ego.at(time, test::ego(0, 0, 0)), cbv.at(time, test::cbv("a", 0, 0, 0))}));
   }
   return times;
 }
@@ -75,8 +75,7 @@ TEST(PostEncroachmentTimes, IsAbsentWhereTheyShareNoPlace) {
   EXPECT_FALSE(beside.times()[0].seconds.has_value());
   EXPECT_EQ(beside.times()[0].reason, "ego and CBV were never at one place within 10 s");
   EXPECT_FALSE(beside.measure().mean.value.has_value());
-  EXPECT_EQ(beside.measure().mean.reason,
-            "no CBV was ever at one place with the ego within 10 s");
+  EXPECT_EQ(beside.measure().mean.reason, "no CBV was ever at one place with the ego within 10 s");
   Drive above{-40, 0, 0, 9};
   above.elevation = 6.0;
   EXPECT_FALSE(driven({0, -20, 90, 10}, above, 200).times()[0].seconds.has_value());

@@ -29,15 +29,27 @@ TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
   const SessionMeasures measures = metrics_.measures();
   EXPECT_EQ(measures.route_completion_percent, 0.0);
   EXPECT_EQ(measures.driving_score, 0.0);
-  for (const Measure& measure :
-       {measures.ego_off_road_percent, measures.cbv_off_road_rate_percent,
-        measures.collisions_per_km, measures.ttc_2d.mean, measures.ttc_2d.minimum,
-        measures.speed_shapiro_wilk, measures.acceleration_shapiro_wilk, measures.speed_wasserstein,
-        measures.cbv_speed_error, measures.cbv_closest_distance, measures.cbv_minimum_distance,
-        measures.cbv_corner_off_road_rate_percent, measures.cbv_uncomfortable_rate_percent,
-        measures.ego_collisions_per_km, measures.ttc_2d_cbv.mean, measures.ttc_lon_lat.mean,
-        measures.ttc_2d_defined_percent, measures.ttc_2d_cbv_defined_percent,
-        measures.post_encroachment.mean, measures.cbv_jerk.mean, measures.speed_shapiro_wilk_p}) {
+  for (const Measure& measure : {measures.ego_off_road_percent,
+                                 measures.cbv_off_road_rate_percent,
+                                 measures.collisions_per_km,
+                                 measures.ttc_2d.mean,
+                                 measures.ttc_2d.minimum,
+                                 measures.speed_shapiro_wilk,
+                                 measures.acceleration_shapiro_wilk,
+                                 measures.speed_wasserstein,
+                                 measures.cbv_speed_error,
+                                 measures.cbv_closest_distance,
+                                 measures.cbv_minimum_distance,
+                                 measures.cbv_corner_off_road_rate_percent,
+                                 measures.cbv_uncomfortable_rate_percent,
+                                 measures.ego_collisions_per_km,
+                                 measures.ttc_2d_cbv.mean,
+                                 measures.ttc_lon_lat.mean,
+                                 measures.ttc_2d_defined_percent,
+                                 measures.ttc_2d_cbv_defined_percent,
+                                 measures.post_encroachment.mean,
+                                 measures.cbv_jerk.mean,
+                                 measures.speed_shapiro_wilk_p}) {
     EXPECT_FALSE(measure.value.has_value());
     EXPECT_EQ(measure.n, 0U);
     EXPECT_FALSE(measure.reason.empty());

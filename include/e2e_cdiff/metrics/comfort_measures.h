@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// How CBVs move at decision ticks: speed [m/s], magnitude of acceleration [m/s^2], jerk [m/s^3] and
-/// the share of decisions beyond nuPlan's comfort limits [%].
+/// How CBVs move at decision ticks: speed [m/s], magnitude of acceleration [m/s^2], jerk [m/s^3]
+/// and the share of decisions beyond nuPlan's comfort limits [%].
 #pragma once
 
 #include <map>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The one table of a session's figures: name, place in summary.json, unit, direction, definition
-/// with source, and where RIFT's code computes it otherwise. Summary, message, report, batch columns
-/// and docs/metrics.md all take it from here.
+/// with source, and where RIFT's code computes it otherwise. Summary, message, report, batch
+/// columns and docs/metrics.md all take it from here.
 #pragma once
 
 #include <string>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The figures of a session as RIFT's code computes them, quirks included, from decision ticks (10
-/// Hz): 2D-TTC and ACT [s] in bins below 5 s at ego speeds of 3 to 10 m/s; speed [m/s], acceleration
-/// [m/s^2] and jerk [m/s^3] from histograms in which sample i of an n-tick life counts n - i times,
-/// and Shapiro-Wilk of 3000 values drawn from them; closed-form Wasserstein distance [m/s]; at most
-/// one collision per life.
+/// Hz): 2D-TTC and ACT [s] in bins below 5 s at ego speeds of 3 to 10 m/s; speed [m/s],
+/// acceleration [m/s^2] and jerk [m/s^3] from histograms in which sample i of an n-tick life counts
+/// n - i times, and Shapiro-Wilk of 3000 values drawn from them; closed-form Wasserstein distance
+/// [m/s]; at most one collision per life.
 #pragma once
 
 #include <map>
@@ -34,8 +34,8 @@ class RiftMeasures {
   /// Keys: ttc_2d_s, ttc_2d_variance_s2 (RIFT prints it after "+-"), act_s, act_variance_s2,
   /// speed_shapiro_wilk, acceleration_shapiro_wilk, speed_wasserstein_mps, off_road_rate_percent,
   /// collisions_per_km, uncomfortable_rate_percent, reached_progress_m, and speed, acceleration and
-  /// jerk as NAME_mean_UNIT and NAME_std_UNIT (mps, mps2, mps3). n counts values before RIFT repeats
-  /// them.
+  /// jerk as NAME_mean_UNIT and NAME_std_UNIT (mps, mps2, mps3). n counts values before RIFT
+  /// repeats them.
   std::map<std::string, Measure> measures() const;
 
  private:

@@ -43,15 +43,15 @@ struct SessionMeasures {
   std::size_t ego_collisions = 0;
   Measure ego_off_road_percent;  ///< share of ticks with the ego's centre off the drivable area
   // CBVs, all slots together.
-  std::size_t cbv_count = 0;           ///< vehicles that were driven as CBV
-  std::size_t cbv_decisions = 0;       ///< decisions with a CBV driven, summed over CBVs
-  Measure cbv_off_road_rate_percent;   ///< paper's ORR: centre off the drivable area / time as CBV
+  std::size_t cbv_count = 0;          ///< vehicles that were driven as CBV
+  std::size_t cbv_decisions = 0;      ///< decisions with a CBV driven, summed over CBVs
+  Measure cbv_off_road_rate_percent;  ///< paper's ORR: centre off the drivable area / time as CBV
   Measure cbv_corner_off_road_rate_percent;  ///< the same with any corner of the box off it
   Measure cbv_uncomfortable_rate_percent;    ///< decisions beyond nuPlan's comfort limits
-  std::size_t cbv_collisions = 0;      ///< contacts of CBVs with anyone
-  std::size_t cbv_ego_collisions = 0;  ///< of these, with the ego
-  Measure collisions_per_km;           ///< paper's CPK
-  Measure ego_collisions_per_km;       ///< the same of contacts with the ego alone
+  std::size_t cbv_collisions = 0;            ///< contacts of CBVs with anyone
+  std::size_t cbv_ego_collisions = 0;        ///< of these, with the ego
+  Measure collisions_per_km;                 ///< paper's CPK
+  Measure ego_collisions_per_km;             ///< the same of contacts with the ego alone
   double cbv_distance_m = 0.0;
   Measure cbv_speed_error;       ///< mean |v - min(target speed, lane limit)| at decisions [m/s]
   Measure cbv_closest_distance;  ///< mean over CBVs of the smallest centre distance to the ego [m]
@@ -59,12 +59,12 @@ struct SessionMeasures {
   // Interaction.
   DistributionMeasure ttc_2d;  ///< ego against every other vehicle, per-decision minimum over those
                                ///< where defined [s]
-  DistributionMeasure ttc_2d_cbv;   ///< the same, CBVs alone [s]
-  DistributionMeasure ttc_lon_lat;  ///< the paper's wording, every other vehicle [s]
-  Measure ttc_2d_defined_percent;       ///< decisions at which ttc_2d is defined [%]
-  Measure ttc_2d_cbv_defined_percent;   ///< of decisions with a CBV [%]
-  Measure ttc_lon_lat_defined_percent;  ///< [%]
-  DistributionMeasure post_encroachment;             ///< over CBVs that have one [s]
+  DistributionMeasure ttc_2d_cbv;         ///< the same, CBVs alone [s]
+  DistributionMeasure ttc_lon_lat;        ///< the paper's wording, every other vehicle [s]
+  Measure ttc_2d_defined_percent;         ///< decisions at which ttc_2d is defined [%]
+  Measure ttc_2d_cbv_defined_percent;     ///< of decisions with a CBV [%]
+  Measure ttc_lon_lat_defined_percent;    ///< [%]
+  DistributionMeasure post_encroachment;  ///< over CBVs that have one [s]
   std::vector<PostEncroachment> post_encroachments;  ///< of every CBV, by id
   // Motion of CBVs at decisions.
   DistributionMeasure cbv_speed;         ///< [m/s]

@@ -17,14 +17,14 @@
 namespace cdiff::metrics {
 
 struct SessionMetricsOptions {
-  double simulation_step = 0.05;      ///< [s]
-  double decision_period = 0.1;       ///< [s]
-  double completion_percent = 99.0;   ///< of the protocol
-  double completion_distance = 10.0;  ///< of the protocol [m]
-  double ttc_radius = 60.0;           ///< vehicles considered for 2D-TTC [m]
-  double ttc_limit = 3600.0;          ///< a longer 2D-TTC counts as never [s]
+  double simulation_step = 0.05;          ///< [s]
+  double decision_period = 0.1;           ///< [s]
+  double completion_percent = 99.0;       ///< of the protocol
+  double completion_distance = 10.0;      ///< of the protocol [m]
+  double ttc_radius = 60.0;               ///< vehicles considered for 2D-TTC [m]
+  double ttc_limit = 3600.0;              ///< a longer 2D-TTC counts as never [s]
   double post_encroachment_limit = 10.0;  ///< a longer time counts as never [s]
-  double target_speed = 8.0;          ///< that CBVs aim at, capped by the lane's limit [m/s]
+  double target_speed = 8.0;              ///< that CBVs aim at, capped by the lane's limit [m/s]
   const map::RoadNetwork* network = nullptr;  ///< for that limit; nullptr: target_speed alone
   MetricsOptions metrics;                     ///< what the scenario asks for
 };

@@ -10,6 +10,7 @@
 
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/network_import.h"
+#include "e2e_cdiff/metrics/session_metrics.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/scenario/scenario_options.h"
 
@@ -34,6 +35,8 @@ class SessionSetup {
   /// Always matched from its points, so that every deployment has the same.
   const map::Route& egoRoute() const { return ego_route_; }
   planning::PlanningContext planningContext() const;
+  /// What the session is measured by, in every deployment.
+  metrics::SessionMetricsOptions metricsOptions() const;
   /// Ticks from one decision to the next.
   std::uint64_t ticksPerDecision() const;
 
