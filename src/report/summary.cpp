@@ -36,6 +36,7 @@ void addMeasure(Json& object, const std::string& key, const metrics::Measure& me
 
 /// Adds `leaf` to a distribution's object: its values, then n and, where there is one, the reason.
 void addToDistribution(Json& object, const std::string& leaf, const metrics::Measure& measure) {
+  if (object.is_null()) object = Json::object();
   const std::string reason = object.value("reason", measure.reason);
   object.erase("n");
   object.erase("reason");
