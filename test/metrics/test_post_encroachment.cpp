@@ -88,6 +88,42 @@ TEST(PostEncroachmentTimes, IsAbsentAboveTheLimit) {
   EXPECT_FALSE(driven(ego, cbv, 200, 1.7).times()[0].seconds.has_value());
 }
 
+/// Smallest time between samples of the two drives, 0.01 s apart, whose boxes overlap.
+std::optional<double> sampledTime(const Drive& ego, const Drive& cbv, double duration) {
+  constexpr double kFine = 0.01;
+  const int count = static_cast<int>(duration / kFine);
+  std::vector<geometry::OrientedBox> egos;
+  std::vector<geometry::OrientedBox> cbvs;
+  for (int i = 0; i <= count; ++i) {
+    egos.push_back(ego.at(kFine * i, test::ego(0, 0, 0)).box());
+    cbvs.push_back(cbv.at(kFine * i, test::cbv("a", 0, 0, 0)).box());
+  }
+  for (int gap = 0; gap <= count; ++gap) {
+    for (int i = 0; i + gap <= count; ++i) {
+      if (geometry::overlap(egos[i], cbvs[i + gap]) || geometry::overlap(egos[i + gap], cbvs[i]))
+        return kFine * gap;
+    }
+  }
+  return std::nullopt;
+}
+
+TEST(PostEncroachmentTimes, AgreeWithDenseSamplesOnObliqueWays) {
+  // A sampled exit is at most one sample early, a sampled entry at most one late: 0 to 0.02 s more.
+  std::size_t defined = 0;
+  for (int i = 0; i < 24; ++i) {
+    const Drive ego{-30.0, -3.0 + 0.25 * i, 4.0 * i, 7.0 + 0.2 * i};
+    const Drive cbv{20.0 - i, -25.0 + 2.0 * i, 100.0 + 11.0 * i, 9.0 - 0.1 * i};
+    const auto seconds = driven(ego, cbv, 120).times()[0].seconds;
+    const auto sampled = sampledTime(ego, cbv, 6.0);
+    ASSERT_EQ(seconds.has_value(), sampled.has_value()) << i;
+    if (!seconds) continue;
+    ++defined;
+    EXPECT_LE(*seconds, *sampled + 1e-9) << i;
+    EXPECT_GE(*seconds, *sampled - 0.02 - 1e-9) << i;
+  }
+  EXPECT_GE(defined, 6U);
+}
+
 TEST(PostEncroachmentTimes, RemembersTheWayOfAReleasedCbv) {
   // The CBV crosses first and is then released; the ego comes 2.1 s behind it.
   PostEncroachmentTimes times(10.0);
