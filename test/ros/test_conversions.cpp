@@ -205,8 +205,12 @@ TEST(Conversions, EveryDefinedFigureGoesOut) {
     EXPECT_EQ(all[i].name, figure.name);
     EXPECT_EQ(std::isnan(all[i].value), !all[i].defined) << figure.name;
     EXPECT_EQ(all[i].defined, figure.measure(measures).value.has_value()) << figure.name;
-    if (all[i].name == "ego_collisions") EXPECT_EQ(all[i].value, 2.0);
-    if (all[i].name == "post_encroachment_mean_s") EXPECT_EQ(all[i].reason, "no CBV was driven");
+    if (all[i].name == "ego_collisions") {
+      EXPECT_EQ(all[i].value, 2.0);
+    }
+    if (all[i].name == "post_encroachment_mean_s") {
+      EXPECT_EQ(all[i].reason, "no CBV was driven");
+    }
     if (all[i].name != "speed_wasserstein_mps") continue;
     EXPECT_EQ(all[i].value, 1.0 / 3.0);
     EXPECT_EQ(all[i].n, 7U);
