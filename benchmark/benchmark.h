@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -29,6 +30,14 @@ double secondsOf(Call&& call) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+/// Seconds of processor time that a call takes, so that other programs do not count.
+template <class Call>
+double cpuSecondsOf(Call&& call) {
+  const std::clock_t begin = std::clock();
+  call();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
 /// Middle value (upper of the two middle ones for an even count).
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -43,6 +52,7 @@ void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
+void benchmarkMetrics(Figures& figures);
 void benchmarkPlanner(Figures& figures);
 /// Where the benchmarks are built with ROS.
 void benchmarkReplay(Figures& figures);

@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "commands.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/report/figure_list.h"
 #include "e2e_cdiff/report/metric_file.h"
 
 namespace cdiff::cli {
@@ -12,15 +14,25 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   auto metric = std::make_shared<std::string>();
   auto file = std::make_shared<std::string>();
   CLI::App* command =
-      program.add_subcommand("metric", "Compute one metric for the cases of a file, one line each");
-  command->add_option("metric", *metric, "ttc_2d, shapiro_wilk or wasserstein")
+      program.add_subcommand("metric",
+                             "Compute one metric for the cases of a file, one line each; or print "
+                             "the definitions of all figures of a session");
+  command->add_option("metric", *metric, "ttc_2d, shapiro_wilk, wasserstein or definitions")
       ->required()
-      ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein"}));
-  command->add_option("file", *file, "Cases as CSV or JSON")->required();
+      ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein", "definitions"}));
+  command->add_option("file", *file, "Cases as CSV or JSON (not for definitions)");
   command->callback([metric, file, &exit_code] {
+    exit_code = kPassed;
+    if (*metric == "definitions") {
+      std::cout << report::figureList();
+      return;
+    }
+    if (file->empty()) {
+      throw core::InputError("metric " + *metric + " needs a file of cases: cdiff metric " +
+                             *metric + " FILE");
+    }
     for (const std::string& line : report::evaluateMetricFile(*metric, *file))
       std::cout << line << "\n";
-    exit_code = kPassed;
   });
 }
 

@@ -7,37 +7,24 @@
 #include <utility>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 using nlohmann::json;
 
-/// Figures that lie at one place of a summary.
-const std::vector<std::pair<const char*, const char*>>& places() {
-  static const std::vector<std::pair<const char*, const char*>> all = {
-      {"ego_completion_percent", "/ego/route_completion_percent"},
-      {"ego_driving_score", "/ego/driving_score"},
-      {"ego_collisions", "/ego/collisions"},
-      {"ego_off_road_percent", "/ego/off_road_percent"},
-      {"cbv_count", "/cbv/count"},
-      {"cbv_decisions", "/cbv/decisions"},
-      {"cbv_off_road_percent", "/cbv/off_road_rate_percent"},
-      {"cbv_collisions", "/cbv/collisions"},
-      {"cbv_ego_collisions", "/cbv/collisions_with_ego"},
-      {"cbv_collisions_per_km", "/cbv/collisions_per_km"},
-      {"cbv_distance_m", "/cbv/distance_m"},
-      {"cbv_speed_error_mps", "/cbv/speed_error_mps"},
-      {"cbv_closest_distance_m", "/cbv/closest_distance_m"},
-      {"cbv_minimum_distance_m", "/cbv/minimum_distance_m"},
-      {"ttc_mean_s", "/metrics/ttc_2d_s/mean"},
-      {"ttc_min_s", "/metrics/ttc_2d_s/min"},
-      {"speed_shapiro_wilk", "/metrics/speed_shapiro_wilk/value"},
-      {"acceleration_shapiro_wilk", "/metrics/acceleration_shapiro_wilk/value"},
-      {"speed_wasserstein_mps", "/metrics/speed_wasserstein_mps/value"},
-      {"guidance_trust_region_share", "/guidance_trust_region_share"},
-      {"simulated_seconds", "/simulated_seconds"},
-      {"real_time_factor", "/real_time_factor"}};
+/// Figures that lie at one place of a summary: all that metrics defines, and some of the session.
+const std::vector<std::pair<std::string, std::string>>& places() {
+  static const std::vector<std::pair<std::string, std::string>> all = [] {
+    std::vector<std::pair<std::string, std::string>> list;
+    for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
+      list.emplace_back(figure.name, figure.place);
+    list.emplace_back("guidance_trust_region_share", "/guidance_trust_region_share");
+    list.emplace_back("simulated_seconds", "/simulated_seconds");
+    list.emplace_back("real_time_factor", "/real_time_factor");
+    return list;
+  }();
   return all;
 }
 

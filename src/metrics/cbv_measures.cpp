@@ -22,6 +22,7 @@ void CbvMeasures::observe(const std::vector<CbvSighting>& cbvs, bool decision_ti
     }
     positions[vehicle.id] = vehicle.state.position;
     off_road_.add(cbv.off_road);
+    corner_off_road_.add(cbv.off_road || cbv.corner_off_road);
     if (cbv.ego_distance && std::isfinite(*cbv.ego_distance)) {
       const auto [closest, first] = closest_.emplace(vehicle.id, *cbv.ego_distance);
       if (!first) closest->second = std::min(closest->second, *cbv.ego_distance);
@@ -42,8 +43,14 @@ void CbvMeasures::countCollision(bool with_ego) {
 
 Measure CbvMeasures::offRoadRatePercent() const { return off_road_.measure(kNoCbv); }
 
+Measure CbvMeasures::cornerOffRoadRatePercent() const { return corner_off_road_.measure(kNoCbv); }
+
 Measure CbvMeasures::collisionsPerKilometre() const {
   return metrics::collisionsPerKilometre(collisions_, distance_, count());
+}
+
+Measure CbvMeasures::egoCollisionsPerKilometre() const {
+  return metrics::collisionsPerKilometre(ego_collisions_, distance_, count());
 }
 
 Measure CbvMeasures::speedError() const { return speed_errors_.measure("m/s", kNoCbv).mean; }

@@ -31,6 +31,22 @@ void keepNearer(std::optional<double>& nearest, const Vehicle& ego, const Vehicl
   keepSmaller(nearest, geometry::distance(ego.box(), other.box()));
 }
 
+/// One vehicle within the radius.
+void keepTimes(Interaction& interaction, const MovingBox& ego, const Vehicle& other,
+               const InteractionOptions& options) {
+  const auto within = [&](const std::optional<double>& time) {
+    return time && *time <= options.time_limit ? time : std::nullopt;
+  };
+  const MovingBox box = movingBox(other);
+  const auto time = within(timeToCollision2d(ego, box));
+  keepSmaller(interaction.ttc_2d, time);
+  if (other.role == traffic::VehicleRole::kCbv) keepSmaller(interaction.ttc_2d_cbv, time);
+  if (!options.variants) return;
+  keepSmaller(interaction.ttc_lon_lat, within(longitudinalLateralTimeToCollision(ego, box)));
+  keepSmaller(interaction.rift_ttc, riftTimeToCollision(ego, box));
+  keepSmaller(interaction.rift_act, riftApproachTime(ego, box));
+}
+
 bool usable(const Vehicle& vehicle) {
   return vehicle.state.position.allFinite() && std::isfinite(vehicle.state.heading) &&
          std::isfinite(vehicle.state.speed);
@@ -47,11 +63,7 @@ Interaction interactionOf(const Vehicle& ego, const traffic::TrafficSnapshot& sn
     if (&other == &ego || !usable(other) || traffic::onDifferentLevels(ego, other)) continue;
     const double distance = (other.state.position - ego.state.position).norm();
     keepNearer(interaction.nearest_distance, ego, other, distance);
-    if (distance > options.radius) continue;
-    const MovingBox other_box = movingBox(other);
-    const auto time = timeToCollision2d(ego_box, other_box);
-    if (time && *time <= options.time_limit) keepSmaller(interaction.ttc_2d, time);
-    if (options.rift) keepSmaller(interaction.rift_ttc, riftTimeToCollision(ego_box, other_box));
+    if (distance <= options.radius) keepTimes(interaction, ego_box, other, options);
   }
   return interaction;
 }

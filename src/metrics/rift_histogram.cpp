@@ -105,6 +105,10 @@ RiftHistogram riftAccelerationHistogram() {
   return RiftHistogram({-1.5, -1, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 2.5, 3});
 }
 
+RiftHistogram riftJerkHistogram() {
+  return RiftHistogram({-10, -8, -6, -4, -2, 0, 2, 4, 6, 8, 10});
+}
+
 RiftHistogram riftTtcHistogram() {
   return RiftHistogram({0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5});
 }

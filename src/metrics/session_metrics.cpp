@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "e2e_cdiff/metrics/cbv_measures.h"
+#include "e2e_cdiff/metrics/comfort_measures.h"
 #include "e2e_cdiff/metrics/ego_measures.h"
-#include "e2e_cdiff/metrics/interaction_measures.h"
+#include "e2e_cdiff/metrics/interaction_statistics.h"
+#include "e2e_cdiff/metrics/normality_measures.h"
+#include "e2e_cdiff/metrics/post_encroachment.h"
 #include "e2e_cdiff/metrics/rift_measures.h"
-#include "e2e_cdiff/metrics/sample_statistics.h"
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
-#include "e2e_cdiff/metrics/wasserstein.h"
+#include "e2e_cdiff/metrics/speed_target.h"
 
 namespace cdiff::metrics {
 namespace {
@@ -22,48 +23,6 @@ using traffic::Vehicle;
 using traffic::VehicleRole;
 
 constexpr double kBackgroundRadius = 150.0;  // [m] speeds of background vehicles are sampled within
-
-/// Every k-th sample, k the smallest that leaves no more than the test allows.
-std::vector<double> thinned(const std::vector<double>& samples, std::size_t& every) {
-  every = (samples.size() + kShapiroWilkMost - 1) / kShapiroWilkMost;
-  if (every <= 1) return samples;
-  std::vector<double> kept;
-  for (std::size_t i = 0; i < samples.size(); i += every) kept.push_back(samples[i]);
-  return kept;
-}
-
-Measure shapiroWilkMeasure(const std::vector<double>& samples) {
-  Measure measure;
-  measure.n = samples.size();
-  if (samples.empty()) {
-    measure.reason = kNoCbv;
-    return measure;
-  }
-  std::size_t every = 1;
-  const std::vector<double> used = thinned(samples, every);
-  const ShapiroWilk test = shapiroWilk(used);
-  measure.n = used.size();
-  measure.value = test.w;
-  measure.reason = test.reason;
-  if (test.w && every > 1) {
-    measure.reason = "1 in " + std::to_string(every) + " of " + std::to_string(samples.size()) +
-                     " samples taken";
-  }
-  return measure;
-}
-
-Measure wassersteinMeasure(const std::vector<double>& cbvs, const std::vector<double>& background) {
-  Measure measure;
-  measure.unit = "m/s";
-  measure.n = cbvs.size();
-  measure.value = wassersteinDistance(cbvs, background);
-  if (cbvs.empty()) {
-    measure.reason = kNoCbv;
-  } else if (background.empty()) {
-    measure.reason = "no background vehicle within 150 m of the ego";
-  }
-  return measure;
-}
 
 /// Limit of the lane that a vehicle is on; off the road, of the nearest one.
 std::optional<double> speedLimit(const Vehicle& vehicle, const map::RoadNetwork& network) {
@@ -99,7 +58,11 @@ class SessionMetrics::Accumulator {
       : options_(options),
         drivable_area_(drivable_area),
         ego_(ego_route, options.completion_percent, options.completion_distance,
-             EgoInfractions(options.network, ego_route, options.infractions)) {}
+             EgoInfractions(options.network, ego_route, options.infractions)),
+        comfort_(options.decision_period),
+        encroachments_(options.post_encroachment_limit),
+        rift_(options.decision_period),
+        speed_target_(options.metrics) {}
 
   TickMeasures observe(const TrafficSnapshot& snapshot) {
     TickMeasures tick;
@@ -108,6 +71,7 @@ class SessionMetrics::Accumulator {
     blocked_ = snapshot.status == traffic::SessionStatus::kBlocked;
     observeContacts(snapshot);
     observeCbvs(snapshot, tick);
+    encroachments_.observe(snapshot);
     return tick;
   }
 
@@ -121,29 +85,59 @@ class SessionMetrics::Accumulator {
     result.penalty = ego_.infractions().penalty();
     result.infractions = ego_.infractions().measures();
     result.ego_off_road_percent = ego_.offRoadPercent();
-    result.cbv_count = cbvs_.count();
-    result.cbv_decisions = cbvs_.decisions();
-    result.cbv_off_road_rate_percent = cbvs_.offRoadRatePercent();
-    result.cbv_collisions = cbvs_.collisions();
-    result.cbv_ego_collisions = cbvs_.egoCollisions();
-    result.collisions_per_km = cbvs_.collisionsPerKilometre();
-    result.cbv_distance_m = cbvs_.distance();
-    result.cbv_speed_error = cbvs_.speedError();
-    result.cbv_closest_distance = cbvs_.closestDistance();
-    result.cbv_minimum_distance = cbvs_.minimumDistance();
-    result.ttc_2d = times_.measure("s", "no vehicle was on a collision course with the ego");
-    result.speed_shapiro_wilk = shapiroWilkMeasure(cbvs_.speeds());
-    result.acceleration_shapiro_wilk = shapiroWilkMeasure(cbvs_.accelerations());
-    result.speed_wasserstein = wassersteinMeasure(cbvs_.speeds(), background_speeds_);
+    addCbvs(result);
+    addMotion(result);
+    interactions_.write(result);
+    result.post_encroachment = encroachments_.measure();
+    result.post_encroachments = encroachments_.times();
     result.rift_compat = rift_.measures();
     return result;
   }
 
  private:
+  void addCbvs(SessionMeasures& result) const {
+    result.cbv_count = cbvs_.count();
+    result.cbv_decisions = cbvs_.decisions();
+    result.cbv_off_road_rate_percent = cbvs_.offRoadRatePercent();
+    result.cbv_corner_off_road_rate_percent = cbvs_.cornerOffRoadRatePercent();
+    result.cbv_uncomfortable_rate_percent = comfort_.uncomfortableRatePercent();
+    result.cbv_collisions = cbvs_.collisions();
+    result.cbv_ego_collisions = cbvs_.egoCollisions();
+    result.collisions_per_km = cbvs_.collisionsPerKilometre();
+    result.ego_collisions_per_km = cbvs_.egoCollisionsPerKilometre();
+    result.cbv_distance_m = cbvs_.distance();
+    result.cbv_speed_error = cbvs_.speedError();
+    result.cbv_closest_distance = cbvs_.closestDistance();
+    result.cbv_minimum_distance = cbvs_.minimumDistance();
+  }
+
+  void addMotion(SessionMeasures& result) const {
+    result.cbv_speed = comfort_.speed();
+    result.cbv_acceleration = comfort_.acceleration();
+    result.cbv_jerk = comfort_.jerk();
+    const NormalityMeasures speeds = normalityMeasures(cbvs_.speeds(), kNoCbv);
+    result.speed_shapiro_wilk = speeds.w;
+    result.speed_shapiro_wilk_p = speeds.p;
+    const NormalityMeasures accelerations = normalityMeasures(cbvs_.accelerations(), kNoCbv);
+    result.acceleration_shapiro_wilk = accelerations.w;
+    result.acceleration_shapiro_wilk_p = accelerations.p;
+    result.speed_wasserstein = speed_target_.distanceFrom(cbvs_.speeds());
+  }
+
   bool offRoad(const Vehicle& vehicle) const {
     const auto& state = vehicle.state;
     if (!state.position.allFinite()) return false;
     return drivable_area_.signedDistance(state.position, state.elevation) < 0.0;
+  }
+
+  /// All corners are looked for on the level of the vehicle.
+  bool cornerOffRoad(const Vehicle& vehicle) const {
+    const auto& state = vehicle.state;
+    if (!state.position.allFinite() || !std::isfinite(state.heading)) return false;
+    const auto corners = vehicle.box().corners();
+    return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+      return drivable_area_.signedDistance(corner, state.elevation) < 0.0;
+    });
   }
 
   void observeEgo(const Vehicle& ego, const TrafficSnapshot& snapshot, TickMeasures& tick) {
@@ -155,8 +149,11 @@ class SessionMetrics::Accumulator {
     tick.ttc_2d = interaction.ttc_2d;
     tick.nearest_distance = interaction.nearest_distance;
     if (!snapshot.decision_tick) return;
-    if (interaction.ttc_2d) times_.add(*interaction.ttc_2d);
-    rift_.observeEgo(ego.state.speed, interaction.rift_ttc);
+    const bool cbv_driven =
+        std::any_of(snapshot.vehicles.begin(), snapshot.vehicles.end(),
+                    [](const Vehicle& other) { return other.role == VehicleRole::kCbv; });
+    interactions_.observe(interaction, cbv_driven);
+    rift_.observeEgo(ego.state.speed, interaction.rift_ttc, interaction.rift_act);
     sampleBackground(ego, snapshot);
   }
 
@@ -164,7 +161,7 @@ class SessionMetrics::Accumulator {
     for (const Vehicle& vehicle : snapshot.vehicles) {
       if (vehicle.role != VehicleRole::kBackground || !std::isfinite(vehicle.state.speed)) continue;
       const double distance = (vehicle.state.position - ego.state.position).norm();
-      if (distance <= kBackgroundRadius) background_speeds_.push_back(vehicle.state.speed);
+      if (distance <= kBackgroundRadius) speed_target_.addBackground(vehicle.state.speed);
     }
   }
 
@@ -194,11 +191,13 @@ class SessionMetrics::Accumulator {
     for (const Vehicle& vehicle : snapshot.vehicles) {
       if (vehicle.role != VehicleRole::kCbv) continue;
       sightings_.push_back({&vehicle, offRoad(vehicle), wantedSpeed(vehicle, options_),
-                            distanceToEgo(vehicle, snapshot.ego())});
+                            distanceToEgo(vehicle, snapshot.ego()), cornerOffRoad(vehicle)});
       if (sightings_.back().off_road) ++tick.cbv_off_road;
     }
     cbvs_.observe(sightings_, snapshot.decision_tick);
-    if (snapshot.decision_tick) rift_.observeCbvs(sightings_);
+    if (!snapshot.decision_tick) return;
+    comfort_.observe(sightings_);
+    rift_.observeCbvs(sightings_);
   }
 
   SessionMetricsOptions options_;
@@ -206,9 +205,11 @@ class SessionMetrics::Accumulator {
   EgoMeasures ego_;
   bool blocked_ = false;  ///< by the last snapshot
   CbvMeasures cbvs_;
+  ComfortMeasures comfort_;
+  InteractionStatistics interactions_;
+  PostEncroachmentTimes encroachments_;
   RiftMeasures rift_;
-  SampleStatistics times_;
-  std::vector<double> background_speeds_;
+  SpeedTarget speed_target_;
   std::vector<CbvSighting> sightings_;  ///< of the present tick
 };
 

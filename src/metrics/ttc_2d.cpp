@@ -62,11 +62,13 @@ std::optional<double> rayToSegment(const Eigen::Vector2d& origin, const Eigen::V
 
 using Outline = std::array<Eigen::Vector2d, 4>;
 
-/// RIFT's corner order: front-left, front-right, rear-left, rear-right.
-Outline bowTie(const geometry::OrientedBox& box) {
+Outline outlineOf(const geometry::OrientedBox& box, OutlineOrder order) {
   const Outline ring = box.corners();
+  if (order == OutlineOrder::kRing) return ring;
   return {ring[0], ring[1], ring[3], ring[2]};
 }
+
+double roundedToCentiseconds(double time) { return std::nearbyint(100.0 * time) / 100.0; }
 
 /// Shortest positive distance from a corner along `ray` onto an outline; 0 when a corner has the
 /// outline behind it and then before it (it lies inside); infinity when no ray hits.
@@ -119,19 +121,40 @@ std::optional<double> timeToCollision2d(const MovingBox& first, const MovingBox&
   return std::max(common.begin, 0.0);
 }
 
-std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second) {
+std::optional<double> rayCastTimeToCollision(const MovingBox& first, const MovingBox& second,
+                                             OutlineOrder order) {
   if (!finite(first) || !finite(second)) return std::nullopt;
   const Eigen::Vector2d offset = second.box.center - first.box.center;
   const Eigen::Vector2d closing = first.velocity - second.velocity;
   const double speed = closing.norm();
   if (speed == 0.0 || closing.dot(offset) < 0.0) return std::nullopt;
   const Eigen::Vector2d ray = closing / speed;
-  const Outline first_outline = bowTie(first.box);
-  const Outline second_outline = bowTie(second.box);
+  const Outline first_outline = outlineOf(first.box, order);
+  const Outline second_outline = outlineOf(second.box, order);
   const double distance = std::min(rayCast(first_outline, ray, second_outline),
                                    rayCast(second_outline, -ray, first_outline));
   if (!std::isfinite(distance)) return std::nullopt;
-  return std::nearbyint(100.0 * distance / speed) / 100.0;
+  return distance / speed;
+}
+
+std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second) {
+  const auto time = rayCastTimeToCollision(first, second, OutlineOrder::kBowTie);
+  return time ? std::optional<double>(roundedToCentiseconds(*time)) : std::nullopt;
+}
+
+std::optional<double> riftApproachTime(const MovingBox& first, const MovingBox& second) {
+  if (!finite(first) || !finite(second)) return std::nullopt;
+  const Eigen::Vector2d offset = second.box.center - first.box.center;
+  const double distance = offset.norm();
+  if (distance == 0.0) return std::nullopt;
+  const double closing = (first.velocity - second.velocity).dot(offset) / distance;
+  if (!(closing > 0.0)) return std::nullopt;
+  double shortest = kInfinity;
+  for (const Eigen::Vector2d& mine : first.box.corners()) {
+    for (const Eigen::Vector2d& other : second.box.corners())
+      shortest = std::min(shortest, (other - mine).norm());
+  }
+  return roundedToCentiseconds(shortest / closing);
 }
 
 std::optional<double> longitudinalLateralTimeToCollision(const MovingBox& first,

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 #include "e2e_cdiff/report/build_info.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/reason_text.h"
@@ -61,10 +62,18 @@ std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& cou
   return ids;
 }
 
+/// Why a figure is absent, how its samples were taken, and what it is compared with.
+std::string noteOf(const metrics::Measure& measure) {
+  if (measure.target.empty()) return measure.reason;
+  return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
+}
+
 void measureRow(Table& table, const std::string& name, const metrics::Measure& measure) {
-  table.row({name, measure.value ? fixed(*measure.value, 3) : "–", measure.unit,
-             std::to_string(measure.n), measure.reason},
-            measure.value ? "" : "absent");
+  const int decimals = measure.unit == "count" ? 0 : 3;
+  table.row(
+      {name, measure.value ? fixed(*measure.value, decimals) : "–",
+       measure.unit == "count" ? "" : measure.unit, std::to_string(measure.n), noteOf(measure)},
+      measure.value ? "" : "absent");
 }
 
 }  // namespace
@@ -79,18 +88,8 @@ std::string ruleTable(const SessionResult& result) {
 
 std::string metricTable(const metrics::SessionMeasures& measures) {
   Table table({"Metric", "#Value", "Unit", "#n", "Note"});
-  measureRow(table, "2D-TTC, mean", measures.ttc_2d.mean);
-  measureRow(table, "2D-TTC, standard deviation", measures.ttc_2d.standard_deviation);
-  measureRow(table, "2D-TTC, minimum", measures.ttc_2d.minimum);
-  measureRow(table, "Off-road rate of CBVs (ORR)", measures.cbv_off_road_rate_percent);
-  measureRow(table, "Collisions of CBVs per km (CPK)", measures.collisions_per_km);
-  measureRow(table, "Shapiro-Wilk W of CBV speeds", measures.speed_shapiro_wilk);
-  measureRow(table, "Shapiro-Wilk W of CBV accelerations", measures.acceleration_shapiro_wilk);
-  measureRow(table, "Wasserstein distance of CBV speeds to background", measures.speed_wasserstein);
-  measureRow(table, "Ego off the road", measures.ego_off_road_percent);
-  for (const auto& [name, measure] : measures.rift_compat) {
-    measureRow(table, "RIFT's definition: " + name, measure);
-  }
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
+    measureRow(table, figure.label, figure.measure(measures));
   return table.html();
 }
 

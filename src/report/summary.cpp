@@ -5,6 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
+
 namespace cdiff::report {
 namespace {
 
@@ -16,10 +19,12 @@ Json figuresObject(const SampleFigures& figures) {
   return {{"mean", number(figures.mean)}, {"p95", number(figures.percentile_95)}, {"n", figures.n}};
 }
 
-/// {value, n, unit} and, where there is one, the reason (why absent, or how thinned out).
+/// {value, n, unit} and, where there is one, the reason (why absent, or how thinned out) and the
+/// target that it is compared with.
 Json measureObject(const metrics::Measure& measure) {
   Json object = {{"value", number(measure.value)}, {"n", measure.n}, {"unit", measure.unit}};
   if (!measure.reason.empty()) object["reason"] = measure.reason;
+  if (!measure.target.empty()) object["target"] = measure.target;
   return object;
 }
 
@@ -29,16 +34,37 @@ void addMeasure(Json& object, const std::string& key, const metrics::Measure& me
   if (!measure.reason.empty()) object[key + "_reason"] = measure.reason;
 }
 
-Json distributionObject(const metrics::DistributionMeasure& distribution) {
-  Json object = {{"mean", number(distribution.mean.value)},
-                 {"std", number(distribution.standard_deviation.value)},
-                 {"min", number(distribution.minimum.value)},
-                 {"n", distribution.mean.n}};
-  for (const metrics::Measure* measure :
-       {&distribution.mean, &distribution.minimum, &distribution.standard_deviation}) {
-    if (!measure->reason.empty() && !object.contains("reason")) object["reason"] = measure->reason;
+/// Adds `leaf` to a distribution's object: its values, then n and, where there is one, the reason.
+void addToDistribution(Json& object, const std::string& leaf, const metrics::Measure& measure) {
+  if (object.is_null()) object = Json::object();
+  const std::string reason = object.value("reason", measure.reason);
+  object.erase("n");
+  object.erase("reason");
+  object[leaf] = number(measure.value);
+  object["n"] = measure.n;
+  if (!reason.empty()) object["reason"] = reason;
+}
+
+/// Adds the defined figures whose place in the summary begins with "/section/".
+void addFigures(Json& object, const std::string& section,
+                const metrics::SessionMeasures& measures) {
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+    if (keys.front() != section) continue;
+    const metrics::Measure measure = figure.measure(measures);
+    if (keys.size() == 2) {
+      addMeasure(object, keys[1], measure);
+      if (measure.unit == "count") object[keys[1]] = static_cast<std::uint64_t>(*measure.value);
+      continue;
+    }
+    Json* parent = &object;
+    for (std::size_t i = 1; i + 1 < keys.size(); ++i) parent = &(*parent)[keys[i]];
+    if (keys.back() == "value") {
+      *parent = measureObject(measure);
+    } else {
+      addToDistribution(*parent, keys.back(), measure);
+    }
   }
-  return object;
 }
 
 Json egoObject(const metrics::SessionMeasures& measures) {
@@ -124,17 +150,22 @@ Json cbvFaults(const std::vector<traffic::Fault>& faults) {
   return object;
 }
 
+/// Of every CBV, by id.
+Json encroachmentList(const std::vector<metrics::PostEncroachment>& times) {
+  Json list = Json::array();
+  for (const metrics::PostEncroachment& time : times) {
+    Json object = {{"vehicle_id", time.vehicle_id}, {"seconds", number(time.seconds)}};
+    object["first"] = time.seconds ? Json(time.ego_first ? "ego" : "cbv") : Json(nullptr);
+    if (!time.reason.empty()) object["reason"] = time.reason;
+    list.push_back(object);
+  }
+  return list;
+}
+
 Json cbvObject(const SessionResult& result) {
-  const metrics::SessionMeasures& measures = result.measures;
-  Json object = {{"count", measures.cbv_count}, {"decisions", measures.cbv_decisions}};
-  addMeasure(object, "off_road_rate_percent", measures.cbv_off_road_rate_percent);
-  object["collisions"] = measures.cbv_collisions;
-  object["collisions_with_ego"] = measures.cbv_ego_collisions;
-  addMeasure(object, "collisions_per_km", measures.collisions_per_km);
-  addMeasure(object, "speed_error_mps", measures.cbv_speed_error);
-  addMeasure(object, "closest_distance_m", measures.cbv_closest_distance);
-  addMeasure(object, "minimum_distance_m", measures.cbv_minimum_distance);
-  object["distance_m"] = measures.cbv_distance_m;
+  Json object = Json::object();
+  addFigures(object, "cbv", result.measures);
+  object["post_encroachments"] = encroachmentList(result.measures.post_encroachments);
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {
     object["selections"].push_back(selectionObject(record, result));
@@ -160,16 +191,6 @@ Json guidanceObject(const GuidanceLog& log) {
                                 {"n", figures.n}};
   }
   return object;
-}
-
-Json metricsObject(const metrics::SessionMeasures& measures) {
-  Json rift = Json::object();
-  for (const auto& [name, measure] : measures.rift_compat) rift[name] = measureObject(measure);
-  return {{"ttc_2d_s", distributionObject(measures.ttc_2d)},
-          {"speed_shapiro_wilk", measureObject(measures.speed_shapiro_wilk)},
-          {"acceleration_shapiro_wilk", measureObject(measures.acceleration_shapiro_wilk)},
-          {"speed_wasserstein_mps", measureObject(measures.speed_wasserstein)},
-          {"rift_compat", rift}};
 }
 
 Json latencyObject(const std::map<std::string, LatencyFigures>& latencies) {
@@ -234,7 +255,8 @@ std::string summaryJson(const SessionResult& result) {
   summary["cbv"] = cbvObject(result);
   summary["guidance"] = guidanceObject(result.guidance);
   summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);
-  summary["metrics"] = metricsObject(result.measures);
+  summary["metrics"] = Json::object();
+  addFigures(summary["metrics"], "metrics", result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
   summary["faults"] = faultList(result.faults);
   summary["verdict"] = {{"passed", result.verdict.passed}, {"failures", result.verdict.failures}};

@@ -2,14 +2,27 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/metric_reporter.h"
 
+#include <algorithm>
 #include <boost/make_shared.hpp>
+#include <cmath>
 
 #include "e2e_cdiff/ros/conversions.h"
 
 namespace cdiff::ros {
+namespace {
+
+/// Figures of the whole session go out once in a simulated second.
+std::uint64_t decisionsPerReport(const scenario::SessionSetup& setup) {
+  const double decisions = 1.0 / setup.options().decision_period;
+  return static_cast<std::uint64_t>(std::max(1L, std::lround(decisions)));
+}
+
+}  // namespace
+
 MetricReporter::MetricReporter(const scenario::SessionSetup& setup)
     : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
-      protocol_(setup.options().protocol.preset) {}
+      protocol_(setup.options().protocol.preset),
+      decisions_per_report_(decisionsPerReport(setup)) {}
 
 msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnapshot& snapshot,
                                                      const cbv::CbvSelection* selection) {
@@ -18,7 +31,11 @@ msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnaps
   if (!snapshot.decision_tick && !final) return nullptr;
   msgs::MetricReport report = toMsg(measures, snapshot);
   report.protocol = protocol_;
-  if (final) report.measures = toMsg(metrics_.measures());
+  const bool due = snapshot.decision_tick && decisions_++ % decisions_per_report_ == 0;
+  if (due || final) {
+    session_ = metrics_.measures();
+    report.measures = toMsg(session_);
+  }
   return boost::make_shared<const msgs::MetricReport>(report);
 }
 

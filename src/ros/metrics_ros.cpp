@@ -6,6 +6,7 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/metric_diagnostics.h"
 #include "e2e_cdiff/ros/replay.h"
 #include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/session_parts.h"
@@ -86,6 +87,10 @@ void MetricsRos::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("simulated seconds", core::formatFixed(last_.time, 2));
   status.add("real-time factor", core::formatFixed(wall > 0.0 ? last_.time / wall : 0.0, 2));
   status.add("vehicles", last_.vehicles.size());
+  if (reporter_) {
+    for (const auto& [name, value] : metricDiagnostics(reporter_->session()))
+      status.add(name, value);
+  }
   status.add("slowest planner", slowest_planner_);
   status.add("slowest planning call [ms]", core::formatFixed(slowest_planner_ms_, 2));
 }

@@ -5,23 +5,25 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 #include "e2e_cdiff/ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
 
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
 msgs::Measure toMsg(const std::string& name, const metrics::Measure& measure) {
   msgs::Measure message;
   message.name = name;
   message.defined = measure.value.has_value();
-  message.value = measure.value.value_or(0.0);
+  message.value = measure.value.value_or(kUndefined);
   message.n = measure.n;
   message.unit = measure.unit;
   message.reason = measure.reason;
+  message.target = measure.target;
   return message;
 }
-
-metrics::Measure number(double value, const std::string& unit) { return {value, 1, unit, {}}; }
 
 }  // namespace
 
@@ -96,7 +98,6 @@ std::vector<Eigen::Vector3d> fromMsg(const nav_msgs::Path& message) {
 
 msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
                          const traffic::TrafficSnapshot& snapshot) {
-  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
   msgs::MetricReport message;
   message.header.stamp = toStamp(snapshot.time);
   message.header.frame_id = kMapFrame;
@@ -112,29 +113,9 @@ msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
 }
 
 std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
-  std::vector<msgs::Measure> all = {
-      toMsg("ego_route_completion", number(measures.route_completion_percent, "%")),
-      toMsg("ego_driving_score", number(measures.driving_score, "")),
-      toMsg("ego_collisions", number(static_cast<double>(measures.ego_collisions), "")),
-      toMsg("ego_penalty", measures.penalty),
-      toMsg("ego_blocked", number(measures.blocked ? 1.0 : 0.0, "")),
-      toMsg("ego_off_road", measures.ego_off_road_percent),
-      toMsg("cbv_count", number(static_cast<double>(measures.cbv_count), "")),
-      toMsg("cbv_off_road_rate", measures.cbv_off_road_rate_percent),
-      toMsg("cbv_collisions", number(static_cast<double>(measures.cbv_collisions), "")),
-      toMsg("cbv_ego_collisions", number(static_cast<double>(measures.cbv_ego_collisions), "")),
-      toMsg("cbv_collisions_per_km", measures.collisions_per_km),
-      toMsg("cbv_distance", number(measures.cbv_distance_m, "m")),
-      toMsg("ttc_2d_mean", measures.ttc_2d.mean),
-      toMsg("ttc_2d_standard_deviation", measures.ttc_2d.standard_deviation),
-      toMsg("ttc_2d_minimum", measures.ttc_2d.minimum),
-      toMsg("speed_shapiro_wilk", measures.speed_shapiro_wilk),
-      toMsg("acceleration_shapiro_wilk", measures.acceleration_shapiro_wilk),
-      toMsg("speed_wasserstein", measures.speed_wasserstein)};
-  for (const auto& [name, measure] : measures.infractions)
-    all.push_back(toMsg("ego_infractions/" + name, measure));
-  for (const auto& [name, measure] : measures.rift_compat)
-    all.push_back(toMsg("rift_compat/" + name, measure));
+  std::vector<msgs::Measure> all;
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
+    all.push_back(toMsg(figure.name, figure.measure(measures)));
   return all;
 }
 

@@ -146,6 +146,7 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
   visitor.group({"protocol", "", "When a session ends."}, protocol);
+  visitor.group({"metrics", "", "What the session is measured against."}, metrics);
   visitor.group({"verdict", "", "When a session passes."}, verdict);
   visitor.group({"report", "", "What report.html holds."}, report);
   visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
@@ -169,6 +170,7 @@ void ScenarioOptions::validate() const {
   guidance.validate("guidance.");
   camera.validate();
   vehicle.validate();
+  metrics.validate();
   if (!isMultiple(simulation_step, 0.05)) {
     throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) +
                      " s; expected a multiple of 0.05 s");
@@ -202,6 +204,8 @@ ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOpti
   if (options.demand != "generated" && options.demand != "none") {
     options.demand = resolveFile(options.demand, file.parent_path(), options.network);
   }
+  options.metrics.speed_target_file =
+      resolveFile(options.metrics.speed_target_file, file.parent_path(), options.network);
   options.route.bench2drive_file =
       resolveFile(options.route.bench2drive_file, file.parent_path(), options.network);
   return options;

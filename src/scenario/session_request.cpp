@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/scenario/sample_file.h"
 
 namespace cdiff::scenario {
 namespace {
@@ -65,6 +67,16 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
   return options;
 }
 
+/// The content of the file that speeds are compared with, so that a recording needs no file.
+void fillSpeedTarget(metrics::MetricsOptions& options) {
+  if (options.speed_target != "file" || options.speed_target_file.empty() ||
+      !options.speed_target_samples.empty()) {
+    return;
+  }
+  for (const double speed : readSamples(options.speed_target_file))
+    options.speed_target_samples.push_back(core::formatNumber(speed));
+}
+
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
@@ -75,7 +87,8 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   base.guidance =
       guidance::loadProfile(first.guidance_profile.empty() ? first.mode : first.guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
-  const ScenarioOptions options = applyRequest(request, base);
+  ScenarioOptions options = applyRequest(request, base);
+  fillSpeedTarget(options.metrics);
   options.validate();
   return options;
 }

@@ -46,12 +46,14 @@ planning::PlanningContext SessionSetup::planningContext() const {
 metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   metrics::SessionMetricsOptions options;
   options.simulation_step = options_.simulation_step;
+  options.decision_period = options_.decision_period;
   options.completion_percent = options_.protocol.completion_percent;
   options.completion_distance = options_.protocol.completion_distance;
   options.protocol = options_.protocol.preset;
   options.infractions = options_.protocol.infractions;
   options.target_speed = options_.target_speed;
   options.network = &network_;
+  options.metrics = options_.metrics;
   return options;
 }
 

@@ -53,13 +53,66 @@ TEST(RiftMeasures, CountEarlySamplesAgainAtEveryTick) {
 }
 
 TEST(RiftMeasures, GiveThePublishedFigureOfARamp) {
-  // 0 to 10 m/s over 40 s at 10 Hz: S-WD 5.65 (4.51 if every sample counted once).
+  // 0 to 10 m/s over 40 s at 10 Hz: S-WD 5.65 and mean 3.38 (4.51 and 5.00 if every sample counted
+  // once).
   RiftMeasures rift;
   for (int i = 0; i < 400; ++i) {
     const auto vehicle = cbv("a", 0, 0, 10.0 * i / 399.0);
     rift.observeCbvs({{&vehicle, false}});
   }
   EXPECT_NEAR(*rift.measures().at("speed_wasserstein_mps").value, 5.65, 5e-3);
+  EXPECT_NEAR(*rift.measures().at("speed_mean_mps").value, 3.38, 5e-3);
+  EXPECT_EQ(rift.measures().at("speed_wasserstein_mps").target,
+            "8.5 m/s for all (30 km/h in RIFT's bins)");
+}
+
+TEST(RiftMeasures, RepeatJerksThatBeginAtZero) {
+  // |a| 0.5, 0.7: jerks 5 and 2 m/s^3 in bins (4, 6] and (0, 2] with midpoints 5 and 1, the first
+  // counted twice: mean 11/3; E[mid^2] = 51/3 = 17, variance 17 - 121/9 = 32/9.
+  RiftMeasures rift;
+  for (const double acceleration : {0.5, 0.7}) {
+    auto vehicle = cbv("a", 0, 0, 1.0);
+    vehicle.acceleration = acceleration;
+    rift.observeCbvs({{&vehicle, false}});
+  }
+  const auto measures = rift.measures();
+  EXPECT_NEAR(*measures.at("jerk_mean_mps3").value, 11.0 / 3.0, 1e-12);
+  EXPECT_NEAR(*measures.at("jerk_std_mps3").value, std::sqrt(32.0 / 9.0), 1e-12);
+  EXPECT_EQ(measures.at("jerk_mean_mps3").n, 2U);
+  // Accelerations in the bins (0.25, 0.5] twice and (0.5, 0.75]: (2 x 0.375 + 0.625) / 3.
+  EXPECT_NEAR(*measures.at("acceleration_mean_mps2").value, 1.375 / 3.0, 1e-12);
+  EXPECT_NEAR(*measures.at("acceleration_std_mps2").value, 0.25 * std::sqrt(2.0) / 3.0, 1e-12);
+}
+
+TEST(RiftMeasures, CallTheFirstDecisionUncomfortableWhereItsJerkIs) {
+  // 0 to 0.9 m/s^2 in 0.1 s: 9 m/s^3 at the first decision, 0 at the second.
+  RiftMeasures rift;
+  auto vehicle = cbv("a", 0, 0, 1.0);
+  vehicle.acceleration = 0.9;
+  rift.observeCbvs({{&vehicle, false}});
+  rift.observeCbvs({{&vehicle, false}});
+  EXPECT_DOUBLE_EQ(*rift.measures().at("uncomfortable_rate_percent").value, 50.0);
+}
+
+TEST(RiftMeasures, SumTheReachedProgress) {
+  RiftMeasures rift;
+  for (const double x : {0.0, 3.0, 7.0}) {
+    const auto first = cbv("a", x, 0, 5.0);
+    const auto second = cbv("b", -x, 20, 5.0);
+    rift.observeCbvs({{&first, false}, {&second, false}});
+  }
+  EXPECT_DOUBLE_EQ(*rift.measures().at("reached_progress_m").value, 14.0);
+  EXPECT_EQ(rift.measures().at("reached_progress_m").n, 2U);
+}
+
+TEST(RiftMeasures, BinApproachTimesLikeTimesToCollision) {
+  RiftMeasures rift;
+  rift.observeEgo(5.0, std::nullopt, 1.2);  // 1.25
+  rift.observeEgo(5.0, 2.0, 4.9);           // 4.75
+  rift.observeEgo(2.0, 2.0, 0.1);           // too slow
+  EXPECT_DOUBLE_EQ(*rift.measures().at("act_s").value, 3.0);
+  EXPECT_DOUBLE_EQ(*rift.measures().at("act_variance_s2").value, 1.75 * 1.75);
+  EXPECT_EQ(rift.measures().at("ttc_2d_s").n, 1U);
 }
 
 TEST(RiftMeasures, EndALifeWhenTheRoleEnds) {

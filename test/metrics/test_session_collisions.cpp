@@ -40,6 +40,7 @@ TEST_F(SessionCollisions, BetweenEgoAndCbvCountForBoth) {
   EXPECT_EQ(measures.cbv_ego_collisions, 1U);
   EXPECT_NEAR(*measures.collisions_per_km.value, 10.0, 1e-9);
   EXPECT_EQ(measures.collisions_per_km.n, 2U);
+  EXPECT_NEAR(*measures.ego_collisions_per_km.value, 10.0, 1e-9);
   EXPECT_NEAR(measures.driving_score, 6.0, 1e-9);
 }
 
@@ -48,6 +49,8 @@ TEST_F(SessionCollisions, BetweenCbvAndBackgroundLeaveTheEgoAlone) {
   EXPECT_EQ(measures.ego_collisions, 0U);
   EXPECT_EQ(measures.cbv_collisions, 1U);
   EXPECT_EQ(measures.cbv_ego_collisions, 0U);
+  EXPECT_NEAR(*measures.collisions_per_km.value, 10.0, 1e-9);
+  EXPECT_EQ(*measures.ego_collisions_per_km.value, 0.0);
 }
 
 TEST_F(SessionCollisions, BetweenEgoAndBackgroundLeaveTheCbvsAlone) {

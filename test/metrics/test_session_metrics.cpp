@@ -29,11 +29,27 @@ TEST_F(SessionMetricsTest, GivesReasonsForAnEmptySession) {
   const SessionMeasures measures = metrics_.measures();
   EXPECT_EQ(measures.route_completion_percent, 0.0);
   EXPECT_EQ(measures.driving_score, 0.0);
-  for (const Measure& measure :
-       {measures.ego_off_road_percent, measures.cbv_off_road_rate_percent,
-        measures.collisions_per_km, measures.ttc_2d.mean, measures.ttc_2d.minimum,
-        measures.speed_shapiro_wilk, measures.acceleration_shapiro_wilk, measures.speed_wasserstein,
-        measures.cbv_speed_error, measures.cbv_closest_distance, measures.cbv_minimum_distance}) {
+  for (const Measure& measure : {measures.ego_off_road_percent,
+                                 measures.cbv_off_road_rate_percent,
+                                 measures.collisions_per_km,
+                                 measures.ttc_2d.mean,
+                                 measures.ttc_2d.minimum,
+                                 measures.speed_shapiro_wilk,
+                                 measures.acceleration_shapiro_wilk,
+                                 measures.speed_wasserstein,
+                                 measures.cbv_speed_error,
+                                 measures.cbv_closest_distance,
+                                 measures.cbv_minimum_distance,
+                                 measures.cbv_corner_off_road_rate_percent,
+                                 measures.cbv_uncomfortable_rate_percent,
+                                 measures.ego_collisions_per_km,
+                                 measures.ttc_2d_cbv.mean,
+                                 measures.ttc_lon_lat.mean,
+                                 measures.ttc_2d_defined_percent,
+                                 measures.ttc_2d_cbv_defined_percent,
+                                 measures.post_encroachment.mean,
+                                 measures.cbv_jerk.mean,
+                                 measures.speed_shapiro_wilk_p}) {
     EXPECT_FALSE(measure.value.has_value());
     EXPECT_EQ(measure.n, 0U);
     EXPECT_FALSE(measure.reason.empty());
@@ -179,6 +195,58 @@ TEST_F(SessionMetricsTest, TakesTimesToCollisionAtDecisions) {
   EXPECT_NEAR(*times.minimum.value, 0.52, 1e-12);
   EXPECT_NEAR(*times.standard_deviation.value, std::sqrt(0.5),
               1e-12);  // +-0.5 about the mean, n - 1 = 1
+}
+
+TEST_F(SessionMetricsTest, CountsCornersOffTheRoadOnTheVehiclesLevel) {
+  // The lane ends at y = 1.6, half a width is 0.9: at y = 0.7 a corner is on its border, at 0.71
+  // off it, at 1.7 the centre too. 6 m above the road everything is off it.
+  const double places[] = {0.0, 0.69, 0.71, 1.7};
+  for (std::uint64_t tick = 0; tick < 4; ++tick) observe(tick, {cbv("a", 50, places[tick], 5)});
+  EXPECT_NEAR(*metrics_.measures().cbv_off_road_rate_percent.value, 25.0, 1e-9);
+  EXPECT_NEAR(*metrics_.measures().cbv_corner_off_road_rate_percent.value, 50.0, 1e-9);
+  EXPECT_EQ(metrics_.measures().cbv_corner_off_road_rate_percent.n, 4U);
+}
+
+TEST_F(SessionMetricsTest, TellsCbvsFromAllVehicles) {
+  // Decision 0: background 20 m ahead (1.52 s), CBV 30 m ahead (2.52 s). Decision 2: the CBV is in
+  // the next lane. Decision 4: no CBV, nothing ahead.
+  observe(0, {ego(0, 0, 10), cbv("c", 30, 0, 0), background("b", 20, 0, 0)});
+  observe(2, {ego(0, 0, 10), cbv("c", 30, 3.5, 0), background("b", 20, 0, 0)});
+  observe(4, {ego(0, 0, 10)});
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_EQ(measures.ttc_2d_cbv.mean.n, 1U);
+  EXPECT_NEAR(*measures.ttc_2d_cbv.mean.value, 2.52, 1e-12);
+  EXPECT_EQ(measures.ttc_2d_cbv.standard_deviation.reason, "n = 1, needs at least 2");
+  EXPECT_NEAR(*measures.ttc_2d.minimum.value, 1.52, 1e-12);
+  EXPECT_NEAR(*measures.ttc_2d_defined_percent.value, 200.0 / 3.0, 1e-9);
+  EXPECT_NEAR(*measures.ttc_2d_cbv_defined_percent.value, 50.0, 1e-9);
+  EXPECT_EQ(measures.ttc_2d_cbv_defined_percent.n, 2U);
+  // In line the paper's wording agrees.
+  EXPECT_NEAR(*measures.ttc_lon_lat.mean.value, 1.52, 1e-12);
+  EXPECT_NEAR(*measures.ttc_lon_lat_defined_percent.value, 200.0 / 3.0, 1e-9);
+}
+
+TEST_F(SessionMetricsTest, GivesPAndTheTargetOfDistances) {
+  const double speeds[] = {1, 0, 2, 0, 4};
+  for (std::uint64_t tick = 0; tick < 5; tick += 2)
+    observe(tick, {ego(0, 0, 1), cbv("a", 50, 0, speeds[tick]), background("b", 60, 0, 3)});
+  const SessionMeasures measures = metrics_.measures();
+  EXPECT_NEAR(*measures.speed_shapiro_wilk_p.value, 0.636886, 1e-6);
+  EXPECT_EQ(measures.speed_shapiro_wilk_p.n, 3U);
+  EXPECT_EQ(measures.acceleration_shapiro_wilk_p.reason, "all values are equal");
+  EXPECT_EQ(measures.speed_wasserstein.target,
+            "background vehicles within 150 m of the ego (n = 3)");
+}
+
+TEST(SpeedTargetOfASession, IsTheOneAskedFor) {
+  const test::StraightRoad road;
+  SessionMetricsOptions options;
+  options.metrics.speed_target = "file";
+  options.metrics.speed_target_samples = {"10"};
+  SessionMetrics metrics(options, road.drivable_area, road.route);
+  metrics.observe(snapshot(0, {ego(0, 0, 5), cbv("a", 50, 0, 4), background("b", 60, 0, 4)}),
+                  nullptr);
+  EXPECT_DOUBLE_EQ(*metrics.measures().speed_wasserstein.value, 6.0);
 }
 
 TEST_F(SessionMetricsTest, SurvivesValuesThatAreNotFinite) {

@@ -79,6 +79,27 @@ TEST(RiftTimeToCollision, HitsTheDiagonalInsteadOfTheLongSide) {
   EXPECT_DOUBLE_EQ(*riftTimeToCollision(car(0, -20, 90, 10), car(0, 0, 0, 0)), 1.73);
 }
 
+TEST(RayCastTimeToCollision, IsExactOnTheRingAndLateOnTheBowTie) {
+  // The same pair: 1.726 s with RIFT's outline, 1.670 s with the box.
+  const MovingBox first = car(0, -20, 90, 10);
+  const MovingBox second = car(0, 0, 0, 0);
+  EXPECT_NEAR(*rayCastTimeToCollision(first, second, OutlineOrder::kBowTie), 1.72625, 1e-12);
+  EXPECT_NEAR(*rayCastTimeToCollision(first, second, OutlineOrder::kRing), 1.67, 1e-12);
+  EXPECT_NEAR(*rayCastTimeToCollision(car(0, 0, 0, 10), car(12, 4, -20, 6), OutlineOrder::kRing),
+              *timeToCollision2d(car(0, 0, 0, 10), car(12, 4, -20, 6)), 1e-12);
+}
+
+TEST(RiftApproachTime, IsCornerDistanceOverApproachSpeed) {
+  // 15.2 m between the nearest corners at 5 m/s.
+  EXPECT_DOUBLE_EQ(*riftApproachTime(car(0, 0, 0, 10), car(20, 0, 0, 5)), 3.04);
+  // T-bone: corner (0.9, -17.6) to (2.4, -0.9): hypot(1.5, 16.7) = 16.7672 m at 10 m/s.
+  EXPECT_DOUBLE_EQ(*riftApproachTime(car(0, -20, 90, 10), car(0, 0, 0, 0)), 1.68);
+  // It does not ask whether the boxes would touch: next lane, 20 m ahead, 3.5 m aside.
+  EXPECT_TRUE(riftApproachTime(car(0, 0, 0, 10), car(20, 3.5, 0, 0)).has_value());
+  EXPECT_FALSE(riftApproachTime(car(0, 0, 0, 5), car(20, 0, 0, 10)).has_value());
+  EXPECT_FALSE(riftApproachTime(car(0, 0, 0, 5), car(0, 0, 0, 5)).has_value());
+}
+
 TEST(RiftTimeToCollision, NeedsAnApproach) {
   EXPECT_FALSE(riftTimeToCollision(car(0, 0, 0, 5), car(20, 0, 0, 10)).has_value());
   EXPECT_FALSE(riftTimeToCollision(car(0, 0, 0, 0), car(20, 0, 0, 0)).has_value());

@@ -68,6 +68,27 @@ TEST_F(MetricFile, GivesShapiroWilkOfCases) {
   EXPECT_EQ(lines[1], "2 (n = 2): none, n = 2, needs at least 3");
 }
 
+TEST_F(MetricFile, SaysWhyACaseHasNoShapiroWilk) {
+  EXPECT_EQ(
+      evaluate("shapiro_wilk", R"({"cases": [{"x": []}, {"x": [2, 2, 2.0, 2]}]})"),
+      (Lines{"1 (n = 0): none, n = 0, needs at least 3", "2 (n = 4): none, all values are equal"}));
+}
+
+TEST_F(MetricFile, RefusesValuesThatAreNoNumbers) {
+  // NaN is no JSON; null and text are, but no numbers; 1e999 is beyond a double.
+  EXPECT_NE(errorOf("shapiro_wilk", R"({"cases": [{"x": [1, NaN, 3]}]})").find("line 1, column"),
+            std::string::npos);
+  EXPECT_NE(errorOf("shapiro_wilk", R"({"cases": [{"x": [1, 2, 3]}, {"x": [1, null, 3]}]})")
+                .find("case 2: \"x\" holds null, expected numbers"),
+            std::string::npos);
+  EXPECT_NE(errorOf("wasserstein", R"({"cases": [{"a": [1e999], "b": [1]}]})").find("1e999"),
+            std::string::npos);
+  const std::string nan_pair = "0,0,nan,0,1,0,4,2,14,0,0,0,1,0,4,2\n";
+  EXPECT_NE(errorOf("ttc_2d", std::string(kHeader) + nan_pair)
+                .find(":2: column vx_i is \"nan\", expected a finite number"),
+            std::string::npos);
+}
+
 TEST_F(MetricFile, GivesWassersteinOfCases) {
   // |7 - 4| / 2 + |7 - 8| / 2 = 2.
   const Lines lines =

@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
+#include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "report/seen_session.h"
 
@@ -55,11 +57,12 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   EXPECT_EQ(keysOf(summary["ego"]),
             Keys({"route_completion_percent", "driving_score", "protocol", "penalty", "infractions",
                   "infractions_n", "blocked", "collisions", "off_road_percent"}));
-  EXPECT_EQ(
-      keysOf(summary["cbv"]),
-      Keys({"count", "decisions", "off_road_rate_percent", "collisions", "collisions_with_ego",
-            "collisions_per_km", "speed_error_mps", "closest_distance_m", "minimum_distance_m",
-            "distance_m", "selections", "rejected", "faults", "plan"}));
+  EXPECT_EQ(keysOf(summary["cbv"]),
+            Keys({"count", "decisions", "off_road_rate_percent", "corner_off_road_rate_percent",
+                  "collisions", "collisions_with_ego", "collisions_per_km",
+                  "collisions_with_ego_per_km", "uncomfortable_rate_percent", "speed_error_mps",
+                  "closest_distance_m", "minimum_distance_m", "distance_m", "post_encroachments",
+                  "selections", "rejected", "faults", "plan"}));
   EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
             Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
                   "conflict_point", "decisions_driven", "released_tick", "release_reason",
@@ -70,8 +73,67 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
       Keys({"x", "y", "z", "ego_distance_m", "cbv_distance_m", "ego_arrival_s", "cbv_arrival_s",
             "arrival_time_gap_s", "ego_arc_length_m", "in_junction_or_beyond"}));
   EXPECT_EQ(keysOf(summary["metrics"]),
-            Keys({"ttc_2d_s", "speed_shapiro_wilk", "acceleration_shapiro_wilk",
-                  "speed_wasserstein_mps", "rift_compat"}));
+            Keys({"ttc_2d_s", "ttc_2d_defined_percent", "ttc_2d_cbv_s",
+                  "ttc_2d_cbv_defined_percent", "ttc_lon_lat_s", "ttc_lon_lat_defined_percent",
+                  "post_encroachment_s", "speed_mps", "acceleration_mps2", "jerk_mps3",
+                  "speed_shapiro_wilk", "speed_shapiro_wilk_p", "acceleration_shapiro_wilk",
+                  "acceleration_shapiro_wilk_p", "speed_wasserstein_mps", "rift_compat"}));
+}
+
+/// Places of all numbers (and nulls) of figures below `object`, whose own place is `place`.
+void addPlaces(const Json& object, const std::string& place, std::set<std::string>& places) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string here = place + "/" + key;
+    const bool list = value.is_array();
+    const bool other = key == "n" || here == "/ego/infractions_n" || here == "/cbv/plan" ||
+                       here == "/cbv/rejected" || here == "/cbv/faults";
+    if (list || other) continue;
+    if (value.is_object()) addPlaces(value, here, places);
+    if (value.is_number() || value.is_boolean() || value.is_null()) places.insert(here);
+  }
+}
+
+TEST(ResultWriter, EveryFigureOfTheSummaryIsDefinedAndInItsPlace) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
+  writer.finish(2.0);
+  const Json summary = summaryOf(scratch);
+  std::set<std::string> places;
+  for (const char* section : {"ego", "cbv", "metrics"})
+    addPlaces(summary[section], "/" + std::string(section), places);
+  std::set<std::string> defined;
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
+    defined.insert(figure.place);
+    const Json& there = summary.at(Json::json_pointer(figure.place));
+    const metrics::Measure measure = figure.measure(writer.result().measures);
+    if (measure.value) {
+      const double number = there.is_boolean() ? there.get<bool>() : there.get<double>();
+      EXPECT_EQ(number, *measure.value) << figure.place;
+    } else {
+      EXPECT_TRUE(there.is_null()) << figure.place;
+    }
+    EXPECT_EQ(measure.unit, figure.unit) << figure.name;
+  }
+  EXPECT_EQ(places, defined);
+}
+
+TEST(ResultWriter, SummaryNamesWhatSpeedsAreComparedWith) {
+  scenario::ScenarioOptions options = test::sampleOptions();
+  options.metrics.speed_target = "normal";
+  const test::TemporaryFolder scratch;
+  runSample(scratch, SessionStatus::kTimedOut, options);
+  const Json summary = summaryOf(scratch);
+  EXPECT_EQ(summary["metrics"]["speed_wasserstein_mps"]["target"],
+            "normal distribution of mean 8 m/s and standard deviation 2 m/s");
+  EXPECT_NE(textOf(scratch, "report.html")
+                .find("against normal distribution of mean 8 m/s and standard deviation 2 m/s"),
+            std::string::npos);
+  const Json& encroachments = summary["cbv"]["post_encroachments"];
+  ASSERT_EQ(encroachments.size(), 1U);
+  EXPECT_EQ(encroachments[0]["vehicle_id"], "bg_1");
+  EXPECT_EQ(encroachments[0].contains("reason"), encroachments[0]["seconds"].is_null());
 }
 
 TEST(ResultWriter, SummaryTellsWhatHappened) {

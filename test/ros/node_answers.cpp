@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 #include "e2e_cdiff/rendering/front_camera.h"
 #include "e2e_cdiff/ros/image_conversions.h"
 #include "fake_simulator.h"
@@ -171,7 +172,10 @@ TEST(Metrics, AcknowledgesEveryTickAndWritesTheResult) {
             1 + 4 * 2);  // header, then two vehicles at four ticks
   ASSERT_TRUE(simulator.until([&] { return simulator.reports.count(3) > 0; }));
   EXPECT_TRUE(simulator.reports.at(3)->final);
-  EXPECT_FALSE(simulator.reports.at(3)->measures.empty());
+  // All figures at the first decision, then once in a simulated second, and at the end.
+  EXPECT_EQ(simulator.reports.at(3)->measures.size(), metrics::figureDefinitions().size());
+  EXPECT_EQ(simulator.reports.at(0)->measures.size(), metrics::figureDefinitions().size());
+  EXPECT_TRUE(simulator.reports.at(2)->measures.empty());
 }
 
 TEST(Recorder, BagHoldsEveryTickInOrder) {

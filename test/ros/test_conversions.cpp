@@ -7,7 +7,9 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/metrics/figure_definitions.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/metric_diagnostics.h"
 #include "sample_messages.h"
 #include "support/network_text.h"
 
@@ -205,6 +207,47 @@ TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
   EXPECT_EQ(found.at("ego_infractions/red_lights").n, 2U);
   EXPECT_FALSE(found.at("ego_infractions/static_collisions").defined);
   EXPECT_EQ(found.at("ego_infractions/static_collisions").reason, "none");
+}
+
+TEST(Conversions, EveryDefinedFigureGoesOut) {
+  metrics::SessionMeasures measures;
+  measures.ego_collisions = 2;
+  measures.speed_wasserstein = {1.0 / 3.0, 7, "m/s", "", "a target"};
+  measures.post_encroachment.mean.reason = "no CBV was driven";
+  const std::vector<msgs::Measure> all = toMsg(measures);
+  ASSERT_EQ(all.size(), metrics::figureDefinitions().size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const metrics::FigureDefinition& figure = metrics::figureDefinitions()[i];
+    EXPECT_EQ(all[i].name, figure.name);
+    EXPECT_EQ(std::isnan(all[i].value), !all[i].defined) << figure.name;
+    EXPECT_EQ(all[i].defined, figure.measure(measures).value.has_value()) << figure.name;
+    if (all[i].name == "ego_collisions") {
+      EXPECT_EQ(all[i].value, 2.0);
+    }
+    if (all[i].name == "post_encroachment_mean_s") {
+      EXPECT_EQ(all[i].reason, "no CBV was driven");
+    }
+    if (all[i].name != "speed_wasserstein_mps") continue;
+    EXPECT_EQ(all[i].value, 1.0 / 3.0);
+    EXPECT_EQ(all[i].n, 7U);
+    EXPECT_EQ(all[i].unit, "m/s");
+    EXPECT_EQ(all[i].target, "a target");
+  }
+}
+
+TEST(MetricDiagnostics, ShowMainFiguresAndWhatIsUndefined) {
+  metrics::SessionMeasures measures;
+  measures.cbv_count = 3;
+  measures.ttc_2d.minimum = {0.5, 12, "s", "", ""};
+  measures.post_encroachment.minimum.reason = "no CBV was driven";
+  measures.cbv_off_road_rate_percent.reason = "no CBV was driven";
+  std::map<std::string, std::string> values;
+  for (const auto& [name, value] : metricDiagnostics(measures)) values[name] = value;
+  EXPECT_EQ(values.at("CBVs"), "3");
+  EXPECT_EQ(values.at("2D-TTC, minimum"), "0.500 s (n = 12)");
+  EXPECT_EQ(values.at("Post-encroachment time, minimum"), "not defined: no CBV was driven");
+  EXPECT_EQ(values.at("not defined: no CBV was driven"),
+            "cbv_off_road_percent, post_encroachment_min_s");
 }
 
 TEST(Conversions, UndefinedFiguresAreNan) {

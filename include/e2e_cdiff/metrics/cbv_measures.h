@@ -23,6 +23,7 @@ struct CbvSighting {
   bool off_road = false;
   std::optional<double> wanted_speed = {};  ///< target speed capped by the lane's limit [m/s]
   std::optional<double> ego_distance = {};  ///< of the centres of ego and CBV [m]
+  bool corner_off_road = false;             ///< whether any corner of its box is off the road
 };
 
 class CbvMeasures {
@@ -43,7 +44,9 @@ class CbvMeasures {
   const std::vector<double>& speeds() const { return speeds_; }
   const std::vector<double>& accelerations() const { return accelerations_; }
   Measure offRoadRatePercent() const;
+  Measure cornerOffRoadRatePercent() const;
   Measure collisionsPerKilometre() const;
+  Measure egoCollisionsPerKilometre() const;
   /// Mean of |v - wanted speed| over decisions [m/s].
   Measure speedError() const;
   /// Mean over CBVs of each one's smallest distance to the ego [m].
@@ -57,6 +60,7 @@ class CbvMeasures {
   std::set<std::string> driven_;
   std::map<std::string, Eigen::Vector2d> last_positions_;  ///< of the CBVs of the last tick
   OffRoadRate off_road_;
+  OffRoadRate corner_off_road_;
   std::size_t decisions_ = 0;
   std::size_t collisions_ = 0;
   std::size_t ego_collisions_ = 0;

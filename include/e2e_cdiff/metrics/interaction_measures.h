@@ -14,14 +14,17 @@ namespace cdiff::metrics {
 /// Minima over the vehicles on the ego's level where defined.
 struct Interaction {
   std::optional<double> ttc_2d;            ///< vehicles within the radius
-  std::optional<double> rift_ttc;          ///< the same by RIFT's ray cast; only when asked for
+  std::optional<double> ttc_2d_cbv;        ///< the same, CBVs alone
+  std::optional<double> ttc_lon_lat;       ///< by the paper's wording; only when asked for
+  std::optional<double> rift_ttc;          ///< by RIFT's ray cast; only when asked for
+  std::optional<double> rift_act;          ///< by RIFT's ACT; only when asked for
   std::optional<double> nearest_distance;  ///< any distance
 };
 
 struct InteractionOptions {
   double radius = 60.0;        ///< of centres, for times to collision [m]
   double time_limit = 3600.0;  ///< a longer time counts as never [s]
-  bool rift = false;           ///< whether rift_ttc is computed
+  bool variants = false;       ///< whether ttc_lon_lat, rift_ttc and rift_act are computed
 };
 
 /// `ego` is one of the snapshot's vehicles. Vehicles with a value that is not finite are passed

@@ -44,7 +44,9 @@ class RiftHistogram {
 RiftHistogram riftSpeedHistogram();
 /// RIFT's bins of the magnitude of acceleration [m/s^2].
 RiftHistogram riftAccelerationHistogram();
-/// RIFT's bins of the time to collision [s].
+/// RIFT's bins of jerk [m/s^3].
+RiftHistogram riftJerkHistogram();
+/// RIFT's bins of the time to collision and of ACT [s].
 RiftHistogram riftTtcHistogram();
 
 /// RIFT's S-WD [m/s]: 2-Wasserstein distance of two normal distributions, sqrt((mean - 8.5)^2 +

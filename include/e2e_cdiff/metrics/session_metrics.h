@@ -12,22 +12,26 @@
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/infraction_options.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/metrics/session_measures.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::metrics {
 
 struct SessionMetricsOptions {
-  double simulation_step = 0.05;        ///< [s]
-  double completion_percent = 99.0;     ///< of the protocol
-  double completion_distance = 10.0;    ///< of the protocol [m]
-  std::string protocol = "rift_dev10";  ///< name of the preset
-  InfractionOptions infractions;        ///< its rules for the ego
-  double ttc_radius = 60.0;             ///< vehicles considered for 2D-TTC [m]
-  double ttc_limit = 3600.0;            ///< a longer 2D-TTC counts as never [s]
-  double target_speed = 8.0;            ///< that CBVs aim at, capped by the lane's limit [m/s]
+  double simulation_step = 0.05;          ///< [s]
+  double decision_period = 0.1;           ///< [s]
+  double completion_percent = 99.0;       ///< of the protocol
+  double completion_distance = 10.0;      ///< of the protocol [m]
+  std::string protocol = "rift_dev10";    ///< name of the preset
+  InfractionOptions infractions;          ///< its rules for the ego
+  double ttc_radius = 60.0;               ///< vehicles considered for 2D-TTC [m]
+  double ttc_limit = 3600.0;              ///< a longer 2D-TTC counts as never [s]
+  double post_encroachment_limit = 10.0;  ///< a longer time counts as never [s]
+  double target_speed = 8.0;              ///< that CBVs aim at, capped by the lane's limit [m/s]
   const map::RoadNetwork* network =
-      nullptr;  ///< for that limit and the ego's infractions; nullptr: without
+      nullptr;             ///< for that limit and the ego's infractions; nullptr: without
+  MetricsOptions metrics;  ///< what the scenario asks for
 };
 
 /// Figures of one tick, for the live topic.

@@ -21,11 +21,25 @@ struct MovingBox {
 /// they never touch or a value is not finite.
 std::optional<double> timeToCollision2d(const MovingBox& first, const MovingBox& second);
 
+/// Order in which a ray cast joins a box's corners to an outline.
+enum class OutlineOrder {
+  kRing,   ///< FL, FR, RR, RL: the box
+  kBowTie  ///< FL, FR, RL, RR as in RIFT's code: the diagonals instead of the long sides
+};
+
+/// The ray cast behind RIFT's RTTC, not rounded [s]: exact with kRing where the boxes approach.
+std::optional<double> rayCastTimeToCollision(const MovingBox& first, const MovingBox& second,
+                                             OutlineOrder order);
+
 /// RIFT's RTTC: nullopt unless the boxes approach (-u . (v_B - v_A) >= 0 with u from A to B); else
 /// the shortest ray from a corner along the relative velocity onto the other's outline, divided by
 /// the relative speed and rounded to 0.01 s. The outline is RIFT's bow-tie FL, FR, RL, RR: the long
 /// sides are never tested, the diagonals are.
 std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second);
+
+/// RIFT's ACT [s], rounded to 0.01 s: shortest distance from a corner of one box to a corner of the
+/// other / speed at which the centres approach; nullopt unless they do.
+std::optional<double> riftApproachTime(const MovingBox& first, const MovingBox& second);
 
 /// The paper's wording: minimum of longitudinal and lateral time to collision in the first box's
 /// frame, boxes taken as parallel. T_lon = (|d_lon| - (l_A + l_B) / 2) / closing speed, valid where

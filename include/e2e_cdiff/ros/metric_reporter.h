@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The session's metrics as messages: one report per decision, and one with all figures at the end.
+/// The session's metrics as messages: one report per decision; all figures in it once in a
+/// simulated second and at the end.
 #pragma once
 
 #include <string>
@@ -20,10 +21,15 @@ class MetricReporter {
   /// between decisions.
   ::e2e_cdiff::MetricReport::ConstPtr observe(const traffic::TrafficSnapshot& snapshot,
                                               const cbv::CbvSelection* selection);
+  /// All figures as of the last report that held them.
+  const metrics::SessionMeasures& session() const { return session_; }
 
  private:
   metrics::SessionMetrics metrics_;
   std::string protocol_;  ///< preset
+  metrics::SessionMeasures session_;
+  std::uint64_t decisions_per_report_;
+  std::uint64_t decisions_ = 0;
 };
 
 }  // namespace cdiff::ros

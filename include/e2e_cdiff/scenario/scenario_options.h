@@ -10,6 +10,7 @@
 #include "e2e_cdiff/cbv/cbv_selector.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/map/route_source.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/scenario/protocol.h"
@@ -63,6 +64,7 @@ struct ScenarioOptions {
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
+  metrics::MetricsOptions metrics;
   VerdictOptions verdict;
   ReportOptions report;
   bool video = false;             ///< also write session.mp4

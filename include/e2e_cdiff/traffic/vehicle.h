@@ -66,11 +66,15 @@ struct Vehicle {
   }
 };
 
-/// Whether two vehicles are so far apart in height that their boxes cannot touch (bridges).
-inline bool onDifferentLevels(const Vehicle& first, const Vehicle& second) {
+/// Whether two elevations [m] are so far apart that boxes there cannot touch (bridges).
+inline bool onDifferentLevels(double first_elevation, double second_elevation) {
   constexpr double kLevelHeight =
       2.5;  // [m] lower than any bridge, higher than any slope within a vehicle's length
-  return std::abs(first.state.elevation - second.state.elevation) > kLevelHeight;
+  return std::abs(first_elevation - second_elevation) > kLevelHeight;
+}
+
+inline bool onDifferentLevels(const Vehicle& first, const Vehicle& second) {
+  return onDifferentLevels(first.state.elevation, second.state.elevation);
 }
 
 }  // namespace cdiff::traffic
