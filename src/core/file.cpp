@@ -31,21 +31,20 @@ fs::path libraryFolder() {
   return fs::absolute(info.dli_fname).parent_path();
 }
 
-[[noreturn]] void failWriting(const fs::path& path) {
-  throw InputError("cannot write '" + path.string() + "': " + std::strerror(errno) +
-                   "; check that the folder exists and is writable");
+[[noreturn]] void failWriting(const fs::path& path, int reason) {
+  throw InputError("cannot write '" + path.string() + "': " + std::strerror(reason) +
+                   "; check that the folder exists, is writable and has room");
 }
 
-void writeAll(int descriptor, std::string_view content, const fs::path& path) {
+/// Whether all of it was written and reached the disk; errno says why not.
+bool writeAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      ::close(descriptor);
-      failWriting(path);
-    }
+    if (written < 0) return false;
     content.remove_prefix(static_cast<std::size_t>(written));
   }
+  return ::fsync(descriptor) == 0;
 }
 
 fs::path firstEnvironmentFolder() {
@@ -73,11 +72,24 @@ std::string readFile(const fs::path& path, const std::string& what) {
 void writeFileAtomically(const fs::path& path, std::string_view content) {
   const fs::path temporary = path.string() + ".tmp." + std::to_string(::getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) failWriting(path);
-  writeAll(descriptor, content, path);
-  ::fsync(descriptor);
-  ::close(descriptor);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) failWriting(path);
+  if (descriptor < 0) failWriting(path, errno);
+  const bool written = writeAll(descriptor, content);
+  int reason = written ? 0 : errno;
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) reason = errno;
+  if (reason == 0) return;
+  ::unlink(temporary.c_str());
+  failWriting(path, reason);
+}
+
+void removeTemporaries(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().find(".tmp.") != std::string::npos)
+      files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) fs::remove(file, ignored);
 }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {

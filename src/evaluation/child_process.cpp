@@ -22,7 +22,7 @@ namespace {
   if (::getppid() != parent) ::_exit(127);
   ::setpgid(0, 0);
   const int input = ::open("/dev/null", O_RDONLY);
-  const int output = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const int output = *log == '\0' ? -1 : ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (input >= 0) ::dup2(input, STDIN_FILENO);
   if (output >= 0) {
     ::dup2(output, STDOUT_FILENO);
