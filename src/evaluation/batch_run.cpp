@@ -26,7 +26,8 @@ void addNumbers(const json& object, const std::string& place, SummaryNumbers& nu
 SummaryNumbers summaryNumbers(const std::string& text, const std::string& source) {
   const json summary = json::parse(text, nullptr, false);
   if (!summary.is_object()) {
-    throw core::InputError("'" + source + "' is no summary of a session; delete the folder's "
+    throw core::InputError("'" + source +
+                           "' is no summary of a session; delete the folder's "
                            "record.json to have the run repeated");
   }
   SummaryNumbers numbers;

@@ -168,9 +168,9 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
   for (const Comparison& comparison : comparisons) {
     for (const FigureComparison& figure : comparison.figures) {
       const Statistics& difference = figure.difference;
-      text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," + figure.figure + "," +
-              std::to_string(difference.n) + field(figure.mean_a) + field(figure.mean_b) +
-              field(difference.mean) + field(difference.standard_deviation);
+      text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," +
+              figure.figure + "," + std::to_string(difference.n) + field(figure.mean_a) +
+              field(figure.mean_b) + field(difference.mean) + field(difference.standard_deviation);
       const bool interval = difference.half_width.has_value();
       text += interval ? field(*difference.mean - *difference.half_width) +
                              field(*difference.mean + *difference.half_width)

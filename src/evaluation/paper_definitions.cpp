@@ -34,27 +34,51 @@ Factors guidanceLevels(const char* profile) {
 // rates of, so that they are the rate over all runs of a seed.
 
 TableColumn timeToCollision() {
-  return {"2D-TTC", "s", "/metrics/ttc_2d_s/mean", "/metrics/ttc_2d_s/n",
-          "/metrics/rift_compat/ttc_2d_s/value", {}};
+  return {"2D-TTC",
+          "s",
+          "/metrics/ttc_2d_s/mean",
+          "/metrics/ttc_2d_s/n",
+          "/metrics/rift_compat/ttc_2d_s/value",
+          {}};
 }
 
 TableColumn offRoadRate() {
-  return {"ORR", "%", "/cbv/off_road_rate_percent", "/cbv/decisions",
-          "/metrics/rift_compat/off_road_rate_percent/value", {}};
+  return {"ORR",
+          "%",
+          "/cbv/off_road_rate_percent",
+          "/cbv/decisions",
+          "/metrics/rift_compat/off_road_rate_percent/value",
+          {}};
 }
 
 TableColumn collisionsPerKilometre() {
-  return {"CPK", "1/km", "/cbv/collisions_per_km", "/cbv/distance_m",
-          "/metrics/rift_compat/collisions_per_km/value", {}};
+  return {"CPK",
+          "1/km",
+          "/cbv/collisions_per_km",
+          "/cbv/distance_m",
+          "/metrics/rift_compat/collisions_per_km/value",
+          {}};
 }
 
 std::vector<TableColumn> realism() {
-  return {{"S-SW", "", "/metrics/speed_shapiro_wilk/value", "",
-           "/metrics/rift_compat/speed_shapiro_wilk/value", {}},
-          {"A-SW", "", "/metrics/acceleration_shapiro_wilk/value", "",
-           "/metrics/rift_compat/acceleration_shapiro_wilk/value", {}},
-          {"S-WD", "m/s", "/metrics/speed_wasserstein_mps/value", "",
-           "/metrics/rift_compat/speed_wasserstein_mps/value", {}}};
+  return {{"S-SW",
+           "",
+           "/metrics/speed_shapiro_wilk/value",
+           "",
+           "/metrics/rift_compat/speed_shapiro_wilk/value",
+           {}},
+          {"A-SW",
+           "",
+           "/metrics/acceleration_shapiro_wilk/value",
+           "",
+           "/metrics/rift_compat/acceleration_shapiro_wilk/value",
+           {}},
+          {"S-WD",
+           "m/s",
+           "/metrics/speed_wasserstein_mps/value",
+           "",
+           "/metrics/rift_compat/speed_wasserstein_mps/value",
+           {}}};
 }
 
 std::vector<TableColumn> controllabilityAndRealism() {
@@ -66,9 +90,7 @@ std::vector<TableColumn> controllabilityAndRealism() {
 
 TableColumn drivingScore() { return {"DS", "", "/ego/driving_score", "", "", {}}; }
 
-TableColumn routeCompletion() {
-  return {"RC", "%", "/ego/route_completion_percent", "", "", {}};
-}
+TableColumn routeCompletion() { return {"RC", "%", "/ego/route_completion_percent", "", "", {}}; }
 
 TableRow cbvRow(const PaperSystem& system, std::vector<PaperFigure> paper) {
   return {system.name, merged(naturalisticLevels(), cbvLevel(system)), std::move(paper), ""};
@@ -89,8 +111,7 @@ TableDefinition table1() {
       {cbvRow(kPpo, {{2.41, 1.52}, {8.82, 8.83}, {0.80, 0.01}, {0.65, 0.02}, {6.48, 0.10}}),
        cbvRow(kPluto, {{2.56, 1.55}, {3.02, 3.09}, {0.84, 0.08}, {0.83, 0.12}, {6.13, 0.59}}),
        cbvRow(kRift, {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}}),
-       cbvRow(kDiffusion,
-              {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
+       cbvRow(kDiffusion, {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
   return withLevels(table, egoLevel(kPdmLite));
 }
 
@@ -104,8 +125,7 @@ TableDefinition table2() {
       {cbvRow(kPpo, {{2.04, 2.08}, {4.50, 1.15}, {0.93, 0.01}, {0.94, 0.02}, {5.02, 0.19}}),
        cbvRow(kPluto, {{2.59, 1.88}, {6.44, 1.57}, {0.84, 0.02}, {0.78, 0.03}, {6.20, 0.23}}),
        cbvRow(kRift, {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}}),
-       cbvRow(kDiffusion,
-              {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
+       cbvRow(kDiffusion, {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
   return withLevels(table, egoLevel(kPlanT));
 }
 
@@ -116,14 +136,38 @@ TableDefinition table3() {
       "CBVs are driven naturalistically; the collision-seeking variant is Figure 4.",
       "CBV planner",
       {},
-      {cbvRow(kPpo, {{89.77, 5.18}, {92.75, 3.45}, {45.43, 2.10}, {65.91, 0.72},
-                     {71.22, 4.61}, {88.63, 1.10}, {69.42, 4.43}, {82.33, 1.61}}),
-       cbvRow(kPluto, {{74.32, 6.33}, {79.74, 3.51}, {42.18, 2.75}, {55.87, 4.07},
-                       {75.02, 2.79}, {83.41, 2.69}, {72.61, 4.11}, {81.57, 1.47}}),
-       cbvRow(kRift, {{93.23, 2.19}, {94.42, 1.61}, {46.76, 2.01}, {62.83, 4.08},
-                      {77.37, 2.01}, {87.84, 4.08}, {75.67, 1.80}, {83.42, 0.39}}),
-       cbvRow(kDiffusion, {{96.49, 0.10}, {96.49, 0.10}, {51.52, 6.12}, {66.84, 1.62},
-                           {69.59, 1.95}, {85.99, 4.71}, {76.05, 1.59}, {84.28, 0.21}})}};
+      {cbvRow(kPpo, {{89.77, 5.18},
+                     {92.75, 3.45},
+                     {45.43, 2.10},
+                     {65.91, 0.72},
+                     {71.22, 4.61},
+                     {88.63, 1.10},
+                     {69.42, 4.43},
+                     {82.33, 1.61}}),
+       cbvRow(kPluto, {{74.32, 6.33},
+                       {79.74, 3.51},
+                       {42.18, 2.75},
+                       {55.87, 4.07},
+                       {75.02, 2.79},
+                       {83.41, 2.69},
+                       {72.61, 4.11},
+                       {81.57, 1.47}}),
+       cbvRow(kRift, {{93.23, 2.19},
+                      {94.42, 1.61},
+                      {46.76, 2.01},
+                      {62.83, 4.08},
+                      {77.37, 2.01},
+                      {87.84, 4.08},
+                      {75.67, 1.80},
+                      {83.42, 0.39}}),
+       cbvRow(kDiffusion, {{96.49, 0.10},
+                           {96.49, 0.10},
+                           {51.52, 6.12},
+                           {66.84, 1.62},
+                           {69.59, 1.95},
+                           {85.99, 4.71},
+                           {76.05, 1.59},
+                           {84.28, 0.21}})}};
   for (const PaperSystem& ego : paperEgoPlanners()) {
     if (std::string(ego.planner) == kDiffusion.planner) continue;
     for (TableColumn column : {drivingScore(), routeCompletion()}) {
@@ -206,6 +250,12 @@ const std::vector<PaperSystem>& paperCbvPlanners() {
   return systems;
 }
 
+const std::vector<PaperSystem>& paperExecutions() {
+  static const std::vector<PaperSystem> systems = {kTwoStage,
+                                                   {"End-to-end control", kDiffusion.planner}};
+  return systems;
+}
+
 Factors naturalisticLevels() { return guidanceLevels("naturalistic"); }
 
 Factors safetyCriticalLevels() {
@@ -254,11 +304,13 @@ TableDefinition latencyFigure() {
       {}};
   for (std::size_t i = 0; i < std::size(paper); ++i) {
     const PaperSystem& ego = paperEgoPlanners()[i];
-    table.rows.push_back({ego.name, egoLevel(ego), {{paper[i], {}}},
-                          "ego:" + std::string(ego.planner)});
+    table.rows.push_back(
+        {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner)});
   }
   for (const PaperSystem& cbv : {kDiffusion, kTwoStage}) {
-    table.rows.push_back({std::string(cbv.name) + " (as CBV planner, all slots)", cbvLevel(cbv), {},
+    table.rows.push_back({std::string(cbv.name) + " (as CBV planner, all slots)",
+                          cbvLevel(cbv),
+                          {},
                           "cbv:" + std::string(cbv.planner)});
   }
   return table;

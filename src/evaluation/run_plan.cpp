@@ -146,8 +146,8 @@ std::vector<Combination> productOf(const MatrixOptions& matrix) {
 
 std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source) {
   if (matrix.combinations.empty()) return productOf(matrix);
-  for (const auto* list : {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes,
-                           &matrix.guidance_profiles}) {
+  for (const auto* list :
+       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
     if (list->empty()) continue;
     throw InputError(source +
                      ": key 'combinations' stands instead of ego_planners, cbv_planners, modes "

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/line_chart.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/report_tables.h"

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/line_chart.h"
 
 namespace cdiff::report {

@@ -20,6 +20,8 @@ struct PaperSystem {
 /// In the paper's order.
 const std::vector<PaperSystem>& paperEgoPlanners();
 const std::vector<PaperSystem>& paperCbvPlanners();
+/// Two-stage and end-to-end.
+const std::vector<PaperSystem>& paperExecutions();
 
 /// Levels of runs without and with collision-seeking guidance.
 Factors naturalisticLevels();

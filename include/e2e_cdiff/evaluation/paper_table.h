@@ -47,8 +47,8 @@ struct TableDefinition {
 
 struct TableCell {
   PaperFigure paper;
-  Statistics seeds;  ///< over seeds that have the figure
-  Statistics rift;   ///< the same by RIFT's definition; n = 0 where it has none
+  Statistics seeds;        ///< over seeds that have the figure
+  Statistics rift;         ///< the same by RIFT's definition; n = 0 where it has none
   std::size_t runs = 0;    ///< of these levels, whatever became of them
   std::size_t failed = 0;  ///< of these, that broke, were interrupted or not run
   std::size_t used = 0;    ///< of these, that have the figure

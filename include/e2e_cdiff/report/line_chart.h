@@ -36,7 +36,4 @@ struct Chart {
 
 std::string chartSvg(const Chart& chart);
 
-/// A step of 1, 2 or 5 times a power of ten that cuts `span` (positive) into at most `count` parts.
-double niceStep(double span, int count);
-
 }  // namespace cdiff::report

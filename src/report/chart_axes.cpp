@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/report/chart_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/markup.h"
+
+namespace cdiff::report {
+namespace {
+
+constexpr double kRounding = 1e-9;  // share of a step
+
+}  // namespace
+
+double niceStep(double span, int count) {
+  const double rough = span / count;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough * (1.0 - kRounding)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+std::string axisNumber(double value, double step) {
+  // Steps such as 0.1 add up to numbers such as 0.30000000000000004.
+  const double resolution = std::pow(10.0, 3.0 - std::floor(std::log10(step)));
+  const double rounded = std::round(value * resolution) / resolution + 0.0;
+  if (std::abs(rounded) >= 1e6) return core::formatNumber(rounded / 1e6) + "M";
+  if (std::abs(rounded) >= 1e4) return core::formatNumber(rounded / 1e3) + "k";
+  return core::formatNumber(rounded);
+}
+
+std::string chartText(const std::string& style, double x, double y, const std::string& content) {
+  return "<text class=\"" + style + "\" x=\"" + shortNumber(x) + "\" y=\"" + shortNumber(y) +
+         "\">" + escapeMarkup(content) + "</text>";
+}
+
+ChartAxes::ChartAxes(double left, double right, double bottom, double top)
+    : left_(left), right_(right), low_(bottom), step_(niceStep(top - bottom, 5)) {
+  high_ = low_ + step_ * std::ceil((top - low_) / step_ - kRounding);
+}
+
+double ChartAxes::x(double quantity) const {
+  const double share = (quantity - left_) / (right_ - left_);
+  return kChartLeft + (kChartWidth - kChartLeft - kChartRight) * share;
+}
+
+double ChartAxes::y(double value) const {
+  const double share = std::clamp((value - low_) / (high_ - low_), 0.0, 1.0);
+  return kChartHeight - kChartBottom - (kChartHeight - kChartTop - kChartBottom) * share;
+}
+
+std::string ChartAxes::grid(const std::string& unit) const {
+  std::string svg;
+  const int rows = static_cast<int>(std::lround((high_ - low_) / step_));
+  for (int i = 0; i <= rows; ++i) {
+    const double value = low_ + i * step_;
+    svg += "<path class=\"grid\" d=\"M" + shortNumber(kChartLeft) + " " + shortNumber(y(value)) +
+           "H" + shortNumber(kChartWidth - kChartRight) + "\"/>" +
+           chartText("tick end", kChartLeft - 6.0, y(value) + 4.0, axisNumber(value, step_));
+  }
+  const double step = niceStep(right_ - left_, 8);
+  const double first = std::ceil(left_ / step - kRounding);
+  const double last = std::floor(right_ / step + kRounding);
+  for (double i = first; i <= last; i += 1.0) {
+    svg += chartText("tick middle", x(i * step), kChartHeight - 7.0,
+                     axisNumber(i * step, step) + (i == last ? " " + unit : ""));
+  }
+  return svg + "\n";
+}
+
+}  // namespace cdiff::report
