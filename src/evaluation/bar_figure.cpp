@@ -76,10 +76,12 @@ std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes
   const double middle = axes.x(static_cast<double>(row) + 0.5);
   const bool empty = std::none_of(cells.begin(), cells.end(),
                                   [](const TableCell& cell) { return cell.seeds.mean; });
-  svg += report::chartText("tick middle", middle, report::kChartHeight - 9.0,
+  const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
+  svg += report::chartText("tick middle", middle, report::kChartHeight - 9.0 + lower,
                            table.definition.rows[row].name);
   if (empty && !cells.empty())
-    svg += report::chartText("note middle", middle, report::kChartTop + 10.0, cells.front().note);
+    svg += report::chartText("note middle", middle, report::kChartTop + 10.0 + lower,
+                             cells.front().note);
   return svg + "\n";
 }
 
@@ -116,7 +118,7 @@ Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>&
   const report::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
   report::Panel panel;
   panel.width = report::kChartWidth;
-  panel.height = report::kChartHeight;
+  panel.height = report::kChartHeight + 14.0;
   panel.content = valueGrid(axes);
   for (std::size_t row = 0; row < table.cells.size(); ++row)
     panel.content += groupOf(table, row, axes);

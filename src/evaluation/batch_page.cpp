@@ -13,7 +13,7 @@ namespace {
 using report::escapeMarkup;
 
 constexpr const char* kPageStyle = R"CSS(
-.sheet { display: block; width: 100%; height: auto; border: 1px solid var(--line);
+.sheet { display: block; max-width: 100%; height: auto; border: 1px solid var(--line);
   border-radius: 8px; margin: 8px 0 18px; }
 td .paper, td .rift { color: var(--soft); font-size: .86rem; display: block; }
 )CSS";

@@ -169,6 +169,7 @@ report::Panel examplePanel(const Execution& execution, const Plan& plan,
                            const scenario::SessionSetup* setup) {
   report::Panel panel;
   panel.height = 220.0;
+  panel.cut = true;
   report::Points planned;
   report::Points driven;
   report::Region region{plan.front().planned.position, plan.front().planned.position};

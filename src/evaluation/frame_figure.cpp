@@ -128,6 +128,7 @@ class FrameRow {
     report::Panel panel;
     panel.title =
         system_.name + ", " + core::formatFixed(static_cast<double>(tick) * step_, 2) + " s";
+    panel.cut = true;
     panel.width = kWidth;
     panel.height = kHeight;
     panel.content = ground() + road + vehicles + (circled ? circle(*ego, *other) : "") +

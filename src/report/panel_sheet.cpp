@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/markup.h"
 
@@ -33,6 +34,18 @@ std::string panelSvg(const Panel& panel, double x, double y) {
          "</svg>\n";
 }
 
+/// Lines of words that fit into a width.
+std::vector<std::string> wrapped(const std::string& text, double width) {
+  constexpr double kLetter = 6.9;  // mean width of a letter of a note
+  const auto most = static_cast<std::size_t>(width / kLetter);
+  std::vector<std::string> lines(1);
+  for (const std::string& word : core::splitText(text, ' ')) {
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+  }
+  return lines;
+}
+
 /// The sheet's content; `y` becomes its height.
 std::string contentOf(const PanelSheet& sheet, double& y) {
   std::string svg = chartText("sheet-title", kMargin, y + 16.0, sheet.title) + "\n";
@@ -54,8 +67,11 @@ std::string contentOf(const PanelSheet& sheet, double& y) {
     y += height + kLine + kMargin;
   }
   for (const std::string& note : sheet.notes) {
-    svg += chartText("note", kMargin, y + 13.0, note) + "\n";
-    y += kLine;
+    for (const std::string& line : wrapped(note, widthOf(sheet) - 2.0 * kMargin)) {
+      svg += chartText("note", kMargin, y + 13.0, line) + "\n";
+      y += 0.8 * kLine;
+    }
+    y += 0.2 * kLine;
   }
   return svg;
 }
@@ -66,7 +82,9 @@ std::string element(const PanelSheet& sheet, const std::string& attributes,
   double height = kMargin;
   const std::string content = contentOf(sheet, height);
   height += kMargin;
-  return "<svg " + attributes + "class=\"sheet\" role=\"img\" aria-label=\"" +
+  const std::string size =
+      "width=\"" + shortNumber(width) + "\" height=\"" + shortNumber(height) + "\" ";
+  return "<svg " + attributes + size + "class=\"sheet\" role=\"img\" aria-label=\"" +
          escapeMarkup(sheet.title) + "\" viewBox=\"0 0 " + shortNumber(width) + " " +
          shortNumber(height) + "\">\n" + style + "<path class=\"paper\" d=\"M0 0H" +
          shortNumber(width) + "V" + shortNumber(height) + "H0Z\"/>\n" + content + "</svg>\n";

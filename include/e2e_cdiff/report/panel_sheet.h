@@ -12,16 +12,17 @@ namespace cdiff::report {
 
 struct Panel {
   std::string title;
-  std::string content;  ///< SVG in pixels of the panel; what lies outside is cut off
+  std::string content;  ///< SVG in pixels of the panel
   double width = 540.0;
   double height = 190.0;
+  bool cut = false;  ///< whether what lies outside is cut off
 };
 
 struct PanelSheet {
   std::string title;
   std::vector<std::pair<std::string, std::string>> legend = {};  ///< (CSS class of a line, text)
   std::vector<std::vector<Panel>> rows = {};                     ///< panels from left to right
-  std::vector<std::string> notes = {};                           ///< a line each
+  std::vector<std::string> notes = {};                           ///< a paragraph each
 };
 
 /// For a page that holds kPanelSheetStyle.
