@@ -8,8 +8,8 @@
 #include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_definitions.h"
 #include "e2e_cdiff/evaluation/paper_figures.h"
+#include "e2e_cdiff/evaluation/paper_systems.h"
 #include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/plan_file.h"
@@ -228,6 +228,15 @@ void addExamples(std::vector<Execution>& executions, Figure& figure) {
       "), the one with the median displacement; dashed: planned, solid: driven.");
 }
 
+/// Of CBVs in naturalistic runs with ego PDM-Lite.
+std::vector<Execution> executionsOf(const std::vector<BatchRun>& runs) {
+  const Factors levels = merged(naturalisticLevels(), egoLevel(paper::kPdmLite));
+  std::vector<Execution> executions;
+  for (const PaperSystem& system : paperExecutions())
+    executions.push_back(executionOf({system.name, merged(levels, cbvLevel(system))}, runs));
+  return executions;
+}
+
 }  // namespace
 
 Figure executionFigure(const std::vector<BatchRun>& runs) {
@@ -235,14 +244,7 @@ Figure executionFigure(const std::vector<BatchRun>& runs) {
   figure.id = "figure_7";
   figure.csv = kHeader;
   figure.sheet.title = "Figure 7. Planned against executed states of CBVs";
-  Factors levels = naturalisticLevels();
-  levels["ego_planner"] = paperEgoPlanners().front().planner;
-  std::vector<Execution> executions;
-  for (const PaperSystem& system : paperExecutions()) {
-    Factors own = levels;
-    own["cbv_planner"] = system.planner;
-    executions.push_back(executionOf({system.name, own}, runs));
-  }
+  std::vector<Execution> executions = executionsOf(runs);
   for (std::size_t i = 0; i < executions.size(); ++i) {
     const Execution& execution = executions[i];
     figure.csv += curveRows(execution);

@@ -4,31 +4,10 @@
 
 #include <iterator>
 
+#include "e2e_cdiff/evaluation/paper_systems.h"
+
 namespace cdiff::evaluation {
 namespace {
-
-// The planner name table: a planner of another name here is one change in its line.
-constexpr PaperSystem kPdmLite = {"PDM-Lite", "pdm_lite"};
-constexpr PaperSystem kPlanT = {"PlanT", "plant"};
-constexpr PaperSystem kUniAd = {"UniAD", "uniad"};
-constexpr PaperSystem kVad = {"VAD", "vad"};
-constexpr PaperSystem kPpo = {"PPO", "ppo"};
-constexpr PaperSystem kPluto = {"Pluto", "pluto"};
-constexpr PaperSystem kRift = {"RIFT", "rift"};
-constexpr PaperSystem kDiffusion = {"E2E-CDiff", "diffusion"};
-constexpr PaperSystem kTwoStage = {"Two-stage trajectory-then-PID", "two_stage_pid"};
-
-Factors merged(Factors levels, const Factors& others) {
-  levels.insert(others.begin(), others.end());
-  return levels;
-}
-
-Factors egoLevel(const PaperSystem& system) { return {{"ego_planner", system.planner}}; }
-Factors cbvLevel(const PaperSystem& system) { return {{"cbv_planner", system.planner}}; }
-
-Factors guidanceLevels(const char* profile) {
-  return {{"mode", "naturalistic"}, {"guidance_profile", profile}};
-}
 
 // Columns. Times and speeds are means of the sessions' figures; rates are weighted by what they are
 // rates of, so that they are the rate over all runs of a seed.
@@ -108,11 +87,13 @@ TableDefinition table1() {
       "",
       "CBV planner",
       controllabilityAndRealism(),
-      {cbvRow(kPpo, {{2.41, 1.52}, {8.82, 8.83}, {0.80, 0.01}, {0.65, 0.02}, {6.48, 0.10}}),
-       cbvRow(kPluto, {{2.56, 1.55}, {3.02, 3.09}, {0.84, 0.08}, {0.83, 0.12}, {6.13, 0.59}}),
-       cbvRow(kRift, {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}}),
-       cbvRow(kDiffusion, {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
-  return withLevels(table, egoLevel(kPdmLite));
+      {cbvRow(paper::kPpo, {{2.41, 1.52}, {8.82, 8.83}, {0.80, 0.01}, {0.65, 0.02}, {6.48, 0.10}}),
+       cbvRow(paper::kPluto,
+              {{2.56, 1.55}, {3.02, 3.09}, {0.84, 0.08}, {0.83, 0.12}, {6.13, 0.59}}),
+       cbvRow(paper::kRift, {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}}),
+       cbvRow(paper::kDiffusion,
+              {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
+  return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
 TableDefinition table2() {
@@ -122,12 +103,48 @@ TableDefinition table2() {
       "",
       "CBV planner",
       controllabilityAndRealism(),
-      {cbvRow(kPpo, {{2.04, 2.08}, {4.50, 1.15}, {0.93, 0.01}, {0.94, 0.02}, {5.02, 0.19}}),
-       cbvRow(kPluto, {{2.59, 1.88}, {6.44, 1.57}, {0.84, 0.02}, {0.78, 0.03}, {6.20, 0.23}}),
-       cbvRow(kRift, {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}}),
-       cbvRow(kDiffusion, {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
-  return withLevels(table, egoLevel(kPlanT));
+      {cbvRow(paper::kPpo, {{2.04, 2.08}, {4.50, 1.15}, {0.93, 0.01}, {0.94, 0.02}, {5.02, 0.19}}),
+       cbvRow(paper::kPluto,
+              {{2.59, 1.88}, {6.44, 1.57}, {0.84, 0.02}, {0.78, 0.03}, {6.20, 0.23}}),
+       cbvRow(paper::kRift, {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}}),
+       cbvRow(paper::kDiffusion,
+              {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
+  return withLevels(table, egoLevel(paper::kPlanT));
 }
+
+/// Mean and deviation of DS and RC under each ego planner of Table 3, in the order of its columns.
+constexpr double kTable3[4][8][2] = {{{89.77, 5.18},
+                                      {92.75, 3.45},
+                                      {45.43, 2.10},
+                                      {65.91, 0.72},
+                                      {71.22, 4.61},
+                                      {88.63, 1.10},
+                                      {69.42, 4.43},
+                                      {82.33, 1.61}},
+                                     {{74.32, 6.33},
+                                      {79.74, 3.51},
+                                      {42.18, 2.75},
+                                      {55.87, 4.07},
+                                      {75.02, 2.79},
+                                      {83.41, 2.69},
+                                      {72.61, 4.11},
+                                      {81.57, 1.47}},
+                                     {{93.23, 2.19},
+                                      {94.42, 1.61},
+                                      {46.76, 2.01},
+                                      {62.83, 4.08},
+                                      {77.37, 2.01},
+                                      {87.84, 4.08},
+                                      {75.67, 1.80},
+                                      {83.42, 0.39}},
+                                     {{96.49, 0.10},
+                                      {96.49, 0.10},
+                                      {51.52, 6.12},
+                                      {66.84, 1.62},
+                                      {69.59, 1.95},
+                                      {85.99, 4.71},
+                                      {76.05, 1.59},
+                                      {84.28, 0.21}}};
 
 TableDefinition table3() {
   TableDefinition table = {
@@ -136,40 +153,14 @@ TableDefinition table3() {
       "CBVs are driven naturalistically; the collision-seeking variant is Figure 4.",
       "CBV planner",
       {},
-      {cbvRow(kPpo, {{89.77, 5.18},
-                     {92.75, 3.45},
-                     {45.43, 2.10},
-                     {65.91, 0.72},
-                     {71.22, 4.61},
-                     {88.63, 1.10},
-                     {69.42, 4.43},
-                     {82.33, 1.61}}),
-       cbvRow(kPluto, {{74.32, 6.33},
-                       {79.74, 3.51},
-                       {42.18, 2.75},
-                       {55.87, 4.07},
-                       {75.02, 2.79},
-                       {83.41, 2.69},
-                       {72.61, 4.11},
-                       {81.57, 1.47}}),
-       cbvRow(kRift, {{93.23, 2.19},
-                      {94.42, 1.61},
-                      {46.76, 2.01},
-                      {62.83, 4.08},
-                      {77.37, 2.01},
-                      {87.84, 4.08},
-                      {75.67, 1.80},
-                      {83.42, 0.39}}),
-       cbvRow(kDiffusion, {{96.49, 0.10},
-                           {96.49, 0.10},
-                           {51.52, 6.12},
-                           {66.84, 1.62},
-                           {69.59, 1.95},
-                           {85.99, 4.71},
-                           {76.05, 1.59},
-                           {84.28, 0.21}})}};
+      {}};
+  for (std::size_t i = 0; i < std::size(kTable3); ++i) {
+    std::vector<PaperFigure> paper;
+    for (const auto& figure : kTable3[i]) paper.push_back({figure[0], figure[1]});
+    table.rows.push_back(cbvRow(paperCbvPlanners()[i], paper));
+  }
   for (const PaperSystem& ego : paperEgoPlanners()) {
-    if (std::string(ego.planner) == kDiffusion.planner) continue;
+    if (std::string(ego.planner) == paper::kDiffusion.planner) continue;
     for (TableColumn column : {drivingScore(), routeCompletion()}) {
       column.name = std::string(ego.name) + " " + column.name;
       column.levels = egoLevel(ego);
@@ -186,18 +177,18 @@ TableDefinition table4() {
       "Ego planner PDM-Lite; the two drive the CBVs with the same model.",
       "Execution",
       {drivingScore(), routeCompletion(), timeToCollision(), offRoadRate()},
-      {cbvRow(kTwoStage, {{95.08, 2.48}, {96.41, 0.21}, {2.68, 1.27}, {6.22, 0.03}}),
+      {cbvRow(paper::kTwoStage, {{95.08, 2.48}, {96.41, 0.21}, {2.68, 1.27}, {6.22, 0.03}}),
        {"End-to-end control",
-        merged(naturalisticLevels(), cbvLevel(kDiffusion)),
+        merged(naturalisticLevels(), cbvLevel(paper::kDiffusion)),
         {{96.49, 0.10}, {96.49, 0.10}, {2.94, 1.24}, {2.17, 1.47}},
         ""}}};
-  return withLevels(table, egoLevel(kPdmLite));
+  return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
 TableDefinition table5() {
   const auto row = [](const char* name, const char* profile, std::vector<PaperFigure> paper) {
-    return TableRow{name, merged(guidanceLevels(profile), cbvLevel(kDiffusion)), std::move(paper),
-                    ""};
+    return TableRow{name, merged(guidanceLevels(profile), cbvLevel(paper::kDiffusion)),
+                    std::move(paper), ""};
   };
   const TableDefinition table = {
       "table_5",
@@ -215,7 +206,7 @@ TableDefinition table5() {
            {{2.79, 1.25}, {6.25, 2.11}, {0.89, 0.11}, {0.83, 0.13}, {5.11, 1.50}}),
        row("none", "none",
            {{2.62, 1.28}, {7.31, 3.18}, {0.95, 0.01}, {0.89, 0.02}, {4.35, 0.24}})}};
-  return withLevels(table, egoLevel(kPdmLite));
+  return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
 TableDefinition table6() {
@@ -235,32 +226,10 @@ TableDefinition table6() {
     const PaperSystem& ego = paperEgoPlanners()[i];
     table.rows.push_back({ego.name, egoLevel(ego), paper[i], ""});
   }
-  return withLevels(table, merged(cbvLevel(kPdmLite), naturalisticLevels()));
+  return withLevels(table, merged(cbvLevel(paper::kPdmLite), naturalisticLevels()));
 }
 
 }  // namespace
-
-const std::vector<PaperSystem>& paperEgoPlanners() {
-  static const std::vector<PaperSystem> systems = {kPdmLite, kPlanT, kUniAd, kVad, kDiffusion};
-  return systems;
-}
-
-const std::vector<PaperSystem>& paperCbvPlanners() {
-  static const std::vector<PaperSystem> systems = {kPpo, kPluto, kRift, kDiffusion};
-  return systems;
-}
-
-const std::vector<PaperSystem>& paperExecutions() {
-  static const std::vector<PaperSystem> systems = {kTwoStage,
-                                                   {"End-to-end control", kDiffusion.planner}};
-  return systems;
-}
-
-Factors naturalisticLevels() { return guidanceLevels("naturalistic"); }
-
-Factors safetyCriticalLevels() {
-  return {{"mode", "safety_critical"}, {"guidance_profile", "safety_critical"}};
-}
 
 std::vector<TableDefinition> paperTables() {
   return {table1(), table2(), table3(), table4(), table5(), table6()};
@@ -277,13 +246,13 @@ TableDefinition collisionFigure() {
   const auto variant = [&](const char* name, const Factors& levels) {
     TableColumn column = collisionsPerKilometre();
     column.name = name;
-    column.levels = merged(levels, cbvLevel(kDiffusion));
+    column.levels = merged(levels, cbvLevel(paper::kDiffusion));
     table.columns.push_back(column);
   };
   variant("E2E-CDiff", naturalisticLevels());
   variant("E2E-CDiff w/ coll", safetyCriticalLevels());
   for (const PaperSystem& ego : paperEgoPlanners()) {
-    if (std::string(ego.planner) == kDiffusion.planner) continue;
+    if (std::string(ego.planner) == paper::kDiffusion.planner) continue;
     table.rows.push_back({ego.name, egoLevel(ego), {}, ""});
   }
   table.rows.front().paper = {{5.68, {}}, {20.77, {}}};
@@ -308,7 +277,7 @@ TableDefinition latencyFigure() {
     table.rows.push_back(
         {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner)});
   }
-  const PaperSystem cbvs[] = {kDiffusion, {"two-stage PID", kTwoStage.planner}};
+  const PaperSystem cbvs[] = {paper::kDiffusion, {"two-stage PID", paper::kTwoStage.planner}};
   for (const PaperSystem& cbv : cbvs) {
     table.rows.push_back(
         {"CBV: " + std::string(cbv.name), cbvLevel(cbv), {}, "cbv:" + std::string(cbv.planner)});

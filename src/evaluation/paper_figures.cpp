@@ -7,19 +7,18 @@
 
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/paper_definitions.h"
+#include "e2e_cdiff/evaluation/paper_systems.h"
 #include "e2e_cdiff/planning/planner_factory.h"
 
 namespace cdiff::evaluation {
 namespace {
 
+/// A CBV planner in runs with ego PDM-Lite.
 ShownSystem cbvSystem(const std::string& name, const std::string& planner, Factors levels) {
-  levels["ego_planner"] = paperEgoPlanners().front().planner;
+  levels["ego_planner"] = paper::kPdmLite.planner;
   levels["cbv_planner"] = planner;
   return {name, levels};
 }
-
-/// The last of the paper's CBV planners is its own.
-const PaperSystem& ownSystem() { return paperCbvPlanners().back(); }
 
 }  // namespace
 
@@ -27,7 +26,7 @@ std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs) {
   std::vector<ShownSystem> systems;
   std::set<std::string> further;
   Factors levels = naturalisticLevels();
-  levels["ego_planner"] = paperEgoPlanners().front().planner;
+  levels["ego_planner"] = paper::kPdmLite.planner;
   for (const BatchRun* run : runsWith(runs, levels))
     further.insert(run->record.factors.at("cbv_planner"));
   for (const PaperSystem& system : paperCbvPlanners()) {
@@ -71,17 +70,18 @@ scenario::ScenarioOptions scenarioOf(const BatchRun& run) {
 }
 
 std::vector<Figure> paperFigures(const std::vector<BatchRun>& runs) {
-  const std::string own = ownSystem().name;
+  const PaperSystem& own = paper::kDiffusion;
   Figure latency = barFigure(latencyFigure(), runs);
   latency.wall_clock = true;
   return {
       distributionFigure(runs),
       barFigure(collisionFigure(), runs),
       frameFigure("figure_5", "Figure 5. CBV planners from above", shownCbvPlanners(runs), runs),
-      frameFigure("figure_6", "Figure 6. Safety-critical scenario generation from above",
-                  {cbvSystem(own, ownSystem().planner, naturalisticLevels()),
-                   cbvSystem(own + " w/ coll", ownSystem().planner, safetyCriticalLevels())},
-                  runs),
+      frameFigure(
+          "figure_6", "Figure 6. Safety-critical scenario generation from above",
+          {cbvSystem(own.name, own.planner, naturalisticLevels()),
+           cbvSystem(std::string(own.name) + " w/ coll", own.planner, safetyCriticalLevels())},
+          runs),
       executionFigure(runs),
       latency};
 }
