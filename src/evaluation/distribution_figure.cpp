@@ -38,7 +38,9 @@ void addRun(const BatchRun& run, PlannerSamples& samples) {
   const auto ticks =
       static_cast<std::uint64_t>(std::llround(options.decision_period / options.simulation_step));
   std::unordered_map<std::string, std::pair<std::uint64_t, double>> last;  // tick and speed
-  for (const report::TraceRow& row : report::readTrace(run.folder / "trace.csv")) {
+  const std::vector<report::TraceRow> rows = report::readTrace(run.folder / "trace.csv");
+  for (const report::TraceRow& row : rows) {
+    if (row.tick == rows.back().tick) break;  // the session has ended: nothing is decided
     const auto before = last.find(row.id);
     if (row.role == traffic::VehicleRole::kCbv && row.tick % ticks == 0) {
       samples.speeds.values.push_back(row.speed);

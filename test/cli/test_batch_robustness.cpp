@@ -195,15 +195,15 @@ TEST_F(BatchRobustness, SaysThatTheDiskIsFullAndLeavesNothingHalfWritten) {
       write("matrix.yaml", "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\n");
   const std::string results = folder("small") + "/results";
   int exit_code = -1;
-  const bool mounted =
-      inOwnMounts(std::string(CDIFF_PROGRAM) + " evaluate " + matrix + " --results " + results +
-                      "; code=$?; find " + results + " -name '*.tmp.*' -printf 'left %f\\n'; cat " +
-                      results + "/runs/*/record.json; ls " + results + "/runs/*; exit $code",
-                  exit_code);
+  const bool mounted = inOwnMounts(std::string(CDIFF_PROGRAM) + " evaluate " + matrix +
+                                       " --results " + results + "; code=$?; find " + results +
+                                       " -name '*.tmp.*' -printf 'remains: %f\\n'; cat " + results +
+                                       "/runs/*/record.json; ls " + results + "/runs/*; exit $code",
+                                   exit_code);
   if (!mounted) GTEST_SKIP() << "no mounts of one's own on this machine";
   EXPECT_NE(exit_code, 0);
   expectOutput("No space left on device");
-  for (const char* part : {"left ", "trace.csv\n", "report.html"})
+  for (const char* part : {"remains: ", "trace.csv\n", "report.html"})
     EXPECT_EQ(output().find(part), std::string::npos) << part << "\nin\n" << output();
 }
 
