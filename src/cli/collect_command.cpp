@@ -5,13 +5,14 @@
 #include <iostream>
 #include <memory>
 
-#include "child_processes.h"
 #include "collect_session.h"
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/evaluation/process_pool.h"
 #include "e2e_cdiff/suite/suite.h"
+#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -130,11 +131,11 @@ void conclude(const CollectArguments& arguments, const std::vector<CollectReques
   std::cout << table(sum) << std::flush;
 }
 
-int exitCode(const std::vector<ChildProcess>& children) {
+int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
   int code = kPassed;
-  for (const ChildProcess& child : children) {
-    if (child.exit_code == kPassed) continue;
-    if (child.exit_code != kBadInput) return kRunTimeError;
+  for (const evaluation::ProcessJob& job : jobs) {
+    if (job.exit_code == kPassed) continue;
+    if (job.exit_code != kBadInput) return kRunTimeError;
     code = kBadInput;
   }
   return code;
@@ -142,24 +143,26 @@ int exitCode(const std::vector<ChildProcess>& children) {
 
 int collect(const CollectArguments& arguments) {
   const std::vector<CollectRequest> sessions = planSessions(arguments);
-  std::vector<ChildProcess> children;
+  std::vector<evaluation::ProcessJob> jobs;
   for (const CollectRequest& request : sessions) {
     const std::string name = sessionName(resolveCollection(request));
     const bool done =
         fs::exists(shardFile(request, name)) && fs::exists(statisticsFile(request, name));
-    if (!done) children.push_back({name, wordsOf(request)});
+    if (!done) jobs.push_back({name, wordsOf(request)});
   }
   fs::create_directories(arguments.request.results);
-  std::cerr << sessions.size() << " sessions, " << sessions.size() - children.size()
+  std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
             << " of them already there\n";
   std::size_t done = 0;
-  const bool all = runChildren(children, arguments.jobs, [&](const ChildProcess& child) {
+  const std::atomic<bool>& stop = catchStopSignals();
+  const auto ended = [&](const evaluation::ProcessJob& job) {
     ++done;
-    std::cerr << done << "/" << children.size() << " " << child.name << " exit code "
-              << child.exit_code << "\n";
-  });
+    std::cerr << done << "/" << jobs.size() << " " << job.name << " exit code " << job.exit_code
+              << "\n";
+  };
+  evaluation::runProcesses("/proc/self/exe", jobs, arguments.jobs, stop, ended);
   if (arguments.request.images) conclude(arguments, sessions);
-  return all ? exitCode(children) : kInterrupted;
+  return stop ? kInterrupted : exitCode(jobs);
 }
 
 void addCommonOptions(CLI::App& command, CollectRequest& request) {

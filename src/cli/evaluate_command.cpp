@@ -11,6 +11,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/batch_files.h"
+#include "e2e_cdiff/evaluation/batch_report.h"
 #include "e2e_cdiff/evaluation/executor.h"
 #include "e2e_cdiff/evaluation/matrix.h"
 #include "e2e_cdiff/evaluation/run_plan.h"
@@ -78,6 +79,7 @@ void claimFolder(const fs::path& folder, const MatrixOptions& matrix) {
                        earlier.name + "', see " + file.string() + "); give another --results");
     }
   }
+  core::removeTemporaries(folder);
   core::writeFileAtomically(file, core::dumpOptions(matrix));
 }
 
@@ -109,6 +111,7 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto records = evaluation::executeRuns(plan, options, stop);
   progress.finish();
   evaluation::writeBatchFiles(results, matrix.name, records);
+  evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records);
   if (arguments.matrix.empty()) {
     text = routeTable(records, arguments.bench2drive, results);

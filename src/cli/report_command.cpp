@@ -8,7 +8,9 @@
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/evaluation/batch_report.h"
 #include "e2e_cdiff/evaluation/comparison.h"
+#include "e2e_cdiff/evaluation/matrix.h"
 
 namespace cdiff::cli {
 namespace {
@@ -17,6 +19,7 @@ namespace fs = std::filesystem;
 using core::InputError;
 
 struct ReportArguments {
+  std::string tables;
   std::vector<std::string> folders;
   std::vector<std::string> figures;
   std::string factor;
@@ -45,7 +48,24 @@ std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
   return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.figures)};
 }
 
+/// Tables, figures and page of a finished batch again, without running anything.
+int makeTables(const fs::path& results) {
+  const fs::path file = results / "matrix.yaml";
+  if (!fs::is_regular_file(file)) {
+    throw InputError("'" + results.string() +
+                     "' is no result folder of `cdiff evaluate`: it has no matrix.yaml");
+  }
+  evaluation::MatrixOptions matrix;
+  core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
+  evaluation::writeBatchReport(results, matrix.name);
+  std::cout << "tables, figures and page: " << (results / "index.html").string() << "\n";
+  return kPassed;
+}
+
 int report(const ReportArguments& arguments) {
+  if (arguments.tables.empty() == arguments.folders.empty())
+    throw InputError("give either --compare A B or --tables DIR");
+  if (!arguments.tables.empty()) return makeTables(arguments.tables);
   const std::vector<evaluation::Comparison> comparisons = compare(arguments);
   std::cout << evaluation::comparisonMarkdown(comparisons);
   const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
@@ -59,12 +79,13 @@ int report(const ReportArguments& arguments) {
 void addReportCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command =
-      program.add_subcommand("report", "Compare the results of evaluations, run by run");
+      program.add_subcommand("report", "Compare evaluations run by run; make their tables again");
   command
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
-      ->required()
       ->expected(1, 2);
+  command->add_option("--tables", arguments->tables,
+                      "Write tables/, figures/ and index.html of this result folder again");
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->figures, "Only this figure; may be repeated")

@@ -31,12 +31,12 @@ fs::path libraryFolder() {
   return fs::absolute(info.dli_fname).parent_path();
 }
 
-[[noreturn]] void failWriting(const fs::path& path) {
-  throw InputError("cannot write '" + path.string() + "': " + std::strerror(errno) +
-                   "; check that the folder exists and is writable");
+[[noreturn]] void failWriting(const fs::path& path, int reason) {
+  throw InputError("cannot write '" + path.string() + "': " + std::strerror(reason) +
+                   "; check that the folder exists, is writable and has room");
 }
 
-/// Whether everything went to the disk; else errno says why not.
+/// Whether all of it was written and reached the disk; errno says why not.
 bool writeAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());
@@ -72,16 +72,24 @@ std::string readFile(const fs::path& path, const std::string& what) {
 void writeFileAtomically(const fs::path& path, std::string_view content) {
   const fs::path temporary = path.string() + ".tmp." + std::to_string(::getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) failWriting(path);
+  if (descriptor < 0) failWriting(path, errno);
   const bool written = writeAll(descriptor, content);
-  const int reason = errno;
-  const bool closed = ::close(descriptor) == 0;
-  if (written && closed && ::rename(temporary.c_str(), path.c_str()) == 0) return;
-  if (!written) errno = reason;
-  const int cause = errno;
+  int reason = written ? 0 : errno;
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) reason = errno;
+  if (reason == 0) return;
   ::unlink(temporary.c_str());
-  errno = cause;
-  failWriting(path);
+  failWriting(path, reason);
+}
+
+void removeTemporaries(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().find(".tmp.") != std::string::npos)
+      files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) fs::remove(file, ignored);
 }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/markup.h"
@@ -138,13 +139,6 @@ std::string cellsTable(const std::vector<Cell>& cells) {
 
 }  // namespace
 
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  return quoted + "\"";
-}
-
 std::string runsCsv(const std::vector<RunRecord>& records) {
   std::vector<std::string> head = {"id"};
   head.insert(head.end(), factorNames().begin(), factorNames().end());
@@ -154,9 +148,9 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
   std::string text = core::joinText(head, ",") + "\n";
   for (const RunRecord& record : records) {
     const bool started = record.attempts > 0;
-    text += csvField(record.id);
+    text += core::csvCell(record.id);
     for (const std::string& factor : factorNames())
-      text += "," + csvField(record.factors.at(factor));
+      text += "," + core::csvCell(record.factors.at(factor));
     text += "," + record.status + "," +
             (record.complete() ? (record.passed ? "true" : "false") : "") + "," +
             (started ? std::to_string(record.exit_code) : "") + "," +
@@ -166,7 +160,7 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
       const auto figure = record.figures.find(name);
       text += "," + (figure == record.figures.end() ? "" : core::formatNumber(figure->second));
     }
-    text += "," + csvField(record.cause) + "\n";
+    text += "," + core::csvCell(record.cause) + "\n";
   }
   return text;
 }

@@ -16,13 +16,17 @@
 namespace cdiff::evaluation {
 namespace {
 
+constexpr off_t kLogReserve = 4096;  // [bytes]
+
 /// Runs in the child between fork and exec: async-signal-safe calls only.
 [[noreturn]] void become(const char* program, char* const* argv, const char* log, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
   ::setpgid(0, 0);
   const int input = ::open("/dev/null", O_RDONLY);
-  const int output = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const int output = *log == '\0' ? -1 : ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  // Room for the last words on a disk that fills up meanwhile; what is not used is not kept.
+  if (output >= 0) (void)::fallocate(output, FALLOC_FL_KEEP_SIZE, 0, kLogReserve);
   if (input >= 0) ::dup2(input, STDIN_FILENO);
   if (output >= 0) {
     ::dup2(output, STDOUT_FILENO);

@@ -6,9 +6,9 @@
 #include <map>
 #include <numeric>
 
+#include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/batch_files.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -168,9 +168,9 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
   for (const Comparison& comparison : comparisons) {
     for (const FigureComparison& figure : comparison.figures) {
       const Statistics& difference = figure.difference;
-      text += csvField(comparison.a) + "," + csvField(comparison.b) + "," + figure.figure + "," +
-              std::to_string(difference.n) + field(figure.mean_a) + field(figure.mean_b) +
-              field(difference.mean) + field(difference.standard_deviation);
+      text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," +
+              figure.figure + "," + std::to_string(difference.n) + field(figure.mean_a) +
+              field(figure.mean_b) + field(difference.mean) + field(difference.standard_deviation);
       const bool interval = difference.half_width.has_value();
       text += interval ? field(*difference.mean - *difference.half_width) +
                              field(*difference.mean + *difference.half_width)

@@ -58,6 +58,7 @@ class Executor {
 
   std::vector<RunRecord> execute() {
     for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
+    announceRuns();
     while (!active_.empty() || (!queue_.empty() && !stop_)) {
       startRuns();
       if (stop_) interruptRuns();
@@ -82,11 +83,27 @@ class Executor {
                         fs::is_regular_file(folderOf(index) / "summary.json");
       if (same) {
         records_.back() = *earlier;
-        if (options_.ended) options_.ended(*earlier, true);
+        resumed_.push_back(index);
         return;
       }
     }
     queue_.push_back(index);
+  }
+
+  /// Each run that is still to come gets a record that says so, whatever stops the batch later.
+  void announceRuns() {
+    for (const std::size_t index : resumed_) {
+      if (options_.ended) options_.ended(records_[index], true);
+    }
+    for (const std::size_t index : queue_) {
+      const fs::path folder = folderOf(index);
+      std::error_code error;
+      fs::create_directories(folder, error);
+      if (error) {
+        throw core::InputError("cannot make '" + folder.string() + "': " + error.message());
+      }
+      core::writeFileAtomically(folder / "record.json", recordJson(records_[index]));
+    }
   }
 
   void startRuns() {
@@ -99,10 +116,9 @@ class Executor {
 
   void start(std::size_t index) {
     const fs::path folder = folderOf(index);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::InputError("cannot make '" + folder.string() + "': " + error.message());
-    for (const char* name : {"record.json", "summary.json"}) fs::remove(folder / name, error);
+    std::error_code ignored;
+    fs::remove(folder / "summary.json", ignored);
+    core::removeTemporaries(folder);
     core::writeFileAtomically(folder / "scenario.yaml", plan_[index].scenario_text);
     const std::vector<std::string> words = {"run", (folder / "scenario.yaml").string(), "--quiet",
                                             "--results", folder.string()};
@@ -198,6 +214,7 @@ class Executor {
   const ExecutorOptions& options_;
   const std::atomic<bool>& stop_;
   std::vector<RunRecord> records_;
+  std::vector<std::size_t> resumed_;  ///< runs that were complete already
   std::deque<std::size_t> queue_;
   std::vector<Attempt> active_;
   std::optional<Clock::time_point> interrupted_at_;

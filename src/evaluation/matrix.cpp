@@ -55,6 +55,11 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"modes", "", "naturalistic, safety_critical; empty: the scenario's."}, modes);
   visitor.list({"guidance_profiles", "", "Shipped profiles or files; empty: that of the mode."},
                guidance_profiles);
+  visitor.list({"combinations", "",
+                "Instead of the product of the four lists above: sets of their levels, each "
+                "\"ego_planner=NAME cbv_planner=NAME mode=MODE guidance_profile=NAME\" or a part "
+                "of it."},
+               combinations);
   visitor.list({"variants", "", "Sets of overrides, each \"name: key=value key=value\"."},
                variants);
   visitor.list({"seeds", "", "Root seeds; empty: the scenario's."}, seeds);

@@ -99,9 +99,64 @@ std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& 
   return variants;
 }
 
-/// Levels of a factor; one empty level leaves it as the scenario has it.
-std::vector<std::string> levelsOf(const std::vector<std::string>& given) {
-  return given.empty() ? std::vector<std::string>{""} : given;
+/// Levels of the factors that are chosen together.
+struct Combination {
+  std::string ego_planner;
+  std::string cbv_planner;
+  std::string mode;
+  std::string guidance_profile;
+};
+
+Combination combinationOf(const std::string& text, const std::string& source) {
+  Combination combination;
+  std::map<std::string, std::string*> fields = {
+      {"ego_planner", &combination.ego_planner},
+      {"cbv_planner", &combination.cbv_planner},
+      {"mode", &combination.mode},
+      {"guidance_profile", &combination.guidance_profile}};
+  for (const std::string& word : core::splitText(text, ' ')) {
+    const std::size_t equals = word.find('=');
+    const auto field = fields.find(word.substr(0, equals));
+    if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
+      throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
+                       "' is wrong; expected ego_planner=, cbv_planner=, mode= and "
+                       "guidance_profile=, each once at most");
+    }
+    *field->second = word.substr(equals + 1);
+  }
+  return combination;
+}
+
+/// A product of lists, of which an empty one leaves the factor as the scenario has it.
+std::vector<Combination> productOf(const MatrixOptions& matrix) {
+  const auto levels = [](const std::vector<std::string>& given) {
+    return given.empty() ? std::vector<std::string>{""} : given;
+  };
+  std::vector<Combination> product;
+  for (const std::string& ego : levels(matrix.ego_planners)) {
+    for (const std::string& cbv : levels(matrix.cbv_planners)) {
+      for (const std::string& mode : levels(matrix.modes)) {
+        for (const std::string& profile : levels(matrix.guidance_profiles))
+          product.push_back({ego, cbv, mode, profile});
+      }
+    }
+  }
+  return product;
+}
+
+std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source) {
+  if (matrix.combinations.empty()) return productOf(matrix);
+  for (const auto* list :
+       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
+    if (list->empty()) continue;
+    throw InputError(source +
+                     ": key 'combinations' stands instead of ego_planners, cbv_planners, modes "
+                     "and guidance_profiles; give either it or them");
+  }
+  std::vector<Combination> combinations;
+  for (const std::string& text : matrix.combinations)
+    combinations.push_back(combinationOf(text, source));
+  return combinations;
 }
 
 void checkSeeds(const std::vector<std::string>& seeds, const std::string& source) {
@@ -128,47 +183,41 @@ void checkPlanner(const std::string& name, bool external_allowed) {
 class Planner {
  public:
   Planner(const MatrixOptions& matrix, const std::string& source)
-      : matrix_(matrix), source_(source), variants_(variantsOf(matrix, source)) {
+      : matrix_(matrix),
+        source_(source),
+        combinations_(combinationsOf(matrix, source)),
+        variants_(variantsOf(matrix, source)) {
     checkSeeds(matrix.seeds, source);
   }
 
   std::vector<PlannedRun> plan() {
     for (const ScenarioLevel& level : scenarioLevels(matrix_, source_)) {
-      for (const std::string& ego : levelsOf(matrix_.ego_planners)) {
-        for (const std::string& cbv : levelsOf(matrix_.cbv_planners)) {
-          ScenarioLevel next = level;
-          next.request.ego_planner = ego;
-          next.request.cbv_planner = cbv;
-          addModes(next);
-        }
-      }
+      for (const Combination& combination : combinations_) addVariants(level, combination);
     }
     nameRuns();
     return std::move(runs_);
   }
 
  private:
-  void addModes(const ScenarioLevel& level) {
-    for (const std::string& mode : levelsOf(matrix_.modes)) {
-      for (const std::string& profile : levelsOf(matrix_.guidance_profiles)) {
-        for (const Variant& variant : variants_) {
-          ScenarioLevel next = level;
-          next.request.mode = mode;
-          next.request.set = matrix_.set;
-          if (!profile.empty()) next.request.set.push_back("guidance_profile=" + profile);
-          auto& set = next.request.set;
-          set.insert(set.end(), variant.set.begin(), variant.set.end());
-          next.request.set_source =
-              source_ +
-              (variant.name.empty() ? ": set" : ": set or variant '" + variant.name + "'");
-          addSeeds(next, variant.name);
-        }
-      }
+  void addVariants(const ScenarioLevel& level, const Combination& combination) {
+    for (const Variant& variant : variants_) {
+      ScenarioLevel next = level;
+      next.request.ego_planner = combination.ego_planner;
+      next.request.cbv_planner = combination.cbv_planner;
+      next.request.mode = combination.mode;
+      auto& set = next.request.set = matrix_.set;
+      const std::string& profile = combination.guidance_profile;
+      if (!profile.empty()) set.push_back("guidance_profile=" + profile);
+      set.insert(set.end(), variant.set.begin(), variant.set.end());
+      next.request.set_source =
+          source_ + (variant.name.empty() ? ": set" : ": set or variant '" + variant.name + "'");
+      addSeeds(next, variant.name);
     }
   }
 
   void addSeeds(const ScenarioLevel& level, const std::string& variant) {
-    for (const std::string& seed : levelsOf(matrix_.seeds)) {
+    const std::vector<std::string> as_given = {""};
+    for (const std::string& seed : matrix_.seeds.empty() ? as_given : matrix_.seeds) {
       scenario::SessionRequest request = level.request;
       request.seed = seed;
       PlannedRun run = resolve(level.label, request);
@@ -226,6 +275,7 @@ class Planner {
 
   const MatrixOptions& matrix_;
   std::string source_;
+  std::vector<Combination> combinations_;
   std::vector<Variant> variants_;
   std::vector<PlannedRun> runs_;
 };

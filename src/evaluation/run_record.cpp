@@ -70,11 +70,12 @@ std::string recordJson(const RunRecord& record) {
 }
 
 std::optional<RunRecord> readRecord(const fs::path& file) {
-  if (!fs::is_regular_file(file)) return std::nullopt;
+  if (!fs::exists(file)) return std::nullopt;
   try {
     return fromJson(Json::parse(core::readFile(file, "record")));
-  } catch (const Json::exception&) {
-    return std::nullopt;
+  } catch (const Json::exception& error) {
+    throw core::InputError("'" + file.string() + "' is no record of a run: " + error.what() +
+                           "; delete the file to have the run repeated");
   }
 }
 

@@ -108,7 +108,7 @@ std::string fromAbove(const SessionResult& result, const VehiclePlans& vehicle,
   std::string svg =
       "<svg role=\"img\" aria-label=\"Plan and drive from above\" viewBox=\"0 0 540 "
       "360\">\n" +
-      roadSvg(result, canvas);
+      roadSvg(result.setup, canvas);
   if (!view.ego.empty()) {
     Points trail;
     for (const geometry::Pose2d& pose : view.ego) trail.push_back(pose.position);

@@ -10,6 +10,7 @@
 #include "e2e_cdiff/metrics/session_metrics.h"
 #include "e2e_cdiff/report/html_report.h"
 #include "e2e_cdiff/report/junit.h"
+#include "e2e_cdiff/report/plan_file.h"
 #include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_yaml.h"
 #include "e2e_cdiff/report/summary.h"
@@ -30,7 +31,7 @@ fs::path preparedFolder(const fs::path& folder) {
                            "': " + error.message());
   }
   for (const char* name :
-       {"session.yaml", "trace.csv", "summary.json", "junit.xml", "report.html"}) {
+       {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"}) {
     fs::remove(folder / name, error);
     if (error) {
       throw core::InputError("cannot replace '" + (folder / name).string() +
@@ -82,6 +83,7 @@ class ResultWriter::Record {
     finished_ = true;
     result_.wall_seconds = wall_seconds;
     completeResult();
+    core::writeFileAtomically(folder_ / "plans.csv", plansCsv(plans_));
     core::writeFileAtomically(folder_ / "summary.json", summaryJson(result_));
     core::writeFileAtomically(folder_ / "junit.xml", junitXml(result_));
     core::writeFileAtomically(folder_ / "report.html", htmlReport(result_));

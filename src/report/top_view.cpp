@@ -62,12 +62,12 @@ std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const Map
 
 /// Drivable area: the levels that the ego route touches, and faintly below them the others in the
 /// picture.
-std::string drivableArea(const SessionResult& result, const MapCanvas& canvas) {
-  const map::DrivableArea& area = result.setup.drivableArea();
-  const auto& route = result.setup.egoRoute().path().points();
+std::string drivableArea(const scenario::SessionSetup& setup, const MapCanvas& canvas) {
+  const map::DrivableArea& area = setup.drivableArea();
+  const auto& route = setup.egoRoute().path().points();
   const std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
   std::set<int> elevations;
-  for (const map::Lane& lane : result.setup.network().lanes()) {
+  for (const map::Lane& lane : setup.network().lanes()) {
     if (area.levelCount() > 1) elevations.merge(elevationsOf(lane.centerline.points(), canvas));
   }
   std::string svg;
@@ -246,8 +246,8 @@ std::string styleOf(VehicleRole role, const std::string& id, const CbvLog& cbv) 
   return "cbv c" + std::to_string(seen.size() % kShades);
 }
 
-std::string roadSvg(const SessionResult& result, const MapCanvas& canvas) {
-  return drivableArea(result, canvas) + laneLines(result.setup.network(), canvas);
+std::string roadSvg(const scenario::SessionSetup& setup, const MapCanvas& canvas) {
+  return drivableArea(setup, canvas) + laneLines(setup.network(), canvas);
 }
 
 std::string vehicleSvg(const TimelineVehicle& vehicle, const geometry::Pose2d& pose,
@@ -276,7 +276,7 @@ std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas) {
   return "<svg id=\"top-view\" role=\"img\" aria-label=\"The session from above\" viewBox=\"0 0 " +
          size + "\" data-magnification=\"" +
          core::formatFixed(canvas.scale() * vehicleMagnification(canvas), 4) + "\">\n" +
-         roadSvg(result, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
+         roadSvg(result.setup, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
          trailPaths(result, canvas, VehicleRole::kBackground) +
          trailPaths(result, canvas, VehicleRole::kCbv) +
          trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +

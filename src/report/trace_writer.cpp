@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 
@@ -30,20 +31,6 @@ void writeAll(int descriptor, std::string_view content, const std::filesystem::p
     if (written < 0) failWriting(path);
     content.remove_prefix(static_cast<std::size_t>(written));
   }
-}
-
-/// A CSV cell as RFC 4180 has it: quoted only where it must be.
-void appendCell(std::string& row, const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    row += text;
-    return;
-  }
-  row += '"';
-  for (const char letter : text) {
-    if (letter == '"') row += '"';
-    row += letter;
-  }
-  row += '"';
 }
 
 void appendNumber(std::string& row, double value) {
@@ -89,7 +76,7 @@ std::string TraceWriter::finish() {
 void TraceWriter::writeRow(const std::string& tick, const traffic::Vehicle& vehicle) {
   buffer_ += tick;
   buffer_ += ',';
-  appendCell(buffer_, vehicle.id);
+  buffer_ += core::csvCell(vehicle.id);
   buffer_ += ',';
   buffer_ += traffic::toText(vehicle.role);
   appendNumber(buffer_, vehicle.state.position.x());

@@ -1,55 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
-#include <fstream>
-#include <thread>
-
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/child_process.h"
+#include "cli/evaluate_command.h"
 #include "e2e_cdiff/evaluation/run_record.h"
-#include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
+using test::EvaluateCommand;
 
 /// A session of 3 simulated seconds.
 constexpr const char* kShort = "set: [protocol.time_limit=3]\n";
-
-class EvaluateCommand : public testing::Test {
- protected:
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(scratch_.path() / name) << text;
-    return (scratch_.path() / name).string();
-  }
-  std::string folder(const std::string& name) const { return (scratch_.path() / name).string(); }
-  /// Runs cdiff; its output is in output() afterwards.
-  int cdiff(const std::vector<std::string>& arguments) const {
-    ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
-    return waitFor(process);
-  }
-  static int waitFor(ChildProcess& process) {
-    std::optional<int> exit_code = process.poll();
-    while (!exit_code) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      exit_code = process.poll();
-    }
-    return *exit_code;
-  }
-  std::string output() const { return core::readFile(scratch_.path() / "output", "output"); }
-  void expectOutput(const std::string& part) const {
-    EXPECT_NE(output().find(part), std::string::npos) << part << "\nin\n" << output();
-  }
-  static std::size_t lines(const fs::path& file) {
-    return core::splitText(core::readFile(file, "file"), '\n').size();
-  }
-  test::TemporaryFolder scratch_;
-};
 
 TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const std::string matrix =

@@ -68,5 +68,20 @@ TEST(File, AtomicWriteReplacesWholeFile) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(File, AtomicWriteThatFailsLeavesNothingBehind) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("cdiff_file_" + std::to_string(std::rand()));
+  std::filesystem::create_directories(folder / "a.txt" / "inside");  // a folder cannot be replaced
+  EXPECT_THROW(writeFileAtomically(folder / "a.txt", "one"), InputError);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder),
+                          std::filesystem::directory_iterator()),
+            1);
+  writeFileAtomically(folder / "b.txt.tmp.17", "left by a process that was killed");
+  removeTemporaries(folder);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.txt.tmp.17"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.txt"));
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace cdiff::core

@@ -6,6 +6,7 @@
 #include <map>
 #include <thread>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/executor.h"
 #include "support/temporary_folder.h"
@@ -143,6 +144,32 @@ TEST_F(ExecutorTest, ResumesWhatIsNotComplete) {
   EXPECT_EQ(records[2].scenario_sha256, runs[2].scenario_sha256);
 }
 
+TEST_F(ExecutorTest, RefusesADamagedRecordBeforeAnythingRuns) {
+  const auto runs = plan({"good", "good"});
+  execute(runs);
+  fs::remove(file("good0", "record.json"));
+  std::ofstream(file("good1", "record.json")) << R"({"id": "good1", "fact)";
+  options_.resume = true;
+  try {
+    execute(runs);
+    FAIL() << "no error";
+  } catch (const core::InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("good1/record.json' is no record of a run"), std::string::npos) << text;
+    EXPECT_NE(text.find("delete the file to have the run repeated"), std::string::npos) << text;
+  }
+  EXPECT_EQ(attempts("good0"), 1U);
+  EXPECT_THROW(readRecords(options_.results), core::InputError);
+}
+
+TEST_F(ExecutorTest, ClearsAwayWhatACutOffRunLeft) {
+  const auto runs = plan({"good"});
+  execute(runs);
+  std::ofstream(file("good0", "trace.csv.tmp.123")) << "half";
+  execute(runs);
+  EXPECT_FALSE(fs::exists(file("good0", "trace.csv.tmp.123")));
+}
+
 TEST_F(ExecutorTest, StopsWithARecordOfWhatIsDone) {
   // The first run ends; the second is under way when the stop comes; the third never starts.
   options_.jobs = 1;
@@ -158,6 +185,8 @@ TEST_F(ExecutorTest, StopsWithARecordOfWhatIsDone) {
   EXPECT_EQ(records[2].status, "not_run");
   EXPECT_FALSE(fs::exists(file("good2", "attempts")));
   EXPECT_EQ(readRecord(file("polite1", "record.json"))->status, "interrupted");
+  EXPECT_EQ(readRecord(file("good2", "record.json"))->status, "not_run");
+  EXPECT_EQ(readRecords(options_.results).size(), 3U);  // every planned run
 }
 
 TEST_F(ExecutorTest, KillsWhatDoesNotEndInTheGraceAfterAStop) {

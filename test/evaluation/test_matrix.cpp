@@ -56,6 +56,8 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("smoke"), "smoke").size(), 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("guidance_effect"), "").size(), 10U * 3U * 6U);
   EXPECT_EQ(planRuns(loadMatrix("test_routes"), "").size(), 10U * 3U * 2U);
+  EXPECT_EQ(planRuns(loadMatrix("ten_scenarios"), "").size(), 10U * 3U * 2U);
+  EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 3U * 9U);
 }
 
 TEST(Plan, IsTheProductOfItsFactors) {
@@ -74,6 +76,28 @@ TEST(Plan, IsTheProductOfItsFactors) {
   expectIn("time_limit: 5\n", plan[7].scenario_text);
   EXPECT_EQ(plan[0].scenario_sha256, plan[1].scenario_sha256);
   EXPECT_NE(plan[0].scenario_sha256, plan[2].scenario_sha256);
+}
+
+TEST(Plan, TakesCombinationsInsteadOfAProduct) {
+  MatrixOptions matrix = oneScenario();
+  matrix.combinations = {"cbv_planner=pdm_lite",
+                         "ego_planner=diffusion cbv_planner=diffusion mode=safety_critical "
+                         "guidance_profile=none"};
+  matrix.seeds = {"1", "2"};
+  const auto plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 4U);
+  EXPECT_EQ(plan[0].factors.at("cbv_planner"), "pdm_lite");
+  EXPECT_EQ(plan[0].factors.at("mode"), scenario::ScenarioOptions().mode);
+  EXPECT_EQ(plan[3].factors.at("ego_planner"), "diffusion");
+  EXPECT_EQ(plan[3].factors.at("mode"), "safety_critical");
+  EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");
+  matrix.modes = {"naturalistic"};
+  expectIn("key 'combinations' stands instead of ego_planners", errorOf(matrix));
+  matrix.modes = {};
+  matrix.combinations = {"cbv_planner=pdm_lite seed=4"};
+  expectIn("where 'seed=4' is wrong", errorOf(matrix));
+  matrix.combinations = {"cbv_planner=pdm_lit"};
+  expectIn("the nearest known one is 'pdm_lite'", errorOf(matrix));
 }
 
 TEST(Plan, NamesWhatIsWrong) {

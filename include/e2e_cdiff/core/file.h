@@ -14,8 +14,11 @@ namespace cdiff::core {
 std::string readFile(const std::filesystem::path& path, const std::string& what);
 
 /// Writes to a temporary file beside `path`, flushes it to the disk and renames it: the file is
-/// whole or absent. Throws InputError naming the path.
+/// whole or as it was before, and nothing else is left behind. Throws InputError naming the path.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view content);
+
+/// Removes what writes that were cut off left in a folder (NAME.tmp.PROCESS).
+void removeTemporaries(const std::filesystem::path& folder);
 
 /// SHA-256 of `content` as 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view content);

@@ -21,7 +21,4 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
 void writeBatchFiles(const std::filesystem::path& results, const std::string& name,
                      const std::vector<RunRecord>& records);
 
-/// `text` as a field of a CSV row.
-std::string csvField(const std::string& text);
-
 }  // namespace cdiff::evaluation

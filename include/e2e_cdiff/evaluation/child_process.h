@@ -15,8 +15,8 @@ namespace cdiff::evaluation {
 
 class ChildProcess {
  public:
-  /// Output and errors go to `log`, which is made anew. Throws SimulatorError when no process can
-  /// be made; a program that cannot be executed exits with 127.
+  /// Output and errors go to `log`, which is made anew, or where ours go if it is empty. Throws
+  /// SimulatorError when no process can be made; a program that cannot be executed exits with 127.
   ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                const std::filesystem::path& log);
   ~ChildProcess();

@@ -32,6 +32,9 @@ struct MatrixOptions {
   std::vector<std::string> cbv_planners;
   std::vector<std::string> modes;
   std::vector<std::string> guidance_profiles;
+  /// "ego_planner=NAME cbv_planner=NAME mode=MODE guidance_profile=NAME" each, any of the four:
+  /// instead of the product of those lists.
+  std::vector<std::string> combinations;
   std::vector<std::string> variants;  ///< "name: key=value key=value" each
   std::vector<std::string> seeds;     ///< whole numbers
   std::int64_t repetitions = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What became of one planned run: record.json in its folder, written whole after the run.
+/// What became of one planned run: record.json in its folder, written whole before the batch begins
+/// (not_run) and again after the run.
 #pragma once
 
 #include <filesystem>
@@ -37,9 +38,10 @@ struct RunRecord {
 RunRecord recordOf(const PlannedRun& run);
 
 std::string recordJson(const RunRecord& record);
-/// nullopt when the file is absent or is no record.
+/// nullopt when the file is absent. Throws InputError naming a file that is no record.
 std::optional<RunRecord> readRecord(const std::filesystem::path& file);
-/// Records of a batch's result folder by id. Throws InputError when it holds none.
+/// Records of a batch's result folder by id. Throws InputError when it holds none, or one that is
+/// damaged.
 std::vector<RunRecord> readRecords(const std::filesystem::path& results);
 
 }  // namespace cdiff::evaluation

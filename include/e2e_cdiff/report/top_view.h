@@ -13,7 +13,7 @@ namespace cdiff::report {
 std::string topViewSvg(const SessionResult& result, const MapCanvas& canvas);
 
 /// Drivable area and lanes alone.
-std::string roadSvg(const SessionResult& result, const MapCanvas& canvas);
+std::string roadSvg(const scenario::SessionSetup& setup, const MapCanvas& canvas);
 
 /// A vehicle's box, `magnification` times as large as it is, of a CSS class.
 std::string vehicleSvg(const TimelineVehicle& vehicle, const geometry::Pose2d& pose,

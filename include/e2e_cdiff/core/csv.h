@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Rows of comma-separated values as RFC 4180 has them: cells are quoted only where they must be.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cdiff::core {
+
+/// `text` as one cell.
+std::string csvCell(const std::string& text);
+
+/// The cells as one row with its line end.
+std::string csvRow(const std::vector<std::string>& cells);
+
+/// Cells of a row without its line end, empty ones included.
+std::vector<std::string> csvCells(std::string_view row);
+
+}  // namespace cdiff::core

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/evaluation/paper_figures.h"
+#include "e2e_cdiff/report/chart_axes.h"
+#include "e2e_cdiff/report/markup.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using report::shortNumber;
+
+constexpr double kBarShare = 0.8;  // of a group's width that bars fill
+const std::string kPaperStyle = report::systemStyle(7);
+
+double topOf(const Table& table) {
+  double top = 1.0;
+  for (const auto& row : table.cells) {
+    for (const TableCell& cell : row) {
+      top = std::max(top, cell.paper.mean.value_or(0.0));
+      top = std::max(top, cell.seeds.mean.value_or(0.0) + cell.seeds.half_width.value_or(0.0));
+    }
+  }
+  return top;
+}
+
+/// Grid lines with numbers; groups have names instead of numbers.
+std::string valueGrid(const report::ChartAxes& axes) {
+  const double step = report::niceStep(axes.high() - axes.low(), 5);
+  const int lines = static_cast<int>(std::lround((axes.high() - axes.low()) / step));
+  std::string svg;
+  for (int i = 0; i <= lines; ++i) {
+    const double value = axes.low() + i * step;
+    svg += "<path class=\"grid\" d=\"M" + shortNumber(report::kChartLeft) + " " +
+           shortNumber(axes.y(value)) + "H" +
+           shortNumber(report::kChartWidth - report::kChartRight) + "\"/>" +
+           report::chartText("tick end", report::kChartLeft - 6.0, axes.y(value) + 4.0,
+                             report::axisNumber(value, step));
+  }
+  return svg + "\n";
+}
+
+std::string bar(const report::ChartAxes& axes, double left, double width, double value,
+                const std::string& style) {
+  return "<path class=\"bar " + style + "\" d=\"M" + shortNumber(axes.x(left)) + " " +
+         shortNumber(axes.y(0.0)) + "V" + shortNumber(axes.y(value)) + "H" +
+         shortNumber(axes.x(left + 0.9 * width)) + "V" + shortNumber(axes.y(0.0)) + "Z\"/>";
+}
+
+std::string interval(const report::ChartAxes& axes, double x, const Statistics& figure) {
+  if (!figure.half_width) return "";
+  return "<path class=\"error\" d=\"M" + shortNumber(axes.x(x)) + " " +
+         shortNumber(axes.y(*figure.mean - *figure.half_width)) + "V" +
+         shortNumber(axes.y(*figure.mean + *figure.half_width)) + "\"/>";
+}
+
+/// Bars of one row: per column ours and the paper's.
+std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes& axes) {
+  const auto& cells = table.cells[row];
+  const double width = kBarShare / (2.0 * static_cast<double>(cells.size()));
+  double left = static_cast<double>(row) + 0.5 * (1.0 - kBarShare);
+  std::string svg;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const TableCell& cell = cells[i];
+    if (cell.seeds.mean) {
+      svg += bar(axes, left, width, *cell.seeds.mean, report::systemStyle(i)) +
+             interval(axes, left + 0.45 * width, cell.seeds);
+    }
+    left += width;
+    if (cell.paper.mean) svg += bar(axes, left, width, *cell.paper.mean, kPaperStyle);
+    left += width;
+  }
+  const double middle = axes.x(static_cast<double>(row) + 0.5);
+  const bool empty = std::none_of(cells.begin(), cells.end(),
+                                  [](const TableCell& cell) { return cell.seeds.mean; });
+  const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
+  svg += report::chartText("tick middle", middle, report::kChartHeight - 9.0 + lower,
+                           table.definition.rows[row].name);
+  if (empty && !cells.empty())
+    svg += report::chartText("note middle", middle, report::kChartTop + 10.0 + lower,
+                             cells.front().note);
+  return svg + "\n";
+}
+
+/// Numbers below the bars, one line a row.
+std::vector<std::string> notesOf(const Table& table) {
+  std::vector<std::string> notes;
+  for (std::size_t row = 0; row < table.cells.size(); ++row) {
+    std::string text = table.definition.rows[row].name + ": ";
+    for (std::size_t i = 0; i < table.cells[row].size(); ++i) {
+      const TableCell& cell = table.cells[row][i];
+      const std::string paper = paperText(cell.paper);
+      text += (i > 0 ? "; " : "") + table.definition.columns[i].name + " " + cellText(cell) +
+              (paper.empty() ? "" : ", paper " + paper);
+    }
+    notes.push_back(text);
+  }
+  notes.push_back(table.definition.note);
+  return notes;
+}
+
+}  // namespace
+
+Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
+  const Table table = fillTable(definition, runs);
+  Figure figure;
+  figure.id = definition.id;
+  figure.csv = tableCsv(table);
+  figure.sheet.title = definition.title + " [" + definition.columns.front().unit + "]";
+  for (std::size_t i = 0; i < definition.columns.size(); ++i) {
+    figure.sheet.legend.emplace_back(report::systemStyle(i),
+                                     definition.columns[i].name + ", 95 % interval over seeds");
+  }
+  figure.sheet.legend.emplace_back(kPaperStyle, "as the paper prints it");
+  const report::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
+  report::Panel panel;
+  panel.width = report::kChartWidth;
+  panel.height = report::kChartHeight + 14.0;
+  panel.content = valueGrid(axes);
+  for (std::size_t row = 0; row < table.cells.size(); ++row)
+    panel.content += groupOf(table, row, axes);
+  figure.sheet.rows = {{panel}};
+  figure.sheet.notes = notesOf(table);
+  return figure;
+}
+
+}  // namespace cdiff::evaluation

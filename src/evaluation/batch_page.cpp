@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/evaluation/batch_report.h"
+#include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/report_style.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using report::escapeMarkup;
+
+constexpr const char* kPageStyle = R"CSS(
+.sheet { display: block; max-width: 100%; height: auto; border: 1px solid var(--line);
+  border-radius: 8px; margin: 8px 0 18px; }
+td .paper, td .rift { color: var(--soft); font-size: .86rem; display: block; }
+)CSS";
+
+std::string section(const std::string& title, const std::string& content,
+                    const std::string& style = "") {
+  return "<section" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<h2>" +
+         escapeMarkup(title) + "</h2>\n" + content + "</section>\n";
+}
+
+std::string headOf(const std::string& name) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+         "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+         "name=\"color-scheme\" content=\"light dark\">\n<title>" +
+         escapeMarkup(name) + " – evaluation</title>\n<style>" + report::kReportStyleSheet +
+         report::kPanelSheetStyle + kPageStyle + "</style>\n</head>\n";
+}
+
+/// Broke, was interrupted or not run: 0; verdict failed: 1; passed: 2.
+int rankOf(const RunRecord& record) {
+  if (!record.complete()) return 0;
+  return record.passed ? 2 : 1;
+}
+
+std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs) {
+  std::size_t counts[3] = {0, 0, 0};
+  for (const BatchRun& run : runs) ++counts[rankOf(run.record)];
+  const std::string outcome = counts[0] > 0 ? "error" : counts[1] > 0 ? "failed" : "passed";
+  const std::string word = counts[0] > 0   ? "Not every run could be judged"
+                           : counts[1] > 0 ? "Verdicts failed"
+                                           : "All runs passed";
+  const std::string sign = counts[0] > 0 ? "!" : counts[1] > 0 ? "✗" : "✓";
+  return "<header>\n<h1>" + escapeMarkup(name) + "</h1>\n<p class=\"sub\">evaluation of " +
+         std::to_string(runs.size()) + " runs</p>\n<div class=\"banner " + outcome +
+         "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + sign +
+         "</span><div><strong>" + word + "</strong><p>" + std::to_string(counts[2]) + " passed, " +
+         std::to_string(counts[1]) + " ended with a failed verdict, " + std::to_string(counts[0]) +
+         " broke, were interrupted or did not run</p></div></div>\n"
+         "</header>\n";
+}
+
+std::string figureText(const BatchRun& run, const std::string& name, int decimals) {
+  const auto figure = run.record.figures.find(name);
+  return figure == run.record.figures.end() ? "–" : core::formatFixed(figure->second, decimals);
+}
+
+std::string runRow(const BatchRun& run) {
+  const char* classes[] = {"error", "failed", "passed"};
+  const RunRecord& record = run.record;
+  const std::string link = "runs/" + record.id + "/report.html";
+  const bool has_report = std::filesystem::exists(run.folder / "report.html");
+  const std::string name =
+      has_report ? "<a href=\"" + escapeMarkup(link) + "\">" + escapeMarkup(record.id) + "</a>"
+                 : escapeMarkup(record.id);
+  const std::string why = record.complete() ? core::joinText(record.failures, "; ") : record.cause;
+  std::string html = "<tr class=\"" + std::string(classes[rankOf(record)]) + "\"><td>" + name +
+                     "</td><td>" + record.status +
+                     (record.complete() && !record.passed ? ", verdict failed" : "") + "</td>";
+  const std::pair<const char*, int> figures[] = {
+      {"ego_completion_percent", 1}, {"ego_driving_score", 1},  {"ego_collisions", 0},
+      {"cbv_decisions", 0},          {"cbv_ego_collisions", 0}, {"cbv_minimum_distance_m", 1}};
+  for (const auto& [key, decimals] : figures)
+    html += "<td class=\"number\">" + figureText(run, key, decimals) + "</td>";
+  return html + "<td>" + escapeMarkup(why) + "</td></tr>\n";
+}
+
+std::string runTable(const std::vector<BatchRun>& runs) {
+  std::vector<const BatchRun*> order;
+  for (const BatchRun& run : runs) order.push_back(&run);
+  std::stable_sort(order.begin(), order.end(), [](const BatchRun* left, const BatchRun* right) {
+    return rankOf(left->record) < rankOf(right->record);
+  });
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>run</th><th>status</th><th "
+      "class=\"number\">route completion [%]</th><th class=\"number\">driving score</th><th "
+      "class=\"number\">ego collisions</th><th class=\"number\">CBV decisions</th><th "
+      "class=\"number\">CBV contacts with the ego</th><th class=\"number\">closest CBV [m]</th>"
+      "<th>why</th></tr></thead><tbody>\n";
+  for (const BatchRun* run : order) html += runRow(*run);
+  return html + "</tbody></table></div>\n";
+}
+
+std::string tableCellHtml(const TableCell& cell) {
+  const std::string rift = riftText(cell);
+  const std::string paper = paperText(cell.paper);
+  return "<td>" + escapeMarkup(cellText(cell)) +
+         (rift.empty() ? "" : "<span class=\"rift\">RIFT: " + rift + "</span>") +
+         (paper.empty() ? "" : "<span class=\"paper\">paper: " + paper + "</span>") + "</td>";
+}
+
+std::string paperTable(const Table& table) {
+  const TableDefinition& definition = table.definition;
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>" + escapeMarkup(definition.heading) + "</th>";
+  for (const TableColumn& column : definition.columns) {
+    html += "<th>" + escapeMarkup(column.name) +
+            (column.unit.empty() ? "" : " [" + escapeMarkup(column.unit) + "]") + "</th>";
+  }
+  html += "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < table.cells.size(); ++i) {
+    html += "<tr><td>" + escapeMarkup(definition.rows[i].name) + "</td>";
+    for (const TableCell& cell : table.cells[i]) html += tableCellHtml(cell);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n" +
+         (definition.note.empty()
+              ? ""
+              : "<p class=\"note\">" + escapeMarkup(definition.note) + "</p>\n");
+}
+
+}  // namespace
+
+std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
+                      const std::vector<Table>& tables, const std::vector<Figure>& figures) {
+  std::string html =
+      headOf(name) + "<body>\n<main>\n" + bannerOf(name, runs) + section("Runs", runTable(runs));
+  for (const Table& table : tables) html += section(table.definition.title, paperTable(table));
+  for (const Figure& figure : figures) {
+    html += section(figure.sheet.title, report::sheetSvg(figure.sheet),
+                    figure.wall_clock ? "wall-clock" : "");
+  }
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/evaluation/paper_systems.h"
+
+namespace cdiff::evaluation {
+
+const std::vector<PaperSystem>& paperEgoPlanners() {
+  static const std::vector<PaperSystem> systems = {paper::kPdmLite, paper::kPlanT, paper::kUniAd,
+                                                   paper::kVad, paper::kDiffusion};
+  return systems;
+}
+
+const std::vector<PaperSystem>& paperCbvPlanners() {
+  static const std::vector<PaperSystem> systems = {paper::kPpo, paper::kPluto, paper::kRift,
+                                                   paper::kDiffusion};
+  return systems;
+}
+
+const std::vector<PaperSystem>& paperExecutions() {
+  static const std::vector<PaperSystem> systems = {
+      paper::kTwoStage, {"End-to-end control", paper::kDiffusion.planner}};
+  return systems;
+}
+
+Factors egoLevel(const PaperSystem& system) { return {{"ego_planner", system.planner}}; }
+
+Factors cbvLevel(const PaperSystem& system) { return {{"cbv_planner", system.planner}}; }
+
+Factors guidanceLevels(const char* profile) {
+  return {{"mode", "naturalistic"}, {"guidance_profile", profile}};
+}
+
+Factors naturalisticLevels() { return guidanceLevels("naturalistic"); }
+
+Factors safetyCriticalLevels() {
+  return {{"mode", "safety_critical"}, {"guidance_profile", "safety_critical"}};
+}
+
+Factors merged(Factors levels, const Factors& others) {
+  levels.insert(others.begin(), others.end());
+  return levels;
+}
+
+}  // namespace cdiff::evaluation

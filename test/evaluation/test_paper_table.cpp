@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "e2e_cdiff/evaluation/paper_definitions.h"
+#include "e2e_cdiff/evaluation/paper_table.h"
+#include "evaluation/run_records.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+BatchRun runOf(const std::string& seed, const SummaryNumbers& numbers,
+               const std::string& scenario = "s") {
+  BatchRun run;
+  run.record = test::recordWith({scenario, seed, "naturalistic"}, 1.0);
+  run.numbers = numbers;
+  return run;
+}
+
+/// One row of runs with PDM-Lite as CBV planner: the rate /r weighted by /w, RIFT's /x.
+TableDefinition rateTable(const std::string& planner) {
+  return {"table_9",
+          "A rate",
+          "",
+          "System",
+          {{"rate", "1/km", "/r", "/w", "/x", {}}},
+          {{"ours", {{"cbv_planner", planner}}, {{5.0, 0.5}}, ""}}};
+}
+
+TEST(PaperTable, PoolsRatesWithinASeedAndSumsUpOverSeeds) {
+  // Seed 1: (2 x 10 + 6 x 30) / 40 = 5; seed 2: 9. Mean 7, s = sqrt(8), t = 12.706.
+  const std::vector<BatchRun> runs = {
+      runOf("1", {{"/r", 2.0}, {"/w", 10.0}}, "a"), runOf("1", {{"/r", 6.0}, {"/w", 30.0}}, "b"),
+      runOf("2", {{"/r", 9.0}, {"/w", 1.0}, {"/x", 4.0}}, "a"), runOf("2", {}, "b")};
+  const TableCell cell = fillTable(rateTable("pdm_lite"), runs).cells[0][0];
+  EXPECT_EQ(cell.seeds.n, 2U);
+  EXPECT_DOUBLE_EQ(*cell.seeds.mean, 7.0);
+  EXPECT_NEAR(*cell.seeds.standard_deviation, 2.8284271, 1e-6);
+  EXPECT_NEAR(*cell.seeds.half_width, 12.7062 * 2.0, 1e-3);
+  EXPECT_EQ(cell.runs, 4U);
+  EXPECT_EQ(cell.used, 3U);
+  EXPECT_DOUBLE_EQ(*cell.rift.mean, 4.0);
+  EXPECT_EQ(cell.rift.n, 1U);
+  EXPECT_EQ(cell.note, "");
+}
+
+TEST(PaperTable, SaysWhyACellIsEmpty) {
+  const auto note = [](const std::string& planner, const std::vector<BatchRun>& runs) {
+    return fillTable(rateTable(planner), runs).cells[0][0].note;
+  };
+  BatchRun broken = runOf("1", {});
+  broken.record.status = "error";
+  EXPECT_EQ(note("no_such_planner", {}), "not implemented");
+  EXPECT_EQ(note("pdm_lite", {}), "not run");
+  EXPECT_EQ(note("pdm_lite", {broken}), "no run completed");
+  EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this figure");
+  EXPECT_EQ(note("pdm_lite", {runOf("1", {{"/r", 1.0}, {"/w", 1.0}}), broken}), "");
+}
+
+TEST(PaperTable, CsvHoldsThePapersFigureBesideOurs) {
+  const std::string csv =
+      tableCsv(fillTable(rateTable("pdm_lite"), {runOf("1", {{"/r", 2.0}, {"/w", 10.0}})}));
+  EXPECT_EQ(csv,
+            "row,column,unit,definition,paper_mean,paper_std,mean,std,interval_95_low,"
+            "interval_95_high,seeds,runs,runs_with_figure,runs_failed,note\n"
+            "ours,rate,1/km,clean,5,0.5,2,,,,1,1,1,0,\n"
+            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,1,0,no run has this figure\n");
+}
+
+TEST(PaperTable, NamesTheSubjectInAKey) {
+  TableDefinition table = rateTable("pdm_lite");
+  table.columns = {{"p50", "ms", "/latency/{}/p50", "", "", {}}};
+  table.rows[0].subject = "ego:pdm_lite";
+  const TableCell cell =
+      fillTable(table, {runOf("1", {{"/latency/ego:pdm_lite/p50", 3.0}})}).cells[0][0];
+  EXPECT_DOUBLE_EQ(*cell.seeds.mean, 3.0);
+}
+
+TEST(PaperDefinitions, HaveAPaperFigureForEveryCellOfTheTables) {
+  std::set<std::string> ids;
+  for (const TableDefinition& table : paperTables()) {
+    ids.insert(table.id);
+    EXPECT_GE(table.rows.size(), 2U);
+    for (const TableRow& row : table.rows) {
+      EXPECT_EQ(row.paper.size(), table.columns.size()) << table.id << " " << row.name;
+    }
+  }
+  EXPECT_EQ(ids.size(), 6U);
+  EXPECT_EQ(latencyFigure().rows[4].paper[0].mean, 856.66);
+  EXPECT_EQ(collisionFigure().rows[0].paper[1].mean, 20.77);
+}
+
+TEST(PaperDefinitions, SelectByFactorsThatExist) {
+  const auto& known = factorNames();
+  for (const TableDefinition& table : paperTables()) {
+    for (const TableRow& row : table.rows) {
+      for (const auto& [factor, level] : row.levels)
+        EXPECT_NE(std::find(known.begin(), known.end(), factor), known.end()) << factor;
+    }
+  }
+}
+
+TEST(SummaryNumbers, AreFoundByJsonPointer) {
+  const SummaryNumbers numbers =
+      summaryNumbers(R"({"a": {"b:c": {"d": 1.5}, "n": null}, "list": [1], "e": 2})", "x");
+  EXPECT_EQ(numbers, (SummaryNumbers{{"/a/b:c/d", 1.5}, {"/e", 2.0}}));
+}
+
+}  // namespace
+}  // namespace cdiff::evaluation
