@@ -84,8 +84,10 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
     facts.simulated_seconds = summary.at("simulated_seconds");
     for (const auto& [name, place] : places()) {
       const json::json_pointer pointer(place);
-      if (!summary.contains(pointer) || !summary.at(pointer).is_number()) continue;
-      facts.figures[name] = summary.at(pointer);
+      if (!summary.contains(pointer)) continue;
+      const json& value = summary.at(pointer);
+      if (value.is_number()) facts.figures[name] = value;
+      if (value.is_boolean()) facts.figures[name] = value.get<bool>() ? 1.0 : 0.0;
     }
     addSelectionFigures(summary, facts.figures);
     return facts;

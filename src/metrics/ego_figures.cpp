@@ -10,6 +10,22 @@ namespace {
 constexpr auto kHigher = Direction::kHigherIsBetter;
 constexpr auto kLower = Direction::kLowerIsBetter;
 
+/// Row of a key of the ego's infractions.
+#define INFRACTION_FIGURE(key, label, unit, direction, definition)                          \
+  {                                                                                         \
+    "ego_infraction_" key, "/ego/infractions/" key, label, unit, direction, definition, "", \
+        [](const M& m) { return infractionMeasure(m, key, unit); }                          \
+  }
+
+Measure infractionMeasure(const M& measures, const char* key, const char* unit) {
+  const auto found = measures.infractions.find(key);
+  if (found != measures.infractions.end()) return found->second;
+  Measure absent;
+  absent.unit = unit;
+  absent.reason = "not computed";
+  return absent;
+}
+
 constexpr FigureDefinition kRows[] = {
     {"ego_completion_percent", "/ego/route_completion_percent", "Route completion", "%", kHigher,
      "Share of the ego route's length up to the farthest place that the ego reached along it; 100 "
@@ -18,6 +34,42 @@ constexpr FigureDefinition kRows[] = {
     {"ego_driving_score", "/ego/driving_score", "Driving score", "", kHigher,
      "Route completion x infraction penalty by the rules of the protocol (CARLA leaderboard).", "",
      [](const M& m) { return numberMeasure(m.driving_score, ""); }},
+    {"ego_penalty", "/ego/penalty", "Penalty of the infractions", "", kHigher,
+     "Infraction penalty by the rules of the protocol, 0 to 1: a product of factors (CARLA "
+     "leaderboard 2.0, Bench2Drive, RIFT) or 1 / (1 + sum of charges) (leaderboard 2.1); n counts "
+     "ticks with the ego.",
+     "", [](const M& m) { return m.penalty; }},
+    INFRACTION_FIGURE("minimum_speed_missed", "Stretches below the traffic's speed", "", kLower,
+                      "Stretches of the route on which the ego was slower than the traffic; n "
+                      "counts stretches (docs/protocols.md)."),
+    INFRACTION_FIGURE(
+        "minimum_speed_percent", "Speed against the traffic's", "%", kHigher,
+        "Mean over stretches of the route of 100 x mean speed of the ego / mean speed "
+        "of the background vehicles (docs/protocols.md)."),
+    INFRACTION_FIGURE("outside_lanes_percent", "Way outside the lanes", "%", kLower,
+                      "Share of the completed route outside the lanes or on a wrong lane "
+                      "(docs/protocols.md)."),
+    INFRACTION_FIGURE("pedestrian_collisions", "Collisions with pedestrians", "", kLower,
+                      "Always absent: these sessions have no pedestrians."),
+    INFRACTION_FIGURE("red_lights", "Red lights run", "", kLower,
+                      "Stop lines crossed at red; n counts lines with a light crossed "
+                      "(docs/protocols.md)."),
+    INFRACTION_FIGURE("scenario_timeouts", "Scenario time-outs", "", kLower,
+                      "Always absent: these sessions have no scripted scenarios."),
+    INFRACTION_FIGURE("static_collisions", "Collisions with static objects", "", kLower,
+                      "Always absent: these sessions have no static objects to hit."),
+    INFRACTION_FIGURE("stop_signs", "Stop signs run", "", kLower,
+                      "Lines with a stop sign crossed without a stop; n counts lines with a stop "
+                      "sign crossed (docs/protocols.md)."),
+    INFRACTION_FIGURE("vehicle_collisions", "Collisions that the protocol charges", "", kLower,
+                      "Contacts of the ego that the protocol counts as collisions; n counts all "
+                      "contacts (docs/protocols.md)."),
+    INFRACTION_FIGURE("yields_failed", "Failures to yield to emergency vehicles", "", kLower,
+                      "Always absent: these sessions have no emergency vehicles."),
+    {"ego_blocked", "/ego/blocked", "Ego blocked", "", kLower,
+     "1 when the session ended because the ego stood still for the protocol's blocked time, else "
+     "0.",
+     "", [](const M& m) { return numberMeasure(m.blocked ? 1.0 : 0.0, ""); }},
     {"ego_collisions", "/ego/collisions", "Collisions of the ego", "count", kLower,
      "Contacts of the ego's box with any other vehicle's box on the same level; the same pair "
      "counts "
@@ -28,6 +80,7 @@ constexpr FigureDefinition kRows[] = {
      "the ego.",
      "", [](const M& m) { return m.ego_off_road_percent; }},
 };
+#undef INFRACTION_FIGURE
 
 }  // namespace
 

@@ -203,10 +203,10 @@ TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
   for (const msgs::Measure& measure : toMsg(measures)) found[measure.name] = measure;
   EXPECT_EQ(found.at("ego_penalty").value, 0.42);
   EXPECT_EQ(found.at("ego_blocked").value, 1.0);
-  EXPECT_EQ(found.at("ego_infractions/red_lights").value, 1.0);
-  EXPECT_EQ(found.at("ego_infractions/red_lights").n, 2U);
-  EXPECT_FALSE(found.at("ego_infractions/static_collisions").defined);
-  EXPECT_EQ(found.at("ego_infractions/static_collisions").reason, "none");
+  EXPECT_EQ(found.at("ego_infraction_red_lights").value, 1.0);
+  EXPECT_EQ(found.at("ego_infraction_red_lights").n, 2U);
+  EXPECT_FALSE(found.at("ego_infraction_static_collisions").defined);
+  EXPECT_EQ(found.at("ego_infraction_static_collisions").reason, "none");
 }
 
 TEST(Conversions, EveryDefinedFigureGoesOut) {
