@@ -116,6 +116,11 @@ std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
   std::vector<msgs::Measure> all;
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
     all.push_back(toMsg(figure.name, figure.measure(measures)));
+  all.push_back(toMsg("ego_penalty", measures.penalty));
+  all.push_back(
+      toMsg("ego_blocked", metrics::Measure{measures.blocked ? 1.0 : 0.0, 1, "", "", ""}));
+  for (const auto& [name, measure] : measures.infractions)
+    all.push_back(toMsg("ego_infractions/" + name, measure));
   return all;
 }
 
