@@ -55,17 +55,11 @@ double record(const scenario::ScenarioOptions& options, const fs::path& bag_file
   return loop.world().snapshot().time;
 }
 
-metrics::SessionMetricsOptions metricsOptions(const scenario::SessionSetup& setup) {
-  metrics::SessionMetricsOptions options;
-  options.network = &setup.network();
-  return options;
-}
-
 /// The figures alone.
 class Metrics : public scenario::SessionObserver {
  public:
   explicit Metrics(const scenario::SessionSetup& setup)
-      : metrics_(metricsOptions(setup), setup.drivableArea(), setup.egoRoute()) {}
+      : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()) {}
   void observe(const scenario::TickRecord& record) override {
     metrics_.observe(*record.snapshot, record.selection);
   }
