@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
 #include "fma_peak.h"
+#include "network_times.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -30,8 +30,9 @@ diffusion::Model randomModel() {
   return model;
 }
 
-/// Floating-point operations of the U-Net's convolutions for one sample; its pull-back has as many.
-double operationsOf(const diffusion::Model& model) {
+}  // namespace
+
+double unetOperations(const diffusion::Model& model) {
   const auto levels = static_cast<std::int64_t>(model.architecture.channels.size());
   double sum = 0.0;
   for (const auto& [name, tensor] : model.denoiser) {
@@ -47,12 +48,7 @@ double operationsOf(const diffusion::Model& model) {
   return sum;
 }
 
-struct Times {
-  double forward = 0.0;  ///< [s]
-  double both = 0.0;     ///< [s], with the pull-back
-};
-
-Times timesOf(CpuDenoiser& denoiser, std::size_t samples) {
+DenoiserTimes denoiserTimes(CpuDenoiser& denoiser, std::size_t samples) {
   const diffusion::Architecture& architecture = denoiser.architecture();
   diffusion::Context context;
   context.image_features.assign(static_cast<std::size_t>(architecture.image_features), 0.1f);
@@ -69,8 +65,6 @@ Times timesOf(CpuDenoiser& denoiser, std::size_t samples) {
   return {median(forward), median(forward) + median(pull_back)};
 }
 
-}  // namespace
-
 void benchmarkDenoiser(Figures& figures) {
   const diffusion::Model model = randomModel();
   const CpuDenoiser::InstructionSet set = CpuDenoiser::bestInstructionSet();
@@ -78,12 +72,12 @@ void benchmarkDenoiser(Figures& figures) {
   const double peak = measureFmaPeak();
   figures.push_back({"fma_peak", 1e-9 * peak, "GFLOP/s", ""});
   for (const std::size_t samples : {1, 8}) {
-    const Times times = timesOf(denoiser, samples);
+    const DenoiserTimes times = denoiserTimes(denoiser, samples);
     const std::string prefix = "denoiser_b" + std::to_string(samples);
     const std::string goal = samples == 1 ? "<=1" : "";
     figures.push_back({prefix + "_forward", 1e3 * times.forward, "ms", ""});
     figures.push_back({prefix + "_forward_and_pull_back", 1e3 * times.both, "ms", goal});
-    const double rate = 2.0 * static_cast<double>(samples) * operationsOf(model) / times.both;
+    const double rate = 2.0 * static_cast<double>(samples) * unetOperations(model) / times.both;
     figures.push_back({prefix + "_share_of_peak", 100.0 * rate / peak, "%", ""});
   }
 }

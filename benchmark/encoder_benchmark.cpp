@@ -6,6 +6,7 @@
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/diffusion/image_encoder.h"
 #include "fma_peak.h"
+#include "network_times.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -39,8 +40,20 @@ std::int64_t halve(std::int64_t side, int times) {
   return side;
 }
 
-/// Two per multiply-add of convolutions and projection; zeros at the border count.
-double operationsPerImage(const diffusion::Architecture& sizes) {
+traffic::CameraImage randomImage(const diffusion::Architecture& sizes) {
+  const core::RandomStream random(2, "benchmark");
+  traffic::CameraImage image;
+  image.width = static_cast<int>(sizes.image_width);
+  image.height = static_cast<int>(sizes.image_height);
+  for (int i = 0; i < image.width * image.height * 3; ++i)
+    image.rgb.push_back(
+        static_cast<std::uint8_t>(random.index({}, static_cast<std::uint32_t>(i), 256)));
+  return image;
+}
+
+}  // namespace
+
+double encoderOperations(const diffusion::Architecture& sizes) {
   double operations = 0.0;
   for (const auto& [name, shape] : diffusion::encoderTensors(sizes)) {
     if (shape.size() < 2) continue;
@@ -58,30 +71,22 @@ double operationsPerImage(const diffusion::Architecture& sizes) {
   return operations;
 }
 
-traffic::CameraImage randomImage(const diffusion::Architecture& sizes) {
-  const core::RandomStream random(2, "benchmark");
-  traffic::CameraImage image;
-  image.width = static_cast<int>(sizes.image_width);
-  image.height = static_cast<int>(sizes.image_height);
-  for (int i = 0; i < image.width * image.height * 3; ++i)
-    image.rgb.push_back(
-        static_cast<std::uint8_t>(random.index({}, static_cast<std::uint32_t>(i), 256)));
-  return image;
-}
-
-}  // namespace
-
-void benchmarkEncoder(Figures& figures) {
-  const diffusion::Model model = randomModel();
+std::vector<double> encoderTimes(const diffusion::Model& model) {
   const traffic::CameraImage image = randomImage(model.architecture);
   diffusion::ImageEncoder encoder(model);
   for (int i = 0; i < 5; ++i) encoder.encode(image);
   std::vector<double> seconds;
   for (int i = 0; i < kImages; ++i) seconds.push_back(secondsOf([&] { encoder.encode(image); }));
-  const double peak = measureFmaPeak();
   std::sort(seconds.begin(), seconds.end());
+  return seconds;
+}
+
+void benchmarkEncoder(Figures& figures) {
+  const diffusion::Model model = randomModel();
+  const std::vector<double> seconds = encoderTimes(model);
+  const double peak = measureFmaPeak();
   const double middle = median(seconds);
-  const double rate = operationsPerImage(model.architecture) / middle;
+  const double rate = encoderOperations(model.architecture) / middle;
   figures.push_back({"encoder_image_p50", 1e3 * middle, "ms", "<=30"});
   figures.push_back({"encoder_image_p95", 1e3 * seconds[kImages * 95 / 100], "ms", ""});
   figures.push_back({"encoder_rate", 1e-9 * rate, "GFLOP/s", ""});

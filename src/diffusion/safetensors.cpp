@@ -3,6 +3,7 @@
 #include "e2e_cdiff/diffusion/safetensors.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -23,6 +24,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLengthBytes = 8;
 constexpr std::uint64_t kMaxHeader = 8u << 20;
+constexpr std::uint64_t kMaxData = std::uint64_t{4} << 30;  // 100 times the shipped networks
+constexpr std::uint64_t kPiece = 1u << 20;                  // read at once where it is only hashed
 constexpr std::size_t kChecksumDigits = 64;
 constexpr std::size_t kAlignment = 8;  // of the data section, as other writers do
 
@@ -57,6 +60,10 @@ class Input {
   void read(char* target, std::uint64_t count) {
     stream_.read(target, static_cast<std::streamsize>(count));
     if (!stream_) fail(source_, "truncated while it was read");
+  }
+  void goBack(std::uint64_t count) {
+    stream_.seekg(-static_cast<std::streamoff>(count), std::ios::cur);
+    if (!stream_) fail(source_, "cannot read it a second time");
   }
 
  private:
@@ -114,10 +121,44 @@ std::vector<float> toFloats(const std::string& bytes, TensorType type) {
   return values;
 }
 
-Tensor readTensor(Input& input, const TensorEntry& entry, core::Sha256& hash) {
+/// Of metadata "sha256".
+std::string checksumOf(const SafetensorsHeader& header, const std::string& source) {
+  const auto found = header.metadata.find(kChecksumKey);
+  if (found == header.metadata.end()) {
+    fail(source, std::string("the metadata lacks the key '") + kChecksumKey + "'");
+  }
+  if (found->second.size() != kChecksumDigits) {
+    fail(source, "the metadata's sha256 has " + std::to_string(found->second.size()) +
+                     " characters; 64 hexadecimal digits were expected");
+  }
+  return found->second;
+}
+
+/// Hashes the data section piece by piece, so that a damaged file costs no memory, and goes back to
+/// its begin.
+void requireChecksum(Input& input, std::uint64_t size, const std::string& expected) {
+  if (size > kMaxData) {
+    fail(input.source(), "the data section of " + std::to_string(size) +
+                             " bytes exceeds the limit of " + std::to_string(kMaxData) + " bytes");
+  }
+  core::Sha256 hash;
+  std::string piece;
+  for (std::uint64_t done = 0; done < size; done += piece.size()) {
+    piece.resize(std::min(kPiece, size - done));
+    input.read(piece.data(), piece.size());
+    hash.update(piece);
+  }
+  const std::string actual = hash.finish();
+  if (actual != expected) {
+    fail(input.source(), "the data section's checksum is " + actual +
+                             ", the metadata's sha256 is '" + expected + "'; the file is damaged");
+  }
+  input.goBack(size);
+}
+
+Tensor readTensor(Input& input, const TensorEntry& entry) {
   std::string bytes(entry.end - entry.begin, '\0');
   input.read(bytes.data(), bytes.size());
-  hash.update(bytes);
   Tensor tensor{entry.shape, toFloats(bytes, entry.type)};
   for (std::size_t i = 0; i < tensor.values.size(); ++i) {
     if (std::isfinite(tensor.values[i])) continue;
@@ -170,26 +211,13 @@ SafetensorsFile readSafetensors(
         expected) {
   Input input(file, "weight file '" + file.string() + "'");
   const SafetensorsHeader header = readHeader(input);
-  const auto checksum = header.metadata.find(kChecksumKey);
-  if (checksum == header.metadata.end()) {
-    fail(input.source(), std::string("the metadata lacks the key '") + kChecksumKey + "'");
-  }
-  if (checksum->second.size() != kChecksumDigits) {
-    fail(input.source(), "the metadata's sha256 has " + std::to_string(checksum->second.size()) +
-                             " characters; 64 hexadecimal digits were expected");
-  }
+  const std::string checksum = checksumOf(header, input.source());
   requireExpected(header, expected(header.metadata), input.source());
+  requireChecksum(input, header.entries.empty() ? 0 : header.entries.back().end, checksum);
   SafetensorsFile content;
   content.metadata = header.metadata;
-  core::Sha256 hash;
   for (const TensorEntry& entry : header.entries) {
-    content.tensors[entry.name] = readTensor(input, entry, hash);
-  }
-  const std::string actual = hash.finish();
-  if (actual != checksum->second) {
-    fail(input.source(), "the data section's checksum is " + actual +
-                             ", the metadata's sha256 is '" + checksum->second +
-                             "'; the file is damaged");
+    content.tensors[entry.name] = readTensor(input, entry);
   }
   return content;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "e2e_cdiff/diffusion/sampler.h"
@@ -84,8 +85,22 @@ struct Moments {
   double deviation = 0.0;
 };
 
+/// A plan of the prior for each run: what unguided sampling left behind.
+inline std::vector<Trajectory> priorPlans(double s, std::uint32_t runs) {
+  const core::RandomStream random(9, "previous plans");
+  std::vector<Trajectory> plans(runs, Trajectory::Zero(kHorizon, 7));
+  for (std::uint32_t i = 0; i < runs; ++i) {
+    for (Eigen::Index cell = 0; cell < plans[i].size(); ++cell) {
+      plans[i].data()[cell] =
+          static_cast<float>(s * random.normal({1, i, 0}, static_cast<std::uint32_t>(cell)));
+    }
+  }
+  return plans;
+}
+
+/// Of `runs` x 12 cells; warm starts from `previous` where it is not empty.
 inline Moments sampleMoments(const SamplerOptions& options, double s, double weight,
-                             std::uint32_t runs) {
+                             std::uint32_t runs, const std::vector<Trajectory>& previous = {}) {
   const NoiseSchedule schedule(100);
   const traffic::Rollout spread = traffic::Rollout::Constant(kHorizon, 7, s);
   const Sampler sampler(options, schedule, spread, core::RandomStream(7, "noise"));
@@ -93,7 +108,10 @@ inline Moments sampleMoments(const SamplerOptions& options, double s, double wei
   LearnedStateBranch branch(denoiser);
   TargetOne objective(weight);
   std::vector<SampleRequest> requests(runs);
-  for (std::uint32_t i = 0; i < runs; ++i) requests[i].key = {1, i, 0};
+  for (std::uint32_t i = 0; i < runs; ++i) {
+    requests[i].key = {1, i, 0};
+    if (!previous.empty()) requests[i].warm = &previous[i];
+  }
   denoiser.setContexts(std::vector<Context>(runs));
   double sum = 0.0;
   double square = 0.0;

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/noise_schedule.h"
+#include "diffusion/linear_gaussian.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -49,16 +48,48 @@ class ForwardProcess : public ::testing::Test {
   core::RandomStream noise_{3, "forward"};
 };
 
+/// Keeps the first noisy batch that a sampler asks about.
+class RecordingDenoiser : public test::GaussianDenoiser {
+ public:
+  using GaussianDenoiser::GaussianDenoiser;
+  void setContexts(const std::vector<Context>& contexts) override {
+    count_ = contexts.size();
+    first_.clear();
+    GaussianDenoiser::setContexts(contexts);
+  }
+  void predictActions(const float* noisy, int k, float* actions) override {
+    if (first_.empty()) first_.assign(noisy, noisy + count_ * test::kHorizon * 7);
+    GaussianDenoiser::predictActions(noisy, k, actions);
+  }
+  std::vector<double> first() const { return {first_.begin(), first_.end()}; }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<float> first_;
+};
+
+// The sampler noises a previous plan by the closed form in one jump.
 TEST_F(ForwardProcess, OneJumpHasTheMomentsOfTheClosedForm) {
+  constexpr std::size_t kRuns = kDraws / (test::kHorizon * 7);
+  const Trajectory plan = Trajectory::Constant(test::kHorizon, 7, static_cast<float>(kClean));
+  const traffic::Rollout spread = traffic::Rollout::Constant(test::kHorizon, 7, 1.0);
   for (const int k : {1, 10, 51, 91, 100}) {
     SCOPED_TRACE(k);
-    const double alpha_bar = schedule_.alphaBar(k);
-    std::vector<double> values;
-    for (std::uint32_t draw = 0; draw < kDraws; ++draw) {
-      values.push_back(std::sqrt(alpha_bar) * kClean +
-                       std::sqrt(1.0 - alpha_bar) * normal(draw, static_cast<std::uint32_t>(k)));
+    SamplerOptions options;
+    options.warm_start_step = k;
+    options.warm_steps = 1;
+    const Sampler sampler(options, schedule_, spread, noise_);
+    RecordingDenoiser denoiser(schedule_, 1.0);
+    LearnedStateBranch branch(denoiser);
+    std::vector<SampleRequest> requests(kRuns);
+    for (std::uint32_t i = 0; i < kRuns; ++i) {
+      requests[i].key = {17, i, 0};
+      requests[i].warm = &plan;
     }
-    expectClosedForm(values, alpha_bar);
+    denoiser.setContexts(std::vector<Context>(kRuns));
+    sampler.sample(denoiser, branch, requests, nullptr);
+    ASSERT_EQ(denoiser.first().size(), kRuns * test::kHorizon * 7);
+    expectClosedForm(denoiser.first(), schedule_.alphaBar(k));
   }
 }
 

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "diffusion/linear_gaussian.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -42,27 +45,72 @@ TEST(Sampler, PaperModeHasThePapersBias) {
   }
 }
 
-// The proximal step with the prior's own spread comes within 5 % of the exact mean, or 0.01.
-TEST(Sampler, RealTimeModeFindsTheExactMean) {
+/// Four standard errors of the mean of kRuns x 12 independent cells.
+double fourErrors(double deviation) { return 4.0 * deviation / std::sqrt(12.0 * kRuns); }
+
+// A trust region too wide to act: the mean of the problem's own answer within 5 % and the sampling
+// error. At s = 0.1 and w = 0.5, the least effect, that is 0.0099 +- 0.0019: not 0.
+TEST(Sampler, RealTimeModeFindsTheExactMeanWhereTheTrustRegionDoesNotAct) {
   for (const double s : {1.0, 0.3, 0.1}) {
     for (const double w : {0.5, 5.0, 50.0}) {
       SamplerOptions options = mode("real_time");
       options.trust_region = 20.0;
       const Moments moments = sampleMoments(options, s, w, kRuns);
-      EXPECT_NEAR(moments.mean, exactMean(s, w), std::max(0.05 * exactMean(s, w), 0.02))
-          << "s " << s << " w " << w;
+      const double exact = exactMean(s, w);
+      const double tolerance = 0.05 * exact + fourErrors(moments.deviation);
+      ASSERT_LT(tolerance, 0.2 * exact);  // no guidance at all does not pass
+      EXPECT_NEAR(moments.mean, exact, tolerance) << "s " << s << " w " << w;
     }
   }
 }
 
-// DDIM over ten steps draws too narrow a distribution; how narrow is asserted, not hidden.
-TEST(Sampler, RealTimeSpreadIsTooNarrow) {
-  SamplerOptions options = mode("real_time");
-  options.trust_region = 20.0;
-  const Moments moments = sampleMoments(options, 0.3, 5.0, kRuns);
-  const double exact = 0.3 / std::sqrt(1.0 + 2.0 * 5.0 * 0.09);  // 0.218
-  EXPECT_LT(moments.deviation, exact);
-  EXPECT_GT(moments.deviation, 0.7 * exact);
+/// What a mode makes of the problem: spread of the prior, weight, the exact mean and deviation, and
+/// those measured with this test's noise (18,000 cells).
+struct BiasRow {
+  double s, w, exact_mean, exact_deviation, mean, deviation;
+};
+
+/// The measured moments within four standard errors (of a deviation: deviation / sqrt(2 n)).
+void expectRow(const BiasRow& row, const Moments& moments) {
+  SCOPED_TRACE("s " + std::to_string(row.s) + " w " + std::to_string(row.w));
+  EXPECT_NEAR(exactMean(row.s, row.w), row.exact_mean, 1e-4);
+  EXPECT_NEAR(row.s / std::sqrt(1.0 + 2.0 * row.w * row.s * row.s), row.exact_deviation, 1e-4);
+  EXPECT_NEAR(moments.mean, row.mean, fourErrors(row.deviation));
+  EXPECT_NEAR(moments.deviation, row.deviation, fourErrors(row.deviation) / std::sqrt(2.0));
+}
+
+// Known bias of real_time as it is shipped, trust_region 2. Optima farther than some s away are not
+// reached (s = 0.3 and 0.1 at w = 50), and ten DDIM steps draw too narrow a distribution: 0.89,
+// 0.79 and 0.49 of the prior's deviation at s = 1, 0.3 and 0.1 without any guidance.
+TEST(Sampler, RealTimeModeHasTheBiasOfTheTable) {
+  const BiasRow rows[] = {
+      {1.0, 0.0, 0.0, 1.0, 0.0, 0.889},           {1.0, 0.5, 0.5, 0.7071, 0.4892, 0.6228},
+      {1.0, 5.0, 0.9091, 0.3015, 0.9005, 0.2442}, {1.0, 50.0, 0.9901, 0.0995, 0.9804, 0.0962},
+      {0.3, 0.0, 0.0, 0.3, 0.0, 0.2377},          {0.3, 0.5, 0.0826, 0.2873, 0.0816, 0.2255},
+      {0.3, 5.0, 0.4737, 0.2176, 0.4711, 0.1582}, {0.3, 50.0, 0.9, 0.0949, 0.7603, 0.1761},
+      {0.1, 0.0, 0.0, 0.1, 0.0, 0.0491},          {0.1, 0.5, 0.0099, 0.0995, 0.0098, 0.0486},
+      {0.1, 5.0, 0.0909, 0.0953, 0.0907, 0.0452}, {0.1, 50.0, 0.5, 0.0707, 0.2248, 0.0491}};
+  ASSERT_EQ(SamplerOptions().trust_region, 2.0);
+  for (const BiasRow& row : rows) {
+    expectRow(row, sampleMoments(mode("real_time"), row.s, row.w, kRuns));
+  }
+}
+
+// Known bias of a warm start (50 -> 5 steps, trust_region 2) whose previous plan knew no guidance,
+// as after a change of the objectives: it follows a strong pull only in part within one decision.
+TEST(Sampler, WarmStartUnderGuidanceHasTheBiasOfTheTable) {
+  const BiasRow rows[] = {
+      {1.0, 0.5, 0.5, 0.7071, 0.2415, 0.7469},     {1.0, 5.0, 0.9091, 0.3015, 0.6718, 0.4003},
+      {1.0, 50.0, 0.9901, 0.0995, 0.8137, 0.3641}, {0.3, 0.5, 0.0826, 0.2873, 0.0648, 0.2283},
+      {0.3, 5.0, 0.4737, 0.2176, 0.4012, 0.1624},  {0.3, 50.0, 0.9, 0.0949, 0.6565, 0.2074},
+      {0.1, 0.5, 0.0099, 0.0995, 0.0094, 0.0487},  {0.1, 5.0, 0.0909, 0.0953, 0.0868, 0.0453},
+      {0.1, 50.0, 0.5, 0.0707, 0.2155, 0.0491}};
+  for (const BiasRow& row : rows) {
+    const std::vector<Trajectory> previous = priorPlans(row.s, kRuns);
+    const Moments moments = sampleMoments(mode("real_time"), row.s, row.w, kRuns, previous);
+    expectRow(row, moments);
+    EXPECT_GT(moments.mean, fourErrors(moments.deviation));  // but it does follow
+  }
 }
 
 TEST(Sampler, TrustRegionLimitsTheShift) {

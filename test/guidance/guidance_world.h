@@ -98,7 +98,8 @@ inline traffic::Rollout standing(double x, double y, double heading = 0.0, doubl
   return rollout;
 }
 
-/// A rollout ahead that wanders up to 5 m to the sides, beyond the road's border.
+/// A rollout ahead that wanders up to 5 m to the sides, beyond the road's border; every second row
+/// is slower than 1 m/s.
 inline traffic::Rollout wandering(std::uint32_t trial) {
   const core::RandomStream random(11, "rollout");
   const auto draw = [&](Eigen::Index row, int column, double low, double high) {
@@ -108,8 +109,9 @@ inline traffic::Rollout wandering(std::uint32_t trial) {
   traffic::Rollout rollout(kRows, traffic::kRolloutColumns);
   for (Eigen::Index row = 0; row < kRows; ++row) {
     rollout.row(row) << 2.0 * static_cast<double>(row) + draw(row, 0, 0.0, 1.0),
-        draw(row, 1, -5.0, 5.0), draw(row, 2, -0.6, 0.6), draw(row, 3, 0.0, 15.0),
-        draw(row, 4, 0.0, 1.0), draw(row, 5, -1.0, 1.0), draw(row, 6, 0.0, 1.0);
+        draw(row, 1, -5.0, 5.0), draw(row, 2, -0.6, 0.6),
+        draw(row, 3, 0.0, row % 2 == 0 ? 15.0 : 1.0), draw(row, 4, 0.0, 1.0),
+        draw(row, 5, -1.0, 1.0), draw(row, 6, 0.0, 1.0);
   }
   return rollout;
 }

@@ -1,59 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "course.h"
 #include "e2e_cdiff/planning/two_stage_pid.h"
-#include "support/random_model.h"
+#include "model_course.h"
 
 namespace cdiff::planning {
 namespace {
 
-/// A straight road with an ego at the origin and two CBVs ahead; the model is random.
-class TwoStagePidTest : public ::testing::Test {
+class TwoStagePidTest : public testing::ModelCourse {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("cdiff_two_stage_model_" + std::to_string(::getpid()));
-    cdiff::testing::writeRandomModel(folder_);
-  }
-  static void TearDownTestSuite() { std::filesystem::remove_all(folder_); }
-
-  TwoStagePidTest() {
-    for (const double x : {0.0, 30.0, 60.0}) {
-      traffic::Vehicle vehicle = testing::vehicleAt("v" + core::formatNumber(x), x, 0.0, 0.3, 5.0);
-      vehicle.role = x == 0.0 ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kCbv;
-      vehicle.cbv_slot = static_cast<int>(x / 30.0) - 1;
-      snapshot_.vehicles.push_back(vehicle);
-    }
-    for (int shade : {0, 40}) {
-      traffic::CameraImage image;
-      image.width = 160;
-      image.height = 96;
-      for (int i = 0; i < 160 * 96 * 3; ++i)
-        image.rgb.push_back(static_cast<std::uint8_t>(shade + i % 97));
-      images_.push_back(image);
-    }
-  }
-
-  std::vector<PlanningTask> tasks() {
-    return {{0, &snapshot_.vehicles[1], &route_, 8.0, &images_[0]},
-            {1, &snapshot_.vehicles[2], &route_, 8.0, &images_[1]}};
-  }
-
   std::unique_ptr<DiffusionPlanner> makeDiffusion() const {
-    DiffusionOptions options;
-    options.model = folder_.string();
-    return std::make_unique<DiffusionPlanner>(options, guidance_, dynamics::BicycleModelOptions{},
-                                              context_);
+    return ModelCourse::makeDiffusion(optionsOf());
   }
   TwoStagePid makePlanner() const { return {makeDiffusion(), {}}; }
-
-  void goTo(std::uint64_t tick) {
-    snapshot_.tick = tick;
-    for (traffic::CameraImage& image : images_) image.tick = tick;
-  }
 
   /// What a tracker of its own answers to a plan.
   static traffic::ControlAction tracked(TrajectoryTracker& tracker, const traffic::Vehicle& vehicle,
@@ -65,16 +25,6 @@ class TwoStagePidTest : public ::testing::Test {
     }
     return tracker.track(vehicle.state.speed, places);
   }
-
-  inline static std::filesystem::path folder_;
-  map::RoadNetwork network_ =
-      testing::makeNetwork({{"road", testing::straight(-50.0, 0.0, 250.0, 0.0)}});
-  map::DrivableArea area_{network_};
-  map::Route route_ = testing::routeAlong(network_, {"road"});
-  PlanningContext context_{network_, area_};
-  guidance::GuidanceOptions guidance_ = guidance::loadProfile("naturalistic");
-  traffic::TrafficSnapshot snapshot_;
-  std::vector<traffic::CameraImage> images_;
 };
 
 TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {

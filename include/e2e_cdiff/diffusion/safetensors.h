@@ -30,8 +30,9 @@ struct SafetensorsFile {
 /// F32. Refused with an InputError that names file, tensor or key and what was expected: no such
 /// file, truncated or trailing bytes, header too long (8 MiB) or not JSON, duplicate or foreign
 /// keys, unknown type, wrong shape, offsets that overlap, leave gaps or do not fit shape and type,
-/// missing or unknown tensors, values that are not finite, metadata "sha256" that is not the hash
-/// of the data section (required).
+/// missing or unknown tensors, a data section of more than 4 GiB, metadata "sha256" that is not the
+/// hash of the data section (required), values that are not finite. Memory for tensors is taken
+/// only after all but the last of these.
 SafetensorsFile readSafetensors(
     const std::filesystem::path& file,
     const std::function<std::vector<TensorShape>(const std::map<std::string, std::string>&)>&

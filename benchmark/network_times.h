@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Times [s] and floating-point operations of the two networks of the planner on one core.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+
+namespace cdiff::benchmark {
+
+/// Of one image each, ascending.
+std::vector<double> encoderTimes(const diffusion::Model& model);
+/// Two per multiply-add of convolutions and projection; zeros at the border count.
+double encoderOperations(const diffusion::Architecture& sizes);
+
+struct DenoiserTimes {
+  double forward = 0.0;  ///< [s]
+  double both = 0.0;     ///< [s], with the pull-back
+};
+
+/// Of a batch of `samples`, medians over the diffusion steps.
+DenoiserTimes denoiserTimes(diffusion::CpuDenoiser& denoiser, std::size_t samples);
+/// Of the U-Net's convolutions for one sample; its pull-back has as many.
+double unetOperations(const diffusion::Model& model);
+
+}  // namespace cdiff::benchmark
