@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedMatrix, testing::ValuesIn(shippedMatrices()
 
 TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("smoke"), "smoke").size(), 2U * 2U);
-  EXPECT_EQ(planRuns(loadMatrix("guidance_effect"), "").size(), 10U * 3U * 6U);
+  EXPECT_EQ(planRuns(loadMatrix("guidance_effect"), "").size(), 10U * 3U * 7U);
   EXPECT_EQ(planRuns(loadMatrix("test_routes"), "").size(), 10U * 3U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("ten_scenarios"), "").size(), 10U * 3U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 3U * 9U);
