@@ -196,7 +196,7 @@ TableDefinition table5() {
       "Ego planner PDM-Lite, CBV planner E2E-CDiff. Rows are guidance profiles.",
       "Objectives",
       controllabilityAndRealism(),
-      {row("collision + drivable + speed", "naturalistic",
+      {row("collision + drivable + speed", "ablation_all",
            {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}),
        row("collision", "ablation_collision",
            {{2.75, 1.41}, {7.05, 2.73}, {0.96, 0.01}, {0.90, 0.00}, {4.16, 0.02}}),
