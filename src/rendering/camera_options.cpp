@@ -52,6 +52,8 @@ void CameraOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"far_distance", "m", "Farthest ground and vehicles that are drawn."},
                  far_distance, 5.0, 1000.0);
   visitor.integer({"supersampling", "", "Samples per pixel and axis."}, supersampling, 1, 8);
+  visitor.flag({"blind", "", "Whether every pixel is mid-grey, to see what an image is worth."},
+               blind);
 }
 
 void CameraOptions::validate() const {

@@ -25,6 +25,16 @@ Bound boundOf(const traffic::Vehicle& vehicle) {
                           size.height * size.height)};
 }
 
+traffic::CameraImage midGrey(const CameraOptions& options, std::uint64_t tick) {
+  constexpr std::uint8_t kMidGrey = 128;
+  traffic::CameraImage image;
+  image.width = static_cast<int>(options.width);
+  image.height = static_cast<int>(options.height);
+  image.tick = tick;
+  image.rgb.assign(static_cast<std::size_t>(3 * options.width * options.height), kMidGrey);
+  return image;
+}
+
 }  // namespace
 
 struct FrontCamera::Scene {
@@ -46,6 +56,7 @@ FrontCamera::~FrontCamera() = default;
 traffic::CameraImage FrontCamera::render(const traffic::TrafficSnapshot& snapshot,
                                          const traffic::Vehicle& vehicle) {
   Scene& scene = *scene_;
+  if (scene.options.blind) return midGrey(scene.options, snapshot.tick);
   const View view(scene.options, vehicle);
   scene.canvas.clear();
   scene.road.draw(view, scene.canvas);

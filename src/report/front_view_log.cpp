@@ -32,6 +32,7 @@ rendering::FrontCamera cameraForPeople(const scenario::SessionSetup& setup, std:
   rendering::CameraOptions options = setup.options().camera;
   options.width = width;
   options.height = height;
+  options.blind = false;
   return {options, setup.network()};
 }
 

@@ -27,6 +27,21 @@ TEST(FrontCamera, ProjectsPointsOfTheMap) {
   EXPECT_FALSE(camera.project(vehicleAt("ego", 0.0, 0.0), {-20.5, 2.0, 0.0}));
 }
 
+TEST(FrontCamera, ABlindOneShowsMidGreyAtItsTick) {
+  CameraOptions options = levelCamera();
+  options.blind = true;
+  FrontCamera camera(options, straightRoad());
+  traffic::TrafficSnapshot snapshot;
+  snapshot.tick = 42;
+  snapshot.vehicles = {vehicleAt("ego", 0.0, 0.0), vehicleAt("leader", 12.0, 0.0)};
+  const traffic::CameraImage image = camera.render(snapshot, snapshot.vehicles.front());
+  EXPECT_EQ(image.tick, 42U);
+  EXPECT_EQ(image.width, options.width);
+  EXPECT_EQ(image.height, options.height);
+  EXPECT_EQ(image.rgb, std::vector<std::uint8_t>(image.rgb.size(), 128));
+  ASSERT_EQ(image.rgb.size(), static_cast<std::size_t>(3 * options.width * options.height));
+}
+
 TEST(FrontCamera, ProjectsFromTheVehiclesPoseAndElevation) {
   const FrontCamera camera(levelCamera(), straightRoad());
   traffic::Vehicle vehicle = vehicleAt("ego", 100.0, 50.0, 0.5 * 3.14159265358979323846);

@@ -18,6 +18,7 @@ struct CameraOptions {
   double pitch = 6.0;              ///< downwards [deg]
   double far_distance = 90.0;      ///< farthest ground and vehicles that are drawn [m]
   std::int64_t supersampling = 2;  ///< samples per pixel and axis
+  bool blind = false;              ///< every pixel mid-grey: shows what an image is worth
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;
