@@ -6,26 +6,35 @@
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 
+namespace {
+
+void addCommands(CLI::App& program, int& exit_code) {
+  using namespace cdiff::cli;
+  addRunCommand(program, exit_code);
+  addEvaluateCommand(program, exit_code);
+  addValidateCommand(program, exit_code);
+  addImportCommand(program, exit_code);
+  addMetricCommand(program, exit_code);
+  addTrainCommand(program, exit_code);
+  addDoctorCommand(program, exit_code);
+  addReportCommand(program, exit_code);
+  addSuiteCommand(program, exit_code);
+#ifdef E2E_CDIFF_WITH_ROS
+  addReplayCommand(program, exit_code);
+#endif
+#ifdef E2E_CDIFF_WITH_COLLECT
+  addCollectCommand(program, exit_code);
+#endif
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   CLI::App program{"cdiff: closed-loop traffic scenarios without a ROS master"};
   program.require_subcommand(1);
   int exit_code = cdiff::cli::kPassed;
-  cdiff::cli::addRunCommand(program, exit_code);
-  cdiff::cli::addEvaluateCommand(program, exit_code);
-  cdiff::cli::addValidateCommand(program, exit_code);
-  cdiff::cli::addImportCommand(program, exit_code);
-  cdiff::cli::addMetricCommand(program, exit_code);
-  cdiff::cli::addTrainCommand(program, exit_code);
-  cdiff::cli::addDoctorCommand(program, exit_code);
-  cdiff::cli::addReportCommand(program, exit_code);
-  cdiff::cli::addSuiteCommand(program, exit_code);
-#ifdef E2E_CDIFF_WITH_ROS
-  cdiff::cli::addReplayCommand(program, exit_code);
-#endif
-#ifdef E2E_CDIFF_WITH_COLLECT
-  cdiff::cli::addCollectCommand(program, exit_code);
-#endif
+  addCommands(program, exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -104,36 +104,22 @@ class VideoRecord {
   bool told_ = false;
 };
 
-}  // namespace
-
-int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
-  const std::filesystem::path& folder = output.folder;
-  const bool quiet = output.quiet;
-  const std::atomic<bool>& stop = catchStopSignals();
-  const scenario::SessionSetup setup(options);
-  removeEarlierSession(folder);
-  const Clock::time_point begin = Clock::now();
-  std::unique_ptr<scenario::ClosedLoop> loop;
-  try {
-    loop = std::make_unique<scenario::ClosedLoop>(setup);
-  } catch (const core::SimulatorError& error) {
-    report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, folder);
-    recordFailedStart(writer, error.what());
-    std::cerr << "cdiff: " << error.what() << "\n";
-    return finish(writer, begin, quiet);
-  }
+/// Runs the session and records it; an exit code.
+int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario::ClosedLoop& loop,
+          const std::atomic<bool>& stop, Clock::time_point begin) {
+  const scenario::ScenarioOptions& options = setup.options();
   const bool deterministic = options.real_time_factor == 0.0;
-  report::ResultWriter writer(setup, {"cdiff run", loop->world().simulatorVersion(), deterministic},
-                              folder);
+  report::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), deterministic},
+                              output.folder);
   Progress progress(scenario::longestTime(options.protocol, setup.egoRoute()));
-  loop->addObserver(writer);
-  if (!quiet) loop->addObserver(progress);
+  loop.addObserver(writer);
+  if (!output.quiet) loop.addObserver(progress);
   try {
-    BagRecord bag(setup, output, *loop);
-    VideoRecord video(setup, folder, *loop);
-    loop->run(stop);
+    BagRecord bag(setup, output, loop);
+    VideoRecord video(setup, output.folder, loop);
+    loop.run(stop);
     bag.finish();
-    const int exit_code = finish(writer, begin, quiet);
+    const int exit_code = finish(writer, begin, output.quiet);
     return video.finish(writer, exit_code);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
@@ -141,6 +127,25 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
     std::cerr << "cdiff: " << error.what() << "\n";
     return kRunTimeError;
   }
+}
+
+}  // namespace
+
+int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
+  const std::atomic<bool>& stop = catchStopSignals();
+  const scenario::SessionSetup setup(options);
+  removeEarlierSession(output.folder);
+  const Clock::time_point begin = Clock::now();
+  std::unique_ptr<scenario::ClosedLoop> loop;
+  try {
+    loop = std::make_unique<scenario::ClosedLoop>(setup);
+  } catch (const core::SimulatorError& error) {
+    report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
+    recordFailedStart(writer, error.what());
+    std::cerr << "cdiff: " << error.what() << "\n";
+    return finish(writer, begin, output.quiet);
+  }
+  return drive(setup, output, *loop, stop, begin);
 }
 
 }  // namespace cdiff::cli

@@ -174,24 +174,30 @@ class Executor {
     if (options_.ended) options_.ended(record, false);
   }
 
+  /// What the run's summary says; only a fault where it cannot be read, nothing where there is
+  /// none.
+  static SummaryFacts factsIn(const fs::path& folder) {
+    SummaryFacts facts;
+    const fs::path file = folder / "summary.json";
+    try {
+      if (fs::is_regular_file(file))
+        facts = readSummary(core::readFile(file, "summary"), file.string());
+    } catch (const core::InputError& error) {
+      facts.fault = error.what();
+    }
+    return facts;
+  }
+
   /// Status, cause and figures.
   void describeEnd(RunRecord& record, const Attempt& attempt) const {
     const fs::path folder = folderOf(attempt.index);
-    SummaryFacts facts;
     record.cause.clear();
     record.status = "error";
     if (attempt.timed_out) {
       record.cause = "timed out: killed after " + core::formatNumber(options_.timeout) + " s";
       return;
     }
-    try {
-      if (fs::is_regular_file(folder / "summary.json")) {
-        const fs::path file = folder / "summary.json";
-        facts = readSummary(core::readFile(file, "summary"), file.string());
-      }
-    } catch (const core::InputError& error) {
-      facts.fault = error.what();
-    }
+    const SummaryFacts facts = factsIn(folder);
     if (record.exit_code == kInterrupted || interrupted_at_) record.status = "interrupted";
     if (record.exit_code != 0 && record.exit_code != 1) {
       if (record.failed())

@@ -11,7 +11,8 @@
 namespace cdiff::report {
 namespace {
 
-constexpr double kRounding = 1e-9;  // share of a step
+constexpr double kRounding = 1e-9;   // share of a step
+constexpr double kHalfLetter = 4.0;  // half the width of a letter [px]
 
 }  // namespace
 
@@ -66,8 +67,11 @@ std::string ChartAxes::grid(const std::string& unit) const {
   const double first = std::ceil(left_ / step - kRounding);
   const double last = std::floor(right_ / step + kRounding);
   for (double i = first; i <= last; i += 1.0) {
-    svg += chartText("tick middle", x(i * step), kChartHeight - 7.0,
-                     axisNumber(i * step, step) + (i == last ? " " + unit : ""));
+    const std::string text = axisNumber(i * step, step) + (i == last ? " " + unit : "");
+    // With its unit the last number may reach beyond the picture.
+    const bool at_edge = x(i * step) + kHalfLetter * static_cast<double>(text.size()) > kChartWidth;
+    svg += at_edge ? chartText("tick end", kChartWidth - 1.0, kChartHeight - 7.0, text)
+                   : chartText("tick middle", x(i * step), kChartHeight - 7.0, text);
   }
   return svg + "\n";
 }

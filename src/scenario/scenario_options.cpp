@@ -119,6 +119,19 @@ void ReportOptions::describe(core::OptionsVisitor& visitor) {
 void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"schema_version", "", "Version of this format."}, schema_version, 1, 1);
   visitor.text({"name", "", "Name of the scenario in results."}, name, {});
+  describeTraffic(visitor);
+  describePlanners(visitor);
+  visitor.group({"protocol", "", "When a session ends."}, protocol);
+  visitor.group({"metrics", "", "What the session is measured against."}, metrics);
+  visitor.group({"verdict", "", "When a session passes."}, verdict);
+  visitor.group({"report", "", "What report.html holds."}, report);
+  visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
+               video);
+  describeTime(visitor);
+  visitor.integer({"seed", "", "Root seed of every random draw."}, seed, 0, 2147483647);
+}
+
+void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
   visitor.text({"network", "", "Shipped network, SUMO network file or OpenDRIVE file."}, network,
                {});
   visitor.group({"route", "", "Route of the ego."}, route);
@@ -128,6 +141,9 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
                  0.0, 1e7);
   visitor.text({"lights", "", "Traffic lights: all green with yielding, or the network's program."},
                lights, {"green", "program"});
+}
+
+void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.text({"mode", "", "How CBVs behave."}, mode, {"naturalistic", "safety_critical"});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
@@ -145,19 +161,15 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
-  visitor.group({"protocol", "", "When a session ends."}, protocol);
-  visitor.group({"metrics", "", "What the session is measured against."}, metrics);
-  visitor.group({"verdict", "", "When a session passes."}, verdict);
-  visitor.group({"report", "", "What report.html holds."}, report);
-  visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
-               video);
+}
+
+void ScenarioOptions::describeTime(core::OptionsVisitor& visitor) {
   visitor.number({"target_speed", "m/s", "Speed that planners aim at, capped by the lane's limit."},
                  target_speed, 0.5, 40.0);
   visitor.number({"simulation_step", "s", "Simulation step."}, simulation_step, 0.05, 0.1);
   visitor.number({"decision_period", "s", "Time between decisions."}, decision_period, 0.05, 1.0);
   visitor.number({"real_time_factor", "", "Pace against wall time; 0 is as fast as possible."},
                  real_time_factor, 0.0, 100.0);
-  visitor.integer({"seed", "", "Root seed of every random draw."}, seed, 0, 2147483647);
 }
 
 void ScenarioOptions::validate() const {
@@ -171,15 +183,7 @@ void ScenarioOptions::validate() const {
   camera.validate();
   vehicle.validate();
   metrics.validate();
-  if (!isMultiple(simulation_step, 0.05)) {
-    throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) +
-                     " s; expected a multiple of 0.05 s");
-  }
-  if (!isMultiple(decision_period, simulation_step)) {
-    throw InputError("key 'decision_period' is " + core::formatNumber(decision_period) +
-                     " s; expected a multiple of simulation_step (" +
-                     core::formatNumber(simulation_step) + " s)");
-  }
+  validateTime();
   if (mode == "safety_critical" && !planning::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
@@ -192,6 +196,18 @@ void ScenarioOptions::validate() const {
   }
   if (file) checkDemandFile(demand);
   checkStatuses(verdict.statuses);
+}
+
+void ScenarioOptions::validateTime() const {
+  if (!isMultiple(simulation_step, 0.05)) {
+    throw InputError("key 'simulation_step' is " + core::formatNumber(simulation_step) +
+                     " s; expected a multiple of 0.05 s");
+  }
+  if (!isMultiple(decision_period, simulation_step)) {
+    throw InputError("key 'decision_period' is " + core::formatNumber(decision_period) +
+                     " s; expected a multiple of simulation_step (" +
+                     core::formatNumber(simulation_step) + " s)");
+  }
 }
 
 ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base) {

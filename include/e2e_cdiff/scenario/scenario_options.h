@@ -80,6 +80,12 @@ struct ScenarioOptions {
   planning::PlannerOptions plannerOptions() const {
     return {pdm_lite, diffusion, two_stage_pid, guidance, vehicle, camera};
   }
+
+ private:
+  void describeTraffic(core::OptionsVisitor& visitor);
+  void describePlanners(core::OptionsVisitor& visitor);
+  void describeTime(core::OptionsVisitor& visitor);
+  void validateTime() const;
 };
 
 /// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside
