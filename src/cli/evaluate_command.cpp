@@ -64,9 +64,13 @@ MatrixOptions matrixOf(const EvaluateArguments& arguments) {
   return matrix;
 }
 
-/// Makes the folder and keeps the matrix in it; a folder of another matrix is refused.
+/// Makes the folder and keeps the matrix in it; that of a session or another matrix is refused.
 void claimFolder(const fs::path& folder, const MatrixOptions& matrix) {
   std::error_code error;
+  if (fs::exists(folder / "session.yaml", error)) {
+    throw InputError("'" + folder.string() +
+                     "' holds the result of a session (session.yaml); give another --results");
+  }
   fs::create_directories(folder / "runs", error);
   if (error)
     throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());

@@ -21,6 +21,8 @@ int replay(const ReplayArguments& arguments) {
     std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
   if (!result.findings.empty())
     std::cerr << "cdiff: the recording is damaged; the result is made of what there is\n";
+  if (!result.video_error.empty())
+    std::cerr << "cdiff: " << result.video_error << "; the other results are not affected\n";
   if (!arguments.quiet) std::cout << result.table << std::flush;
   return result.exit_code;
 }

@@ -48,6 +48,20 @@ std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
   return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.figures)};
 }
 
+void requirePairs(const std::vector<evaluation::Comparison>& comparisons,
+                  const ReportArguments& arguments) {
+  for (const evaluation::Comparison& comparison : comparisons) {
+    if (comparison.pairs > 0) return;
+  }
+  if (!arguments.factor.empty()) {
+    throw InputError("'" + arguments.folders[0] + "' has no complete runs to pair: factor '" +
+                     arguments.factor + "' needs a level beside the baseline '" +
+                     arguments.baseline + "', with runs that agree in all other factors");
+  }
+  throw InputError("'" + arguments.folders[0] + "' and '" + arguments.folders[1] +
+                   "' have no pair of complete runs with the same scenario, seed and repetition");
+}
+
 /// Tables, figures and page of a finished batch again, without running anything.
 int makeTables(const fs::path& results) {
   const fs::path file = results / "matrix.yaml";
@@ -67,6 +81,7 @@ int report(const ReportArguments& arguments) {
     throw InputError("give either --compare A B or --tables DIR");
   if (!arguments.tables.empty()) return makeTables(arguments.tables);
   const std::vector<evaluation::Comparison> comparisons = compare(arguments);
+  requirePairs(comparisons, arguments);
   std::cout << evaluation::comparisonMarkdown(comparisons);
   const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
                                              : fs::path(arguments.csv);

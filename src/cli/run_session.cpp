@@ -4,11 +4,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <iostream>
 #include <memory>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
@@ -23,12 +25,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What an earlier session of the node graph left in the folder.
+bool isJudged(int exit_code) { return exit_code == kPassed || exit_code == kVerdictFailed; }
+
+/// What an earlier session left in the folder that this one may not write anew.
 void removeEarlierSession(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile}) {
     std::filesystem::remove(folder / name, ignored);
   }
+  core::removeTemporaries(folder);
 }
 
 /// The record of a session that never began.
@@ -47,32 +52,53 @@ int finish(report::ResultWriter& writer, Clock::time_point begin, bool quiet) {
   return writer.exitCode();
 }
 
-/// session.bag of a session that is to be recorded; without ROS there are no bags.
-class BagRecord {
+/// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
+/// be written is told once, and the session goes on.
+class BagRecord : public scenario::SessionObserver {
  public:
   BagRecord(const scenario::SessionSetup& setup, const RunOutput& output,
             scenario::ClosedLoop& loop) {
     if (!output.record) return;
 #ifdef E2E_CDIFF_WITH_ROS
-    bag_ = std::make_unique<ros::SessionBag>(
-        setup, output.folder / "session.bag",
-        ros::BagOrigin{"cdiff run", loop.world().simulatorVersion()});
-    loop.addObserver(*bag_);
+    const ros::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
+    attempt([&] {
+      bag_ = std::make_unique<ros::SessionBag>(setup, output.folder / "session.bag", origin);
+    });
+    loop.addObserver(*this);
 #else
     (void)setup, (void)loop;
     throw core::InputError("--record needs a build with ROS (E2E_CDIFF_ROS=ON)");
 #endif
   }
-  void finish() {
 #ifdef E2E_CDIFF_WITH_ROS
-    if (bag_) bag_->finish();
+  void observe(const scenario::TickRecord& record) override {
+    if (bag_) attempt([&] { bag_->observe(record); });
+  }
+#else
+  void observe(const scenario::TickRecord&) override {}
 #endif
+  /// Whether the bag that was asked for is there.
+  bool finish() {
+#ifdef E2E_CDIFF_WITH_ROS
+    if (bag_) attempt([&] { bag_->finish(); });
+#endif
+    return !failed_;
   }
 
  private:
 #ifdef E2E_CDIFF_WITH_ROS
+  void attempt(const std::function<void()>& writing) {
+    try {
+      writing();
+    } catch (const std::exception& error) {
+      std::cerr << "cdiff: " << error.what() << "; the other results are not affected\n";
+      bag_.reset();
+      failed_ = true;
+    }
+  }
   std::unique_ptr<ros::SessionBag> bag_;
 #endif
+  bool failed_ = false;
 };
 
 /// session.mp4 of a session that asks for it.
@@ -90,8 +116,7 @@ class VideoRecord {
     if (!video_) return exit_code;
     video_->finish(writer.result());
     tell();
-    const bool judged = exit_code == kPassed || exit_code == kVerdictFailed;
-    return told_ && judged ? static_cast<int>(kRunTimeError) : exit_code;
+    return told_ && isJudged(exit_code) ? static_cast<int>(kRunTimeError) : exit_code;
   }
 
  private:
@@ -118,9 +143,9 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
     BagRecord bag(setup, output, loop);
     VideoRecord video(setup, output.folder, loop);
     loop.run(stop);
-    bag.finish();
-    const int exit_code = finish(writer, begin, output.quiet);
-    return video.finish(writer, exit_code);
+    const bool recorded = bag.finish();
+    const int exit_code = video.finish(writer, finish(writer, begin, output.quiet));
+    return recorded || !isJudged(exit_code) ? exit_code : static_cast<int>(kRunTimeError);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
     // whatever its type.
@@ -134,17 +159,18 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
 int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
   const std::atomic<bool>& stop = catchStopSignals();
   const scenario::SessionSetup setup(options);
-  removeEarlierSession(output.folder);
   const Clock::time_point begin = Clock::now();
   std::unique_ptr<scenario::ClosedLoop> loop;
   try {
     loop = std::make_unique<scenario::ClosedLoop>(setup);
   } catch (const core::SimulatorError& error) {
+    removeEarlierSession(output.folder);
     report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
     return finish(writer, begin, output.quiet);
   }
+  removeEarlierSession(output.folder);
   return drive(setup, output, *loop, stop, begin);
 }
 

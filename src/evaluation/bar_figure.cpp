@@ -11,6 +11,8 @@
 namespace cdiff::evaluation {
 namespace {
 
+constexpr double kHalfLetter = 3.6;  // half the width of a letter of a name [px]
+
 using report::shortNumber;
 
 constexpr double kBarShare = 0.8;  // of a group's width that bars fill
@@ -77,8 +79,10 @@ std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes
   const bool empty = std::none_of(cells.begin(), cells.end(),
                                   [](const TableCell& cell) { return cell.seeds.mean; });
   const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
-  svg += report::chartText("tick middle", middle, report::kChartHeight - 9.0 + lower,
-                           table.definition.rows[row].name);
+  const std::string& name = table.definition.rows[row].name;
+  const double half = kHalfLetter * static_cast<double>(name.size());
+  svg += report::chartText("tick middle", std::clamp(middle, half, report::kChartWidth - half),
+                           report::kChartHeight - 9.0 + lower, name);
   if (empty && !cells.empty())
     svg += report::chartText("note middle", middle, report::kChartTop + 10.0 + lower,
                              cells.front().note);

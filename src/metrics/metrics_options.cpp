@@ -27,6 +27,11 @@ void MetricsOptions::validate() const {
         "a "
         "file of speeds [m/s], one a line, or {\"cases\": [{\"x\": [...]}]}");
   }
+  if (speed_target != "file" && !speed_target_file.empty()) {
+    throw core::InputError("key 'metrics.speed_target_file' is '" + speed_target_file +
+                           "', but 'metrics.speed_target' is '" + speed_target +
+                           "'; expected 'metrics.speed_target: file' with it");
+  }
   samples();
 }
 
@@ -35,9 +40,9 @@ std::vector<double> MetricsOptions::samples() const {
   values.reserve(speed_target_samples.size());
   for (const std::string& text : speed_target_samples) {
     const auto value = core::parseNumber(text);
-    if (!value) {
+    if (!value || *value < 0.0) {
       throw core::InputError("key 'metrics.speed_target_samples' holds '" + text +
-                             "'; expected finite numbers");
+                             "'; expected finite speeds [m/s], none below 0");
     }
     values.push_back(*value);
   }

@@ -50,6 +50,16 @@ class Row {
     }
     return *value;
   }
+  /// A length, above 0.
+  double size(const std::string& column) const {
+    const double value = number(column);
+    if (!(value > 0.0)) refuse(column, "a size above 0");
+    return value;
+  }
+  [[noreturn]] void refuse(const std::string& column, const std::string& expected) const {
+    throw core::InputError(place_ + ": column " + column + " is \"" + cells_[columns_.at(column)] +
+                           "\", expected " + expected);
+  }
 
  private:
   const Columns& columns_;
@@ -61,9 +71,10 @@ metrics::MovingBox movingBox(const Row& row, const std::string& suffix) {
   metrics::MovingBox moving;
   moving.box.center = {row.number("x" + suffix), row.number("y" + suffix)};
   const Eigen::Vector2d forward{row.number("hx" + suffix), row.number("hy" + suffix)};
+  if (forward.norm() == 0.0) row.refuse("hx" + suffix, "a direction; hx and hy are both 0");
   moving.box.heading = std::atan2(forward.y(), forward.x());
-  moving.box.length = row.number("length" + suffix);
-  moving.box.width = row.number("width" + suffix);
+  moving.box.length = row.size("length" + suffix);
+  moving.box.width = row.size("width" + suffix);
   moving.velocity = {row.number("vx" + suffix), row.number("vy" + suffix)};
   return moving;
 }

@@ -13,7 +13,8 @@ namespace {
 
 // Sizes in pixels.
 constexpr double kMargin = 16.0;
-constexpr double kLine = 20.0;  // of text
+constexpr double kLine = 20.0;        // of text
+constexpr double kTitleShare = 0.66;  // a title's letters are half again as wide as a note's
 
 double widthOf(const PanelSheet& sheet) {
   double width = 560.0;
@@ -48,8 +49,12 @@ std::vector<std::string> wrapped(const std::string& text, double width) {
 
 /// The sheet's content; `y` becomes its height.
 std::string contentOf(const PanelSheet& sheet, double& y) {
-  std::string svg = chartText("sheet-title", kMargin, y + 16.0, sheet.title) + "\n";
-  y += 1.4 * kLine;
+  std::string svg;
+  for (const std::string& line : wrapped(sheet.title, kTitleShare * widthOf(sheet))) {
+    svg += chartText("sheet-title", kMargin, y + 16.0, line) + "\n";
+    y += kLine;
+  }
+  y += 0.4 * kLine;
   for (const auto& [style, text] : sheet.legend) {
     svg += "<path class=\"key " + style + "\" d=\"M" + shortNumber(kMargin) + " " +
            shortNumber(y + 9.0) + "h26\"/>" + chartText("note", kMargin + 34.0, y + 13.0, text) +
@@ -106,6 +111,7 @@ const char kPanelSheetStyle[] = R"CSS(
 .sheet .vehicle.bg path { fill: #1f6fc4; }
 .sheet .vehicle path.nose { fill: #ffffff; stroke: none; }
 .sheet circle.interaction { stroke: #e00000; stroke-width: 2.5; }
+svg.sheet text.name { stroke: none; }
 .sheet path.plan { stroke: #111417; stroke-width: 2; stroke-dasharray: 6 4; }
 .sheet path.driven { stroke: #7b1fa2; stroke-width: 3.5; }
 .sheet path.key { stroke-width: 4; }

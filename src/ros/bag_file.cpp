@@ -25,12 +25,24 @@ std::string controlTopic(int slot) {
 }  // namespace
 
 BagFile::BagFile(const fs::path& file, const rendering::CameraOptions& camera, Naming naming)
-    : file_(file), camera_(camera), naming_(std::move(naming)) {
+    : file_(file),
+      camera_(camera),
+      naming_(std::move(naming)),
+      bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path());
-    bag_.open(file_.string() + ".active", rosbag::bagmode::Write);
-    bag_.setCompression(rosbag::compression::LZ4);
+    bag_->open(file_.string() + ".active", rosbag::bagmode::Write);
+    bag_->setCompression(rosbag::compression::LZ4);
   });
+}
+
+BagFile::~BagFile() {
+  try {
+    bag_->close();
+  } catch (const std::exception&) {
+    // On a full disk. Its destructor would try once more and end the program, so it gets none.
+    static_cast<void>(bag_.release());
+  }
 }
 
 /// Errors of the bag name its file.
@@ -38,16 +50,17 @@ void BagFile::guard(const std::function<void()>& writing) const {
   try {
     writing();
   } catch (const std::exception& error) {
-    throw core::InputError("cannot write the bag '" + file_.string() + "': " + error.what());
+    throw core::InputError("cannot write the bag '" + file_.string() + "': " + error.what() +
+                           "; check that the folder exists, is writable and has room");
   }
 }
 
 void BagFile::write(const msgs::SessionInfo& info) {
-  guard([&] { bag_.write(naming_(kSessionTopic), ::ros::TIME_MIN, info); });
+  guard([&] { bag_->write(naming_(kSessionTopic), ::ros::TIME_MIN, info); });
 }
 
 void BagFile::write(const nav_msgs::Path& ego_route) {
-  guard([&] { bag_.write(naming_(kEgoRouteTopic), ::ros::TIME_MIN, ego_route); });
+  guard([&] { bag_->write(naming_(kEgoRouteTopic), ::ros::TIME_MIN, ego_route); });
 }
 
 void BagFile::write(const TickMessages& tick) {
@@ -63,7 +76,7 @@ void BagFile::writeTick(const TickMessages& tick) {
   put(kGuidanceTopic, stamp, tick.guidance);
   for (const auto& [slot, image] : tick.images) {
     put(imageTopic(slot), stamp, image);
-    bag_.write(naming_(cameraInfoTopic(slot)), stamp, toCameraInfoMsg(camera_, image->header));
+    bag_->write(naming_(cameraInfoTopic(slot)), stamp, toCameraInfoMsg(camera_, image->header));
   }
   put(kMetricsTopic, stamp, tick.report);
   if (tick.snapshot->decision_tick) writeDisplay(tick, stamp);
@@ -71,14 +84,14 @@ void BagFile::writeTick(const TickMessages& tick) {
 
 void BagFile::writeDisplay(const TickMessages& tick, const ::ros::Time& stamp) {
   const traffic::TrafficSnapshot snapshot = fromMsg(*tick.snapshot);
-  bag_.write("/tf", stamp, tick.images.empty() ? toTfMsg(snapshot) : toTfMsg(snapshot, camera_));
+  bag_->write("/tf", stamp, tick.images.empty() ? toTfMsg(snapshot) : toTfMsg(snapshot, camera_));
   if (const traffic::Vehicle* ego = snapshot.ego())
-    bag_.write(naming_(kEgoOdometryTopic), stamp, toOdometryMsg(*ego, snapshot.time));
+    bag_->write(naming_(kEgoOdometryTopic), stamp, toOdometryMsg(*ego, snapshot.time));
 }
 
 void BagFile::finish() {
   guard([&] {
-    bag_.close();
+    bag_->close();
     fs::rename(file_.string() + ".active", file_);
   });
 }

@@ -3,11 +3,14 @@
 #include "e2e_cdiff/ros/replay.h"
 
 #include <chrono>
+#include <memory>
 #include <optional>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/ros/tick_record.h"
 
 namespace cdiff::ros {
@@ -52,8 +55,26 @@ report::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministi
   return facts;
 }
 
+bool holdsRecording(const std::filesystem::path& results) {
+  const std::filesystem::path file = results / "session.yaml";
+  if (!std::filesystem::is_regular_file(file)) return false;
+  const std::string text = core::readFile(file, "session");
+  for (const char* by : {kReplayCommand, kReplayLaunch}) {
+    if (text.find(std::string("deployment: \"") + by + "\"") != std::string::npos) return false;
+  }
+  return true;
+}
+
+void requireNoRecording(const std::filesystem::path& results) {
+  if (!holdsRecording(results)) return;
+  throw core::InputError("'" + results.string() +
+                         "' holds the result of a session that was driven (session.yaml), which a "
+                         "replay would overwrite; give another --results");
+}
+
 ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results) {
   const Clock::time_point begin = Clock::now();
+  requireNoRecording(results);
   RecordedSession session(bag);
   const auto first = session.next();
   if (!first) refuseEmpty(bag, session);
@@ -62,15 +83,23 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   info.simulator_version = session.info().simulator_version;
   const bool deterministic = session.setup().options().real_time_factor == 0.0;
   report::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
+  std::unique_ptr<report::SessionVideo> video;
+  std::vector<scenario::SessionObserver*> observers = {&writer};
+  if (session.setup().options().video) {
+    video = std::make_unique<report::SessionVideo>(session.setup(), results);
+    observers.push_back(video.get());
+  }
   try {
-    showTick(session, *first, {&writer});
-    showTicks(session, {&writer});
+    showTick(session, *first, observers);
+    showTicks(session, observers);
     writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
+    if (video) video->finish(writer.result());
   } catch (const std::exception& error) {  // of the disk, whatever its type
     throw core::Error(error.what());
   }
-  const bool whole = session.findings().empty();
-  return {whole ? writer.exitCode() : 2, writer.table(), session.findings()};
+  const std::string video_error = video ? video->error() : "";
+  const bool whole = session.findings().empty() && video_error.empty();
+  return {whole ? writer.exitCode() : 2, writer.table(), session.findings(), video_error};
 }
 
 }  // namespace cdiff::ros

@@ -53,6 +53,7 @@ fs::path resultFolder(const Parameters& parameters, const scenario::ScenarioOpti
   const fs::path folder =
       fs::absolute(fs::path(parameters.text("folder")) / parameters.text("results"))
           .lexically_normal();
+  requireNoRecording(folder);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
@@ -261,8 +262,8 @@ int runReplay(StopSignal& stop) {
     return ReplayRos(parameters, stop).run();
   } catch (const core::InputError&) {
     constexpr int kBadInput = 3;
-    if (parameters.text("results").empty()) throw;
     const fs::path folder = fs::path(parameters.text("folder")) / parameters.text("results");
+    if (parameters.text("results").empty() || holdsRecording(folder)) throw;
     std::error_code ignored;
     fs::create_directories(folder, ignored);
     writeExitCode(folder, kBadInput);

@@ -89,6 +89,14 @@ void checkDemandFile(const std::string& file) {
   }
 }
 
+void requirePlanner(const std::string& key, const std::string& name, bool or_external) {
+  std::vector<std::string> names = planning::plannerNames();
+  if (or_external) names.emplace_back("external");
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw InputError("key '" + key + "' is '" + name + "', an unknown planner; did you mean '" +
+                   core::nearestName(name, names) + "'? Known: " + core::joinText(names, ", "));
+}
+
 }  // namespace
 
 void VerdictOptions::describe(core::OptionsVisitor& visitor) {
@@ -184,6 +192,8 @@ void ScenarioOptions::validate() const {
   vehicle.validate();
   metrics.validate();
   validateTime();
+  requirePlanner("ego_planner", ego_planner, true);
+  requirePlanner("cbv_planner", cbv_planner, false);
   if (mode == "safety_critical" && !planning::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +

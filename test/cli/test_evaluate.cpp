@@ -47,6 +47,10 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   EXPECT_EQ(lines(fs::path(results) / "compare.csv"), 2U);
   ASSERT_EQ(cdiff({"report", "--compare", results, results}), 0);
   expectOutput("4 pairs of 4 runs of A and 4 of B");
+  EXPECT_EQ(
+      cdiff({"report", "--compare", results, "--factor", "cbv_planner", "--baseline", "pdm_lite"}),
+      3);
+  expectOutput("no complete runs to pair");
 }
 
 TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
@@ -112,6 +116,14 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
   EXPECT_EQ(cdiff({"evaluate", "--results", folder("results")}), 3);
   EXPECT_EQ(cdiff({"report", "--compare", folder("nothing"), folder("nothing")}), 3);
   expectOutput("holds no records");
+}
+
+TEST_F(EvaluateCommand, RefusesTheFolderOfASession) {
+  fs::create_directories(folder("results"));
+  write("results/session.yaml", "scenario: {}\n");
+  EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results")}), 3);
+  expectOutput("holds the result of a session");
+  EXPECT_FALSE(fs::exists(fs::path(folder("results")) / "matrix.yaml"));
 }
 
 TEST_F(EvaluateCommand, RefusesTheFolderOfAnotherMatrix) {

@@ -110,6 +110,40 @@ TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
   EXPECT_EQ(summary()["status"], "timed_out");
 }
 
+TEST_F(ReplayCommand, LeavesTheResultOfADrivenSessionAlone) {
+  record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
+          "protocol.time_limit=2"});
+  const std::string session = core::readFile(live() / "session.yaml", "session");
+  EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", live().string()}), 3);
+  EXPECT_NE(output().find("give another --results"), std::string::npos) << output();
+  EXPECT_EQ(core::readFile(live() / "session.yaml", "session"), session);
+  EXPECT_EQ(replay(), 0) << output();
+  EXPECT_EQ(replay(), 0) << "a replay may be repeated";
+  // Nor does bad input take the recording away.
+  for (const char* planner : {"--cbv-planner", "--ego-planner"}) {
+    EXPECT_EQ(run(CDIFF_PROGRAM,
+                  {"run", "crossing_left_turn", planner, "pdm_lit", "--results", live().string()}),
+              3);
+    EXPECT_NE(output().find("did you mean 'pdm_lite'"), std::string::npos) << output();
+    EXPECT_TRUE(fs::exists(bag()));
+  }
+}
+
+TEST_F(ReplayCommand, ABagThatCannotBeWrittenLeavesTheOtherResultsWhole) {
+  // With images the bag is larger than the limit (in KiB), all other files are smaller.
+  const std::string command =
+      std::string("trap '' XFSZ; ulimit -f 800; exec '") + CDIFF_PROGRAM +
+      "' run roundabout_cross --seed 1 --set protocol.time_limit=12 --set report.front_view_rate=0 "
+      "--record --quiet --results '" +
+      live().string() + "'";
+  EXPECT_EQ(run("/bin/bash", {"-c", command}), 2) << output();
+  EXPECT_NE(output().find("cannot write the bag"), std::string::npos) << output();
+  EXPECT_NE(output().find("the other results are not affected"), std::string::npos) << output();
+  EXPECT_FALSE(fs::exists(bag()));
+  for (const char* name : {"summary.json", "trace.csv", "junit.xml", "report.html"})
+    EXPECT_TRUE(fs::exists(live() / name)) << name;
+}
+
 TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
   record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
           "protocol.time_limit=4"});

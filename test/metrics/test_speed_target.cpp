@@ -91,8 +91,14 @@ TEST(MetricsOptions, RefuseAFileTargetWithoutFileAndBadSamples) {
   EXPECT_THROW(options.validate(), core::InputError);
   options.speed_target_samples = {"1", "nan"};
   EXPECT_THROW(options.validate(), core::InputError);
+  options.speed_target_samples = {"1", "-1"};
+  EXPECT_THROW(options.validate(), core::InputError);
   options.speed_target_samples = {"1", "2"};
   EXPECT_NO_THROW(options.validate());
+  options.speed_target_file = "speeds.txt";
+  EXPECT_NO_THROW(options.validate());
+  options.speed_target = "background";
+  EXPECT_THROW(options.validate(), core::InputError);
 }
 
 }  // namespace

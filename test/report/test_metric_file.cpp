@@ -51,6 +51,17 @@ TEST_F(MetricFile, GivesTimesToCollisionOfBoxPairs) {
   EXPECT_EQ(lines, (Lines{"1: 2.5", "2: inf"}));
 }
 
+TEST_F(MetricFile, RefusesBoxesThatCannotBe) {
+  const std::string header = kHeader;
+  EXPECT_NE(errorOf("ttc_2d", header + "0,0,4,0,1,0,-4,2,14,0,0,0,1,0,4,2\n")
+                .find(":2: column length_i is \"-4\", expected a size above 0"),
+            std::string::npos);
+  EXPECT_NE(errorOf("ttc_2d", header + "0,0,4,0,1,0,4,2,14,0,0,0,1,0,4,0\n").find("width_j"),
+            std::string::npos);
+  EXPECT_NE(errorOf("ttc_2d", header + "0,0,4,0,0,0,4,2,14,0,0,0,1,0,4,2\n").find("column hx_i"),
+            std::string::npos);
+}
+
 TEST_F(MetricFile, FindsColumnsByName) {
   const Lines lines = evaluate("ttc_2d",
                                "note,length_i,width_i,x_i,y_i,hx_i,hy_i,vx_i,vy_i,"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "e2e_cdiff/CbvSelection.h"
@@ -41,6 +42,9 @@ class BagFile {
 
   /// Makes the file's folder. Throws InputError naming the file when it cannot be written.
   BagFile(const std::filesystem::path& file, const rendering::CameraOptions& camera, Naming naming);
+  ~BagFile();
+  BagFile(const BagFile&) = delete;
+  BagFile& operator=(const BagFile&) = delete;
 
   void write(const ::e2e_cdiff::SessionInfo& info);
   void write(const nav_msgs::Path& ego_route);
@@ -56,13 +60,13 @@ class BagFile {
   void writeDisplay(const TickMessages& tick, const ::ros::Time& stamp);
   template <class Message>
   void put(const std::string& topic, const ::ros::Time& stamp, const Message& message) {
-    if (message) bag_.write(naming_(topic), stamp, message);
+    if (message) bag_->write(naming_(topic), stamp, message);
   }
 
   std::filesystem::path file_;
   rendering::CameraOptions camera_;
   Naming naming_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;
 };
 
 }  // namespace cdiff::ros
