@@ -168,15 +168,10 @@ void checkSeeds(const std::vector<std::string>& seeds, const std::string& source
   }
 }
 
-void checkPlanner(const std::string& name, bool external_allowed) {
-  std::vector<std::string> known = planning::plannerNames();
-  if (external_allowed && name == "external") {
+/// The names are checked as those of any scenario.
+void checkEgoPlanner(const std::string& name) {
+  if (name == "external")
     throw InputError("ego_planner 'external' needs the node graph; a batch cannot run it");
-  }
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw InputError("planner '" + name + "' is unknown; the nearest known one is '" +
-                   core::nearestName(name, known) + "' (known: " + core::joinText(known, ", ") +
-                   ")");
 }
 
 /// Builds the product of all factors.
@@ -232,8 +227,7 @@ class Planner {
   PlannedRun resolve(const std::string& label, const scenario::SessionRequest& request) const {
     try {
       const scenario::ScenarioOptions options = scenario::resolveRequest(request);
-      checkPlanner(options.ego_planner, true);
-      checkPlanner(options.cbv_planner, false);
+      checkEgoPlanner(options.ego_planner);
       const std::string& profile = options.guidance_profile;
       PlannedRun run;
       run.factors = {{"scenario", label},

@@ -182,7 +182,7 @@ TEST_F(BatchRobustness, RefusesAnUnknownPlannerAndWrongReportArguments) {
   const std::string matrix =
       write("matrix.yaml", "scenarios: [arterial_exit]\ncbv_planners: [difusion]\n");
   EXPECT_EQ(cdiff({"evaluate", matrix, "--results", folder("results")}), 3);
-  expectOutput("planner 'difusion' is unknown; the nearest known one is 'diffusion'");
+  expectOutput("key 'cbv_planner' is 'difusion', an unknown planner; did you mean 'diffusion'");
   EXPECT_FALSE(fs::exists(folder("results")));
   EXPECT_EQ(cdiff({"report"}), 3);
   expectOutput("give either --compare A B or --tables DIR");

@@ -99,7 +99,7 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   matrix.combinations = {"cbv_planner=pdm_lite seed=4"};
   expectIn("where 'seed=4' is wrong", errorOf(matrix));
   matrix.combinations = {"cbv_planner=pdm_lit"};
-  expectIn("the nearest known one is 'pdm_lite'", errorOf(matrix));
+  expectIn("did you mean 'pdm_lite'", errorOf(matrix));
 }
 
 TEST(Plan, NamesWhatIsWrong) {
@@ -114,7 +114,7 @@ TEST(Plan, NamesWhatIsWrong) {
   expectIn("2147483647", errorOf(matrix));
   matrix = oneScenario();
   matrix.cbv_planners = {"pdm_lit"};
-  expectIn("the nearest known one is 'pdm_lite'", errorOf(matrix));
+  expectIn("did you mean 'pdm_lite'", errorOf(matrix));
   matrix = oneScenario();
   matrix.variants = {"target_speed=4"};
   expectIn("expected \"name: key=value key=value\"", errorOf(matrix));

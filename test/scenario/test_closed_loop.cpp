@@ -104,8 +104,7 @@ TEST(ClosedLoop, WithoutCbvsNobodyIsTakenOver) {
 }
 
 TEST(ClosedLoop, UnknownPlannerAndExternalEgoAreInputErrors) {
-  const SessionSetup unknown(scenarioWith("crossing_left_turn", {"cbv_planner=pdm_lit"}));
-  EXPECT_THROW(ClosedLoop{unknown}, core::InputError);
+  EXPECT_THROW(scenarioWith("crossing_left_turn", {"cbv_planner=pdm_lit"}), core::InputError);
   const SessionSetup external(scenarioWith("crossing_left_turn", {"ego_planner=external"}));
   EXPECT_THROW(ClosedLoop{external}, core::InputError);
 }
