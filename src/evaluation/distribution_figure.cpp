@@ -6,7 +6,7 @@
 #include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/paper_figures.h"
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
+#include "e2e_cdiff/metrics/normality_measures.h"
 #include "e2e_cdiff/report/chart_axes.h"
 #include "e2e_cdiff/report/histogram.h"
 #include "e2e_cdiff/report/markup.h"
@@ -19,8 +19,7 @@ namespace {
 struct Sample {
   std::vector<double> values;
   report::Histogram histogram;
-  std::optional<double> w;
-  std::size_t w_n = 0;
+  metrics::Measure w;  ///< Shapiro-Wilk
 };
 
 struct PlannerSamples {
@@ -28,8 +27,8 @@ struct PlannerSamples {
   std::string note;
   std::size_t runs = 0;
   std::size_t seeds = 0;
-  Sample speeds{{}, report::Histogram(0.0, 0.5, 40), {}, 0};
-  Sample accelerations{{}, report::Histogram(-8.0, 0.5, 32), {}, 0};
+  Sample speeds{{}, report::Histogram(0.0, 0.5, 40), {}};
+  Sample accelerations{{}, report::Histogram(-8.0, 0.5, 32), {}};
 };
 
 /// Speeds of CBVs at decisions, and d speed / d t over the tick before.
@@ -55,12 +54,7 @@ void addRun(const BatchRun& run, PlannerSamples& samples) {
 
 void conclude(Sample& sample) {
   for (const double value : sample.values) sample.histogram.add(value);
-  const std::size_t most = metrics::kShapiroWilkMost;
-  const std::size_t every = std::max<std::size_t>(1, (sample.values.size() + most - 1) / most);
-  std::vector<double> used;
-  for (std::size_t i = 0; i < sample.values.size(); i += every) used.push_back(sample.values[i]);
-  sample.w_n = used.size();
-  sample.w = metrics::shapiroWilk(used).w;
+  sample.w = metrics::normalityMeasures(sample.values, "no CBV was driven").w;
 }
 
 PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>& runs) {
@@ -91,7 +85,7 @@ std::string rowsOf(const PlannerSamples& planner, const Sample& sample, const st
          core::formatNumber(low + histogram.width()), std::to_string(histogram.counts()[bin]),
          core::formatNumber(histogram.share(bin) / histogram.width()),
          std::to_string(histogram.n()), number(histogram.mean()),
-         number(histogram.standardDeviation()), number(sample.w), std::to_string(sample.w_n),
+         number(histogram.standardDeviation()), number(sample.w.value), std::to_string(sample.w.n),
          std::to_string(planner.runs), std::to_string(planner.seeds), ""});
   }
   return text;
@@ -152,7 +146,7 @@ report::Panel panelOf(const std::vector<PlannerSamples>& planners, Sample Planne
 std::string legendText(const PlannerSamples& planner) {
   if (!planner.note.empty()) return planner.name + ": " + planner.note;
   const auto w = [](const Sample& sample) {
-    return sample.w ? core::formatFixed(*sample.w, 3) : std::string("none");
+    return sample.w.value ? core::formatFixed(*sample.w.value, 3) : std::string("none");
   };
   return planner.name + ": n = " + std::to_string(planner.speeds.values.size()) + ", W of speed " +
          w(planner.speeds) + ", W of acceleration " + w(planner.accelerations) + " (" +

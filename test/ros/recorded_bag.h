@@ -17,14 +17,9 @@
 
 namespace cdiff::test {
 
-/// Result folder and bag of a session of crossing_left_turn that ends by its time limit; `settings`
-/// are keys of the scenario.
-inline void recordSession(const std::filesystem::path& folder,
-                          const std::vector<std::string>& settings) {
-  scenario::SessionRequest request;
-  request.scenario = "crossing_left_turn";
-  request.seed = "2";
-  request.set = settings;
+/// Result folder and bag of a session, driven in this process.
+inline void runInOneProcess(const scenario::SessionRequest& request,
+                            const std::filesystem::path& folder) {
   const scenario::SessionSetup setup(scenario::resolveRequest(request));
   scenario::ClosedLoop loop(setup);
   report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
@@ -35,6 +30,17 @@ inline void recordSession(const std::filesystem::path& folder,
   loop.run(never);
   writer.finish(1.0);
   bag.finish();
+}
+
+/// Result folder and bag of a session of crossing_left_turn that ends by its time limit; `settings`
+/// are keys of the scenario.
+inline void recordSession(const std::filesystem::path& folder,
+                          const std::vector<std::string>& settings) {
+  scenario::SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.seed = "2";
+  request.set = settings;
+  runInOneProcess(request, folder);
 }
 
 /// Called with each message in order; writes to the new bag what that shall hold.

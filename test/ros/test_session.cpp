@@ -20,6 +20,7 @@
 #include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
+#include "ros/recorded_bag.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 #include "sensor_msgs/Image.h"
@@ -80,23 +81,9 @@ class Session : public ::testing::Test {
   }
 };
 
-/// The result folder of the same session in one process, with its bag.
-void runInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
-  const scenario::SessionSetup setup(scenario::resolveRequest(request));
-  scenario::ClosedLoop loop(setup);
-  report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
-  ros::SessionBag bag(setup, folder / "session.bag", {"test", "SUMO"});
-  loop.addObserver(writer);
-  loop.addObserver(bag);
-  const std::atomic<bool> never{false};
-  loop.run(never);
-  writer.finish(1.0);
-  bag.finish();
-}
-
 /// The trace of the same session in one process.
 std::string traceInOneProcess(const scenario::SessionRequest& request, const fs::path& folder) {
-  runInOneProcess(request, folder);
+  test::runInOneProcess(request, folder);
   return core::sha256(core::readFile(folder / "trace.csv", "trace"));
 }
 
@@ -219,7 +206,7 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   request.seed = "2";
   request.cbv_planner = "diffusion";
   request.set = core::splitText(settings, ' ');
-  runInOneProcess(request, alone);
+  test::runInOneProcess(request, alone);
   EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
   EXPECT_FALSE(summary()["cbv"]["plan"].is_null());
   EXPECT_FALSE(picturesIn(results()).empty());
@@ -289,7 +276,7 @@ TEST_F(Session, ReplayLaunchOfACutOffBagHasTheResultOfTheCommandLine) {
   request.cbv_planner = "pdm_lite";
   request.set = {"protocol.time_limit=20"};
   const fs::path live = folder_ / "live";
-  runInOneProcess(request, live);
+  test::runInOneProcess(request, live);
   fs::resize_file(live / "session.bag", fs::file_size(live / "session.bag") * 3 / 4);
   const ros::ReplayResult offline = ros::replayBag(live / "session.bag", folder_ / "offline");
   EXPECT_EQ(offline.exit_code, 2);
