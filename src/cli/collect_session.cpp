@@ -39,6 +39,9 @@ ros::DatasetStatistics writeShard(const CollectRequest& request, const CollectSe
                                   const fs::path& bag, const fs::path& shard) {
   ros::DatasetOptions options;
   options.standing_share = settings.collection.standing_share;
+  options.offset_share = settings.collection.offset_share;
+  options.offset_lateral = settings.collection.offset_lateral;
+  options.offset_heading = settings.collection.offset_heading;
   ros::DatasetStatistics statistics;
   training::ShardWriter writer(ros::schemaOf(options.architecture));
   for (const training::Sample& sample : ros::samplesFromBag(bag, options, statistics))

@@ -55,8 +55,11 @@ void requireComplete(const PlanningTask& task) {
 }
 
 /// IDM speed behind a leader or before a light.
-double idmBehind(const traffic::Vehicle& self, const traffic::Vehicle& leader, double desired) {
+double idmBehind(const PlanningTask& task, const traffic::Vehicle& leader, double desired) {
+  const traffic::Vehicle& self = *task.vehicle;
   IdmObstacle obstacle;
+  obstacle.minimum_gap = task.following.minimum_gap;
+  obstacle.time_headway = task.following.time_headway;
   obstacle.distance = (leader.state.position - self.state.position).norm();
   obstacle.speed = leader.state.speed;
   obstacle.length = leader.dimensions.length;
@@ -153,7 +156,7 @@ double PdmLite::targetSpeed(const Situation& situation, const std::vector<Rollou
     const double distance = (other.state.position - self.state.position).norm();
     const bool exempt = !situation.near_lane_change;
     if (exempt && isLeading(route, situation.arc_length, other.state)) {
-      target = std::min(target, idmBehind(self, other, situation.initial_speed));
+      target = std::min(target, idmBehind(situation.task, other, situation.initial_speed));
     } else if (exempt && isTrailing(route, situation.arc_length, other.state)) {
       continue;
     } else if (!box_met && distance <= options_.detection_radius) {

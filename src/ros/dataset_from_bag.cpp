@@ -13,6 +13,7 @@
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/diffusion/route_tokens.h"
 #include "e2e_cdiff/planning/route_follower.h"
+#include "offset_samples.h"
 #include "sample_kinds.h"
 
 namespace cdiff::ros {
@@ -35,7 +36,9 @@ class SampleMaker {
         options_(options),
         statistics_(statistics),
         horizon_(static_cast<std::size_t>(options.architecture.horizon)),
-        thinning_(static_cast<std::uint64_t>(session.setup->options().seed), "dataset_standing") {
+        thinning_(static_cast<std::uint64_t>(session.setup->options().seed), "dataset_standing"),
+        offsets_(static_cast<std::uint64_t>(session.setup->options().seed), "dataset_offset"),
+        offset_samples_(*session.setup, options) {
     for (std::size_t i = 0; i < session.decisions.size(); ++i)
       index_[session.decisions[i].tick] = i;
     followAll();
@@ -94,7 +97,29 @@ class SampleMaker {
     sample.stop_reason = kinds.stop_reason;
     count(sample, kinds, statistics_);
     samples.push_back(std::move(sample));
+    addDisplaced(at->second, surroundings, kinds, samples);
     return nullptr;
+  }
+
+  /// Beside the last sample, for a share of those that move, what it would be beside its way.
+  void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
+                    std::vector<training::Sample>& samples) {
+    constexpr double kSlow = 2.0;  // [m/s]
+    const training::Sample& sample = samples.back();
+    const core::RandomKey key{core::hashText(sample.vehicle),
+                              static_cast<std::uint32_t>(sample.tick), 0};
+    if (sample.speed < kSlow || offsets_.uniform(key, 0) >= options_.offset_share) return;
+    const double heading = core::degreesToRadians(options_.offset_heading);
+    const SampleOffset offset{
+        offsets_.uniform(key, 1, -options_.offset_lateral, options_.offset_lateral),
+        offsets_.uniform(key, 2, -heading, heading)};
+    std::vector<const traffic::TrafficSnapshot*> future;
+    for (std::size_t t = 1; t <= horizon_; ++t) future.push_back(&session_.decisions[begin + t]);
+    auto displaced = offset_samples_.displace(sample, surroundings, future, offset);
+    if (!displaced) return;
+    kinds.displaced = true;
+    count(*displaced, kinds, statistics_);
+    samples.push_back(std::move(*displaced));
   }
 
   void requireSize(const traffic::CameraImage& image) const {
@@ -190,6 +215,8 @@ class SampleMaker {
   DatasetStatistics& statistics_;
   std::size_t horizon_;
   core::RandomStream thinning_;
+  core::RandomStream offsets_;
+  OffsetSamples offset_samples_;
   std::map<std::uint64_t, std::size_t> index_;  ///< of decisions, by tick
   std::map<std::pair<std::uint64_t, int>, Place> places_;
   std::set<std::string> driven_;

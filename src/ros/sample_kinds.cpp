@@ -15,6 +15,7 @@ constexpr double kStanding = 0.3;                   // [m/s]
 constexpr double kMoving = 2.0;                     // [m/s]
 constexpr double kTurn = 15.0 * core::kPi / 180.0;  // of heading over the horizon [rad]
 
+constexpr std::uint8_t kOtherReason = 4;
 constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
 constexpr const char* kStopReasons[] = {"none", "light", "leader", "yielding", "other"};
 
@@ -42,22 +43,28 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
   for (const auto& [from, to] : around.route.junctionStretches()) {
     if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance) return 3;
   }
-  return 4;
+  return kOtherReason;
 }
 
 }  // namespace
 
-SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& around) {
+SampleKinds kindsOf(const training::Sample& sample) {
   SampleKinds kinds;
   const auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
   const double last = speeds(speeds.size() - 1);
-  const traffic::VehicleState& state = around.snapshot.find(sample.vehicle)->state;
   kinds.standing = sample.speed < kStanding && speeds.maxCoeff() < kStanding;
   kinds.starting = sample.speed < kStanding && last > kMoving;
   kinds.stopping = sample.speed > kMoving && speeds.minCoeff() < kStanding;
   kinds.maneuver = maneuverOf(sample, kinds.standing);
-  if (std::min(sample.speed, speeds.minCoeff()) < kStanding && !kinds.starting)
-    kinds.stop_reason = stopReasonOf(around, sample.vehicle);
+  const bool stops = std::min(sample.speed, speeds.minCoeff()) < kStanding && !kinds.starting;
+  kinds.stop_reason = stops ? kOtherReason : 0;
+  return kinds;
+}
+
+SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& around) {
+  SampleKinds kinds = kindsOf(sample);
+  const traffic::VehicleState& state = around.snapshot.find(sample.vehicle)->state;
+  if (kinds.stop_reason != 0) kinds.stop_reason = stopReasonOf(around, sample.vehicle);
   kinds.off_road = !around.setup.drivableArea().contains(state.position, state.elevation);
   kinds.in_junction = around.route.inJunctionAt(around.arc_length);
   const double s = std::clamp(around.arc_length, 0.0, around.route.length());
@@ -76,7 +83,7 @@ void count(const training::Sample& sample, const SampleKinds& kinds,
       {"standing", kinds.standing},       {"starting", kinds.starting},
       {"stopping", kinds.stopping},       {"off_road", kinds.off_road},
       {"in_junction", kinds.in_junction}, {"off_course", kinds.off_course},
-      {"recovering", sample.recovering}};
+      {"recovering", sample.recovering},  {"displaced", kinds.displaced}};
   for (const auto& [name, is] : flags) statistics.kinds[name] += is;
   const auto bin = static_cast<std::size_t>(std::max(0.0, sample.speed / 2.0));
   ++statistics.speeds[std::min(bin, statistics.speeds.size() - 1)];

@@ -25,9 +25,12 @@ struct SampleKinds {
   bool off_road = false;         ///< its centre at planning time
   bool in_junction = false;
   bool off_course = false;  ///< more than 0.4 m or 5 degrees off its route
+  bool displaced = false;   ///< put beside its way (OffsetSamples)
 };
 
 SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
+/// What its motion alone tells; the reason of a stop is "other".
+SampleKinds kindsOf(const training::Sample& sample);
 
 /// Adds a sample to the statistics.
 void count(const training::Sample& sample, const SampleKinds& kinds, DatasetStatistics& statistics);

@@ -37,6 +37,10 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
                  10.0);
   visitor.number({"minimum_speed", "m/s", "Lowest target speed."}, minimum_speed, 0.5, 40.0);
   visitor.number({"maximum_speed", "m/s", "Highest target speed."}, maximum_speed, 0.5, 40.0);
+  visitor.number({"maximum_gap", "m", "Largest gap kept behind a standing leader."}, maximum_gap,
+                 4.0, 50.0);
+  visitor.number({"maximum_headway", "s", "Largest time kept to a leader."}, maximum_headway, 0.25,
+                 10.0);
   visitor.number({"radius", "m", "Vehicles this near the ego are driven."}, radius, 10.0, 1000.0);
   visitor.number({"spacing", "m", "Wished between driven vehicles when chosen."}, spacing, 0.0,
                  100.0);
@@ -62,6 +66,12 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
                  0.0, 500.0);
   visitor.number({"standing_share", "", "Part kept of samples that stand all the time."},
                  standing_share, 0.0, 1.0);
+  visitor.number({"offset_share", "", "Part of moving samples that are displaced once more."},
+                 offset_share, 0.0, 1.0);
+  visitor.number({"offset_lateral", "m", "Largest displacement to the side."}, offset_lateral, 0.0,
+                 3.0);
+  visitor.number({"offset_heading", "deg", "Largest turn of a displaced vehicle."}, offset_heading,
+                 0.0, 45.0);
   visitor.group({"noise", "", "Disturbances."}, noise);
 }
 

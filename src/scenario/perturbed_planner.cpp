@@ -17,6 +17,11 @@ constexpr std::uint32_t kSteer = 2;
 constexpr std::uint32_t kPedal = 3;
 constexpr std::uint32_t kSteerSign = 4;
 
+// Elements of a vehicle's style.
+constexpr std::uint32_t kTargetSpeed = 0;
+constexpr std::uint32_t kGap = 1;
+constexpr std::uint32_t kHeadway = 2;
+
 constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
 constexpr double kSmallest = 0.3;       // of the largest steering noise
 constexpr double kLeastThrottle = 0.3;  // less does nothing (BicycleModel)
@@ -28,7 +33,7 @@ PerturbedPlanner::PerturbedPlanner(std::unique_ptr<planning::Planner> planner,
     : planner_(std::move(planner)),
       options_(options),
       noise_(seed, "collection_noise"),
-      speeds_(seed, "collection_target_speed") {}
+      styles_(seed, "collection_target_speed") {}
 
 PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std::uint32_t count,
                                                 double after) const {
@@ -63,7 +68,12 @@ std::vector<planning::PlannedAction> PerturbedPlanner::plan(
   std::vector<planning::PlanningTask> asked = tasks;
   for (planning::PlanningTask& task : asked) {
     const core::RandomKey key{core::hashText(task.vehicle->id), 0, 0};
-    task.target_speed = speeds_.uniform(key, 0, options_.minimum_speed, options_.maximum_speed);
+    task.target_speed =
+        styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed);
+    task.following.minimum_gap =
+        styles_.uniform(key, kGap, task.following.minimum_gap, options_.maximum_gap);
+    task.following.time_headway =
+        styles_.uniform(key, kHeadway, task.following.time_headway, options_.maximum_headway);
   }
   std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
   std::map<std::string, Burst> kept;

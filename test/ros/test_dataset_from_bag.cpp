@@ -2,11 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/geometry/polyline.h"
 #include "e2e_cdiff/ros/dataset_from_bag.h"
 #include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/scenario/collection_loop.h"
@@ -37,6 +39,31 @@ class Witness : public scenario::SessionObserver {
  private:
   const scenario::CollectionLoop& loop_;
 };
+
+DatasetOptions noneDisplaced() {
+  DatasetOptions options;
+  options.offset_share = 0.0;
+  return options;
+}
+
+DatasetOptions allDisplaced() {
+  DatasetOptions options;
+  options.offset_share = 1.0;
+  return options;
+}
+
+/// From where the vehicle gets to the line of its route tokens [m]; nullopt before the first token.
+std::optional<double> distanceAtTheEnd(const training::Sample& sample) {
+  constexpr double kTokenScale = 20.0;
+  const auto last = sample.rollout.row(sample.rollout.rows() - 1);
+  if (last(traffic::kRolloutX) < 3.5) return std::nullopt;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i + 1 < sample.route.size(); i += 2)
+    points.emplace_back(kTokenScale * sample.route[i], kTokenScale * sample.route[i + 1], 0.0);
+  const geometry::Polyline line(points);
+  const Eigen::Vector2d end(last(traffic::kRolloutX), last(traffic::kRolloutY));
+  return (line.positionAt(line.project(end).arc_length) - end).norm();
+}
 
 /// One session of 10 s, recorded for all tests.
 class DatasetFromBag : public testing::Test {
@@ -88,8 +115,9 @@ class DatasetFromBag : public testing::Test {
 
 TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
   DatasetStatistics statistics;
-  const auto samples = samplesFromBag(bag(), {}, statistics);
+  const auto samples = samplesFromBag(bag(), allDisplaced(), statistics);
   ASSERT_GT(samples.size(), 10u);
+  ASSERT_GT(statistics.kinds["displaced"], 10u);
   const dynamics::BicycleModel model;
   for (const training::Sample& sample : samples) {
     schemaOf({}).check(sample);
@@ -108,7 +136,7 @@ TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
 
 TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
   DatasetStatistics statistics;
-  const auto samples = samplesFromBag(bag(), {}, statistics);
+  const auto samples = samplesFromBag(bag(), noneDisplaced(), statistics);
   EXPECT_GT(statistics.dropped["disturbed"], 0u);
   for (const training::Sample& sample : samples) {
     for (std::uint64_t t = 0; t < 32; ++t) {
@@ -119,13 +147,38 @@ TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
   }
 }
 
+TEST_F(DatasetFromBag, DisplacedSamplesLookFromBesideTheWayAndReturnToIt) {
+  DatasetStatistics statistics;
+  const auto samples = samplesFromBag(bag(), allDisplaced(), statistics);
+  double off_route = 0.0;
+  std::size_t displaced = 0;
+  std::size_t arrived = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const training::Sample& own = samples[i - 1];
+    const training::Sample& beside = samples[i];
+    if (own.vehicle != beside.vehicle || own.tick != beside.tick) continue;
+    ++displaced;
+    EXPECT_TRUE(beside.recovering);
+    EXPECT_NE(beside.image.rgb, own.image.rgb);
+    EXPECT_NE(beside.route, own.route);
+    const auto distance = distanceAtTheEnd(beside);
+    if (!distance) continue;
+    ++arrived;
+    off_route += *distance;
+  }
+  EXPECT_EQ(displaced, statistics.kinds["displaced"]);
+  ASSERT_GT(arrived, 10u);
+  // Displaced by 0.375 m and 6 degrees on average.
+  EXPECT_LT(off_route / static_cast<double>(arrived), 0.2);
+}
+
 TEST_F(DatasetFromBag, EveryImageIsCountedOnce) {
   DatasetStatistics statistics;
-  const auto samples = samplesFromBag(bag(), {}, statistics);
+  const auto samples = samplesFromBag(bag(), allDisplaced(), statistics);
   std::uint64_t dropped = 0;
   for (const auto& [reason, count] : statistics.dropped) dropped += count;
   EXPECT_EQ(statistics.samples, samples.size());
-  EXPECT_EQ(statistics.images, samples.size() + dropped);
+  EXPECT_EQ(statistics.images + statistics.kinds["displaced"], samples.size() + dropped);
   EXPECT_EQ(statistics.images, witness_->images.size());
   std::uint64_t by_speed = 0;
   for (const std::uint64_t count : statistics.speeds) by_speed += count;

@@ -26,6 +26,12 @@ struct PlanningContext {
   const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
 };
 
+/// How close a vehicle keeps to its leader, for planners that follow by IDM (defaults: PDM-Lite's).
+struct FollowingStyle {
+  double minimum_gap = 4.0;    ///< s0 [m]
+  double time_headway = 0.25;  ///< T [s]
+};
+
 /// One vehicle to drive at this decision.
 struct PlanningTask {
   int slot = -1;  ///< slot of a CBV; -1 for the ego
@@ -33,6 +39,7 @@ struct PlanningTask {
   const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
   const traffic::CameraImage* image = nullptr;  ///< its front view, for planners that see
+  FollowingStyle following = {};
 };
 
 /// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for

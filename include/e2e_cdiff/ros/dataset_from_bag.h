@@ -19,6 +19,9 @@ namespace cdiff::ros {
 struct DatasetOptions {
   diffusion::Architecture architecture;  ///< horizon, image size, route tokens
   double standing_share = 0.25;          ///< part kept of samples that stand all the time
+  double offset_share = 0.2;             ///< of samples that move, the part displaced once more
+  double offset_lateral = 0.75;          ///< largest displacement to the side [m]
+  double offset_heading = 12.0;          ///< largest turn of a displaced vehicle [deg]
 };
 
 /// What is in a data set; sums, so that those of several bags add up.
@@ -28,8 +31,9 @@ struct DatasetStatistics {
   std::map<std::string, std::uint64_t> dropped;       ///< images that gave no sample, by reason
   std::map<std::string, std::uint64_t> maneuvers;     ///< samples: straight, left, right, other
   std::map<std::string, std::uint64_t> stop_reasons;  ///< samples: none, light, leader, ...
-  std::map<std::string, std::uint64_t> kinds;         ///< samples: standing, starting, stopping,
-                                               ///< recovering, off_road, on_bend, in_junction
+  std::map<std::string, std::uint64_t>
+      kinds;  ///< samples: standing, starting, stopping,
+              ///< recovering, displaced, off_road, off_course, in_junction
   std::array<std::uint64_t, 8> speeds{};  ///< samples by speed, 2 m/s a bin, the last open
   double steer_sum = 0.0;                 ///< of mean |steer| of each sample
   std::uint64_t contacts = 0;             ///< of driven vehicles

@@ -28,6 +28,8 @@ struct CollectionOptions {
   double image_period = 0.5;          ///< between two images of a vehicle [s]
   double minimum_speed = 5.0;         ///< lowest target speed of a vehicle [m/s]
   double maximum_speed = 12.0;        ///< highest target speed of a vehicle [m/s]
+  double maximum_gap = 7.0;           ///< largest s0 behind a leader, drawn from 4 m on [m]
+  double maximum_headway = 1.2;       ///< largest T behind a leader, drawn from 0.25 s on [s]
   double radius = 150.0;              ///< of the ego: vehicles within it are driven [m]
   double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
   double minimum_route = 120.0;       ///< shorter routes are not taken [m]
@@ -41,6 +43,9 @@ struct CollectionOptions {
   double minimum_density = 18.0;      ///< fewest vehicles near the ego, of generated demand
   double maximum_density = 45.0;      ///< most vehicles near the ego, of generated demand
   double standing_share = 0.25;       ///< of samples that stand all the time, the part kept
+  double offset_share = 0.2;          ///< of samples that move, the part displaced once more
+  double offset_lateral = 0.75;       ///< largest displacement to the side [m]
+  double offset_heading = 12.0;       ///< largest turn of a displaced vehicle [deg]
   NoiseOptions noise;
 
   void describe(core::OptionsVisitor& visitor);

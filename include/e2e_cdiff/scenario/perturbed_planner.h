@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A planner in disguise: asks another one, gives each vehicle its own target speed [m/s], and now
-/// and then adds a burst of noise to an action, so that the record shows how the planner recovers.
+/// A planner in disguise: asks another one, gives each vehicle its own target speed [m/s] and
+/// distance to its leader, and now and then adds a burst of noise to an action, so that the record
+/// shows how the planner recovers.
 #pragma once
 
 #include <map>
@@ -44,7 +45,7 @@ class PerturbedPlanner : public planning::Planner {
   std::unique_ptr<planning::Planner> planner_;
   CollectionOptions options_;
   core::RandomStream noise_;
-  core::RandomStream speeds_;
+  core::RandomStream styles_;
   std::map<std::string, Burst> bursts_;
   std::set<std::string> perturbed_;
 };

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/dataset_from_driving_bag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "driving_bag.h"
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/diffusion/route_tokens.h"
+#include "e2e_cdiff/dynamics/action_inference.h"
+#include "sample_kinds.h"
+
+namespace cdiff::ros {
+namespace {
+
+using core::InputError;
+
+constexpr double kLeastPath = 0.5;  // [m] less is no way
+constexpr double kPart = 60.0;      // [s] of a bag that count as one session
+
+class DrivingSamples {
+ public:
+  DrivingSamples(const DrivingBag& bag, const DrivingBagOptions& topics,
+                 const DatasetOptions& options, std::string name)
+      : bag_(bag), topics_(topics), options_(options), name_(std::move(name)) {}
+
+  std::vector<training::Sample> make(DatasetStatistics& statistics) const {
+    std::vector<training::Sample> samples;
+    double next = 0.0;
+    for (const auto& [time, image] : bag_.images) {
+      if (!samples.empty() && time < next) continue;
+      ++statistics.images;
+      std::optional<training::Sample> sample = sampleAt(time);
+      if (!sample) {
+        ++statistics.dropped["gap"];
+        continue;
+      }
+      next = time + topics_.period - 1e-6;
+      sample->image = image;
+      sample->image.tick = sample->tick;
+      countUp(*sample, statistics);
+      samples.push_back(std::move(*sample));
+    }
+    return samples;
+  }
+
+ private:
+  std::optional<training::Sample> sampleAt(double time) const {
+    const auto start = bag_.stateAt(time, topics_.largest_gap);
+    if (!start) return std::nullopt;
+    training::Sample sample;
+    sample.speed = start->speed;
+    const double since = time - bag_.images.begin()->first;
+    sample.session = core::hashText(name_ + "_" + std::to_string(static_cast<int>(since / kPart)));
+    sample.vehicle = name_;
+    sample.tick = static_cast<std::uint64_t>(std::llround(since / (0.5 * traffic::kRolloutStep)));
+    if (!fillRollout(time, *start, sample.rollout)) return std::nullopt;
+    const auto tokens = routeAt(time, *start);
+    if (!tokens) return std::nullopt;
+    sample.route = *tokens;
+    return sample;
+  }
+
+  bool fillRollout(double time, const traffic::VehicleState& start,
+                   traffic::Rollout& rollout) const {
+    rollout.resize(options_.architecture.horizon, traffic::kRolloutColumns);
+    traffic::VehicleState before = start;
+    double heading = 0.0;
+    for (Eigen::Index t = 0; t < rollout.rows(); ++t) {
+      const double begin = time + traffic::kRolloutStep * static_cast<double>(t);
+      const auto state = bag_.stateAt(begin + traffic::kRolloutStep, topics_.largest_gap);
+      if (!state) return false;
+      const double turn = core::angleDifference(state->heading, before.heading);
+      const auto action = actionAt(begin, {before.speed, state->speed, turn});
+      if (!action) return false;
+      heading += turn;
+      const Eigen::Vector2d position = start.pose().toBody(state->position);
+      rollout.row(t) << position.x(), position.y(), heading, state->speed, action->throttle,
+          action->steer, action->brake;
+      before = *state;
+    }
+    return true;
+  }
+
+  std::optional<traffic::ControlAction> actionAt(double time,
+                                                 const dynamics::ObservedMotion& motion) const {
+    if (topics_.control.empty()) return dynamics::inferAction(model_, motion);
+    return bag_.controlAt(time, topics_.largest_gap);
+  }
+
+  /// Along the path given last, or along the way that is driven from `time` on.
+  std::optional<std::vector<float>> routeAt(double time, const traffic::VehicleState& start) const {
+    const auto tokens = [&](const geometry::Polyline& path) {
+      const double arc_length = path.project(start.position).arc_length;
+      return diffusion::routeTokens(options_.architecture, path, arc_length, start.pose());
+    };
+    if (topics_.path.empty()) return tokens(wayFrom(time, start));
+    const auto after = bag_.paths.upper_bound(time);
+    if (after == bag_.paths.begin()) return std::nullopt;
+    return tokens(std::prev(after)->second);
+  }
+
+  geometry::Polyline wayFrom(double time, const traffic::VehicleState& start) const {
+    const auto point = [](const traffic::VehicleState& state) {
+      return Eigen::Vector3d(state.position.x(), state.position.y(), state.elevation);
+    };
+    const double length = static_cast<double>(options_.architecture.route_points + 1) *
+                          options_.architecture.route_spacing;
+    std::vector<Eigen::Vector3d> points = {point(start)};
+    double driven = 0.0;
+    for (auto state = bag_.states.upper_bound(time); state != bag_.states.end() && driven < length;
+         ++state) {
+      const double step = (point(state->second) - points.back()).head<2>().norm();
+      if (step < kLeastPath) continue;
+      driven += step;
+      points.push_back(point(state->second));
+    }
+    if (points.size() < 2) {
+      const Eigen::Vector2d ahead = start.position + geometry::direction(start.heading);
+      points.emplace_back(ahead.x(), ahead.y(), start.elevation);
+    }
+    return geometry::Polyline(points);
+  }
+
+  void countUp(training::Sample& sample, DatasetStatistics& statistics) const {
+    const SampleKinds kinds = kindsOf(sample);
+    sample.maneuver = kinds.maneuver;
+    sample.stop_reason = kinds.stop_reason;
+    count(sample, kinds, statistics);
+    ++statistics.samples;
+  }
+
+  const DrivingBag& bag_;
+  const DrivingBagOptions& topics_;
+  const DatasetOptions& options_;
+  std::string name_;
+  dynamics::BicycleModel model_;
+};
+
+}  // namespace
+
+void DrivingBagOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"image", "", "Topic of the front camera's images."}, image, {});
+  visitor.text({"odometry", "", "Topic of the vehicle's nav_msgs/Odometry."}, odometry, {});
+  visitor.text({"control", "", "Topic of e2e_cdiff/ControlAction; empty: inferred."}, control, {});
+  visitor.text({"path", "", "Topic of the route as nav_msgs/Path; empty: the way driven."}, path,
+               {});
+  visitor.number({"period", "s", "Time between samples."}, period, 0.05, 60.0);
+  visitor.number({"largest_gap", "s", "Longest gap of odometry and controls in a sample."},
+                 largest_gap, 0.01, 10.0);
+}
+
+void DrivingBagOptions::validate() const {
+  const auto require = [](const char* key, const std::string& topic) {
+    if (topic.empty()) throw InputError(std::string("topics: ") + key + " is not given");
+  };
+  require("image", image);
+  require("odometry", odometry);
+}
+
+std::vector<training::Sample> samplesFromDrivingBag(const std::filesystem::path& bag,
+                                                    const DrivingBagOptions& topics,
+                                                    const DatasetOptions& options,
+                                                    DatasetStatistics& statistics) {
+  topics.validate();
+  try {
+    const DrivingBag driving = readDrivingBag(bag, topics, options.architecture);
+    if (driving.images.empty()) throw InputError("holds no image on '" + topics.image + "'");
+    std::vector<training::Sample> samples =
+        DrivingSamples(driving, topics, options, bag.stem().string()).make(statistics);
+    if (samples.empty())
+      throw InputError("gives no sample: none of its " + std::to_string(driving.images.size()) +
+                       " images is followed by " + std::to_string(options.architecture.horizon) +
+                       " steps of 0.1 s of odometry without a gap");
+    if (!driving.states.empty())
+      statistics.seconds += driving.states.rbegin()->first - driving.states.begin()->first;
+    return samples;
+  } catch (const InputError& error) {
+    throw InputError("bag '" + bag.string() + "': " + error.what());
+  }
+}
+
+}  // namespace cdiff::ros

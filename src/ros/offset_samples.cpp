@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "offset_samples.h"
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/diffusion/route_tokens.h"
+#include "e2e_cdiff/planning/lateral_controller.h"
+#include "e2e_cdiff/planning/route_follower.h"
+
+namespace cdiff::ros {
+namespace {
+
+geometry::OrientedBox boxOf(const traffic::Vehicle& vehicle) {
+  return {vehicle.state.position, vehicle.state.heading, vehicle.dimensions.length,
+          vehicle.dimensions.width};
+}
+
+}  // namespace
+
+OffsetSamples::OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options)
+    : setup_(setup),
+      options_(options),
+      model_(setup.options().vehicle),
+      camera_(setup.options().camera, setup.network()) {}
+
+bool OffsetSamples::free(const traffic::Vehicle& vehicle,
+                         const traffic::TrafficSnapshot& snapshot) const {
+  const geometry::OrientedBox box = boxOf(vehicle);
+  for (const Eigen::Vector2d& corner : box.corners()) {
+    if (!setup_.drivableArea().contains(corner, vehicle.state.elevation)) return false;
+  }
+  return std::none_of(
+      snapshot.vehicles.begin(), snapshot.vehicles.end(), [&](const traffic::Vehicle& other) {
+        return other.id != vehicle.id && !traffic::onDifferentLevels(vehicle, other) &&
+               geometry::overlap(box, boxOf(other));
+      });
+}
+
+bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
+                              const std::vector<const traffic::TrafficSnapshot*>& future,
+                              traffic::Rollout& rollout) const {
+  const traffic::VehicleState start = vehicle.state;
+  planning::LateralController controller(setup_.options().pdm_lite);
+  double arc_length = around.arc_length;
+  double heading = 0.0;
+  for (std::size_t t = 0; t < future.size(); ++t) {
+    traffic::VehicleState& state = vehicle.state;
+    const double reach = std::max(1.0, state.speed);
+    arc_length = planning::extendedProjection(around.route, state.position, arc_length - reach,
+                                              arc_length + reach);
+    const double aim = arc_length + planning::lookAheadDistance(state.speed);
+    auto row = rollout.row(static_cast<Eigen::Index>(t));
+    const traffic::ControlAction action{
+        row(traffic::kRolloutThrottle),
+        controller.steer(state.pose(), planning::extendedPositionAt(around.route, aim)),
+        row(traffic::kRolloutBrake)};
+    const double before = state.heading;
+    state = model_.step(state, action, traffic::kRolloutStep);
+    state.elevation = future[t]->find(vehicle.id)->state.elevation;
+    heading += core::angleDifference(state.heading, before);
+    const Eigen::Vector2d position = start.pose().toBody(state.position);
+    row << position.x(), position.y(), heading, state.speed, action.throttle, action.steer,
+        action.brake;
+    if (!free(vehicle, *future[t])) return false;
+  }
+  return true;
+}
+
+std::optional<training::Sample> OffsetSamples::displace(
+    const training::Sample& sample, const SampleSurroundings& around,
+    const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
+  traffic::Vehicle vehicle = *around.snapshot.find(sample.vehicle);
+  vehicle.state.position +=
+      offset.lateral * geometry::leftNormal(geometry::direction(vehicle.state.heading));
+  vehicle.state.heading = core::wrapAngle(vehicle.state.heading + offset.heading);
+  if (!free(vehicle, around.snapshot)) return std::nullopt;
+  training::Sample displaced = sample;
+  if (!driveBack(vehicle, around, future, displaced.rollout)) return std::nullopt;
+  displaced.recovering = true;
+  displaced.image = camera_.render(around.snapshot, vehicle);
+  displaced.route = diffusion::routeTokens(options_.architecture, around.route.path(),
+                                           around.arc_length, vehicle.state.pose());
+  return displaced;
+}
+
+}  // namespace cdiff::ros

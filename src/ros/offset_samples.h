@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Samples of vehicles that are put beside their way: image from the displaced place, pedals as
+/// recorded, steering by which the expert would return to its route, states by the vehicle dynamics
+/// (so that actions and states agree), route tokens from the displaced place.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/rendering/front_camera.h"
+#include "sample_kinds.h"
+
+namespace cdiff::ros {
+
+/// A displacement to the left [m] and counter-clockwise [rad].
+struct SampleOffset {
+  double lateral = 0.0;
+  double heading = 0.0;
+};
+
+class OffsetSamples {
+ public:
+  /// `setup` and `options` must outlive this object.
+  OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options);
+
+  /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
+  /// the vehicle would touch another one, or where it begins or is off the road at any time.
+  std::optional<training::Sample> displace(
+      const training::Sample& sample, const SampleSurroundings& around,
+      const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);
+
+ private:
+  bool free(const traffic::Vehicle& vehicle, const traffic::TrafficSnapshot& snapshot) const;
+  bool driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
+                 const std::vector<const traffic::TrafficSnapshot*>& future,
+                 traffic::Rollout& rollout) const;
+
+  const scenario::SessionSetup& setup_;
+  const DatasetOptions& options_;
+  dynamics::BicycleModel model_;
+  rendering::FrontCamera camera_;
+};
+
+}  // namespace cdiff::ros
