@@ -4,7 +4,8 @@
 
 #include <cmath>
 #include <cstring>
-#include <numeric>
+
+#include "e2e_cdiff/training/sample_balance.h"
 
 namespace cdiff::training {
 namespace {
@@ -19,6 +20,10 @@ core::RandomKey keyOf(std::int64_t step, std::size_t place) {
 }
 
 }  // namespace
+
+bool mirroredInCache(std::size_t index) {
+  return core::RandomStream(0, "mirrored features").uniform({index}, 0) < 0.5;
+}
 
 at::Tensor imageTensor(const std::vector<const traffic::CameraImage*>& images, double scale,
                        const at::Device& device) {
@@ -44,7 +49,8 @@ BatchMaker::BatchMaker(const Dataset& dataset, const diffusion::Normalizer& norm
       device_(device),
       order_(options.seed, options.stage + " order"),
       change_(options.seed, options.stage + " change"),
-      noise_(options.seed, options.stage + " noise") {}
+      noise_(options.seed, options.stage + " noise"),
+      weights_(balanceWeights(dataset, options.balance)) {}
 
 std::vector<std::size_t> BatchMaker::order(std::int64_t step) {
   const std::vector<std::size_t>& all = dataset_.training();
@@ -54,15 +60,16 @@ std::vector<std::size_t> BatchMaker::order(std::int64_t step) {
     const std::int64_t epoch = place / count;
     if (epoch_ != epoch) {
       epoch_ = epoch;
-      permutation_ = all;
-      const core::RandomKey key{0, static_cast<std::uint32_t>(epoch)};
-      for (std::size_t i = permutation_.size(); i > 1; --i)
-        std::swap(permutation_[i - 1],
-                  permutation_[order_.index(key, static_cast<std::uint32_t>(i), i)]);
+      drawn_ = drawEpoch(weights_, order_, epoch);
     }
-    samples.push_back(permutation_[static_cast<std::size_t>(place % count)]);
+    samples.push_back(all[drawn_[static_cast<std::size_t>(place % count)]]);
   }
   return samples;
+}
+
+bool BatchMaker::isMirrored(std::size_t index, const core::RandomKey& key, bool cached) const {
+  if (!options_.mirror) return false;
+  return cached ? mirroredInCache(index) : change_.uniform(key, kMirrorDraw) < 0.5;
 }
 
 Sample BatchMaker::changedSample(std::size_t index, const core::RandomKey& key, bool mirrored,
@@ -80,12 +87,11 @@ TrainingBatch BatchMaker::training(std::int64_t step, const FeatureCache* cache)
   std::vector<at::Tensor> features;
   for (std::size_t place = 0; place < indices.size(); ++place) {
     const core::RandomKey key = keyOf(step, place);
-    const bool mirrored = options_.mirror && change_.uniform(key, kMirrorDraw) < 0.5;
+    const bool mirrored = isMirrored(indices[place], key, cache != nullptr);
     samples.push_back(changedSample(indices[place], key, mirrored, cache == nullptr));
     has_route.push_back(change_.uniform(key, kRouteDraw) < options_.route_drop ? 0.0F : 1.0F);
     if (cache == nullptr) continue;
-    const at::Tensor& rows = mirrored ? cache->mirrored : cache->original;
-    features.push_back(rows[static_cast<std::int64_t>(indices[place])]);
+    features.push_back(cache->features[static_cast<std::int64_t>(indices[place])]);
   }
   TrainingBatch batch = pack(samples, has_route);
   batch.samples = indices;

@@ -15,11 +15,13 @@
 
 namespace cdiff::training {
 
-/// Features of every sample; the mirrored ones of training samples only, if any.
+/// Features of every sample, each of one variant: as it is, or, where the stage mirrors, in half of
+/// the cases mirrored (one variant takes half the time, and the other samples show the other side).
 struct FeatureCache {
-  at::Tensor original;  ///< [samples, image_features]
-  at::Tensor mirrored;
+  at::Tensor features;  ///< [samples, image_features]
 };
+/// Which samples those are.
+bool mirroredInCache(std::size_t index);
 
 struct TrainingBatch {
   std::vector<std::size_t> samples;
@@ -38,6 +40,7 @@ struct BatchOptions {
   std::int64_t batch = 32;
   double image_scale = 1.0;
   double route_drop = 0.2;
+  double balance = 0.5;
   bool mirror = true;
   bool change_light = true;
   std::int64_t diffusion_steps = 100;
@@ -59,6 +62,7 @@ class BatchMaker {
  private:
   Sample changedSample(std::size_t index, const core::RandomKey& key, bool mirrored,
                        bool with_image) const;
+  bool isMirrored(std::size_t index, const core::RandomKey& key, bool cached) const;
   void addNoise(std::int64_t step, TrainingBatch& batch) const;
   TrainingBatch pack(const std::vector<Sample>& samples, const std::vector<float>& has_route) const;
 
@@ -70,7 +74,8 @@ class BatchMaker {
   core::RandomStream change_;
   core::RandomStream noise_;
   std::optional<std::int64_t> epoch_;
-  std::vector<std::size_t> permutation_;
+  std::vector<double> weights_;     ///< of the training samples
+  std::vector<std::size_t> drawn_;  ///< places in the training samples, of the epoch
 };
 
 /// Images [B, 3, H, W], (value / 255 - 0.5) / 0.25, area-averaged to half size for scale 0.5.

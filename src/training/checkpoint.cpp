@@ -31,8 +31,13 @@ const at::Tensor& Checkpoint::tensor(const std::string& name, at::IntArrayRef sh
                                      const std::string& source) const {
   const auto found = tensors.find(name);
   if (found == tensors.end()) throw InputError(source + ": tensor '" + name + "' is missing");
-  if (found->second.sizes() != shape)
-    throw InputError(source + ": tensor '" + name + "' has another shape");
+  if (found->second.sizes() != shape) {
+    throw InputError(source + ": tensor '" + name + "' has shape " +
+                     json(found->second.sizes().vec()).dump() + ", the network of this run " +
+                     json(shape.vec()).dump() +
+                     ": the checkpoint is of another architecture; give another --output, or the "
+                     "data and options that it was trained with");
+  }
   return found->second;
 }
 

@@ -34,11 +34,11 @@ std::string hashOf(const ParameterSet& parameters) {
 }
 
 std::vector<traffic::CameraImage> imagesOf(const TrainingState& state, std::size_t begin,
-                                           std::size_t end, bool mirrored) {
+                                           std::size_t end) {
   std::vector<traffic::CameraImage> images;
   for (std::size_t i = begin; i < end; ++i) {
     Sample sample = state.dataset.sample(i);
-    if (mirrored) mirrorSample(state.dataset.schema(), sample);
+    if (state.options.mirror && mirroredInCache(i)) mirrorSample(state.dataset.schema(), sample);
     images.push_back(std::move(sample.image));
   }
   return images;
@@ -97,14 +97,13 @@ struct Progress {
     const Checkpoint stored = readCheckpoint(path);
     if (stored.facts.at("key") != key) return;
     const std::string source = "cache '" + path.string() + "'";
-    cache.original = stored.tensor("original", cache.original.sizes(), source);
-    cache.mirrored = stored.tensor("mirrored", cache.mirrored.sizes(), source);
+    cache.features = stored.tensor("features", cache.features.sizes(), source);
     done = stored.facts.at("done");
   }
   void save() const {
     Checkpoint stored;
     stored.facts = json{{"key", key}, {"done", done}};
-    stored.tensors = {{"original", cache.original}, {"mirrored", cache.mirrored}};
+    stored.tensors = {{"features", cache.features}};
     writeCheckpoint(path, stored);
   }
 };
@@ -113,12 +112,8 @@ void computeChunk(const TrainingState& state, Encoders& encoders, Progress& prog
   const std::size_t end = std::min(progress.done + kChunk, state.dataset.size());
   const auto first = static_cast<std::int64_t>(progress.done);
   const auto count = static_cast<std::int64_t>(end - progress.done);
-  progress.cache.original.narrow(0, first, count)
-      .copy_(encoders.encode(imagesOf(state, progress.done, end, false)));
-  if (state.options.mirror) {
-    progress.cache.mirrored.narrow(0, first, count)
-        .copy_(encoders.encode(imagesOf(state, progress.done, end, true)));
-  }
+  progress.cache.features.narrow(0, first, count)
+      .copy_(encoders.encode(imagesOf(state, progress.done, end)));
   progress.done = end;
 }
 
@@ -133,9 +128,8 @@ FeatureCache computeFeatures(const TrainingState& state, const std::atomic<bool>
   progress.path = fs::path(state.options.output) / "features.cache";
   progress.key = {{"encoder", hashOf(state.encoder.parameters())},
                   {"data", state.dataset.sha256()},
-                  {"mirror", state.options.mirror}};
-  progress.cache.original = at::zeros({samples, width}, at::kFloat);
-  progress.cache.mirrored = at::zeros({state.options.mirror ? samples : 0, width}, at::kFloat);
+                  {"mirrored_half", state.options.mirror}};
+  progress.cache.features = at::zeros({samples, width}, at::kFloat);
   progress.load();
   Encoders encoders(state);
   double saved = now();

@@ -60,6 +60,7 @@ fs::path StageRunner::pathOf(const std::string& output, const std::string& stage
 
 StageResult StageRunner::run() {
   const bool done = options_.resume && resume();
+  curves_.emplace(options_.output, stage_.name(), result_.steps);
   started_ = last_report_ = last_checkpoint_ = now();
   last_report_step_ = result_.steps;
   while (!done && !finished()) {
@@ -134,9 +135,19 @@ double StageRunner::rate() const {
   return options_.learning_rate * start * fall;
 }
 
+void StageRunner::record(const Loss& loss, double norm, double samples_per_second) {
+  Figures figures = {{"loss", result_.loss},
+                     {"gradient_norm", norm},
+                     {"learning_rate", rate()},
+                     {"samples_per_second", samples_per_second}};
+  for (const auto& [name, term] : loss.terms) figures["loss_" + name] = term.item<double>();
+  curves_->add(result_.steps, seconds(), figures);
+}
+
 void StageRunner::logProgress(const Loss& loss, double norm) {
   const double elapsed = std::max(1e-9, now() - last_report_);
   const auto steps = static_cast<double>(result_.steps - last_report_step_);
+  const double samples_per_second = steps * static_cast<double>(stage_.batchSize()) / elapsed;
   double left =
       static_cast<double>(options_.steps - result_.steps) * elapsed / std::max(1.0, steps);
   if (options_.time_limit > 0.0) left = std::min(left, options_.time_limit - seconds());
@@ -145,8 +156,9 @@ void StageRunner::logProgress(const Loss& loss, double norm) {
   for (const auto& [name, term] : loss.terms)
     log_ << " " << name << " " << formatFixed(term.item<double>(), 4);
   log_ << " gradient " << formatFixed(norm, 2) << " rate " << formatFixed(rate() * 1e6, 1)
-       << "e-6, " << formatFixed(steps * static_cast<double>(stage_.batchSize()) / elapsed, 1)
-       << " samples/s, left " << clockText(left) << std::endl;
+       << "e-6, " << formatFixed(samples_per_second, 1) << " samples/s, left " << clockText(left)
+       << std::endl;
+  record(loss, norm, samples_per_second);
   last_report_ = now();
   last_report_step_ = result_.steps;
 }
@@ -159,6 +171,9 @@ void StageRunner::judge() {
   for (const auto& [name, value] : result_.held_out)
     log_ << " " << name << " " << formatFixed(value, 3);
   log_ << std::endl;
+  Figures named;
+  for (const auto& [name, value] : result_.held_out) named["held_out_" + name] = value;
+  curves_->add(result_.steps, seconds(), named);
 }
 
 template <class Visit>
@@ -179,10 +194,10 @@ void StageRunner::visitTensors(Visit visit) {
 void StageRunner::save(bool done) {
   Checkpoint checkpoint;
   checkpoint.facts =
-      json{{"stage", stage_.name()},         {"steps", result_.steps},       {"seconds", seconds()},
-           {"loss", result_.loss},           {"held_out", result_.held_out}, {"done", done},
-           {"seed", options_.seed},          {"batch", stage_.batchSize()},  {"data", data_sha256_},
-           {"planned_steps", options_.steps}};
+      json{{"stage", stage_.name()},      {"steps", result_.steps},         {"seconds", seconds()},
+           {"loss", result_.loss},        {"held_out", result_.held_out},   {"done", done},
+           {"seed", options_.seed},       {"batch", stage_.batchSize()},    {"data", data_sha256_},
+           {"balance", options_.balance}, {"planned_steps", options_.steps}};
   visitTensors(
       [&](const std::string& name, at::Tensor& tensor) { checkpoint.tensors[name] = tensor; });
   writeCheckpoint(pathOf(options_.output, stage_.name()), checkpoint);
@@ -191,13 +206,15 @@ void StageRunner::save(bool done) {
 
 void StageRunner::readFacts(const json& facts, const std::string& source) {
   const auto require = [&](const char* key, const json& expected) {
-    if (facts.at(key) == expected) return;
-    throw InputError(source + ": was trained with " + key + " " + facts.at(key).dump() +
-                     ", this run has " + expected.dump() + "; --resume cannot go on from it");
+    const json found = facts.value(key, json());
+    if (found == expected) return;
+    throw InputError(source + ": was trained with " + key + " " + found.dump() + ", this run has " +
+                     expected.dump() + "; --resume cannot go on from it");
   };
   require("data", data_sha256_);
   require("seed", options_.seed);
   require("batch", stage_.batchSize());
+  require("balance", options_.balance);
   result_.steps = facts.at("steps");
   result_.loss = facts.at("loss").is_number() ? facts.at("loss").get<double>() : 0.0;
   result_.held_out = facts.at("held_out").get<Figures>();

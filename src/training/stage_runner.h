@@ -5,9 +5,11 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 
 #include "checkpoint.h"
+#include "curve_log.h"
 #include "optimizer.h"
 #include "stage.h"
 
@@ -41,6 +43,7 @@ class StageRunner {
   void step();
   void checkFinite(double value);
   void logProgress(const Loss& loss, double norm);
+  void record(const Loss& loss, double norm, double samples_per_second);
   void judge();
   double progress() const;
   double rate() const;
@@ -57,6 +60,7 @@ class StageRunner {
   std::ostream& log_;
   std::vector<TrainedPart> parts_;
   Optimizer optimizer_;
+  std::optional<CurveLog> curves_;
   StageResult result_;
   double seconds_before_ = 0.0;  ///< of earlier runs
   double started_ = 0.0;

@@ -41,6 +41,9 @@ void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
   program.add_option("--warm-up", options.warm_up, "Steps");
   program.add_option("--clip", options.clip, "Norm of the gradient");
   program.add_option("--route-drop", options.route_drop, "Share of samples without route");
+  program.add_option(
+      "--balance", options.balance,
+      "How much oftener rare maneuvers and speeds come: 0 as collected, 1 all alike");
   program.add_flag("!--no-mirror", options.mirror, "Do not mirror samples");
   program.add_flag("!--no-light", options.change_light, "Do not change the light of images");
   program.add_option("--validation-share", options.validation_share, "Of the sessions");

@@ -100,6 +100,27 @@ TEST_F(StageRunnerTest, ResumedRunEqualsAnUninterruptedOneToTheBit) {
   EXPECT_EQ(found.facts.at("loss"), expected.facts.at("loss"));
 }
 
+TEST_F(StageRunnerTest, CurvesOfAResumedRunHoldEveryStepOnce) {
+  options_.validation_every = 10;
+  ToyStage first;
+  first.stop_at = 16;
+  first.stop = &stop_;
+  EXPECT_THROW(run(first), core::Interrupted);
+  stop_ = false;
+  options_.resume = true;
+  ToyStage second;
+  run(second);
+  const std::string curves =
+      core::readFile(std::filesystem::path(options_.output) / "curves.csv", "curves");
+  for (const char* step : {"10", "20", "30", "40"}) {
+    const std::string row = std::string("toy,") + step + ",";
+    std::size_t rows = 0;
+    for (std::size_t at = curves.find(row); at != std::string::npos; at = curves.find(row, at + 1))
+      rows += curves.find("held_out_distance", at) < curves.find('\n', at) ? 1 : 0;
+    EXPECT_EQ(rows, 1U) << step << "\n" << curves;
+  }
+}
+
 TEST_F(StageRunnerTest, FinishedStageIsNotTrainedAgain) {
   ToyStage stage;
   run(stage);
@@ -156,7 +177,7 @@ TEST_F(StageRunnerTest, NamesThePathThatCannotBeWritten) {
     run(stage);
     FAIL() << "no error";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("missing/toy.checkpoint"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("missing/curves.csv"), std::string::npos);
   }
 }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// How often samples come in training: rare maneuvers and speeds more often than their share, so
+/// that turns, starts and stops are not lost among straight driving.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/training/dataset.h"
+
+namespace cdiff::training {
+
+/// What is balanced: the maneuver (straight, left, right, other) and the pace (standing, starting,
+/// stopping, slow below 4 m/s, middle, fast above 8 m/s), as in "left starting".
+std::string balanceClass(const Sample& sample);
+
+/// Weight of each training sample, n^-balance for a class of n samples, mean 1, at most
+/// kMostWeight before that: 0 leaves all alike, 1 makes every class come equally often.
+std::vector<double> balanceWeights(const Dataset& dataset, double balance);
+constexpr double kMostWeight = 10.0;
+
+/// An epoch: as many indices as there are weights; index i comes floor or ceil of weight_i times
+/// (systematic sampling), in random order. Draws are those of `random` with key {0, epoch}.
+std::vector<std::size_t> drawEpoch(const std::vector<double>& weights,
+                                   const core::RandomStream& random, std::int64_t epoch);
+
+}  // namespace cdiff::training

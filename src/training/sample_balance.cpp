@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/training/sample_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace cdiff::training {
+namespace {
+
+constexpr double kStanding = 0.3;  // [m/s]
+constexpr double kMoving = 2.0;    // [m/s]
+constexpr double kSlow = 4.0;      // [m/s]
+constexpr double kFast = 8.0;      // [m/s]
+
+const char* paceOf(const Sample& sample) {
+  const auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
+  if (sample.speed < kStanding) {
+    if (speeds.maxCoeff() < kStanding) return "standing";
+    return "starting";
+  }
+  if (sample.speed > kMoving && speeds.minCoeff() < kStanding) return "stopping";
+  if (sample.speed < kSlow) return "slow";
+  return sample.speed < kFast ? "middle" : "fast";
+}
+
+}  // namespace
+
+std::string balanceClass(const Sample& sample) {
+  constexpr const char* kManeuvers[] = {"straight ", "left ", "right ", "other "};
+  return std::string(kManeuvers[std::min<std::size_t>(sample.maneuver, 3)]) + paceOf(sample);
+}
+
+std::vector<double> balanceWeights(const Dataset& dataset, double balance) {
+  const std::vector<std::size_t>& training = dataset.training();
+  std::vector<std::string> classes;
+  std::map<std::string, double> counts;
+  for (const std::size_t index : training) {
+    classes.push_back(balanceClass(dataset.withoutImage(index)));
+    counts[classes.back()] += 1.0;
+  }
+  const auto all = static_cast<double>(training.size());
+  std::vector<double> weights;
+  for (const std::string& name : classes) {
+    const double share = counts[name] * static_cast<double>(counts.size()) / all;
+    weights.push_back(std::min(kMostWeight, std::pow(share, -balance)));
+  }
+  const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / all;
+  for (double& weight : weights) weight /= mean;
+  return weights;
+}
+
+std::vector<std::size_t> drawEpoch(const std::vector<double>& weights,
+                                   const core::RandomStream& random, std::int64_t epoch) {
+  const core::RandomKey key{0, static_cast<std::uint32_t>(epoch)};
+  std::vector<std::size_t> drawn;
+  double reached = random.uniform(key, 0);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i];
+    for (; reached < sum && drawn.size() < weights.size(); reached += 1.0) drawn.push_back(i);
+  }
+  while (drawn.size() < weights.size()) drawn.push_back(weights.size() - 1);  // rounding
+  for (std::size_t i = drawn.size(); i > 1; --i)
+    std::swap(drawn[i - 1], drawn[random.index(key, static_cast<std::uint32_t>(i), i)]);
+  return drawn;
+}
+
+}  // namespace cdiff::training

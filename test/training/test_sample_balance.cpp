@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "e2e_cdiff/training/sample_balance.h"
+#include "training/small_samples.h"
+
+namespace cdiff::training {
+namespace {
+
+Sample drivingAt(double first, double last, std::uint8_t maneuver) {
+  Sample sample = test::smallSample(0, 1);
+  sample.speed = first;
+  sample.maneuver = maneuver;
+  const Eigen::Index rows = sample.rollout.rows();
+  for (Eigen::Index t = 0; t < rows; ++t) {
+    const double share = static_cast<double>(t + 1) / static_cast<double>(rows);
+    sample.rollout(t, traffic::kRolloutSpeed) = first + share * (last - first);
+  }
+  return sample;
+}
+
+/// 80 samples straight on at 10 m/s, 20 that start into a left turn.
+void writeUneven(const std::filesystem::path& file) {
+  ShardWriter writer(test::smallSchema());
+  for (std::size_t i = 0; i < 100; ++i) {
+    Sample sample = i < 80 ? drivingAt(10.0, 10.0, 0) : drivingAt(0.0, 3.0, 1);
+    sample.session = i;
+    writer.append(sample);
+  }
+  writer.write(file);
+}
+
+TEST(SampleBalance, ClassesAreManeuverAndPace) {
+  EXPECT_EQ(balanceClass(drivingAt(0.0, 0.0, 3)), "other standing");
+  EXPECT_EQ(balanceClass(drivingAt(0.0, 3.0, 1)), "left starting");
+  EXPECT_EQ(balanceClass(drivingAt(5.0, 0.0, 0)), "straight stopping");
+  EXPECT_EQ(balanceClass(drivingAt(3.0, 3.0, 2)), "right slow");
+  EXPECT_EQ(balanceClass(drivingAt(6.0, 6.0, 2)), "right middle");
+  EXPECT_EQ(balanceClass(drivingAt(9.0, 9.0, 0)), "straight fast");
+}
+
+TEST(SampleBalance, WeightsRaiseRareClassesByThePowerAsked) {
+  const test::TemporaryFolder folder;
+  writeUneven(folder.path() / "a.shard");
+  const Dataset dataset(folder.path(), 0.0);
+  for (const double weight : balanceWeights(dataset, 0.0)) EXPECT_DOUBLE_EQ(weight, 1.0);
+  const std::vector<double> even = balanceWeights(dataset, 1.0);
+  EXPECT_NEAR(std::accumulate(even.begin(), even.begin() + 80, 0.0), 50.0, 1e-9);
+  EXPECT_NEAR(std::accumulate(even.begin() + 80, even.end(), 0.0), 50.0, 1e-9);
+  const std::vector<double> half = balanceWeights(dataset, 0.5);
+  EXPECT_NEAR(half[80] / half[0], 2.0, 1e-9);
+}
+
+TEST(SampleBalance, AnEpochHoldsEachSampleAsOftenAsItsWeight) {
+  const core::RandomStream random(1, "order");
+  std::vector<double> weights(100, 0.5);
+  std::fill(weights.begin() + 75, weights.end(), 2.5);
+  std::map<std::size_t, int> times;
+  const std::vector<std::size_t> epoch = drawEpoch(weights, random, 0);
+  ASSERT_EQ(epoch.size(), 100U);
+  for (const std::size_t index : epoch) ++times[index];
+  for (std::size_t i = 0; i < 75; ++i) EXPECT_LE(times[i], 1);
+  for (std::size_t i = 75; i < 100; ++i) EXPECT_TRUE(times[i] == 2 || times[i] == 3);
+  EXPECT_EQ(epoch, drawEpoch(weights, random, 0));
+  EXPECT_NE(epoch, drawEpoch(weights, random, 1));
+  EXPECT_FALSE(std::is_sorted(epoch.begin(), epoch.end()));
+}
+
+TEST(SampleBalance, EqualWeightsGiveEverySampleOnce) {
+  const core::RandomStream random(1, "order");
+  std::vector<std::size_t> epoch = drawEpoch(std::vector<double>(1000, 1.0), random, 3);
+  std::sort(epoch.begin(), epoch.end());
+  for (std::size_t i = 0; i < epoch.size(); ++i) EXPECT_EQ(epoch[i], i);
+}
+
+}  // namespace
+}  // namespace cdiff::training
