@@ -5,8 +5,10 @@
 #include <iostream>
 #include <memory>
 
+#include "collect_bags.h"
 #include "collect_session.h"
 #include "commands.h"
+#include "dataset_page.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
@@ -25,6 +27,7 @@ struct CollectArguments {
   CollectRequest request;
   std::vector<std::string> scenarios;
   std::string suite;  ///< name or folder
+  BagRequest bags;
   int seeds = 1;
   int first_seed = 1;
   int jobs = 1;
@@ -84,42 +87,6 @@ std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
   return sessions;
 }
 
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  if (whole == 0) return "-";
-  return core::formatFixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1);
-}
-
-void addRows(std::string& text, const std::string& kind,
-             const std::map<std::string, std::uint64_t>& counts, std::uint64_t whole) {
-  for (const auto& [name, count] : counts) {
-    text +=
-        "| " + kind + name + " | " + std::to_string(count) + " | " + percent(count, whole) + " |\n";
-  }
-}
-
-std::string table(const ros::DatasetStatistics& statistics) {
-  std::string text = "| | number | % |\n|---|---|---|\n";
-  text += "| images | " + std::to_string(statistics.images) + " | |\n";
-  addRows(text, "dropped: ", statistics.dropped, statistics.images);
-  text += "| samples | " + std::to_string(statistics.samples) + " | " +
-          percent(statistics.samples, statistics.images) + " |\n";
-  addRows(text, "maneuver: ", statistics.maneuvers, statistics.samples);
-  addRows(text, "stop reason: ", statistics.stop_reasons, statistics.samples);
-  addRows(text, "", statistics.kinds, statistics.samples);
-  for (std::size_t i = 0; i < statistics.speeds.size(); ++i) {
-    const bool last = i + 1 == statistics.speeds.size();
-    text += "| speed " + std::to_string(2 * i) +
-            (last ? " and more" : " to " + std::to_string(2 * i + 2)) + " m/s | " +
-            std::to_string(statistics.speeds[i]) + " | " +
-            percent(statistics.speeds[i], statistics.samples) + " |\n";
-  }
-  const double samples = static_cast<double>(std::max<std::uint64_t>(1, statistics.samples));
-  text += "| mean of absolute steer | " + core::formatFixed(statistics.steer_sum / samples, 4) +
-          " | |\n| contacts of driven vehicles | " + std::to_string(statistics.contacts) +
-          " | |\n| simulated seconds | " + core::formatFixed(statistics.seconds, 0) + " | |\n";
-  return text;
-}
-
 /// Sums up every session whose files are there.
 void conclude(const CollectArguments& arguments, const std::vector<CollectRequest>& sessions) {
   ros::DatasetStatistics sum;
@@ -127,8 +94,7 @@ void conclude(const CollectArguments& arguments, const std::vector<CollectReques
     const fs::path file = statisticsFile(request, sessionName(resolveCollection(request)));
     if (fs::exists(file)) sum.add(readStatistics(file));
   }
-  core::writeFileAtomically(arguments.request.results / "statistics.json", toJson(sum));
-  std::cout << table(sum) << std::flush;
+  describeDataset(arguments.request.results, sum);
 }
 
 int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
@@ -141,7 +107,17 @@ int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
   return code;
 }
 
+int convertBags(const CollectArguments& arguments) {
+  if (!arguments.scenarios.empty() || !arguments.suite.empty())
+    throw core::InputError("give either --bags, or --scenarios and --suite");
+  BagRequest request = arguments.bags;
+  request.results = arguments.request.results;
+  describeDataset(request.results, collectBags(request));
+  return kPassed;
+}
+
 int collect(const CollectArguments& arguments) {
+  if (!arguments.bags.bags.empty()) return convertBags(arguments);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
   std::vector<evaluation::ProcessJob> jobs;
   for (const CollectRequest& request : sessions) {
@@ -188,6 +164,12 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
                    "Scenarios, names or files (default: all that are shipped)")
       ->delimiter(',');
   command->add_option("--suite", arguments->suite, "Route suite, name or folder: its scenarios");
+  command
+      ->add_option("--bags", arguments->bags.bags,
+                   "Instead of driving: bags of a vehicle of yours, with --topics")
+      ->delimiter(',');
+  command->add_option("--topics", arguments->bags.topics,
+                      "YAML file that names the bags' topics: image, odometry, control, path");
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
       ->check(CLI::Range(1, 100000));
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")

@@ -11,6 +11,7 @@
 #include "e2e_cdiff/evaluation/batch_report.h"
 #include "e2e_cdiff/evaluation/comparison.h"
 #include "e2e_cdiff/evaluation/matrix.h"
+#include "training_page.h"
 
 namespace cdiff::cli {
 namespace {
@@ -20,6 +21,7 @@ using core::InputError;
 
 struct ReportArguments {
   std::string tables;
+  std::string training;
   std::vector<std::string> folders;
   std::vector<std::string> figures;
   std::string factor;
@@ -77,8 +79,14 @@ int makeTables(const fs::path& results) {
 }
 
 int report(const ReportArguments& arguments) {
-  if (arguments.tables.empty() == arguments.folders.empty())
-    throw InputError("give either --compare A B or --tables DIR");
+  const int asked = (arguments.tables.empty() ? 0 : 1) + (arguments.folders.empty() ? 0 : 1) +
+                    (arguments.training.empty() ? 0 : 1);
+  if (asked != 1) throw InputError("give one of --compare A B, --tables DIR and --training DIR");
+  if (!arguments.training.empty()) {
+    std::cout << "curves of the training: " << writeTrainingPage(arguments.training).string()
+              << "\n";
+    return kPassed;
+  }
   if (!arguments.tables.empty()) return makeTables(arguments.tables);
   const std::vector<evaluation::Comparison> comparisons = compare(arguments);
   requirePairs(comparisons, arguments);
@@ -93,14 +101,16 @@ int report(const ReportArguments& arguments) {
 
 void addReportCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command =
-      program.add_subcommand("report", "Compare evaluations run by run; make their tables again");
+  CLI::App* command = program.add_subcommand(
+      "report", "Compare evaluations run by run; make their tables again; draw a training");
   command
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
       ->expected(1, 2);
   command->add_option("--tables", arguments->tables,
                       "Write tables/, figures/ and index.html of this result folder again");
+  command->add_option("--training", arguments->training,
+                      "Draw the curves of this output folder of `cdiff train`, also while it runs");
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->figures, "Only this figure; may be repeated")

@@ -2,14 +2,19 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <iostream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/evaluation/child_process.h"
+#include "stop_signals.h"
+#include "training_page.h"
 
 namespace cdiff::cli {
 namespace {
@@ -28,23 +33,50 @@ fs::path findTrainer() {
                          ": this build is without the trainer (E2E_CDIFF_TRAINING)");
 }
 
-[[noreturn]] void becomeTrainer(std::vector<std::string> arguments) {
-  std::string program = findTrainer().string();
-  std::vector<char*> argv = {program.data()};
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  ::execv(program.c_str(), argv.data());
-  throw core::SimulatorError("cannot start '" + program + "': " + std::strerror(errno));
+/// Runs to its end; a stop signal to us is one to it, which then leaves a checkpoint.
+int runTrainer(const std::vector<std::string>& arguments) {
+  constexpr auto kPeriod = std::chrono::milliseconds(50);
+  const std::atomic<bool>& stop = catchStopSignals();
+  evaluation::ChildProcess trainer(findTrainer(), arguments, {});
+  bool told = false;
+  while (true) {
+    if (const std::optional<int> code = trainer.poll()) return *code;
+    if (stop && !told) trainer.signal(SIGINT);
+    told = stop;
+    std::this_thread::sleep_for(kPeriod);
+  }
+}
+
+/// Folder given as --output; empty if there is none.
+fs::path outputOf(const std::vector<std::string>& arguments) {
+  const std::string name = "--output";
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == name && i + 1 < arguments.size()) return arguments[i + 1];
+    if (arguments[i].rfind(name + "=", 0) == 0) return arguments[i].substr(name.size() + 1);
+  }
+  return {};
+}
+
+int trainAndDraw(const std::vector<std::string>& arguments) {
+  const int code = runTrainer(arguments);
+  const fs::path output = outputOf(arguments);
+  if (output.empty() || !fs::exists(output / "curves.csv")) return code;
+  try {
+    std::cerr << "curves: " << writeTrainingPage(output).string() << "\n";
+  } catch (const core::Error& error) {
+    std::cerr << "cdiff: the curves are not drawn: " << error.what() << "\n";
+  }
+  return code;
 }
 
 }  // namespace
 
-void addTrainCommand(CLI::App& program, int&) {
+void addTrainCommand(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "train", "Train the diffusion planner (cdiff_train; 'cdiff train --help' lists its options)");
   command->set_help_flag();
   command->prefix_command();
-  command->callback([command] { becomeTrainer(command->remaining()); });
+  command->callback([command, &exit_code] { exit_code = trainAndDraw(command->remaining()); });
 }
 
 }  // namespace cdiff::cli

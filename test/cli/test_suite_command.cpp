@@ -1,39 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <gtest/gtest.h>
-
-#include <chrono>
+#include <filesystem>
 #include <fstream>
-#include <thread>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/evaluation/child_process.h"
-#include "support/temporary_folder.h"
+#include "cdiff_command.h"
 
-namespace cdiff::evaluation {
+namespace cdiff::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-class SuiteCommand : public testing::Test {
- protected:
-  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
-  /// Runs cdiff; its output is in output() afterwards.
-  int cdiff(const std::vector<std::string>& arguments) const {
-    ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
-    std::optional<int> exit_code = process.poll();
-    while (!exit_code) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      exit_code = process.poll();
-    }
-    return *exit_code;
-  }
-  void expectOutput(const std::string& part) const {
-    const std::string output = core::readFile(scratch_.path() / "output", "output");
-    EXPECT_NE(output.find(part), std::string::npos) << part << "\nin\n" << output;
-  }
-  test::TemporaryFolder scratch_;
-};
+class SuiteCommand : public test::CdiffCommand {};
 
 TEST_F(SuiteCommand, MakesASuiteThatAMatrixDrives) {
   ASSERT_EQ(cdiff({"suite", "test", "--seed", "1", "--results", path("suite")}), 0);
@@ -82,4 +59,4 @@ TEST_F(SuiteCommand, CollectDrivesTheRoutesWithTheirTraffic) {
 #endif
 
 }  // namespace
-}  // namespace cdiff::evaluation
+}  // namespace cdiff::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "dataset_page.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "collect_session.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/sample_sheet.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using report::CountRow;
+
+constexpr std::size_t kSamplesAKind = 6;
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return "-";
+  return core::formatFixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1);
+}
+
+void addRows(std::vector<CountRow>& rows, const std::string& kind,
+             const std::map<std::string, std::uint64_t>& counts, std::uint64_t whole) {
+  for (const auto& [name, count] : counts)
+    rows.push_back({kind + name, std::to_string(count), percent(count, whole)});
+}
+
+std::vector<CountRow> rowsOf(const ros::DatasetStatistics& statistics) {
+  const std::uint64_t samples = statistics.samples;
+  std::vector<CountRow> rows = {{"images", std::to_string(statistics.images), ""}};
+  addRows(rows, "dropped: ", statistics.dropped, statistics.images);
+  rows.push_back({"samples", std::to_string(samples), percent(samples, statistics.images)});
+  addRows(rows, "maneuver: ", statistics.maneuvers, samples);
+  addRows(rows, "stop reason: ", statistics.stop_reasons, samples);
+  addRows(rows, "", statistics.kinds, samples);
+  for (std::size_t i = 0; i < statistics.speeds.size(); ++i) {
+    const bool last = i + 1 == statistics.speeds.size();
+    const std::string range = last ? " and more" : " to " + std::to_string(2 * i + 2);
+    rows.push_back({"speed " + std::to_string(2 * i) + range + " m/s",
+                    std::to_string(statistics.speeds[i]), percent(statistics.speeds[i], samples)});
+  }
+  const auto divisor = static_cast<double>(std::max<std::uint64_t>(1, samples));
+  rows.push_back(
+      {"mean of absolute steer", core::formatFixed(statistics.steer_sum / divisor, 4), ""});
+  rows.push_back({"contacts of driven vehicles", std::to_string(statistics.contacts), ""});
+  rows.push_back({"simulated seconds", core::formatFixed(statistics.seconds, 0), ""});
+  return rows;
+}
+
+}  // namespace
+
+void describeDataset(const fs::path& folder, const ros::DatasetStatistics& statistics) {
+  core::writeFileAtomically(folder / "statistics.json", toJson(statistics));
+  const std::vector<CountRow> rows = rowsOf(statistics);
+  std::cout << "| | number | % |\n|---|---|---|\n";
+  for (const CountRow& row : rows)
+    std::cout << "| " << row.name << " | " << row.number << " | " << row.share << " |\n";
+  std::cout << std::flush;
+  if (statistics.samples == 0) return;
+  const fs::path page = folder / "samples.html";
+  const std::string title = fs::weakly_canonical(folder).filename().string();
+  const training::Dataset dataset(folder / "shards", 0.0);
+  core::writeFileAtomically(page, report::sampleSheet(title, rows, dataset, kSamplesAKind));
+  std::cerr << "pictures: " << page.string() << "\n";
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "training_page.h"
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/report/training_report.h"
+
+namespace cdiff::cli {
+
+namespace fs = std::filesystem;
+
+fs::path writeTrainingPage(const fs::path& folder) {
+  const fs::path curves = folder / "curves.csv";
+  if (!fs::is_regular_file(curves)) {
+    throw core::InputError("'" + folder.string() +
+                           "' is no output folder of `cdiff train`: it has no curves.csv");
+  }
+  const fs::path card = folder / "model_card.md";
+  const auto stages =
+      report::readTrainingCurves(core::readFile(curves, "training curves"), curves.string());
+  const fs::path page = folder / "training.html";
+  const std::string title = fs::weakly_canonical(folder).filename().string();
+  core::writeFileAtomically(
+      page, report::trainingReport(title, stages,
+                                   fs::exists(card) ? core::readFile(card, "model card") : ""));
+  return page;
+}
+
+}  // namespace cdiff::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A test that runs the program `cdiff` and reads what it says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/evaluation/child_process.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::test {
+
+class CdiffCommand : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
+  /// Runs cdiff; its output is in expectOutput() afterwards.
+  int cdiff(const std::vector<std::string>& arguments) const {
+    evaluation::ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
+    std::optional<int> exit_code = process.poll();
+    while (!exit_code) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      exit_code = process.poll();
+    }
+    return *exit_code;
+  }
+  void expectOutput(const std::string& part) const {
+    const std::string output = core::readFile(scratch_.path() / "output", "output");
+    EXPECT_NE(output.find(part), std::string::npos) << part << "\nin\n" << output;
+  }
+  TemporaryFolder scratch_;
+};
+
+}  // namespace cdiff::test

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <filesystem>
+#include <fstream>
+
+#include "cdiff_command.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What `cdiff collect`, `train` and `report --training` say of what they cannot use.
+class DataCommands : public test::CdiffCommand {};
+
+TEST_F(DataCommands, ABagNeedsItsTopicsNamed) {
+  std::ofstream(path("a.bag")) << "no bag";
+  EXPECT_EQ(cdiff({"collect", "--bags", path("a.bag"), "--results", path("data")}), 3);
+  expectOutput("--topics");
+  expectOutput("odometry");
+  std::ofstream(path("topics.yaml")) << "image: /camera\nodometri: /odom\n";
+  const std::vector<std::string> words = {
+      "collect",           "--bags",    path("a.bag"), "--topics",
+      path("topics.yaml"), "--results", path("data")};
+  EXPECT_EQ(cdiff(words), 3);
+  expectOutput("topics.yaml");
+  expectOutput("odometry");
+  std::ofstream(path("topics.yaml")) << "image: /camera\nodometry: /odom\n";
+  EXPECT_EQ(cdiff(words), 3);
+  expectOutput("is no ROS bag");
+  EXPECT_FALSE(fs::exists(path("data/shards/a.shard")));
+}
+
+TEST_F(DataCommands, TwoBagsOfOneNameAreRefused) {
+  std::ofstream(path("topics.yaml")) << "image: /camera\nodometry: /odom\n";
+  EXPECT_EQ(cdiff({"collect", "--bags", path("a.bag") + "," + path("b/a.bag"), "--topics",
+                   path("topics.yaml"), "--results", path("data")}),
+            3);
+  expectOutput("two bags are called 'a'");
+}
+
+TEST_F(DataCommands, TheTrainersExitCodeAndMessageComeThrough) {
+  fs::create_directories(path("data"));
+  EXPECT_EQ(cdiff({"train", "--data", path("data"), "--output", path("model")}), 3);
+  expectOutput(path("data"));
+  std::ofstream(path("data/broken.shard")) << "no shard";
+  EXPECT_EQ(cdiff({"train", "--data", path("data"), "--output", path("model")}), 3);
+  expectOutput("broken.shard");
+}
+
+TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {
+  fs::create_directories(path("model"));
+  EXPECT_EQ(cdiff({"report", "--training", path("model")}), 3);
+  expectOutput("no curves.csv");
+  std::ofstream(path("model/curves.csv"))
+      << "stage,step,seconds,figure,value\njoint,1,2.0,loss,0.5\njoint,2,4.0,loss,0.4\n";
+  EXPECT_EQ(cdiff({"report", "--training", path("model")}), 0);
+  expectOutput("training.html");
+  EXPECT_NE(core::readFile(path("model/training.html"), "page").find("<h2>joint</h2>"),
+            std::string::npos);
+  EXPECT_EQ(cdiff({"report", "--training", path("model"), "--tables", path("model")}), 3);
+  expectOutput("give one of");
+}
+
+}  // namespace
+}  // namespace cdiff::cli
