@@ -108,8 +108,6 @@ int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
 }
 
 int convertBags(const CollectArguments& arguments) {
-  if (!arguments.scenarios.empty() || !arguments.suite.empty())
-    throw core::InputError("give either --bags, or --scenarios and --suite");
   BagRequest request = arguments.bags;
   request.results = arguments.request.results;
   describeDataset(request.results, collectBags(request));
@@ -153,6 +151,20 @@ void addCommonOptions(CLI::App& command, CollectRequest& request) {
       ->allow_extra_args(false);
 }
 
+/// Bags are converted as they are: what says how to drive is refused beside them.
+void addBagOptions(CLI::App& command, BagRequest& request) {
+  CLI::Option* bags =
+      command.add_option("--bags", request.bags, "Instead of driving: bags of a vehicle of yours")
+          ->delimiter(',');
+  command
+      .add_option("--topics", request.topics,
+                  "YAML file that names the bags' topics: image, odometry, control, path")
+      ->needs(bags);
+  for (const char* name : {"--scenarios", "--suite", "--seeds", "--first-seed", "--jobs",
+                           "--duration", "--keep-bags", "--no-images", "--set"})
+    bags->excludes(command.get_option(name));
+}
+
 }  // namespace
 
 void addCollectCommand(CLI::App& program, int& exit_code) {
@@ -164,18 +176,13 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
                    "Scenarios, names or files (default: all that are shipped)")
       ->delimiter(',');
   command->add_option("--suite", arguments->suite, "Route suite, name or folder: its scenarios");
-  command
-      ->add_option("--bags", arguments->bags.bags,
-                   "Instead of driving: bags of a vehicle of yours, with --topics")
-      ->delimiter(',');
-  command->add_option("--topics", arguments->bags.topics,
-                      "YAML file that names the bags' topics: image, odometry, control, path");
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
       ->check(CLI::Range(1, 100000));
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")
       ->check(CLI::Range(0, 1000000000));
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
   addCommonOptions(*command, arguments->request);
+  addBagOptions(*command, arguments->bags);
   command->callback([arguments, &exit_code] { exit_code = collect(*arguments); });
 
   auto request = std::make_shared<CollectRequest>();

@@ -62,7 +62,8 @@ int trainAndDraw(const std::vector<std::string>& arguments) {
   const fs::path output = outputOf(arguments);
   if (output.empty() || !fs::exists(output / "curves.csv")) return code;
   try {
-    std::cerr << "curves: " << writeTrainingPage(output).string() << "\n";
+    const fs::path page = writeTrainingPage(output);
+    std::cerr << "curves: " << page.string() << "\n";
   } catch (const core::Error& error) {
     std::cerr << "cdiff: the curves are not drawn: " << error.what() << "\n";
   }

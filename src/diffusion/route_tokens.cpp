@@ -9,8 +9,6 @@
 namespace cdiff::diffusion {
 namespace {
 
-constexpr double kTokenScale = 20.0;  // [m] that a token of 1 stands for
-
 /// Point of the path, which goes straight on beyond its end.
 Eigen::Vector2d pointAhead(const geometry::Polyline& path, double arc_length) {
   const double beyond = std::max(0.0, arc_length - path.length());
@@ -26,7 +24,7 @@ std::vector<float> routeTokens(const Architecture& architecture, const geometry:
   tokens.reserve(static_cast<std::size_t>(2 * architecture.route_points));
   for (std::int64_t i = 1; i <= architecture.route_points; ++i) {
     const double ahead = arc_length + static_cast<double>(i) * architecture.route_spacing;
-    const Eigen::Vector2d token = pose.toBody(pointAhead(path, ahead)) / kTokenScale;
+    const Eigen::Vector2d token = pose.toBody(pointAhead(path, ahead)) / kRouteTokenScale;
     tokens.push_back(static_cast<float>(token.x()));
     tokens.push_back(static_cast<float>(token.y()));
   }

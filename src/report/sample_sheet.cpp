@@ -5,6 +5,7 @@
 #include <map>
 
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/diffusion/route_tokens.h"
 #include "e2e_cdiff/report/image_data_uri.h"
 #include "e2e_cdiff/report/markup.h"
 #include "e2e_cdiff/report/report_style.h"
@@ -13,7 +14,6 @@
 namespace cdiff::report {
 namespace {
 
-constexpr double kTokenScale = 20.0;   // [m] of a route token of 1
 constexpr double kAhead = 45.0;        // [m] shown
 constexpr double kBehind = 5.0;        // [m] shown
 constexpr double kAside = 20.0;        // [m] shown to each side
@@ -47,7 +47,8 @@ std::string pathOf(const char* style, const std::vector<std::pair<double, double
 std::string fromAbove(const training::Sample& sample) {
   std::vector<std::pair<double, double>> way;
   for (std::size_t i = 0; i + 1 < sample.route.size(); i += 2)
-    way.emplace_back(kTokenScale * sample.route[i], kTokenScale * sample.route[i + 1]);
+    way.emplace_back(diffusion::kRouteTokenScale * sample.route[i],
+                     diffusion::kRouteTokenScale * sample.route[i + 1]);
   std::vector<std::pair<double, double>> driven;
   std::string dots;
   for (Eigen::Index t = 0; t < sample.rollout.rows(); ++t) {

@@ -20,6 +20,7 @@ using core::InputError;
 
 constexpr double kLeastPath = 0.5;  // [m] less is no way
 constexpr double kPart = 60.0;      // [s] of a bag that count as one session
+constexpr double kReversing = 0.1;  // [m/s] backwards that is more than noise at standstill
 
 class DrivingSamples {
  public:
@@ -34,10 +35,11 @@ class DrivingSamples {
       if (!samples.empty() && time < next) continue;
       ++statistics.images;
       std::optional<training::Sample> sample = sampleAt(time);
-      if (!sample) {
-        ++statistics.dropped["gap"];
+      if (!sample || reverses(*sample)) {
+        ++statistics.dropped[sample ? "reversing" : "gap"];
         continue;
       }
+      stopAtZero(*sample);
       next = time + topics_.period - 1e-6;
       sample->image = image;
       sample->image.tick = sample->tick;
@@ -48,11 +50,22 @@ class DrivingSamples {
   }
 
  private:
+  static bool reverses(const training::Sample& sample) {
+    return std::min(sample.speed, sample.rollout.col(traffic::kRolloutSpeed).minCoeff()) <
+           -kReversing;
+  }
+
+  static void stopAtZero(training::Sample& sample) {
+    sample.speed = std::max(0.0, sample.speed);
+    auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
+    speeds = speeds.cwiseMax(0.0);
+  }
+
   std::optional<training::Sample> sampleAt(double time) const {
     const auto start = bag_.stateAt(time, topics_.largest_gap);
     if (!start) return std::nullopt;
     training::Sample sample;
-    sample.speed = start->speed;
+    sample.speed = start->speed;  // below 0 until make() has looked at it
     const double since = time - bag_.images.begin()->first;
     sample.session = core::hashText(name_ + "_" + std::to_string(static_cast<int>(since / kPart)));
     sample.vehicle = name_;
@@ -74,7 +87,8 @@ class DrivingSamples {
       const auto state = bag_.stateAt(begin + traffic::kRolloutStep, topics_.largest_gap);
       if (!state) return false;
       const double turn = core::angleDifference(state->heading, before.heading);
-      const auto action = actionAt(begin, {before.speed, state->speed, turn});
+      const auto action =
+          actionAt(begin, {std::max(0.0, before.speed), std::max(0.0, state->speed), turn});
       if (!action) return false;
       heading += turn;
       const Eigen::Vector2d position = start.pose().toBody(state->position);
@@ -174,7 +188,7 @@ std::vector<training::Sample> samplesFromDrivingBag(const std::filesystem::path&
     if (samples.empty())
       throw InputError("gives no sample: none of its " + std::to_string(driving.images.size()) +
                        " images is followed by " + std::to_string(options.architecture.horizon) +
-                       " steps of 0.1 s of odometry without a gap");
+                       " steps of 0.1 s of odometry without a gap, driving forwards");
     if (!driving.states.empty())
       statistics.seconds += driving.states.rbegin()->first - driving.states.begin()->first;
     return samples;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "driving_bag.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -24,8 +25,12 @@ using core::InputError;
 constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 
-double yawOf(const geometry_msgs::Quaternion& q) {
-  return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
+double yawOf(const geometry_msgs::Quaternion& message) {
+  const Eigen::Quaterniond q(message.w, message.x, message.y, message.z);
+  if (q.norm() < 1e-6)
+    throw InputError("an odometry message has no orientation (a quaternion of zeros)");
+  const Eigen::Matrix3d rotation = q.normalized().toRotationMatrix();
+  return std::atan2(rotation(1, 0), rotation(0, 0));
 }
 
 traffic::VehicleState toState(const nav_msgs::Odometry& message) {
@@ -33,10 +38,9 @@ traffic::VehicleState toState(const nav_msgs::Odometry& message) {
   state.position = {message.pose.pose.position.x, message.pose.pose.position.y};
   state.elevation = message.pose.pose.position.z;
   state.heading = yawOf(message.pose.pose.orientation);
-  state.speed = std::max(0.0, message.twist.twist.linear.x);
-  const double sum =
-      state.position.sum() + state.elevation + state.heading + message.twist.twist.linear.x;
-  if (!std::isfinite(sum)) throw InputError("an odometry message holds a value that is no number");
+  state.speed = message.twist.twist.linear.x;
+  if (!std::isfinite(state.position.sum() + state.elevation + state.heading + state.speed))
+    throw InputError("an odometry message holds a value that is no number");
   return state;
 }
 
@@ -96,10 +100,22 @@ class Reader {
     if (topic == topics_.image) takeImage(message);
     if (topic == topics_.odometry) {
       const auto odometry = decode<nav_msgs::Odometry>(message);
+      requireFrame(topic, odometry->header.frame_id);
       bag_.states[odometry->header.stamp.toSec()] = toState(*odometry);
     }
     if (topic == topics_.control && !topic.empty()) takeControl(message);
     if (topic == topics_.path && !topic.empty()) takePath(message);
+  }
+
+  /// Positions can be compared in one frame alone; the first that is named is it.
+  void requireFrame(const std::string& topic, const std::string& frame) {
+    if (frame_topic_.empty()) {
+      frame_ = frame;
+      frame_topic_ = topic;
+    }
+    if (frame == frame_) return;
+    throw InputError("'" + topic + "' is in the frame '" + frame + "', '" + frame_topic_ +
+                     "' in '" + frame_ + "'; record both in one fixed frame");
   }
 
   void takeImage(const BagMessage& message) {
@@ -130,6 +146,7 @@ class Reader {
 
   void takePath(const BagMessage& message) {
     const auto path = decode<nav_msgs::Path>(message);
+    requireFrame(topics_.path, path->header.frame_id);
     std::vector<Eigen::Vector3d> points;
     for (const geometry_msgs::PoseStamped& pose : path->poses) {
       const Eigen::Vector3d point(pose.pose.position.x, pose.pose.position.y, pose.pose.position.z);
@@ -143,6 +160,8 @@ class Reader {
   const DrivingBagOptions& topics_;
   const diffusion::Architecture& architecture_;
   DrivingBag bag_;
+  std::string frame_;        ///< of all positions
+  std::string frame_topic_;  ///< that named it
 };
 
 }  // namespace

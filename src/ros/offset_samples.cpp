@@ -10,15 +10,6 @@
 #include "e2e_cdiff/planning/route_follower.h"
 
 namespace cdiff::ros {
-namespace {
-
-geometry::OrientedBox boxOf(const traffic::Vehicle& vehicle) {
-  return {vehicle.state.position, vehicle.state.heading, vehicle.dimensions.length,
-          vehicle.dimensions.width};
-}
-
-}  // namespace
-
 OffsetSamples::OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options)
     : setup_(setup),
       options_(options),
@@ -27,14 +18,14 @@ OffsetSamples::OffsetSamples(const scenario::SessionSetup& setup, const DatasetO
 
 bool OffsetSamples::free(const traffic::Vehicle& vehicle,
                          const traffic::TrafficSnapshot& snapshot) const {
-  const geometry::OrientedBox box = boxOf(vehicle);
+  const geometry::OrientedBox box = vehicle.box();
   for (const Eigen::Vector2d& corner : box.corners()) {
     if (!setup_.drivableArea().contains(corner, vehicle.state.elevation)) return false;
   }
   return std::none_of(
       snapshot.vehicles.begin(), snapshot.vehicles.end(), [&](const traffic::Vehicle& other) {
         return other.id != vehicle.id && !traffic::onDifferentLevels(vehicle, other) &&
-               geometry::overlap(box, boxOf(other));
+               geometry::overlap(box, other.box());
       });
 }
 

@@ -71,7 +71,7 @@ SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& ar
   const double lateral = (around.route.path().positionAt(s) - state.position).norm();
   const double turned =
       std::abs(core::angleDifference(state.heading, around.route.path().headingAt(s)));
-  kinds.off_course = lateral > 0.4 || turned > core::degreesToRadians(5.0);
+  kinds.off_course = lateral > kOffCourse || turned > kOffTurn;
   return kinds;
 }
 

@@ -3,6 +3,7 @@
 /// What happens in a sample, for the statistics and the sample's own labels.
 #pragma once
 
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/ros/dataset_from_bag.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
@@ -16,6 +17,9 @@ struct SampleSurroundings {
   double arc_length = 0.0;  ///< on the route [m]
 };
 
+constexpr double kOffCourse = 0.4;                    // [m]
+constexpr double kOffTurn = 5.0 * core::kPi / 180.0;  // [rad]
+
 struct SampleKinds {
   std::uint8_t maneuver = 0;     ///< as Sample::maneuver
   std::uint8_t stop_reason = 0;  ///< as Sample::stop_reason
@@ -24,7 +28,7 @@ struct SampleKinds {
   bool stopping = false;         ///< from more than 2 m/s to standing
   bool off_road = false;         ///< its centre at planning time
   bool in_junction = false;
-  bool off_course = false;  ///< more than 0.4 m or 5 degrees off its route
+  bool off_course = false;  ///< more than kOffCourse or kOffTurn off its route
   bool displaced = false;   ///< put beside its way (OffsetSamples)
 };
 

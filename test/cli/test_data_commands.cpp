@@ -39,6 +39,29 @@ TEST_F(DataCommands, TwoBagsOfOneNameAreRefused) {
   expectOutput("two bags are called 'a'");
 }
 
+TEST_F(DataCommands, WhatWouldBeIgnoredBesideBagsIsRefused) {
+  std::ofstream(path("topics.yaml")) << "image: /camera\nodometry: /odom\n";
+  const std::vector<std::string> bags = {
+      "collect",           "--bags",    path("a.bag"), "--topics",
+      path("topics.yaml"), "--results", path("data")};
+  const std::vector<std::vector<std::string>> others = {{"--scenarios", "roundabout_cross"},
+                                                        {"--seeds", "2"},
+                                                        {"--jobs", "2"},
+                                                        {"--duration", "20"},
+                                                        {"--keep-bags"},
+                                                        {"--no-images"},
+                                                        {"--set", "collection.period=1"}};
+  for (const std::vector<std::string>& other : others) {
+    std::vector<std::string> words = bags;
+    words.insert(words.end(), other.begin(), other.end());
+    EXPECT_EQ(cdiff(words), 3);
+    expectOutput("excludes");
+    expectOutput(other.front());
+  }
+  EXPECT_EQ(cdiff({"collect", "--topics", path("topics.yaml"), "--results", path("data")}), 3);
+  expectOutput("--topics requires --bags");
+}
+
 TEST_F(DataCommands, TheTrainersExitCodeAndMessageComeThrough) {
   fs::create_directories(path("data"));
   EXPECT_EQ(cdiff({"train", "--data", path("data"), "--output", path("model")}), 3);

@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/diffusion/route_tokens.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/geometry/polyline.h"
 #include "e2e_cdiff/ros/dataset_from_bag.h"
@@ -54,7 +55,7 @@ DatasetOptions allDisplaced() {
 
 /// From where the vehicle gets to the line of its route tokens [m]; nullopt before the first token.
 std::optional<double> distanceAtTheEnd(const training::Sample& sample) {
-  constexpr double kTokenScale = 20.0;
+  constexpr double kTokenScale = diffusion::kRouteTokenScale;
   const auto last = sample.rollout.row(sample.rollout.rows() - 1);
   if (last(traffic::kRolloutX) < 3.5) return std::nullopt;
   std::vector<Eigen::Vector3d> points;

@@ -9,6 +9,7 @@
 #include "e2e_cdiff/dynamics/action_rollout.h"
 #include "e2e_cdiff/ros/dataset_from_driving_bag.h"
 #include "nav_msgs/Odometry.h"
+#include "nav_msgs/Path.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Image.h"
 #include "std_msgs/String.h"
@@ -40,6 +41,7 @@ void writeDrive(const std::filesystem::path& file, double gap_begin = 1e9,
     const ::ros::Time stamp(kStart + time);
     nav_msgs::Odometry odometry;
     odometry.header.stamp = stamp;
+    odometry.header.frame_id = "odom";
     odometry.pose.pose.position.x = state.position.x();
     odometry.pose.pose.position.y = state.position.y();
     odometry.pose.pose.orientation.z = std::sin(0.5 * state.heading);
@@ -165,6 +167,68 @@ TEST_F(DrivingBagTest, ImagesWithoutColourAndBagsWithoutAHorizonAreRefused) {
   EXPECT_NE(error().find("cannot be used"), std::string::npos);
   writeDrive(file_, 3.0, "bgr8", 10.0);
   EXPECT_NE(error().find("gives no sample"), std::string::npos);
+}
+
+/// Odometry of 5 s at 10 Hz along x, with `speed` and that orientation.
+void writeOdometry(rosbag::Bag& bag, double speed, double w) {
+  for (int tick = 0; tick < 50; ++tick) {
+    const ::ros::Time stamp(kStart + 0.1 * tick);
+    nav_msgs::Odometry odometry;
+    odometry.header.stamp = stamp;
+    odometry.header.frame_id = "odom";
+    odometry.pose.pose.position.x = 0.1 * tick * speed;
+    odometry.pose.pose.orientation.w = w;
+    odometry.twist.twist.linear.x = speed;
+    bag.write("/my/odom", stamp, odometry);
+    sensor_msgs::Image image;
+    image.header.stamp = stamp;
+    image.encoding = "rgb8";
+    image.width = 32;
+    image.height = 24;
+    image.step = 3 * image.width;
+    image.data.assign(std::size_t{image.step} * image.height, 10);
+    bag.write("/my/camera", stamp, image);
+  }
+}
+
+TEST_F(DrivingBagTest, DrivingBackwardsGivesNoSampleButNoiseAtStandstillDoes) {
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  writeOdometry(bag, -1.0, 1.0);
+  bag.close();
+  EXPECT_NE(error().find("driving forwards"), std::string::npos);
+  EXPECT_GT(statistics_.dropped["reversing"], 10U);
+  bag.open(file_.string(), rosbag::bagmode::Write);
+  writeOdometry(bag, -0.02, 1.0);
+  bag.close();
+  for (const training::Sample& sample : samples()) {
+    EXPECT_EQ(sample.speed, 0.0);
+    EXPECT_EQ(sample.rollout.col(traffic::kRolloutSpeed).minCoeff(), 0.0);
+  }
+  EXPECT_EQ(statistics_.dropped["reversing"], 0U);
+}
+
+TEST_F(DrivingBagTest, AnOrientationOfAnyLengthButZeroIsOne) {
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  writeOdometry(bag, 2.0, 0.5);
+  bag.close();
+  EXPECT_FALSE(samples().empty());
+  bag.open(file_.string(), rosbag::bagmode::Write);
+  writeOdometry(bag, 2.0, 0.0);
+  bag.close();
+  EXPECT_NE(error().find("no orientation"), std::string::npos);
+}
+
+TEST_F(DrivingBagTest, APathInAnotherFrameIsRefused) {
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  nav_msgs::Path path;
+  path.header.stamp = ::ros::Time(kStart);
+  path.header.frame_id = "map";
+  bag.write("/my/path", path.header.stamp, path);
+  writeOdometry(bag, 2.0, 1.0);
+  bag.close();
+  topics_.path = "/my/path";
+  EXPECT_NE(error().find("'/my/odom' is in the frame 'odom', '/my/path' in 'map'"),
+            std::string::npos);
 }
 
 }  // namespace

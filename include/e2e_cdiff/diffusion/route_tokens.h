@@ -13,6 +13,9 @@
 
 namespace cdiff::diffusion {
 
+/// What a token of 1 stands for [m].
+inline constexpr double kRouteTokenScale = 20.0;
+
 /// [route_points, 2] row-major.
 std::vector<float> routeTokens(const Architecture& architecture, const geometry::Polyline& path,
                                double arc_length, const geometry::Pose2d& pose);

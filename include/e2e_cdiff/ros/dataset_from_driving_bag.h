@@ -29,11 +29,12 @@ struct DrivingBagOptions {
 
 /// Samples in order of time; each minute is a session of its own, so that whole minutes are held
 /// out in training. An image gives one if odometry (and controls, where named) goes on for the
-/// whole horizon. Images are cut to the aspect of `options.architecture`'s and made as small; they
-/// should see some 90 degrees. Stamps are those of the headers. Actions that are inferred are those
-/// of the vehicle dynamics (dynamics/action_inference.h). Throws InputError naming the file and: a
-/// topic that the bag lacks (and what it has), one of another type, a message that is broken, an
-/// encoding that is no colour, no sample at all.
+/// whole horizon, forwards: what goes back is dropped, for the vehicle dynamics knows no reverse.
+/// Images are cut to the aspect of `options.architecture`'s and made as small; they should see some
+/// 90 degrees. Stamps are those of the headers. Actions that are inferred are those of the vehicle
+/// dynamics (dynamics/action_inference.h). Throws InputError naming the file and: a topic that the
+/// bag lacks (and what it has), one of another type, a message that is broken or has no
+/// orientation, a path in another frame, an encoding that is no colour, no sample at all.
 std::vector<training::Sample> samplesFromDrivingBag(const std::filesystem::path& bag,
                                                     const DrivingBagOptions& topics,
                                                     const DatasetOptions& options,
