@@ -59,13 +59,14 @@ std::vector<geometry::OrientedBox> otherBoxes(const traffic::VehicleDimensions& 
   return boxes;
 }
 
-bool meet(const std::vector<geometry::OrientedBox>& first,
-          const std::vector<geometry::OrientedBox>& second, std::size_t steps) {
+std::optional<std::size_t> meet(const std::vector<geometry::OrientedBox>& first,
+                                const std::vector<geometry::OrientedBox>& second,
+                                std::size_t steps) {
   const std::size_t count = std::min({steps, first.size(), second.size()});
   for (std::size_t i = 0; i < count; ++i) {
-    if (mayOverlap(first[i], second[i]) && geometry::overlap(first[i], second[i])) return true;
+    if (mayOverlap(first[i], second[i]) && geometry::overlap(first[i], second[i])) return i;
   }
-  return false;
+  return std::nullopt;
 }
 
 }  // namespace cdiff::planning

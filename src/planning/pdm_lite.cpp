@@ -7,11 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "e2e_cdiff/dynamics/action_inference.h"
 #include "e2e_cdiff/planning/box_forecast.h"
 #include "e2e_cdiff/planning/idm.h"
 #include "e2e_cdiff/planning/longitudinal_controller.h"
 #include "e2e_cdiff/planning/motion_forecast.h"
 #include "e2e_cdiff/planning/route_rules.h"
+#include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::planning {
 namespace {
@@ -23,6 +25,8 @@ constexpr double kLaneChangeHorizon = 1.1;  // of boxes near a lane change [s]
 constexpr double kEndZone = 5.0;            // of the route [m]
 constexpr double kLightGap = 6.0;           // s0 before a stop line [m]
 constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
+constexpr double kLeastBraking = 1.0;       // of an even style that waits [m/s^2]
+constexpr double kHardestBraking = 8.0;     // of an even style [m/s^2]
 
 /// Pedals in the last metres of the route.
 PedalCommand endPedals(double remaining, double speed, double target_speed) {
@@ -41,6 +45,15 @@ double endBrake(double remaining, double speed, double full_deceleration) {
   return std::clamp(speed * speed / (2.0 * distance * full_deceleration), 0.0, 1.0);
 }
 
+/// Even deceleration that ends where the vehicle would be in the way [m/s^2].
+double evenBraking(const traffic::VehicleState& now, const traffic::VehicleState& meeting) {
+  constexpr double kMargin = 2.0;  // [m]
+  constexpr double kShortest = 0.5;
+  const double distance = (meeting.position - now.position).norm() - kMargin;
+  return std::clamp(now.speed * now.speed / (2.0 * std::max(distance, kShortest)), kLeastBraking,
+                    kHardestBraking);
+}
+
 /// How long the way of a vehicle that gave way must be clear before it drives on [s].
 double restartDelay(int slot) { return slot < 0 ? 0.0 : 0.5 + 0.2 * slot; }
 
@@ -54,24 +67,42 @@ void requireComplete(const PlanningTask& task) {
   }
 }
 
+/// PDM-Lite's constants, or those of a vehicle with an even style.
+IdmParameters parametersOf(const DrivingStyle& style) {
+  IdmParameters parameters;
+  if (!style.even()) return parameters;
+  parameters.acceleration = style.acceleration;
+  parameters.slow_deceleration = style.deceleration;
+  parameters.fast_deceleration = style.deceleration;
+  return parameters;
+}
+
+/// Target on a free road: the desired speed, or for an even style IDM's way towards it.
+double freeSpeed(const PlanningTask& task, double desired) {
+  if (!task.style.even()) return desired;
+  IdmObstacle none;
+  none.distance = 1e9;
+  return idmSpeed(task.vehicle->state.speed, desired, none, parametersOf(task.style));
+}
+
 /// IDM speed behind a leader or before a light.
 double idmBehind(const PlanningTask& task, const traffic::Vehicle& leader, double desired) {
   const traffic::Vehicle& self = *task.vehicle;
   IdmObstacle obstacle;
-  obstacle.minimum_gap = task.following.minimum_gap;
-  obstacle.time_headway = task.following.time_headway;
+  obstacle.minimum_gap = task.style.minimum_gap;
+  obstacle.time_headway = task.style.time_headway;
   obstacle.distance = (leader.state.position - self.state.position).norm();
   obstacle.speed = leader.state.speed;
   obstacle.length = leader.dimensions.length;
-  return idmSpeed(self.state.speed, desired, obstacle);
+  return idmSpeed(self.state.speed, desired, obstacle, parametersOf(task.style));
 }
 
-double idmBeforeLight(double speed, double desired, double distance) {
+double idmBeforeLight(const PlanningTask& task, double desired, double distance) {
   IdmObstacle obstacle;
   obstacle.distance = distance;
   obstacle.minimum_gap = kLightGap;
   obstacle.time_headway = kLightHeadway;
-  return idmSpeed(speed, desired, obstacle);
+  return idmSpeed(task.vehicle->state.speed, desired, obstacle, parametersOf(task.style));
 }
 
 }  // namespace
@@ -95,8 +126,13 @@ std::vector<PlannedAction> PdmLite::plan(const traffic::TrafficSnapshot& snapsho
   std::map<std::string, Memory> kept;
   Forecasts forecasts(snapshot.vehicles.size());
   std::vector<PlannedAction> actions;
-  for (const PlanningTask& task : tasks) {
-    requireComplete(task);
+  for (const PlanningTask& asked : tasks) {
+    requireComplete(asked);
+    PlanningTask task = asked;
+    if (task.slot >= 0 && !task.style.even()) {
+      task.style.acceleration = options_.cbv_acceleration;
+      task.style.deceleration = options_.cbv_deceleration;
+    }
     const traffic::VehicleState& state = task.vehicle->state;
     auto known = memories_.extract(task.vehicle->id);
     if (!known.empty()) kept.insert(std::move(known));
@@ -136,6 +172,8 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
   memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
   const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
   if (stuck) return {1.0, 0.0, 0.0};
+  if (situation.task.style.even() && remaining >= kEndZone)
+    return evenAction(situation.task, target);
   const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
   if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
   const bool ends = remaining < kEndZone && target > 0.0 && speed >= kRollbackSpeed;
@@ -143,13 +181,21 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
   return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
 }
 
+traffic::ControlAction PdmLite::evenAction(const PlanningTask& task, double target) const {
+  const double speed = task.vehicle->state.speed;
+  const double wanted = (target - speed) / IdmParameters().time_bound;
+  const double acceleration = std::clamp(wanted, -kHardestBraking, task.style.acceleration);
+  const double next = std::max(0.0, speed + acceleration * traffic::kRolloutStep);
+  return dynamics::inferAction(model_, {speed, next, 0.0});
+}
+
 double PdmLite::targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                             Memory& memory, Forecasts& forecasts) const {
   const traffic::Vehicle& self = *situation.task.vehicle;
   const map::Route& route = *situation.task.route;
   const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
-  double target = situation.initial_speed;
-  bool box_met = false;
+  double target = freeSpeed(situation.task, situation.initial_speed);
+  std::optional<std::size_t> met;  // step of the first box
   for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
     const traffic::Vehicle& other = situation.snapshot.vehicles[i];
     if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
@@ -159,23 +205,30 @@ double PdmLite::targetSpeed(const Situation& situation, const std::vector<Rollou
       target = std::min(target, idmBehind(situation.task, other, situation.initial_speed));
     } else if (exempt && isTrailing(route, situation.arc_length, other.state)) {
       continue;
-    } else if (!box_met && distance <= options_.detection_radius) {
-      box_met = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
+    } else if (distance <= options_.detection_radius) {
+      const auto step =
+          meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
+      if (step && (!met || *step < *met)) met = step;
     }
   }
   if (options_.obey_lights) {
     const auto light = distanceToRedLight(route, situation.arc_length, situation.snapshot);
-    if (light) {
-      const double speed = self.state.speed;
-      target = std::min(target, idmBeforeLight(speed, situation.initial_speed, *light));
-    }
+    if (light)
+      target = std::min(target, idmBeforeLight(situation.task, situation.initial_speed, *light));
   }
-  return mustWait(situation, box_met, memory) ? 0.0 : target;
+  if (!mustWait(situation, met.has_value(), memory)) {
+    memory.waiting = 0.0;
+    return target;
+  }
+  if (!situation.task.style.even()) return 0.0;
+  if (met) memory.waiting = std::max(memory.waiting, evenBraking(self.state, rollout[*met].state));
+  return std::min(target, self.state.speed - memory.waiting * IdmParameters().time_bound);
 }
 
-bool PdmLite::meetsBox(const Situation& situation, const traffic::Vehicle& other,
-                       const std::vector<geometry::OrientedBox>& own,
-                       const std::vector<traffic::VehicleState>& forecast) const {
+std::optional<std::size_t> PdmLite::meetsBox(
+    const Situation& situation, const traffic::Vehicle& other,
+    const std::vector<geometry::OrientedBox>& own,
+    const std::vector<traffic::VehicleState>& forecast) const {
   const bool lane_change = situation.near_lane_change;
   const double horizon = lane_change ? kLaneChangeHorizon : options_.forecast_horizon;
   return meet(own, otherBoxes(other.dimensions, forecast, lane_change), forecastSteps(horizon));

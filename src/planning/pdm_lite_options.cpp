@@ -33,6 +33,11 @@ void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"lateral_window", "", "Errors in the mean of the steering."}, lateral_window, 1,
                   1000);
   visitor.flag({"obey_lights", "", "Stop for lights that are not green."}, obey_lights);
+  visitor.number(
+      {"cbv_acceleration", "m/s^2", "Of CBVs with even pedals; 0: PDM-Lite's, published."},
+      cbv_acceleration, 0.0, 8.0);
+  visitor.number({"cbv_deceleration", "m/s^2", "Comfortable, of CBVs with even pedals."},
+                 cbv_deceleration, 0.5, 8.0);
 }
 
 void PdmLiteOptions::validate() const {

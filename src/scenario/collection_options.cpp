@@ -41,6 +41,16 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
                  4.0, 50.0);
   visitor.number({"maximum_headway", "s", "Largest time kept to a leader."}, maximum_headway, 0.25,
                  10.0);
+  visitor.text({"pedals", "", "Even pedals, or PDM-Lite's as published: full or none."}, pedals,
+               {"even", "published"});
+  visitor.number({"minimum_acceleration", "m/s^2", "Least acceleration of an even vehicle."},
+                 minimum_acceleration, 0.5, 8.0);
+  visitor.number({"maximum_acceleration", "m/s^2", "Largest acceleration of an even vehicle."},
+                 maximum_acceleration, 0.5, 8.0);
+  visitor.number({"minimum_deceleration", "m/s^2", "Least comfortable deceleration."},
+                 minimum_deceleration, 0.5, 8.0);
+  visitor.number({"maximum_deceleration", "m/s^2", "Largest comfortable deceleration."},
+                 maximum_deceleration, 0.5, 8.0);
   visitor.number({"radius", "m", "Vehicles this near the ego are driven."}, radius, 10.0, 1000.0);
   visitor.number({"spacing", "m", "Wished between driven vehicles when chosen."}, spacing, 0.0,
                  100.0);
@@ -77,6 +87,10 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
 
 void CollectionOptions::validate() const {
   requireOrder("minimum_speed", minimum_speed, "maximum_speed", maximum_speed);
+  requireOrder("minimum_acceleration", minimum_acceleration, "maximum_acceleration",
+               maximum_acceleration);
+  requireOrder("minimum_deceleration", minimum_deceleration, "maximum_deceleration",
+               maximum_deceleration);
   requireOrder("minimum_density", minimum_density, "maximum_density", maximum_density);
   requireOrder("minimum_route", minimum_route, "route_length", route_length);
   requireOrder("route_end", route_end, "minimum_route", minimum_route);

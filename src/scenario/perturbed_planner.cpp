@@ -21,6 +21,8 @@ constexpr std::uint32_t kSteerSign = 4;
 constexpr std::uint32_t kTargetSpeed = 0;
 constexpr std::uint32_t kGap = 1;
 constexpr std::uint32_t kHeadway = 2;
+constexpr std::uint32_t kAcceleration = 3;
+constexpr std::uint32_t kDeceleration = 4;
 
 constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
 constexpr double kSmallest = 0.3;       // of the largest steering noise
@@ -63,6 +65,18 @@ void PerturbedPlanner::disturb(const Burst& burst, double speed,
   }
 }
 
+planning::DrivingStyle PerturbedPlanner::styleOf(const core::RandomKey& key) const {
+  planning::DrivingStyle style;
+  style.minimum_gap = styles_.uniform(key, kGap, style.minimum_gap, options_.maximum_gap);
+  style.time_headway = styles_.uniform(key, kHeadway, style.time_headway, options_.maximum_headway);
+  if (options_.pedals == "published") return style;
+  style.acceleration = styles_.uniform(key, kAcceleration, options_.minimum_acceleration,
+                                       options_.maximum_acceleration);
+  style.deceleration = styles_.uniform(key, kDeceleration, options_.minimum_deceleration,
+                                       options_.maximum_deceleration);
+  return style;
+}
+
 std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlanningTask> asked = tasks;
@@ -70,10 +84,7 @@ std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     const core::RandomKey key{core::hashText(task.vehicle->id), 0, 0};
     task.target_speed =
         styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed);
-    task.following.minimum_gap =
-        styles_.uniform(key, kGap, task.following.minimum_gap, options_.maximum_gap);
-    task.following.time_headway =
-        styles_.uniform(key, kHeadway, task.following.time_headway, options_.maximum_headway);
+    task.style = styleOf(key);
   }
   std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
   std::map<std::string, Burst> kept;

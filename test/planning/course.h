@@ -110,6 +110,8 @@ class ClosedLoop {
     snapshot_.vehicles.push_back(vehicle);
     routes_.push_back({snapshot_.vehicles.size() - 1, &route, slot});
   }
+  /// Of all vehicles that are driven.
+  void setStyle(const DrivingStyle& style) { style_ = style; }
   void add(const traffic::Vehicle& vehicle) { snapshot_.vehicles.push_back(vehicle); }
   void setSignal(const std::string& id, const std::string& state) {
     snapshot_.signals = {{id, state}};
@@ -119,7 +121,8 @@ class ClosedLoop {
   void advance() {
     std::vector<PlanningTask> tasks;
     for (const Driven& driven : routes_) {
-      tasks.push_back({driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0});
+      tasks.push_back(
+          {driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0, nullptr, style_});
     }
     last_ = planner_.plan(snapshot_, tasks);
     for (int tick = 0; tick < 2; ++tick) tickOnce();
@@ -139,6 +142,7 @@ class ClosedLoop {
   const std::vector<PlannedAction>& actions() const { return last_; }
   PdmLite& planner() { return planner_; }
   traffic::TrafficSnapshot& snapshot() { return snapshot_; }
+  const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
  private:
   struct Driven {
@@ -166,6 +170,7 @@ class ClosedLoop {
   PdmLite planner_;
   traffic::TrafficSnapshot snapshot_;
   std::vector<Driven> routes_;
+  DrivingStyle style_;
   std::vector<PlannedAction> last_;
 };
 

@@ -131,9 +131,9 @@ TEST(BoxForecast, GrowsAsPublished) {
 TEST(BoxForecast, BoxesMeetOnlyAtTheSameStep) {
   const geometry::OrientedBox here{{0.0, 0.0}, 0.0, 4.0, 2.0};
   const geometry::OrientedBox away{{20.0, 0.0}, 0.0, 4.0, 2.0};
-  EXPECT_FALSE(meet({here, away}, {away, here}, 2));
-  EXPECT_TRUE(meet({away, here}, {here, here}, 2));
-  EXPECT_FALSE(meet({away, here}, {here, here}, 1));
+  EXPECT_EQ(meet({here, away}, {away, here}, 2), std::nullopt);
+  EXPECT_EQ(meet({away, here}, {here, here}, 2), 1U);
+  EXPECT_EQ(meet({away, here}, {here, here}, 1), std::nullopt);
 }
 
 }  // namespace

@@ -101,6 +101,85 @@ TEST_F(CrossRoads, BrakesForACrossingCarAndGoesOn) {
   RecordProperty("slowest_mps", std::to_string(slowest));
 }
 
+/// With a = 2 and b = 3 m/s^2, and what its pedals did.
+class EvenStyle : public CrossRoads {
+ protected:
+  static constexpr double kAcceleration = 2.0;
+
+  ClosedLoop evenLoop() const {
+    ClosedLoop loop(network_);
+    DrivingStyle style;
+    style.time_headway = 0.8;
+    style.acceleration = kAcceleration;
+    style.deceleration = 3.0;
+    loop.setStyle(style);
+    return loop;
+  }
+
+  /// To be called after each decision.
+  void watch(const ClosedLoop& loop) {
+    const traffic::Vehicle& self = loop.vehicle(0);
+    const double acceleration = (self.state.speed - speed_) / 0.1;
+    hardest_ = std::min(hardest_, acceleration);
+    strongest_ = std::max(strongest_, acceleration);
+    speed_ = self.state.speed;
+    for (std::size_t i = 1; i < loop.snapshot().vehicles.size(); ++i)
+      nearest_ = std::min(nearest_, gap(loop, 0, i));
+  }
+
+  double speed_ = 0.0;
+  double hardest_ = 0.0;    ///< acceleration [m/s^2]
+  double strongest_ = 0.0;  ///< acceleration [m/s^2]
+  double nearest_ = 1e9;    ///< gap to another [m]
+};
+
+TEST_F(EvenStyle, StartsAndReachesItsSpeedWithoutEverAskingForMore) {
+  ClosedLoop loop = evenLoop();
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 0.0), east_);
+  loop.run(12.0, [&] { watch(loop); });
+  EXPECT_GT(loop.vehicle(0).state.speed, 7.2);
+  EXPECT_LT(loop.vehicle(0).state.speed, 8.2);
+  EXPECT_LT(strongest_, kAcceleration + 0.3);
+  EXPECT_GT(hardest_, -0.3);
+}
+
+TEST_F(EvenStyle, StopsComfortablyBehindAStandingLeader) {
+  ClosedLoop loop = evenLoop();
+  speed_ = 8.0;
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), east_);
+  loop.add(vehicleAt("leader", 70.0, 0.0, 0.0, 0.0));
+  loop.run(25.0, [&] { watch(loop); });
+  EXPECT_GT(nearest_, 2.0);
+  EXPECT_LT(nearest_, 7.0);
+  EXPECT_LT(loop.vehicle(0).state.speed, 0.1);
+  EXPECT_GT(hardest_, -4.5) << "full brake is 8 m/s^2";
+}
+
+TEST_F(EvenStyle, GivesWayToACrossingCarWithoutFullBrakeAndGoesOn) {
+  ClosedLoop loop = evenLoop();
+  speed_ = 8.0;
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), east_);
+  traffic::Vehicle crossing = vehicleAt("crossing", 100.0, -95.0, kNorth, 8.0);
+  crossing.lane_id = "north_0";
+  loop.add(crossing);
+  loop.run(25.0, [&] { watch(loop); });
+  EXPECT_GT(nearest_, 0.5);
+  EXPECT_GT(hardest_, -6.0);
+  EXPECT_GT(loop.vehicle(0).state.position.x(), 110.0);
+}
+
+TEST_F(EvenStyle, IsThatOfCbvsAloneWhereTheOptionSaysSo) {
+  PdmLiteOptions options;
+  options.cbv_acceleration = kAcceleration;
+  for (const int slot : {-1, 0}) {
+    ClosedLoop loop(network_, options);
+    speed_ = strongest_ = 0.0;
+    loop.drive(vehicleAt("car", 5.0, 0.0, 0.0, 0.0), east_, slot);
+    loop.run(3.0, [&] { watch(loop); });
+    EXPECT_EQ(strongest_ < kAcceleration + 0.3, slot == 0) << strongest_;
+  }
+}
+
 TEST_F(CrossRoads, StandingBesideAStandingCrossingCarItStartsAtOnce) {
   // The other's nose is 0.6 m outside of the ego's width; both stand.
   ClosedLoop loop(network_);

@@ -110,22 +110,22 @@ TEST(TrafficDriver, ReleasesAfterStandingAndDrivesAgainAfterThePause) {
   EXPECT_EQ(at(11.2).assignments.size(), 1u);
 }
 
-/// Always the same action; remembers the target speeds it was given.
+/// Always the same action; remembers what it was asked.
 class Steady : public planning::Planner {
  public:
-  explicit Steady(std::vector<double>* speeds = nullptr) : speeds_(speeds) {}
+  explicit Steady(std::vector<planning::PlanningTask>* asked = nullptr) : asked_(asked) {}
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot&, const std::vector<planning::PlanningTask>& tasks) override {
     std::vector<planning::PlannedAction> actions;
     for (const planning::PlanningTask& task : tasks) {
-      if (speeds_ != nullptr) speeds_->push_back(task.target_speed);
+      if (asked_ != nullptr) asked_->push_back(task);
       actions.push_back({task.slot, task.vehicle->id, {0.5, 0.1, 0.0}, {}});
     }
     return actions;
   }
 
  private:
-  std::vector<double>* speeds_;
+  std::vector<planning::PlanningTask>* asked_;
 };
 
 struct Noise {
@@ -168,22 +168,40 @@ TEST(PerturbedPlanner, IsDeterministicAndLeavesStandingVehiclesAlone) {
   EXPECT_EQ(std::count(standing.marks.begin(), standing.marks.end(), true), 0);
 }
 
-TEST(PerturbedPlanner, GivesEachVehicleOneTargetSpeedInRange) {
-  std::vector<double> speeds;
-  PerturbedPlanner planner(std::make_unique<Steady>(&speeds), CollectionOptions(), 1);
+/// What two vehicles are asked in two decisions.
+std::vector<planning::PlanningTask> askedWith(const CollectionOptions& options) {
+  std::vector<planning::PlanningTask> asked;
+  PerturbedPlanner planner(std::make_unique<Steady>(&asked), options, 1);
   const auto snapshot = snapshotWith(0.0, {test::vehicle("a", {}), test::vehicle("b", {})});
   for (int i = 0; i < 2; ++i) {
     planner.plan(snapshot, {{0, &snapshot.vehicles[1], nullptr, 8.0},
                             {1, &snapshot.vehicles[2], nullptr, 8.0}});
   }
-  ASSERT_EQ(speeds.size(), 4u);
-  EXPECT_EQ(speeds[0], speeds[2]);
-  EXPECT_EQ(speeds[1], speeds[3]);
-  EXPECT_NE(speeds[0], speeds[1]);
-  for (const double speed : speeds) {
-    EXPECT_GE(speed, 5.0);
-    EXPECT_LE(speed, 12.0);
+  return asked;
+}
+
+TEST(PerturbedPlanner, GivesEachVehicleOneTargetSpeedAndStyleInRange) {
+  const auto asked = askedWith(CollectionOptions());
+  ASSERT_EQ(asked.size(), 4u);
+  for (std::size_t i : {0, 1}) {
+    EXPECT_EQ(asked[i].target_speed, asked[i + 2].target_speed);
+    EXPECT_EQ(asked[i].style.acceleration, asked[i + 2].style.acceleration);
+    EXPECT_GE(asked[i].target_speed, 5.0);
+    EXPECT_LE(asked[i].target_speed, 12.0);
+    EXPECT_GE(asked[i].style.acceleration, 1.5);
+    EXPECT_LE(asked[i].style.acceleration, 3.5);
+    EXPECT_GE(asked[i].style.deceleration, 2.0);
+    EXPECT_LE(asked[i].style.deceleration, 4.0);
   }
+  EXPECT_NE(asked[0].target_speed, asked[1].target_speed);
+  EXPECT_NE(asked[0].style.acceleration, asked[1].style.acceleration);
+  EXPECT_NE(asked[0].style.minimum_gap, asked[1].style.minimum_gap);
+}
+
+TEST(PerturbedPlanner, PublishedPedalsLeaveTheStyleToThePlanner) {
+  CollectionOptions options;
+  options.pedals = "published";
+  for (const planning::PlanningTask& task : askedWith(options)) EXPECT_FALSE(task.style.even());
 }
 
 TEST(DisturbedStart, MovesSidewaysAndTurnsWithinTwoStandardDeviations) {
@@ -203,6 +221,9 @@ TEST(DisturbedStart, MovesSidewaysAndTurnsWithinTwoStandardDeviations) {
 TEST(CollectionOptions, ContradictionsAreInputErrors) {
   CollectionOptions options;
   options.minimum_speed = 13.0;
+  EXPECT_THROW(options.validate(), core::InputError);
+  options = {};
+  options.minimum_acceleration = 4.0;
   EXPECT_THROW(options.validate(), core::InputError);
 }
 

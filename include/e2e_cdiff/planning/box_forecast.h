@@ -6,6 +6,7 @@
 /// while their forecast speed is below 1 m/s.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "e2e_cdiff/geometry/oriented_box.h"
@@ -23,8 +24,9 @@ std::vector<geometry::OrientedBox> otherBoxes(const traffic::VehicleDimensions& 
                                               const std::vector<traffic::VehicleState>& forecast,
                                               bool near_lane_change);
 
-/// Whether boxes with the same index overlap for any index below `steps`.
-bool meet(const std::vector<geometry::OrientedBox>& first,
-          const std::vector<geometry::OrientedBox>& second, std::size_t steps);
+/// First index below `steps` at which boxes of the same index overlap.
+std::optional<std::size_t> meet(const std::vector<geometry::OrientedBox>& first,
+                                const std::vector<geometry::OrientedBox>& second,
+                                std::size_t steps);
 
 }  // namespace cdiff::planning

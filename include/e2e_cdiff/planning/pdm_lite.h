@@ -18,6 +18,9 @@
 ///  - A standing vehicle is forecast where it stands and not grown, and the growth of the planned
 ///    vehicle follows its present speed: two standing cars hold each other up only if the body of
 ///    one lies in the other's way.
+///  - A task with an even style (DrivingStyle) follows by IDM with that style's a and b and gives
+///    way by an even deceleration that ends before the boxes meet; its pedals are those that the
+///    vehicle dynamics needs. As published, pedals are full or none and IDM has a = 24 m/s^2.
 #pragma once
 
 #include <map>
@@ -48,6 +51,7 @@ class PdmLite : public Planner {
     double standing_time = 0.0;  ///< below 0.1 m/s [s]
     bool gave_way = false;       ///< the box rule made it brake and it has not driven on since
     double clear_time = 0.0;     ///< since no box is met [s]
+    double waiting = 0.0;        ///< deceleration of an even style that gives way [m/s^2]
   };
   /// Forecasts of the snapshot's vehicles, made when first asked for.
   using Forecasts = std::vector<std::optional<std::vector<traffic::VehicleState>>>;
@@ -63,11 +67,13 @@ class PdmLite : public Planner {
   PlannedAction planOne(const Situation& situation, Memory& memory, Forecasts& forecasts) const;
   traffic::ControlAction pedalAction(const Situation& situation, double target,
                                      Memory& memory) const;
+  traffic::ControlAction evenAction(const PlanningTask& task, double target) const;
   double targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;
-  bool meetsBox(const Situation& situation, const traffic::Vehicle& other,
-                const std::vector<geometry::OrientedBox>& own,
-                const std::vector<traffic::VehicleState>& forecast) const;
+  /// First step at which the boxes meet.
+  std::optional<std::size_t> meetsBox(const Situation& situation, const traffic::Vehicle& other,
+                                      const std::vector<geometry::OrientedBox>& own,
+                                      const std::vector<traffic::VehicleState>& forecast) const;
   bool mustWait(const Situation& situation, bool box_met, Memory& memory) const;
   const std::vector<traffic::VehicleState>& forecastOf(const traffic::TrafficSnapshot& snapshot,
                                                        std::size_t index,

@@ -17,6 +17,8 @@ struct PdmLiteOptions {
   double lateral_kd = 1.3782508892109167;
   std::int64_t lateral_window = 20;  ///< errors in the integral (original: 6)
   bool obey_lights = true;           ///< stop for lights that are not green
+  double cbv_acceleration = 0.0;     ///< a of CBVs, which are then even; 0: as published [m/s^2]
+  double cbv_deceleration = 3.0;     ///< b of even CBVs [m/s^2]
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;

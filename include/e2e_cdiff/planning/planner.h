@@ -26,10 +26,13 @@ struct PlanningContext {
   const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
 };
 
-/// How close a vehicle keeps to its leader, for planners that follow by IDM (defaults: PDM-Lite's).
-struct FollowingStyle {
-  double minimum_gap = 4.0;    ///< s0 [m]
+/// How a vehicle drives, for planners that follow by IDM (defaults: PDM-Lite's).
+struct DrivingStyle {
+  double minimum_gap = 4.0;    ///< s0 behind a leader [m]
   double time_headway = 0.25;  ///< T [s]
+  double acceleration = 0.0;   ///< a; 0 leaves the pedals to PDM-Lite, which switches them [m/s^2]
+  double deceleration = 3.0;   ///< b, comfortable, where a is given [m/s^2]
+  bool even() const { return acceleration > 0.0; }
 };
 
 /// One vehicle to drive at this decision.
@@ -39,7 +42,7 @@ struct PlanningTask {
   const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
   const traffic::CameraImage* image = nullptr;  ///< its front view, for planners that see
-  FollowingStyle following = {};
+  DrivingStyle style = {};
 };
 
 /// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for

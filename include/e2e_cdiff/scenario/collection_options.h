@@ -4,6 +4,8 @@
 /// disturbed, and how often an image is taken (SI units).
 #pragma once
 
+#include <string>
+
 #include "e2e_cdiff/core/options.h"
 
 namespace cdiff::scenario {
@@ -30,6 +32,11 @@ struct CollectionOptions {
   double maximum_speed = 12.0;        ///< highest target speed of a vehicle [m/s]
   double maximum_gap = 7.0;           ///< largest s0 behind a leader, drawn from 4 m on [m]
   double maximum_headway = 1.2;       ///< largest T behind a leader, drawn from 0.25 s on [s]
+  std::string pedals = "even";        ///< even | published (PDM-Lite's, full or none)
+  double minimum_acceleration = 1.5;  ///< least a of an even vehicle [m/s^2]
+  double maximum_acceleration = 3.5;  ///< largest a of an even vehicle [m/s^2]
+  double minimum_deceleration = 2.0;  ///< least b of an even vehicle [m/s^2]
+  double maximum_deceleration = 4.0;  ///< largest b of an even vehicle [m/s^2]
   double radius = 150.0;              ///< of the ego: vehicles within it are driven [m]
   double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
   double minimum_route = 120.0;       ///< shorter routes are not taken [m]

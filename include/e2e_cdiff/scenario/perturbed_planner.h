@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A planner in disguise: asks another one, gives each vehicle its own target speed [m/s] and
-/// distance to its leader, and now and then adds a burst of noise to an action, so that the record
+/// driving style, and now and then adds a burst of noise to an action, so that the record
 /// shows how the planner recovers.
 #pragma once
 
@@ -39,6 +39,7 @@ class PerturbedPlanner : public planning::Planner {
     double steer = 0.0;       ///< in [-1, 1], of the largest
     double pedal = 0.0;       ///< in [-1, 1], of the largest; positive is throttle
   };
+  planning::DrivingStyle styleOf(const core::RandomKey& key) const;
   Burst drawn(const std::string& vehicle, std::uint32_t count, double after) const;
   void disturb(const Burst& burst, double speed, traffic::ControlAction& action) const;
 
