@@ -24,6 +24,11 @@ void NoiseOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"steer_speed", "m/s", "Speed above which the addition shrinks."}, steer_speed,
                  0.1, 40.0);
   visitor.number({"pedal", "", "Largest addition to throttle or brake."}, pedal, 0.0, 1.0);
+  visitor.number({"stall_share", "", "Part of the bursts that stop the vehicle."}, stall_share, 0.0,
+                 1.0);
+  visitor.number({"stall_minimum_time", "s", "Shortest stop, braking included."},
+                 stall_minimum_time, 0.1, 60.0);
+  visitor.number({"stall_maximum_time", "s", "Longest stop."}, stall_maximum_time, 0.1, 60.0);
   visitor.number({"lateral", "m", "Standard deviation of the place at the take-over."}, lateral,
                  0.0, 2.0);
   visitor.number({"heading", "deg", "Standard deviation of the heading at the take-over."}, heading,
@@ -94,6 +99,8 @@ void CollectionOptions::validate() const {
   requireOrder("minimum_density", minimum_density, "maximum_density", maximum_density);
   requireOrder("minimum_route", minimum_route, "route_length", route_length);
   requireOrder("route_end", route_end, "minimum_route", minimum_route);
+  requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
+               noise.stall_maximum_time);
   requireOrder("noise.minimum_time", noise.minimum_time, "noise.maximum_time", noise.maximum_time);
 }
 

@@ -16,6 +16,7 @@ constexpr std::uint32_t kDuration = 1;
 constexpr std::uint32_t kSteer = 2;
 constexpr std::uint32_t kPedal = 3;
 constexpr std::uint32_t kSteerSign = 4;
+constexpr std::uint32_t kStall = 5;
 
 // Elements of a vehicle's style.
 constexpr std::uint32_t kTargetSpeed = 0;
@@ -26,6 +27,7 @@ constexpr std::uint32_t kDeceleration = 4;
 
 constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
 constexpr double kSmallest = 0.3;       // of the largest steering noise
+constexpr double kStallBrake = 0.5;     // so that who follows can stop, too
 constexpr double kLeastThrottle = 0.3;  // less does nothing (BicycleModel)
 
 }  // namespace
@@ -44,15 +46,33 @@ PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std:
   Burst burst;
   burst.count = count;
   burst.begin = after - noise.interval * std::log(1.0 - noise_.uniform(key, kInterval));
-  burst.end = burst.begin + noise_.uniform(key, kDuration, noise.minimum_time, noise.maximum_time);
+  burst.stall = noise_.uniform(key, kStall) < noise.stall_share;
+  burst.end =
+      burst.begin +
+      (burst.stall
+           ? noise_.uniform(key, kDuration, noise.stall_minimum_time, noise.stall_maximum_time)
+           : noise_.uniform(key, kDuration, noise.minimum_time, noise.maximum_time));
   const double size = noise_.uniform(key, kSteer, kSmallest, 1.0);
   burst.steer = noise_.uniform(key, kSteerSign) < 0.5 ? -size : size;
   burst.pedal = noise_.uniform(key, kPedal, -1.0, 1.0);
   return burst;
 }
 
+/// Noise is for vehicles that move; a stop that begins while one moves lasts to its end.
+bool PerturbedPlanner::acts(double time, double speed, Burst& burst) const {
+  if (time < burst.begin || time >= burst.end) return false;
+  const bool moves = speed > kSlow;
+  if (!burst.begun && !moves) burst.stall = false;
+  burst.begun = true;
+  return moves || burst.stall;
+}
+
 void PerturbedPlanner::disturb(const Burst& burst, double speed,
                                traffic::ControlAction& action) const {
+  if (burst.stall) {
+    action = {0.0, action.steer, std::max(action.brake, kStallBrake)};
+    return;
+  }
   const NoiseOptions& noise = options_.noise;
   const double largest = noise.steer * std::min(1.0, noise.steer_speed / speed);
   action.steer = std::clamp(action.steer + burst.steer * largest, -1.0, 1.0);
@@ -95,7 +115,7 @@ std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     Burst burst = known != bursts_.end() ? known->second : drawn(id, 0, snapshot.time);
     if (snapshot.time >= burst.end) burst = drawn(id, burst.count + 1, burst.end);
     const double speed = tasks[i].vehicle->state.speed;
-    if (snapshot.time >= burst.begin && snapshot.time < burst.end && speed > kSlow) {
+    if (acts(snapshot.time, speed, burst)) {
       disturb(burst, speed, actions[i].action);
       perturbed_.insert(id);
     }

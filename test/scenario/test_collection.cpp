@@ -133,8 +133,10 @@ struct Noise {
   std::vector<bool> marks;
 };
 
-Noise noiseOf(std::uint64_t seed, double speed, int decisions) {
-  PerturbedPlanner planner(std::make_unique<Steady>(), CollectionOptions(), seed);
+Noise noiseOf(std::uint64_t seed, double speed, int decisions, double stall_share = 0.0) {
+  CollectionOptions options;
+  options.noise.stall_share = stall_share;
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, seed);
   Noise noise;
   for (int i = 0; i < decisions; ++i) {
     const auto snapshot = snapshotWith(0.1 * i, {test::vehicle("b", {0.0, 0.0, 0.0, speed})});
@@ -159,6 +161,32 @@ TEST(PerturbedPlanner, MarksExactlyTheActionsThatItChanges) {
   // Bursts of 0.55 s, 6 s apart on average: 8.4 %; with some 90 bursts in 600 s +- 1 %.
   EXPECT_GT(marked, 300);
   EXPECT_LT(marked, 720);
+}
+
+TEST(PerturbedPlanner, AStallBrakesToItsEndEvenWhereTheVehicleStands) {
+  CollectionOptions options;
+  options.noise.stall_share = 1.0;
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1);
+  double speed = 8.0;
+  std::vector<int> stops = {0};  // decisions each
+  for (int i = 0; i < 3000; ++i) {
+    const auto snapshot = snapshotWith(0.1 * i, {test::vehicle("b", {0.0, 0.0, 0.0, speed})});
+    const auto action =
+        planner.plan(snapshot, {{0, &snapshot.vehicles[1], nullptr, 8.0}}).front().action;
+    const bool stalled = planner.perturbed().count("b") != 0;
+    EXPECT_EQ(action, stalled ? (traffic::ControlAction{0.0, 0.1, 0.5})
+                              : (traffic::ControlAction{0.5, 0.1, 0.0}));
+    if (stalled) ++stops.back();
+    if (!stalled && stops.back() > 0) stops.push_back(0);
+    speed = stalled ? std::max(0.0, speed - 0.4) : 8.0;
+  }
+  ASSERT_GT(stops.size(), 10U);
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    EXPECT_GE(stops[i], 29) << "3 s";
+    EXPECT_LE(stops[i], 61) << "6 s";
+  }
+  const Noise standing = noiseOf(1, 0.0, 3000, 1.0);
+  EXPECT_EQ(std::count(standing.marks.begin(), standing.marks.end(), true), 0);
 }
 
 TEST(PerturbedPlanner, IsDeterministicAndLeavesStandingVehiclesAlone) {
@@ -221,6 +249,9 @@ TEST(DisturbedStart, MovesSidewaysAndTurnsWithinTwoStandardDeviations) {
 TEST(CollectionOptions, ContradictionsAreInputErrors) {
   CollectionOptions options;
   options.minimum_speed = 13.0;
+  EXPECT_THROW(options.validate(), core::InputError);
+  options = {};
+  options.noise.stall_minimum_time = 7.0;
   EXPECT_THROW(options.validate(), core::InputError);
   options = {};
   options.minimum_acceleration = 4.0;

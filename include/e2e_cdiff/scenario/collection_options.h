@@ -18,8 +18,11 @@ struct NoiseOptions {
   double steer = 0.45;        ///< largest addition to the steering, up to steer_speed
   double steer_speed = 3.5;   ///< faster vehicles get less: steer x steer_speed / speed [m/s]
   double pedal = 0.6;         ///< largest addition to throttle or brake
-  double lateral = 0.4;       ///< standard deviation of the place at the take-over [m]
-  double heading = 5.0;       ///< standard deviation of the heading at the take-over [deg]
+  double stall_share = 0.15;  ///< of bursts: the vehicle is stopped instead, where its way is free
+  double stall_minimum_time = 3.0;  ///< shortest stop, braking included [s]
+  double stall_maximum_time = 6.0;  ///< longest stop [s]
+  double lateral = 0.4;             ///< standard deviation of the place at the take-over [m]
+  double heading = 5.0;             ///< standard deviation of the heading at the take-over [deg]
 
   void describe(core::OptionsVisitor& visitor);
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A planner in disguise: asks another one, gives each vehicle its own target speed [m/s] and
-/// driving style, and now and then adds a burst of noise to an action, so that the record
-/// shows how the planner recovers.
+/// driving style, and now and then adds a burst of noise to an action or stops the vehicle
+/// for some seconds, so that the record shows how the planner recovers and starts.
 #pragma once
 
 #include <map>
@@ -38,9 +38,12 @@ class PerturbedPlanner : public planning::Planner {
     double end = 0.0;         ///< [s]
     double steer = 0.0;       ///< in [-1, 1], of the largest
     double pedal = 0.0;       ///< in [-1, 1], of the largest; positive is throttle
+    bool stall = false;       ///< stops the vehicle instead
+    bool begun = false;
   };
   planning::DrivingStyle styleOf(const core::RandomKey& key) const;
   Burst drawn(const std::string& vehicle, std::uint32_t count, double after) const;
+  bool acts(double time, double speed, Burst& burst) const;
   void disturb(const Burst& burst, double speed, traffic::ControlAction& action) const;
 
   std::unique_ptr<planning::Planner> planner_;
