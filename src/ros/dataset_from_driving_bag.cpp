@@ -127,6 +127,7 @@ class DrivingSamples {
     double driven = 0.0;
     for (auto state = bag_.states.upper_bound(time); state != bag_.states.end() && driven < length;
          ++state) {
+      if (state->second.speed < -kReversing) break;
       const double step = (point(state->second) - points.back()).head<2>().norm();
       if (step < kLeastPath) continue;
       driven += step;

@@ -146,7 +146,7 @@ class Reader {
 
   void takePath(const BagMessage& message) {
     const auto path = decode<nav_msgs::Path>(message);
-    requireFrame(topics_.path, path->header.frame_id);
+    if (path->poses.size() > 1) requireFrame(topics_.path, path->header.frame_id);
     std::vector<Eigen::Vector3d> points;
     for (const geometry_msgs::PoseStamped& pose : path->poses) {
       const Eigen::Vector3d point(pose.pose.position.x, pose.pose.position.y, pose.pose.position.z);

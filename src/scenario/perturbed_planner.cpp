@@ -58,11 +58,15 @@ PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std:
   return burst;
 }
 
-/// Noise is for vehicles that move; a stop that begins while one moves lasts to its end.
+/// Noise is for vehicles that move; a stop that begins while one moves lasts to its end, any other
+/// is left out.
 bool PerturbedPlanner::acts(double time, double speed, Burst& burst) const {
   if (time < burst.begin || time >= burst.end) return false;
   const bool moves = speed > kSlow;
-  if (!burst.begun && !moves) burst.stall = false;
+  if (!burst.begun && !moves && burst.stall) {
+    burst.end = time;
+    return false;
+  }
   burst.begun = true;
   return moves || burst.stall;
 }

@@ -218,15 +218,35 @@ TEST_F(DrivingBagTest, AnOrientationOfAnyLengthButZeroIsOne) {
   EXPECT_NE(error().find("no orientation"), std::string::npos);
 }
 
-TEST_F(DrivingBagTest, APathInAnotherFrameIsRefused) {
-  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+nav_msgs::Path pathAlongX(const std::string& frame) {
   nav_msgs::Path path;
   path.header.stamp = ::ros::Time(kStart);
-  path.header.frame_id = "map";
-  bag.write("/my/path", path.header.stamp, path);
+  path.header.frame_id = frame;
+  path.poses.resize(30);
+  for (std::size_t i = 0; i < path.poses.size(); ++i)
+    path.poses[i].pose.position.x = 3.0 * static_cast<double>(i);
+  return path;
+}
+
+TEST_F(DrivingBagTest, APathInTheSameFrameIsTheRoute) {
+  topics_.path = "/my/path";
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  bag.write(topics_.path, ::ros::Time(kStart), pathAlongX("odom"));
+  bag.write(topics_.path, ::ros::Time(kStart), nav_msgs::Path());  // clears a display
   writeOdometry(bag, 2.0, 1.0);
   bag.close();
+  const auto all = samples();
+  ASSERT_FALSE(all.empty());
+  EXPECT_NEAR(all.front().route[0], 3.0 / 20.0, 1e-6);
+  EXPECT_NEAR(all.front().route[1], 0.0, 1e-6);
+}
+
+TEST_F(DrivingBagTest, APathInAnotherFrameIsRefused) {
   topics_.path = "/my/path";
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  bag.write(topics_.path, ::ros::Time(kStart), pathAlongX("map"));
+  writeOdometry(bag, 2.0, 1.0);
+  bag.close();
   EXPECT_NE(error().find("'/my/odom' is in the frame 'odom', '/my/path' in 'map'"),
             std::string::npos);
 }

@@ -12,13 +12,13 @@ namespace cdiff::scenario {
 
 /// Disturbances of what the recorded planner commands, and of where it begins.
 struct NoiseOptions {
-  double interval = 6.0;      ///< mean time from one burst to the next of a vehicle [s]
-  double minimum_time = 0.3;  ///< shortest burst [s]
-  double maximum_time = 0.8;  ///< longest burst [s]
-  double steer = 0.45;        ///< largest addition to the steering, up to steer_speed
-  double steer_speed = 3.5;   ///< faster vehicles get less: steer x steer_speed / speed [m/s]
-  double pedal = 0.6;         ///< largest addition to throttle or brake
-  double stall_share = 0.15;  ///< of bursts: the vehicle is stopped instead, where its way is free
+  double interval = 6.0;            ///< mean time from one burst to the next of a vehicle [s]
+  double minimum_time = 0.3;        ///< shortest burst [s]
+  double maximum_time = 0.8;        ///< longest burst [s]
+  double steer = 0.45;              ///< largest addition to the steering, up to steer_speed
+  double steer_speed = 3.5;         ///< faster vehicles get less: steer x steer_speed / speed [m/s]
+  double pedal = 0.6;               ///< largest addition to throttle or brake
+  double stall_share = 0.15;        ///< of bursts: a vehicle that moves is stopped instead
   double stall_minimum_time = 3.0;  ///< shortest stop, braking included [s]
   double stall_maximum_time = 6.0;  ///< longest stop [s]
   double lateral = 0.4;             ///< standard deviation of the place at the take-over [m]
