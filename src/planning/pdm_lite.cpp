@@ -23,6 +23,7 @@ constexpr double kStuckTime = 8.5;          // published: 170 ticks at 20 Hz [s]
 constexpr double kRollbackSpeed = 0.5;      // [m/s]
 constexpr double kLaneChangeHorizon = 1.1;  // of boxes near a lane change [s]
 constexpr double kEndZone = 5.0;            // of the route [m]
+constexpr double kCreepSpeed = 1.0;         // in the end zone [m/s]
 constexpr double kLightGap = 6.0;           // s0 before a stop line [m]
 constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
 constexpr double kLeastBraking = 1.0;       // of an even style that waits [m/s^2]
@@ -30,7 +31,6 @@ constexpr double kHardestBraking = 8.0;     // of an even style [m/s^2]
 
 /// Pedals in the last metres of the route.
 PedalCommand endPedals(double remaining, double speed, double target_speed) {
-  constexpr double kCreepSpeed = 1.0;
   if (remaining > 0.0 && speed < kCreepSpeed) {
     return pedals(speed, std::min(kCreepSpeed, target_speed));
   }
@@ -77,12 +77,22 @@ IdmParameters parametersOf(const DrivingStyle& style) {
   return parameters;
 }
 
-/// Target on a free road: the desired speed, or for an even style IDM's way towards it.
+/// Target on a free road: the desired speed, or for an even style IDM's way towards it, slowing
+/// down by no more than b.
 double freeSpeed(const PlanningTask& task, double desired) {
   if (!task.style.even()) return desired;
+  const double speed = task.vehicle->state.speed;
+  const IdmParameters parameters = parametersOf(task.style);
   IdmObstacle none;
   none.distance = 1e9;
-  return idmSpeed(task.vehicle->state.speed, desired, none, parametersOf(task.style));
+  return std::max(idmSpeed(speed, desired, none, parameters),
+                  speed - task.style.deceleration * parameters.time_bound);
+}
+
+/// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
+/// freeSpeed alone, for IDM's own term knows no bound.
+double desiredBehind(const PlanningTask& task, double desired) {
+  return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
 }
 
 /// IDM speed behind a leader or before a light.
@@ -94,7 +104,8 @@ double idmBehind(const PlanningTask& task, const traffic::Vehicle& leader, doubl
   obstacle.distance = (leader.state.position - self.state.position).norm();
   obstacle.speed = leader.state.speed;
   obstacle.length = leader.dimensions.length;
-  return idmSpeed(self.state.speed, desired, obstacle, parametersOf(task.style));
+  return idmSpeed(self.state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
 }
 
 double idmBeforeLight(const PlanningTask& task, double desired, double distance) {
@@ -102,7 +113,8 @@ double idmBeforeLight(const PlanningTask& task, double desired, double distance)
   obstacle.distance = distance;
   obstacle.minimum_gap = kLightGap;
   obstacle.time_headway = kLightHeadway;
-  return idmSpeed(task.vehicle->state.speed, desired, obstacle, parametersOf(task.style));
+  return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
 }
 
 }  // namespace
@@ -171,9 +183,8 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
       remaining < kEndZone ? endPedals(remaining, speed, target) : pedals(speed, target);
   memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
   const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
+  if (situation.task.style.even()) return evenAction(situation.task, remaining, target);
   if (stuck) return {1.0, 0.0, 0.0};
-  if (situation.task.style.even() && remaining >= kEndZone)
-    return evenAction(situation.task, target);
   const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
   if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
   const bool ends = remaining < kEndZone && target > 0.0 && speed >= kRollbackSpeed;
@@ -181,12 +192,21 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
   return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
 }
 
-traffic::ControlAction PdmLite::evenAction(const PlanningTask& task, double target) const {
+traffic::ControlAction PdmLite::evenAction(const PlanningTask& task, double remaining,
+                                           double target) const {
   const double speed = task.vehicle->state.speed;
+  const bool creeps = remaining > 0.0 && speed < kCreepSpeed;
+  const bool ends = remaining < kEndZone;
+  if (ends && creeps) target = std::min(target, kCreepSpeed);
   const double wanted = (target - speed) / IdmParameters().time_bound;
   const double acceleration = std::clamp(wanted, -kHardestBraking, task.style.acceleration);
   const double next = std::max(0.0, speed + acceleration * traffic::kRolloutStep);
-  return dynamics::inferAction(model_, {speed, next, 0.0});
+  traffic::ControlAction action = dynamics::inferAction(model_, {speed, next, 0.0});
+  if (!ends || creeps) return action;
+  action.throttle = 0.0;
+  action.brake =
+      std::max(action.brake, endBrake(remaining, speed, model_.options().max_deceleration));
+  return action;
 }
 
 double PdmLite::targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,

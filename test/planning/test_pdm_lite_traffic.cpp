@@ -143,6 +143,35 @@ TEST_F(EvenStyle, StartsAndReachesItsSpeedWithoutEverAskingForMore) {
   EXPECT_GT(hardest_, -0.3);
 }
 
+TEST_F(EvenStyle, SlowsDownToItsSpeedComfortably) {
+  ClosedLoop loop = evenLoop();
+  speed_ = 12.0;
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 12.0), east_);
+  loop.run(10.0, [&] { watch(loop); });
+  EXPECT_LT(loop.vehicle(0).state.speed, 8.5);
+  EXPECT_GT(hardest_, -3.5);
+}
+
+TEST_F(EvenStyle, StopsShortlyBeyondTheEndOfItsRoute) {
+  ClosedLoop loop = evenLoop();
+  loop.drive(vehicleAt("ego", 270.0, 0.0, 0.0, 6.0), east_);
+  loop.run(20.0);
+  EXPECT_EQ(loop.vehicle(0).state.speed, 0.0);
+  EXPECT_GT(loop.vehicle(0).state.position.x(), 300.0);
+  EXPECT_LT(loop.vehicle(0).state.position.x(), 302.0);
+}
+
+TEST_F(EvenStyle, StandingItLetsACrossingCarPassThatItsForecastMeets) {
+  ClosedLoop loop = evenLoop();
+  loop.drive(vehicleAt("ego", 92.0, 0.0, 0.0, 0.0), east_);
+  traffic::Vehicle crossing = vehicleAt("crossing", 100.0, -18.0, kNorth, 8.0);
+  crossing.lane_id = "north_0";
+  loop.add(crossing);
+  loop.run(10.0, [&] { watch(loop); });
+  EXPECT_GT(nearest_, 0.3);
+  EXPECT_GT(loop.vehicle(0).state.position.x(), 110.0);
+}
+
 TEST_F(EvenStyle, StopsComfortablyBehindAStandingLeader) {
   ClosedLoop loop = evenLoop();
   speed_ = 8.0;

@@ -20,7 +20,9 @@
 ///    one lies in the other's way.
 ///  - A task with an even style (DrivingStyle) follows by IDM with that style's a and b and gives
 ///    way by an even deceleration that ends before the boxes meet; its pedals are those that the
-///    vehicle dynamics needs. As published, pedals are full or none and IDM has a = 24 m/s^2.
+///    vehicle dynamics needs, and no rule makes it drive after standing for long; its forecast is
+///    that of full throttle, which asks for more room. As published, pedals are full or none and
+///    IDM has a = 24 m/s^2.
 #pragma once
 
 #include <map>
@@ -67,7 +69,8 @@ class PdmLite : public Planner {
   PlannedAction planOne(const Situation& situation, Memory& memory, Forecasts& forecasts) const;
   traffic::ControlAction pedalAction(const Situation& situation, double target,
                                      Memory& memory) const;
-  traffic::ControlAction evenAction(const PlanningTask& task, double target) const;
+  traffic::ControlAction evenAction(const PlanningTask& task, double remaining,
+                                    double target) const;
   double targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;
   /// First step at which the boxes meet.
