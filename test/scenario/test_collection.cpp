@@ -190,7 +190,7 @@ TEST(PerturbedPlanner, AStallBrakesToItsEndEvenWhereTheVehicleStands) {
 TEST(PerturbedPlanner, AStallThatFindsAStandingVehicleIsLeftOut) {
   CollectionOptions options;
   options.noise.stall_share = 1.0;
-  options.noise.interval = 1.0;
+  options.noise.interval = 5.0;
   options.noise.stall_minimum_time = options.noise.stall_maximum_time = 60.0;
   PerturbedPlanner planner(std::make_unique<Steady>(), options, 1);
   int marked = 0;
