@@ -5,7 +5,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/batch_report.h"
 #include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/report_style.h"
+#include "e2e_cdiff/report/page_head.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -25,11 +25,8 @@ std::string section(const std::string& title, const std::string& content,
 }
 
 std::string headOf(const std::string& name) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
-         "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-         "name=\"color-scheme\" content=\"light dark\">\n<title>" +
-         escapeMarkup(name) + " – evaluation</title>\n<style>" + report::kReportStyleSheet +
-         report::kPanelSheetStyle + kPageStyle + "</style>\n</head>\n";
+  return report::pageHead(name + " – evaluation",
+                          std::string(report::kPanelSheetStyle) + kPageStyle);
 }
 
 /// Broke, was interrupted or not run: 0; verdict failed: 1; passed: 2.

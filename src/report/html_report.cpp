@@ -9,6 +9,7 @@
 #include "e2e_cdiff/report/driving_section.h"
 #include "e2e_cdiff/report/guidance_section.h"
 #include "e2e_cdiff/report/markup.h"
+#include "e2e_cdiff/report/page_head.h"
 #include "e2e_cdiff/report/playback.h"
 #include "e2e_cdiff/report/report_style.h"
 #include "e2e_cdiff/report/report_tables.h"
@@ -24,11 +25,7 @@ std::string section(const std::string& title, const std::string& content) {
 }
 
 std::string head(const SessionResult& result) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
-         "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-         "name=\"color-scheme\" content=\"light dark\">\n<title>" +
-         escapeMarkup(result.setup.options().name) + " – session report</title>\n<style>" +
-         kReportStyleSheet + "</style>\n</head>\n";
+  return pageHead(result.setup.options().name + " – session report");
 }
 
 std::string banner(const SessionResult& result) {

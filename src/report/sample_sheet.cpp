@@ -8,7 +8,7 @@
 #include "e2e_cdiff/diffusion/route_tokens.h"
 #include "e2e_cdiff/report/image_data_uri.h"
 #include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/report_style.h"
+#include "e2e_cdiff/report/page_head.h"
 #include "e2e_cdiff/training/sample_balance.h"
 
 namespace cdiff::report {
@@ -111,11 +111,8 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
 std::string sampleSheet(const std::string& title, const std::vector<CountRow>& counts,
                         const training::Dataset& dataset, std::size_t count) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
-      "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-      "name=\"color-scheme\" content=\"light dark\">\n<title>" +
-      escapeMarkup(title) + " – samples</title>\n<style>" + kReportStyleSheet + kPageStyle +
-      "</style>\n</head>\n<body>\n<main>\n<header>\n<h1>" + escapeMarkup(title) +
+      pageHead(title + " – samples", kPageStyle) + "<body>\n<main>\n<header>\n<h1>" +
+      escapeMarkup(title) +
       "</h1>\n<p class=\"sub\">front view at planning time; from above, forward is up: the route "
       "green, the 3.2 s that were driven with a dot each 0.8 s</p>\n</header>\n<section>\n"
       "<h2>What was collected</h2>\n" +

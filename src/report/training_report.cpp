@@ -11,7 +11,7 @@
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/line_chart.h"
 #include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/report_style.h"
+#include "e2e_cdiff/report/page_head.h"
 
 namespace cdiff::report {
 namespace {
@@ -167,11 +167,7 @@ std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std
 std::string trainingReport(const std::string& title, const std::vector<TrainingStage>& stages,
                            const std::string& card) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
-      "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-      "name=\"color-scheme\" content=\"light dark\">\n<title>" +
-      escapeMarkup(title) + " – training</title>\n<style>" + kReportStyleSheet +
-      "</style>\n</head>\n<body>\n<main>\n<header>\n<h1>" + escapeMarkup(title) +
+      pageHead(title + " – training") + "<body>\n<main>\n<header>\n<h1>" + escapeMarkup(title) +
       "</h1>\n<p class=\"sub\">course of training; errors are of the averaged weights on held-out "
       "sessions</p>\n</header>\n";
   for (const TrainingStage& stage : stages) html += stageSection(stage);
