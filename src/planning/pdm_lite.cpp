@@ -179,11 +179,11 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
                                             Memory& memory) const {
   const double speed = situation.task.vehicle->state.speed;
   const double remaining = situation.task.route->length() - situation.arc_length;
+  if (situation.task.style.even()) return evenAction(situation.task, remaining, target);
   const PedalCommand pedal =
       remaining < kEndZone ? endPedals(remaining, speed, target) : pedals(speed, target);
   memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
   const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
-  if (situation.task.style.even()) return evenAction(situation.task, remaining, target);
   if (stuck) return {1.0, 0.0, 0.0};
   const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
   if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
@@ -211,38 +211,48 @@ traffic::ControlAction PdmLite::evenAction(const PlanningTask& task, double rema
 
 double PdmLite::targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                             Memory& memory, Forecasts& forecasts) const {
-  const traffic::Vehicle& self = *situation.task.vehicle;
-  const map::Route& route = *situation.task.route;
-  const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
-  double target = freeSpeed(situation.task, situation.initial_speed);
-  std::optional<std::size_t> met;  // step of the first box
-  for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
-    const traffic::Vehicle& other = situation.snapshot.vehicles[i];
-    if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
-    const double distance = (other.state.position - self.state.position).norm();
-    const bool exempt = !situation.near_lane_change;
-    if (exempt && isLeading(route, situation.arc_length, other.state)) {
-      target = std::min(target, idmBehind(situation.task, other, situation.initial_speed));
-    } else if (exempt && isTrailing(route, situation.arc_length, other.state)) {
-      continue;
-    } else if (distance <= options_.detection_radius) {
-      const auto step =
-          meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
-      if (step && (!met || *step < *met)) met = step;
-    }
-  }
+  const PlanningTask& task = situation.task;
+  const Encounter encounter = encounterOf(situation, rollout, forecasts);
+  double target = encounter.target;
   if (options_.obey_lights) {
-    const auto light = distanceToRedLight(route, situation.arc_length, situation.snapshot);
-    if (light)
-      target = std::min(target, idmBeforeLight(situation.task, situation.initial_speed, *light));
+    const auto light = distanceToRedLight(*task.route, situation.arc_length, situation.snapshot);
+    if (light) target = std::min(target, idmBeforeLight(task, situation.initial_speed, *light));
   }
-  if (!mustWait(situation, met.has_value(), memory)) {
+  if (!mustWait(situation, encounter.met.has_value(), memory)) {
     memory.waiting = 0.0;
     return target;
   }
-  if (!situation.task.style.even()) return 0.0;
-  if (met) memory.waiting = std::max(memory.waiting, evenBraking(self.state, rollout[*met].state));
-  return std::min(target, self.state.speed - memory.waiting * IdmParameters().time_bound);
+  if (!task.style.even()) return 0.0;
+  const traffic::VehicleState& now = task.vehicle->state;
+  if (encounter.met)
+    memory.waiting = std::max(memory.waiting, evenBraking(now, rollout[*encounter.met].state));
+  return std::min(target, now.speed - memory.waiting * IdmParameters().time_bound);
+}
+
+PdmLite::Encounter PdmLite::encounterOf(const Situation& situation,
+                                        const std::vector<RolloutPoint>& rollout,
+                                        Forecasts& forecasts) const {
+  const traffic::Vehicle& self = *situation.task.vehicle;
+  const map::Route& route = *situation.task.route;
+  const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
+  const bool exempt = !situation.near_lane_change;
+  const bool first_counts = situation.task.style.even();
+  Encounter found{freeSpeed(situation.task, situation.initial_speed), {}};
+  for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
+    const traffic::Vehicle& other = situation.snapshot.vehicles[i];
+    if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
+    if (exempt && isLeading(route, situation.arc_length, other.state)) {
+      const double behind = idmBehind(situation.task, other, situation.initial_speed);
+      found.target = std::min(found.target, behind);
+      continue;
+    }
+    if (exempt && isTrailing(route, situation.arc_length, other.state)) continue;
+    const double distance = (other.state.position - self.state.position).norm();
+    if (distance > options_.detection_radius || (found.met && !first_counts)) continue;
+    const auto step = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
+    if (step && (!found.met || *step < *found.met)) found.met = step;
+  }
+  return found;
 }
 
 std::optional<std::size_t> PdmLite::meetsBox(

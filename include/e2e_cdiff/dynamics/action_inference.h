@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The action that the vehicle dynamics needs for a motion that was observed: the inverse of
-/// BicycleModel over 0.1 s, for recordings that hold no pedals (SI units).
+/// The action that the vehicle dynamics needs for a motion: the inverse of BicycleModel over 0.1 s,
+/// for recordings that hold no pedals and for planners that choose accelerations (SI units).
 #pragma once
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 
 namespace cdiff::dynamics {
 
-/// What a vehicle did over 0.1 s.
+/// What a vehicle did, or is to do, over 0.1 s.
 struct ObservedMotion {
   double speed = 0.0;       ///< at its begin [m/s]
   double next_speed = 0.0;  ///< at its end [m/s]

@@ -73,6 +73,13 @@ class PdmLite : public Planner {
                                     double target) const;
   double targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;
+  /// What the others mean for the vehicle.
+  struct Encounter {
+    double target;                   ///< by the free road and leaders [m/s]
+    std::optional<std::size_t> met;  ///< first step that meets a box; not even: a step
+  };
+  Encounter encounterOf(const Situation& situation, const std::vector<RolloutPoint>& rollout,
+                        Forecasts& forecasts) const;
   /// First step at which the boxes meet.
   std::optional<std::size_t> meetsBox(const Situation& situation, const traffic::Vehicle& other,
                                       const std::vector<geometry::OrientedBox>& own,
