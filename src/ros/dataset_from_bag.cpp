@@ -118,9 +118,9 @@ class SampleMaker {
     auto displaced = offset_samples_.displace(sample, surroundings, future, offset);
     if (!displaced) return;
     kinds.displaced = true;
-    kinds.off_course = std::abs(offset.lateral) > kOffCourse || std::abs(offset.heading) > kOffTurn;
-    count(*displaced, kinds, statistics_);
-    samples.push_back(std::move(*displaced));
+    kinds.off_course = displaced->off_course;
+    count(displaced->sample, kinds, statistics_);
+    samples.push_back(std::move(displaced->sample));
   }
 
   void requireSize(const traffic::CameraImage& image) const {

@@ -107,8 +107,10 @@ class Reader {
     if (topic == topics_.path && !topic.empty()) takePath(message);
   }
 
-  /// Positions can be compared in one frame alone; the first that is named is it.
-  void requireFrame(const std::string& topic, const std::string& frame) {
+  /// Throws InputError unless `frame`, with or without a leading slash, is that of the first
+  /// message with a position: positions can be compared in one frame alone.
+  void requireFrame(const std::string& topic, const std::string& name) {
+    const std::string frame = name.substr(name.rfind('/', 0) == 0 ? 1 : 0);
     if (frame_topic_.empty()) {
       frame_ = frame;
       frame_topic_ = topic;

@@ -10,6 +10,7 @@
 #include "e2e_cdiff/planning/route_follower.h"
 
 namespace cdiff::ros {
+
 OffsetSamples::OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options)
     : setup_(setup),
       options_(options),
@@ -59,7 +60,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
   return true;
 }
 
-std::optional<training::Sample> OffsetSamples::displace(
+std::optional<DisplacedSample> OffsetSamples::displace(
     const training::Sample& sample, const SampleSurroundings& around,
     const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
   traffic::Vehicle vehicle = *around.snapshot.find(sample.vehicle);
@@ -67,13 +68,14 @@ std::optional<training::Sample> OffsetSamples::displace(
       offset.lateral * geometry::leftNormal(geometry::direction(vehicle.state.heading));
   vehicle.state.heading = core::wrapAngle(vehicle.state.heading + offset.heading);
   if (!free(vehicle, around.snapshot)) return std::nullopt;
-  training::Sample displaced = sample;
+  DisplacedSample found{sample, offCourse(around, vehicle.state)};
+  training::Sample& displaced = found.sample;
   if (!driveBack(vehicle, around, future, displaced.rollout)) return std::nullopt;
   displaced.recovering = true;
   displaced.image = camera_.render(around.snapshot, vehicle);
   displaced.route = diffusion::routeTokens(options_.architecture, around.route.path(),
                                            around.arc_length, vehicle.state.pose());
-  return displaced;
+  return found;
 }
 
 }  // namespace cdiff::ros

@@ -20,14 +20,19 @@ struct SampleOffset {
   double heading = 0.0;
 };
 
+struct DisplacedSample {
+  training::Sample sample;
+  bool off_course = false;  ///< at its displaced place, as SampleKinds
+};
+
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.
   OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options);
 
   /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
-  /// the vehicle would touch another one, or where it begins or is off the road at any time.
-  std::optional<training::Sample> displace(
+  /// the vehicle would touch another one or leave the road at any time, or begins off it.
+  std::optional<DisplacedSample> displace(
       const training::Sample& sample, const SampleSurroundings& around,
       const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);
 

@@ -7,12 +7,14 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/planning/route_rules.h"
+#include "e2e_cdiff/training/sample_balance.h"
 
 namespace cdiff::ros {
 namespace {
 
-constexpr double kStanding = 0.3;                   // [m/s]
-constexpr double kMoving = 2.0;                     // [m/s]
+using training::kMoving;
+using training::kStanding;
+
 constexpr double kTurn = 15.0 * core::kPi / 180.0;  // of heading over the horizon [rad]
 
 constexpr std::uint8_t kOtherReason = 4;
@@ -67,12 +69,16 @@ SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& ar
   if (kinds.stop_reason != 0) kinds.stop_reason = stopReasonOf(around, sample.vehicle);
   kinds.off_road = !around.setup.drivableArea().contains(state.position, state.elevation);
   kinds.in_junction = around.route.inJunctionAt(around.arc_length);
+  kinds.off_course = offCourse(around, state);
+  return kinds;
+}
+
+bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& state) {
   const double s = std::clamp(around.arc_length, 0.0, around.route.length());
   const double lateral = (around.route.path().positionAt(s) - state.position).norm();
   const double turned =
       std::abs(core::angleDifference(state.heading, around.route.path().headingAt(s)));
-  kinds.off_course = lateral > kOffCourse || turned > kOffTurn;
-  return kinds;
+  return lateral > kOffCourse || turned > kOffTurn;
 }
 
 void count(const training::Sample& sample, const SampleKinds& kinds,

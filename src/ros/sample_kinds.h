@@ -33,6 +33,8 @@ struct SampleKinds {
 };
 
 SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
+/// Whether `state` lies off the route near `around.arc_length`.
+bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& state);
 /// What its motion alone tells; the reason of a stop is "other".
 SampleKinds kindsOf(const training::Sample& sample);
 

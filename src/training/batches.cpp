@@ -50,7 +50,7 @@ BatchMaker::BatchMaker(const Dataset& dataset, const diffusion::Normalizer& norm
       order_(options.seed, options.stage + " order"),
       change_(options.seed, options.stage + " change"),
       noise_(options.seed, options.stage + " noise"),
-      weights_(balanceWeights(dataset, options.balance)) {}
+      weights_(balanceWeights(dataset, options.balance, options.yielding_share)) {}
 
 std::vector<std::size_t> BatchMaker::order(std::int64_t step) {
   const std::vector<std::size_t>& all = dataset_.training();

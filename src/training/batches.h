@@ -41,6 +41,7 @@ struct BatchOptions {
   double image_scale = 1.0;
   double route_drop = 0.2;
   double balance = 0.5;
+  double yielding_share = 1.0;
   bool mirror = true;
   bool change_light = true;
   std::int64_t diffusion_steps = 100;

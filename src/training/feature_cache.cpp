@@ -117,20 +117,25 @@ void computeChunk(const TrainingState& state, Encoders& encoders, Progress& prog
   progress.done = end;
 }
 
-}  // namespace
-
-FeatureCache computeFeatures(const TrainingState& state, const std::atomic<bool>& stop,
-                             std::ostream& log) {
-  const at::NoGradGuard no_gradient;
-  const auto samples = static_cast<std::int64_t>(state.dataset.size());
-  const std::int64_t width = state.architecture.image_features;
+/// Empty, or what an earlier run with the same encoder and data left.
+Progress progressOf(const TrainingState& state) {
   Progress progress;
   progress.path = fs::path(state.options.output) / "features.cache";
   progress.key = {{"encoder", hashOf(state.encoder.parameters())},
                   {"data", state.dataset.sha256()},
                   {"mirrored_half", state.options.mirror}};
-  progress.cache.features = at::zeros({samples, width}, at::kFloat);
+  const auto samples = static_cast<std::int64_t>(state.dataset.size());
+  progress.cache.features = at::zeros({samples, state.architecture.image_features}, at::kFloat);
   progress.load();
+  return progress;
+}
+
+}  // namespace
+
+FeatureCache computeFeatures(const TrainingState& state, const std::atomic<bool>& stop,
+                             std::ostream& log) {
+  const at::NoGradGuard no_gradient;
+  Progress progress = progressOf(state);
   Encoders encoders(state);
   double saved = now();
   double reported = saved;

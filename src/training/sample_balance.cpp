@@ -7,13 +7,13 @@
 #include <map>
 #include <numeric>
 
+#include "e2e_cdiff/core/exceptions.h"
+
 namespace cdiff::training {
 namespace {
 
-constexpr double kStanding = 0.3;  // [m/s]
-constexpr double kMoving = 2.0;    // [m/s]
-constexpr double kSlow = 4.0;      // [m/s]
-constexpr double kFast = 8.0;      // [m/s]
+constexpr double kSlow = 4.0;  // [m/s]
+constexpr double kFast = 8.0;  // [m/s]
 
 const char* paceOf(const Sample& sample) {
   const auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
@@ -33,21 +33,25 @@ std::string balanceClass(const Sample& sample) {
   return std::string(kManeuvers[std::min<std::size_t>(sample.maneuver, 3)]) + paceOf(sample);
 }
 
-std::vector<double> balanceWeights(const Dataset& dataset, double balance) {
+std::vector<double> balanceWeights(const Dataset& dataset, double balance, double yielding_share) {
   const std::vector<std::size_t>& training = dataset.training();
   std::vector<std::string> classes;
+  std::vector<double> weights;
   std::map<std::string, double> counts;
   for (const std::size_t index : training) {
-    classes.push_back(balanceClass(dataset.withoutImage(index)));
+    const Sample sample = dataset.withoutImage(index);
+    classes.push_back(balanceClass(sample));
+    weights.push_back(sample.stop_reason == kStopYielding ? yielding_share : 1.0);
     counts[classes.back()] += 1.0;
   }
   const auto all = static_cast<double>(training.size());
-  std::vector<double> weights;
-  for (const std::string& name : classes) {
-    const double share = counts[name] * static_cast<double>(counts.size()) / all;
-    weights.push_back(std::min(kMostWeight, std::pow(share, -balance)));
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double share = counts[classes[i]] * static_cast<double>(counts.size()) / all;
+    weights[i] *= std::min(kMostWeight, std::pow(share, -balance));
   }
   const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / all;
+  if (!weights.empty() && mean <= 0.0)
+    throw core::InputError("training: all samples give way, and yielding_share is 0");
   for (double& weight : weights) weight /= mean;
   return weights;
 }

@@ -21,6 +21,7 @@ BatchOptions batchOptions(const TrainingState& state, const std::string& stage,
   result.batch = options.batch > 0 ? options.batch : default_batch;
   result.route_drop = options.route_drop;
   result.balance = options.balance;
+  result.yielding_share = options.yielding_share;
   result.mirror = options.mirror;
   result.change_light = options.change_light;
   result.diffusion_steps = state.architecture.diffusion_steps;

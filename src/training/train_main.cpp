@@ -44,6 +44,8 @@ void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
   program.add_option(
       "--balance", options.balance,
       "How much oftener rare maneuvers and speeds come: 0 as collected, 1 all alike");
+  program.add_option("--yielding-share", options.yielding_share,
+                     "Part kept of samples that stop to give way");
   program.add_flag("!--no-mirror", options.mirror, "Do not mirror samples");
   program.add_flag("!--no-light", options.change_light, "Do not change the light of images");
   program.add_option("--validation-share", options.validation_share, "Of the sessions");

@@ -54,6 +54,7 @@ void TrainingOptions::validate() const {
   requireRange("average_decay", average_decay, 0.0, 1.0);
   requireRange("route_drop", route_drop, 0.0, 1.0);
   requireRange("balance", balance, 0.0, 1.0);
+  requireRange("yielding_share", yielding_share, 0.0, 1.0);
   requireRange("validation_share", validation_share, 0.0, 0.9);
   requireRange("checkpoint_every", checkpoint_every, 0.0, 1e7);
   requireRange("report_every", report_every, 0.0, 1e7);

@@ -169,14 +169,16 @@ TEST_F(DrivingBagTest, ImagesWithoutColourAndBagsWithoutAHorizonAreRefused) {
   EXPECT_NE(error().find("gives no sample"), std::string::npos);
 }
 
-/// Odometry of 5 s at 10 Hz along x, with `speed` and that orientation.
-void writeOdometry(rosbag::Bag& bag, double speed, double w) {
-  for (int tick = 0; tick < 50; ++tick) {
+/// Odometry of 5 s at 10 Hz along x, with `speed` and that orientation; from `reverse_at` on back.
+void writeOdometry(rosbag::Bag& bag, double speed, double w, double reverse_at = 1e9) {
+  double x = 0.0;
+  for (int tick = 0; tick < 50; ++tick, x += 0.1 * speed) {
+    if (0.1 * tick > reverse_at) speed = -std::abs(speed);
     const ::ros::Time stamp(kStart + 0.1 * tick);
     nav_msgs::Odometry odometry;
     odometry.header.stamp = stamp;
     odometry.header.frame_id = "odom";
-    odometry.pose.pose.position.x = 0.1 * tick * speed;
+    odometry.pose.pose.position.x = x;
     odometry.pose.pose.orientation.w = w;
     odometry.twist.twist.linear.x = speed;
     bag.write("/my/odom", stamp, odometry);
@@ -207,6 +209,18 @@ TEST_F(DrivingBagTest, DrivingBackwardsGivesNoSampleButNoiseAtStandstillDoes) {
   EXPECT_EQ(statistics_.dropped["reversing"], 0U);
 }
 
+TEST_F(DrivingBagTest, TheWayDrivenGoesStraightOnWhereTheVehicleReverses) {
+  rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
+  writeOdometry(bag, 5.0, 1.0, 3.5);
+  bag.close();
+  const auto all = samples();
+  ASSERT_FALSE(all.empty());
+  for (const training::Sample& sample : all) {
+    for (std::size_t i = 0; i < sample.route.size() / 2; ++i)
+      EXPECT_NEAR(sample.route[2 * i], 3.0 * static_cast<double>(i + 1) / 20.0, 1e-5);
+  }
+}
+
 TEST_F(DrivingBagTest, AnOrientationOfAnyLengthButZeroIsOne) {
   rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
   writeOdometry(bag, 2.0, 0.5);
@@ -231,7 +245,7 @@ nav_msgs::Path pathAlongX(const std::string& frame) {
 TEST_F(DrivingBagTest, APathInTheSameFrameIsTheRoute) {
   topics_.path = "/my/path";
   rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
-  bag.write(topics_.path, ::ros::Time(kStart), pathAlongX("odom"));
+  bag.write(topics_.path, ::ros::Time(kStart), pathAlongX("/odom"));
   bag.write(topics_.path, ::ros::Time(kStart), nav_msgs::Path());  // clears a display
   writeOdometry(bag, 2.0, 1.0);
   bag.close();

@@ -56,6 +56,23 @@ TEST(SampleBalance, WeightsRaiseRareClassesByThePowerAsked) {
   EXPECT_NEAR(half[80] / half[0], 2.0, 1e-9);
 }
 
+TEST(SampleBalance, ThoseThatGiveWayComeByTheirShare) {
+  const test::TemporaryFolder folder;
+  ShardWriter writer(test::smallSchema());
+  for (std::size_t i = 0; i < 100; ++i) {
+    Sample sample = drivingAt(10.0, 10.0, 0);
+    sample.session = i;
+    if (i < 20) sample.stop_reason = kStopYielding;
+    writer.append(sample);
+  }
+  writer.write(folder.path() / "a.shard");
+  const Dataset dataset(folder.path(), 0.0);
+  const std::vector<double> weights = balanceWeights(dataset, 0.5, 0.25);
+  EXPECT_NEAR(weights[0] / weights[99], 0.25, 1e-9);
+  EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 100.0, 1e-9);
+  EXPECT_EQ(balanceWeights(dataset, 0.5, 0.0)[0], 0.0);
+}
+
 TEST(SampleBalance, AnEpochHoldsEachSampleAsOftenAsItsWeight) {
   const core::RandomStream random(1, "order");
   std::vector<double> weights(100, 0.5);

@@ -13,6 +13,8 @@
 
 namespace cdiff::training {
 
+constexpr std::uint8_t kStopYielding = 3;  ///< Sample::stop_reason of one that gives way
+
 struct Sample {
   traffic::CameraImage image;  ///< rgb8; its tick is not stored apart from `tick`
   double speed = 0.0;          ///< own speed at planning time [m/s]
