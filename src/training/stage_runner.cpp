@@ -43,12 +43,11 @@ std::string clockText(double seconds) {
 
 }  // namespace
 
-StageRunner::StageRunner(Stage& stage, const TrainingOptions& options,
-                         const std::string& data_sha256, const std::atomic<bool>& stop,
-                         std::ostream& log)
+StageRunner::StageRunner(Stage& stage, const TrainingOptions& options, const json& facts,
+                         const std::atomic<bool>& stop, std::ostream& log)
     : stage_(stage),
       options_(options),
-      data_sha256_(data_sha256),
+      facts_(facts),
       stop_(stop),
       log_(log),
       parts_(stage.parts()),
@@ -193,11 +192,18 @@ void StageRunner::visitTensors(Visit visit) {
 
 void StageRunner::save(bool done) {
   Checkpoint checkpoint;
-  checkpoint.facts =
-      json{{"stage", stage_.name()},      {"steps", result_.steps},         {"seconds", seconds()},
-           {"loss", result_.loss},        {"held_out", result_.held_out},   {"done", done},
-           {"seed", options_.seed},       {"batch", stage_.batchSize()},    {"data", data_sha256_},
-           {"balance", options_.balance}, {"planned_steps", options_.steps}};
+  checkpoint.facts = facts_;
+  checkpoint.facts.update(json{{"stage", stage_.name()},
+                               {"steps", result_.steps},
+                               {"seconds", seconds()},
+                               {"loss", result_.loss},
+                               {"held_out", result_.held_out},
+                               {"done", done},
+                               {"seed", options_.seed},
+                               {"batch", stage_.batchSize()},
+                               {"balance", options_.balance},
+                               {"yielding_share", options_.yielding_share},
+                               {"planned_steps", options_.steps}});
   visitTensors(
       [&](const std::string& name, at::Tensor& tensor) { checkpoint.tensors[name] = tensor; });
   writeCheckpoint(pathOf(options_.output, stage_.name()), checkpoint);
@@ -211,10 +217,11 @@ void StageRunner::readFacts(const json& facts, const std::string& source) {
     throw InputError(source + ": was trained with " + key + " " + found.dump() + ", this run has " +
                      expected.dump() + "; --resume cannot go on from it");
   };
-  require("data", data_sha256_);
+  require("data", facts_.at("data"));
   require("seed", options_.seed);
   require("batch", stage_.batchSize());
   require("balance", options_.balance);
+  require("yielding_share", options_.yielding_share);
   result_.steps = facts.at("steps");
   result_.loss = facts.at("loss").is_number() ? facts.at("loss").get<double>() : 0.0;
   result_.held_out = facts.at("held_out").get<Figures>();

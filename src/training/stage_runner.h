@@ -25,7 +25,9 @@ struct StageResult {
 
 class StageRunner {
  public:
-  StageRunner(Stage& stage, const TrainingOptions& options, const std::string& data_sha256,
+  /// `facts` go into every checkpoint; of these, "data" (SHA-256 of the data) must be the same in
+  /// one that is resumed.
+  StageRunner(Stage& stage, const TrainingOptions& options, const nlohmann::json& facts,
               const std::atomic<bool>& stop, std::ostream& log);
 
   /// Trains to the end (steps or time limit) and leaves the averaged weights in the networks.
@@ -55,7 +57,7 @@ class StageRunner {
 
   Stage& stage_;
   const TrainingOptions& options_;
-  std::string data_sha256_;
+  nlohmann::json facts_;
   const std::atomic<bool>& stop_;
   std::ostream& log_;
   std::vector<TrainedPart> parts_;

@@ -16,6 +16,7 @@
 #include "export.h"
 #include "feature_cache.h"
 #include "stage_runner.h"
+#include "stored_normalizer.h"
 
 namespace cdiff::training {
 namespace {
@@ -66,7 +67,7 @@ class Trainer {
         log_(log),
         architecture_(architectureOf(options, dataset.schema())),
         device_(chooseDevice(options.device)),
-        normalizer_(fitNormalizer(dataset, options.mirror)),
+        normalizer_(chooseNormalizer(options, dataset)),
         state_{dataset,
                options_,
                architecture_,
@@ -137,7 +138,9 @@ class Trainer {
   }
 
   void runStage(Stage& stage) {
-    StageRunner runner(stage, options_, state_.dataset.sha256(), stop_, log_);
+    const nlohmann::json facts = {{"data", state_.dataset.sha256()},
+                                  {"normalizer", normalizerFacts(normalizer_)}};
+    StageRunner runner(stage, options_, facts, stop_, log_);
     results_[stage.name()] = runner.run();
   }
 

@@ -59,7 +59,7 @@ class StageRunnerTest : public testing::Test {
     options_.validation_every = 10;
   }
   StageResult run(ToyStage& stage, const std::string& data = "data") {
-    return StageRunner(stage, options_, data, stop_, log_).run();
+    return StageRunner(stage, options_, {{"data", data}}, stop_, log_).run();
   }
   Checkpoint stored() const { return readCheckpoint(StageRunner::pathOf(options_.output, "toy")); }
 

@@ -100,6 +100,28 @@ TEST_F(TrainerTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
     EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
 }
 
+TEST_F(TrainerTest, WeightsKeepTheNormalizerTheyWereTrainedWith) {
+  run("encoder", 1);
+  run("denoiser", 1);
+  const std::string first = options_.output;
+  const diffusion::Normalizer expected = diffusion::loadModel(first).normalizer;
+  test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
+  options_.init = first;
+  options_.output = (folder_.path() / "second").string();
+  run("denoiser", 1);
+  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
+  options_.init.clear();
+  std::filesystem::copy(folder_.path() / "model" / "encoder.checkpoint",
+                        folder_.path() / "second" / "encoder.checkpoint");
+  options_.resume = true;
+  run("denoiser", 2);
+  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
+  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.scale, expected.scale);
+  options_.resume = false;
+  run("denoiser", 1);
+  EXPECT_NE(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
+}
+
 TEST_F(TrainerTest, SaysWhatIsMissing) {
   EXPECT_THROW(run("denoiser", 1), core::InputError);
   EXPECT_THROW(run("export", 1), core::InputError);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Which normalizer a run uses: weights mean something only with the one they were trained with, so
+/// it travels with every checkpoint.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "e2e_cdiff/diffusion/normalizer.h"
+#include "e2e_cdiff/training/dataset.h"
+#include "e2e_cdiff/training/trainer.h"
+
+namespace cdiff::training {
+
+/// {"mean": T rows of 7, "scale": T rows of 7}; numbers are kept exactly.
+nlohmann::json normalizerFacts(const diffusion::Normalizer& normalizer);
+
+/// That of the checkpoint whose denoiser the run goes on with, else that of the model `init`, else
+/// one fitted to the data. Throws InputError naming the file for one that does not fit.
+diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset);
+
+}  // namespace cdiff::training
