@@ -101,6 +101,8 @@ void CollectionOptions::validate() const {
   requireOrder("route_end", route_end, "minimum_route", minimum_route);
   requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
                noise.stall_maximum_time);
+  requireOrder("noise.stall_maximum_time", noise.stall_maximum_time, "standing_time",
+               standing_time);
   requireOrder("noise.minimum_time", noise.minimum_time, "noise.maximum_time", noise.maximum_time);
 }
 
