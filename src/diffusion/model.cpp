@@ -19,46 +19,33 @@ namespace fs = std::filesystem;
 constexpr const char* kEncoderFile = "encoder.safetensors";
 constexpr const char* kDenoiserFile = "denoiser.safetensors";
 
-using TensorLister = std::vector<TensorShape> (*)(const Architecture&);
-
-/// One of the two files of a model.
-struct Part {
-  SafetensorsFile content;
-  std::string source;
-  Model description;  ///< architecture, normaliser and spread only
-};
-
-void requireAgreement(const Part& first, const Part& second) {
-  const Model& left = first.description;
-  const Model& right = second.description;
-  const auto fail = [&](const std::string& what) {
-    throw core::InputError(first.source + " and " + second.source + " disagree about the " + what +
-                           "; they are not of one model");
-  };
-  if (!(left.architecture == right.architecture)) {
-    fail("architecture (" + left.architecture.toJson() + " and " + right.architecture.toJson() +
-         ")");
-  }
-  if (left.normalizer.mean != right.normalizer.mean ||
-      left.normalizer.scale != right.normalizer.scale) {
-    fail("normalizer");
-  }
-  if (left.spread != right.spread) fail("spread");
+SafetensorsFile readDenoiser(const fs::path& file, Model& model) {
+  const std::string source = "weight file '" + file.string() + "'";
+  return readSafetensors(file, [&](const Metadata& metadata) {
+    model.architecture = readArchitecture(metadata, kDenoiserFormat, source);
+    readScales(metadata, source, model);
+    return denoiserTensors(model.architecture);
+  });
 }
 
-/// `other` is the model's other file when that has been read: what the two say of the model is
-/// compared before any tensor is read.
-Part readPart(const fs::path& file, const std::string& format, TensorLister tensors,
-              const Part* other) {
-  Part part;
-  part.source = "weight file '" + file.string() + "'";
-  part.content = readSafetensors(file, [&](const Metadata& metadata) {
-    part.description.architecture = readArchitecture(metadata, format, part.source);
-    readScales(metadata, part.source, part.description);
-    if (other != nullptr) requireAgreement(*other, part);
-    return tensors(part.description.architecture);
+/// `denoiser` has been read already: what the two say is compared before any tensor is read.
+SafetensorsFile readEncoder(const fs::path& file, const Model& model, const Metadata& denoiser) {
+  const std::string source = "weight file '" + file.string() + "'";
+  const auto fail = [&](const std::string& what) {
+    throw core::InputError(source + " does not belong to the denoiser beside it: " + what);
+  };
+  return readSafetensors(file, [&](const Metadata& metadata) {
+    const Architecture architecture = readArchitecture(metadata, kEncoderFormat, source);
+    if (!(architecture == model.architecture)) {
+      fail("its architecture is " + architecture.toJson() + ", that of the denoiser " +
+           model.architecture.toJson());
+    }
+    const auto expected = denoiser.find(kEncoderKey);
+    const auto found = metadata.find("sha256");
+    if (expected != denoiser.end() && found != metadata.end() && expected->second != found->second)
+      fail("that was trained with an encoder of SHA-256 " + expected->second);
+    return encoderTensors(architecture);
   });
-  return part;
 }
 
 /// Names of the shipped models, sorted.
@@ -109,25 +96,17 @@ void requireTensors(const std::map<std::string, Tensor>& tensors,
   }
 }
 
-SafetensorsFile fileOf(const Model& model, const std::string& format,
-                       const std::map<std::string, Tensor>& tensors, const Metadata& facts) {
-  SafetensorsFile content{describeModel(model, format), tensors};
-  content.metadata.insert(facts.begin(), facts.end());
-  return content;
-}
-
 }  // namespace
 
 Model loadModel(const std::string& name_or_folder) {
   const fs::path folder = folderOf(name_or_folder);
-  Part denoiser = readPart(folder / kDenoiserFile, kDenoiserFormat, denoiserTensors, nullptr);
-  Part encoder = readPart(folder / kEncoderFile, kEncoderFormat, encoderTensors, &denoiser);
-  Model model = std::move(denoiser.description);
+  Model model;
+  SafetensorsFile denoiser = readDenoiser(folder / kDenoiserFile, model);
+  SafetensorsFile encoder = readEncoder(folder / kEncoderFile, model, denoiser.metadata);
   model.name = folder.filename().string();
-  model.sha256 =
-      core::sha256(encoder.content.metadata.at("sha256") + denoiser.content.metadata.at("sha256"));
-  model.encoder = std::move(encoder.content.tensors);
-  model.denoiser = std::move(denoiser.content.tensors);
+  model.sha256 = core::sha256(encoder.metadata.at("sha256") + denoiser.metadata.at("sha256"));
+  model.encoder = std::move(encoder.tensors);
+  model.denoiser = std::move(denoiser.tensors);
   return model;
 }
 
@@ -151,10 +130,11 @@ void saveModel(const Model& model, const fs::path& folder, TensorType type,
   if (error) {
     throw core::InputError("cannot make the folder '" + folder.string() + "': " + error.message());
   }
-  writeSafetensors(folder / kEncoderFile,
-                   fileOf(model, kEncoderFormat, model.encoder, training_facts), type);
-  writeSafetensors(folder / kDenoiserFile,
-                   fileOf(model, kDenoiserFormat, model.denoiser, training_facts), type);
+  writeSafetensors(folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
+  Metadata metadata = describeDenoiser(model);
+  metadata.insert(training_facts.begin(), training_facts.end());
+  metadata[kEncoderKey] = readEncoder(folder / kEncoderFile, model, metadata).metadata.at("sha256");
+  writeSafetensors(folder / kDenoiserFile, {metadata, model.denoiser}, type);
 }
 
 }  // namespace cdiff::diffusion

@@ -12,8 +12,8 @@
 namespace cdiff::diffusion {
 namespace {
 
-constexpr const char* kReservedKeys[] = {"format", "architecture", "normalizer", "spread",
-                                         "sha256"};
+constexpr const char* kReservedKeys[] = {"format", "architecture", "normalizer",
+                                         "spread", kEncoderKey,    "sha256"};
 
 /// [[...], ...] with the shortest numbers that read back to the same double.
 std::string matrixText(const traffic::Rollout& matrix) {
@@ -90,8 +90,12 @@ Normalizer normalizerOf(const Json& value, std::int64_t rows, const std::string&
 
 }  // namespace
 
-Metadata describeModel(const Model& model, const std::string& format) {
-  return {{"format", format},
+Metadata describeEncoder(const Model& model) {
+  return {{"format", kEncoderFormat}, {"architecture", model.architecture.toJson()}};
+}
+
+Metadata describeDenoiser(const Model& model) {
+  return {{"format", kDenoiserFormat},
           {"architecture", model.architecture.toJson()},
           {"normalizer", "{\"mean\":" + matrixText(model.normalizer.mean) +
                              ",\"scale\":" + matrixText(model.normalizer.scale) + "}"},

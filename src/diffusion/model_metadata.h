@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the metadata of both weight files says about a model: sizes, normaliser, spread.
+/// What the metadata of the weight files says about a model: sizes in both; normaliser, spread and
+/// the encoder that it was trained with in the denoiser's.
 #pragma once
 
 #include <map>
@@ -13,10 +14,15 @@ namespace cdiff::diffusion {
 inline constexpr const char* kEncoderFormat = "e2e_cdiff.encoder.1";
 inline constexpr const char* kDenoiserFormat = "e2e_cdiff.denoiser.1";
 
+/// Of the denoiser's file: SHA-256 of the encoder's weights, as the encoder's file has it itself.
+inline constexpr const char* kEncoderKey = "encoder";
+
 using Metadata = std::map<std::string, std::string>;
 
-/// Keys format, architecture, normalizer and spread of a model's file.
-Metadata describeModel(const Model& model, const std::string& format);
+/// Keys format and architecture of the encoder's file: the same weights make the same file.
+Metadata describeEncoder(const Model& model);
+/// Keys format, architecture, normalizer and spread of the denoiser's file.
+Metadata describeDenoiser(const Model& model);
 
 /// The architecture, after a check of the format. Throws InputError that begins with `source`.
 Architecture readArchitecture(const Metadata& metadata, const std::string& format,

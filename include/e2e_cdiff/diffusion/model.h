@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The trained planner as it comes from disk: encoder.safetensors and denoiser.safetensors in one
-/// folder, with architecture, normaliser and spread in the metadata of each.
+/// folder, with the architecture in the metadata of each, normaliser and spread in the denoiser's.
 #pragma once
 
 #include <filesystem>
@@ -24,16 +24,17 @@ struct Model {
 };
 
 /// Reads a folder, or the name of a shipped model (share folder, weights/NAME). Throws InputError:
-/// see readSafetensors; also when the two files disagree about the architecture, or the metadata
-/// keys "format" ("e2e_cdiff.encoder.1", "e2e_cdiff.denoiser.1"), "architecture", "normalizer",
-/// "spread" are missing or malformed.
+/// see readSafetensors; also when the encoder is not the one that the denoiser was trained with
+/// (architecture, and SHA-256 where the denoiser names it), or the metadata keys "format"
+/// ("e2e_cdiff.encoder.1", "e2e_cdiff.denoiser.1"), "architecture" and, of the denoiser,
+/// "normalizer" and "spread" are missing or malformed.
 Model loadModel(const std::string& name_or_folder);
 
 /// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder
 /// and denoiser file, one after the other. Throws InputError for an unknown model or missing file.
 std::string modelFilesSha256(const std::string& name_or_folder);
 
-/// Writes both files into `folder`.
+/// Writes both files into `folder`; `training_facts` go into the denoiser's.
 void saveModel(const Model& model, const std::filesystem::path& folder, TensorType type,
                const std::map<std::string, std::string>& training_facts);
 
