@@ -101,11 +101,11 @@ MirrorSteers steersOn(const Points& road, const traffic::Vehicle& vehicle) {
 }
 
 /// The network is not symmetric by construction and has seen more left than right turns. Measured
-/// with the shipped weights (32 draws): the sums of the two steers are 0.005, 0.013 and 0.021 in
-/// the three scenes below; 4 standard errors of a sum were 0.021 at most, with 64 draws less. 0.05
-/// holds both. With the weights before and an image that was not mirrored the sums were 0.11, 0.10
-/// and 0.15, with a route that was not, 0.16 in the bend; a steer of the wrong sign breaks the
-/// tests' first line. Measure anew for other weights.
+/// with the shipped weights: the sums of the two steers are -0.003, 0.005 and 0.015 in the three
+/// scenes below, 4 standard errors of a sum 0.015 at most. 0.05 holds both. With earlier weights
+/// and an image that was not mirrored the sums were 0.11, 0.10 and 0.15, with a route that was not,
+/// 0.16 in the bend; a steer of the wrong sign breaks the tests' first line. Measure anew for other
+/// weights.
 constexpr double kTolerance = 0.05;
 
 void expectMirrored(const MirrorSteers& steers) {
