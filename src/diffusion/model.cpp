@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "model_metadata.h"
+#include "strict_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -43,7 +44,8 @@ SafetensorsFile readEncoder(const fs::path& file, const Model& model, const Meta
     const auto expected = denoiser.find(kEncoderKey);
     const auto found = metadata.find("sha256");
     if (expected != denoiser.end() && found != metadata.end() && expected->second != found->second)
-      fail("that was trained with an encoder of SHA-256 " + expected->second);
+      fail("that was trained with an encoder of SHA-256 " + excerpt(expected->second) +
+           ", this one has " + found->second);
     return encoderTensors(architecture);
   });
 }

@@ -212,32 +212,32 @@ traffic::ControlAction PdmLite::evenAction(const PlanningTask& task, double rema
 double PdmLite::targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                             Memory& memory, Forecasts& forecasts) const {
   const PlanningTask& task = situation.task;
-  const Encounter encounter = encounterOf(situation, rollout, forecasts);
-  double target = encounter.target;
+  const Obstruction others = obstructionOf(situation, rollout, forecasts);
+  double target = others.target;
   if (options_.obey_lights) {
     const auto light = distanceToRedLight(*task.route, situation.arc_length, situation.snapshot);
     if (light) target = std::min(target, idmBeforeLight(task, situation.initial_speed, *light));
   }
-  if (!mustWait(situation, encounter.met.has_value(), memory)) {
+  if (!mustWait(situation, others.met.has_value(), memory)) {
     memory.waiting = 0.0;
     return target;
   }
   if (!task.style.even()) return 0.0;
   const traffic::VehicleState& now = task.vehicle->state;
-  if (encounter.met)
-    memory.waiting = std::max(memory.waiting, evenBraking(now, rollout[*encounter.met].state));
+  if (others.met)
+    memory.waiting = std::max(memory.waiting, evenBraking(now, rollout[*others.met].state));
   return std::min(target, now.speed - memory.waiting * IdmParameters().time_bound);
 }
 
-PdmLite::Encounter PdmLite::encounterOf(const Situation& situation,
-                                        const std::vector<RolloutPoint>& rollout,
-                                        Forecasts& forecasts) const {
+PdmLite::Obstruction PdmLite::obstructionOf(const Situation& situation,
+                                            const std::vector<RolloutPoint>& rollout,
+                                            Forecasts& forecasts) const {
   const traffic::Vehicle& self = *situation.task.vehicle;
   const map::Route& route = *situation.task.route;
   const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
   const bool exempt = !situation.near_lane_change;
   const bool first_counts = situation.task.style.even();
-  Encounter found{freeSpeed(situation.task, situation.initial_speed), {}};
+  Obstruction found{freeSpeed(situation.task, situation.initial_speed), {}};
   for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
     const traffic::Vehicle& other = situation.snapshot.vehicles[i];
     if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;

@@ -107,7 +107,7 @@ class Reader {
     if (topic == topics_.path && !topic.empty()) takePath(message);
   }
 
-  /// Throws InputError unless `frame`, with or without a leading slash, is that of the first
+  /// Throws InputError unless `name`, with or without a leading slash, is the frame of the first
   /// message with a position: positions can be compared in one frame alone.
   void requireFrame(const std::string& topic, const std::string& name) {
     const std::string frame = name.substr(name.rfind('/', 0) == 0 ? 1 : 0);

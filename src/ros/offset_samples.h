@@ -20,6 +20,7 @@ struct SampleOffset {
   double heading = 0.0;
 };
 
+/// What displace() makes.
 struct DisplacedSample {
   training::Sample sample;
   bool off_course = false;  ///< at its displaced place, as SampleKinds

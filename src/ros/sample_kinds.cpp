@@ -43,7 +43,8 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
   const auto light = planning::distanceToRedLight(around.route, around.arc_length, around.snapshot);
   if (light && *light < kLightDistance) return 1;
   for (const auto& [from, to] : around.route.junctionStretches()) {
-    if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance) return 3;
+    if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance)
+      return training::kStopYielding;
   }
   return kOtherReason;
 }

@@ -28,7 +28,8 @@ void NoiseOptions::describe(core::OptionsVisitor& visitor) {
                  1.0);
   visitor.number({"stall_minimum_time", "s", "Shortest stop, braking included."},
                  stall_minimum_time, 0.1, 60.0);
-  visitor.number({"stall_maximum_time", "s", "Longest stop."}, stall_maximum_time, 0.1, 60.0);
+  visitor.number({"stall_maximum_time", "s", "Longest stop, at most standing_time."},
+                 stall_maximum_time, 0.1, 60.0);
   visitor.number({"lateral", "m", "Standard deviation of the place at the take-over."}, lateral,
                  0.0, 2.0);
   visitor.number({"heading", "deg", "Standard deviation of the heading at the take-over."}, heading,
@@ -101,8 +102,9 @@ void CollectionOptions::validate() const {
   requireOrder("route_end", route_end, "minimum_route", minimum_route);
   requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
                noise.stall_maximum_time);
-  requireOrder("noise.stall_maximum_time", noise.stall_maximum_time, "standing_time",
-               standing_time);
+  if (noise.stall_share > 0.0)
+    requireOrder("noise.stall_maximum_time", noise.stall_maximum_time, "standing_time",
+                 standing_time);
   requireOrder("noise.minimum_time", noise.minimum_time, "noise.maximum_time", noise.maximum_time);
 }
 

@@ -34,25 +34,26 @@ std::string balanceClass(const Sample& sample) {
 }
 
 std::vector<double> balanceWeights(const Dataset& dataset, double balance, double yielding_share) {
-  const std::vector<std::size_t>& training = dataset.training();
   std::vector<std::string> classes;
-  std::vector<double> weights;
+  std::vector<double> weights;  // first the part of the sample that counts
   std::map<std::string, double> counts;
-  for (const std::size_t index : training) {
+  for (const std::size_t index : dataset.training()) {
     const Sample sample = dataset.withoutImage(index);
     classes.push_back(balanceClass(sample));
     weights.push_back(sample.stop_reason == kStopYielding ? yielding_share : 1.0);
-    counts[classes.back()] += 1.0;
+    if (weights.back() > 0.0) counts[classes.back()] += weights.back();
   }
-  const auto all = static_cast<double>(training.size());
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  if (!weights.empty() && all <= 0.0)
+    throw core::InputError("training: all samples give way, and yielding_share is 0");
+  double sum = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0.0) continue;
     const double share = counts[classes[i]] * static_cast<double>(counts.size()) / all;
     weights[i] *= std::min(kMostWeight, std::pow(share, -balance));
+    sum += weights[i];
   }
-  const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / all;
-  if (!weights.empty() && mean <= 0.0)
-    throw core::InputError("training: all samples give way, and yielding_share is 0");
-  for (double& weight : weights) weight /= mean;
+  for (double& weight : weights) weight *= static_cast<double>(weights.size()) / sum;
   return weights;
 }
 

@@ -211,8 +211,8 @@ void StageRunner::save(bool done) {
 }
 
 void StageRunner::readFacts(const json& facts, const std::string& source) {
-  const auto require = [&](const char* key, const json& expected) {
-    const json found = facts.value(key, json());
+  const auto require = [&](const char* key, const json& expected, const json& absent = json()) {
+    const json found = facts.value(key, absent);
     if (found == expected) return;
     throw InputError(source + ": was trained with " + key + " " + found.dump() + ", this run has " +
                      expected.dump() + "; --resume cannot go on from it");
@@ -221,7 +221,10 @@ void StageRunner::readFacts(const json& facts, const std::string& source) {
   require("seed", options_.seed);
   require("batch", stage_.batchSize());
   require("balance", options_.balance);
-  require("yielding_share", options_.yielding_share);
+  require("yielding_share", options_.yielding_share, 1.0);
+  if (facts.contains("normalizer") && facts.at("normalizer") != facts_.value("normalizer", json()))
+    throw InputError(source +
+                     ": was trained with another normalizer; --resume cannot go on from it");
   result_.steps = facts.at("steps");
   result_.loss = facts.at("loss").is_number() ? facts.at("loss").get<double>() : 0.0;
   result_.held_out = facts.at("held_out").get<Figures>();

@@ -25,8 +25,8 @@ struct StageResult {
 
 class StageRunner {
  public:
-  /// `facts` go into every checkpoint; of these, "data" (SHA-256 of the data) must be the same in
-  /// one that is resumed.
+  /// `facts` go into every checkpoint; of these, "data" (SHA-256 of the data) and "normalizer" must
+  /// be the same in one that is resumed.
   StageRunner(Stage& stage, const TrainingOptions& options, const nlohmann::json& facts,
               const std::atomic<bool>& stop, std::ostream& log);
 

@@ -3,10 +3,8 @@
 #include "stored_normalizer.h"
 
 #include <filesystem>
-#include <optional>
 
 #include "checkpoint.h"
-#include "e2e_cdiff/diffusion/model.h"
 #include "stage_runner.h"
 
 namespace cdiff::training {
@@ -37,31 +35,25 @@ Rollout matrixOf(const json& rows) {
   return matrix;
 }
 
-/// Checkpoints without a normalizer are of a time when each run fitted its own.
-std::optional<diffusion::Normalizer> normalizerIn(const fs::path& path, std::int64_t horizon) {
-  if (!fs::exists(path)) return std::nullopt;
-  const json facts = readCheckpoint(path).facts;
-  if (!facts.contains("normalizer")) return std::nullopt;
+diffusion::Normalizer readNormalizer(const json& stored, const fs::path& path, int horizon) {
   try {
-    const json& stored = facts.at("normalizer");
     const diffusion::Normalizer normalizer{matrixOf(stored.at("mean")),
                                            matrixOf(stored.at("scale"))};
-    normalizer.validate(static_cast<int>(horizon));
+    normalizer.validate(horizon);
     return normalizer;
   } catch (const std::exception& error) {
-    throw core::InputError("checkpoint '" + path.string() + "': " + error.what());
+    throw core::InputError("checkpoint '" + path.string() + "': normalizer: " + error.what());
   }
 }
 
-/// Stages whose checkpoints the run takes weights from, first those it goes on with.
+/// Stages whose checkpoints the run takes weights from; those it goes on with are the first.
 std::vector<std::string> sourcesOf(const TrainingOptions& options) {
+  if (options.stage == "export") return {"joint", "denoiser"};
   std::vector<std::string> stages;
-  if (options.resume) {
-    if (options.stage == "all") return {"denoiser", "fine_tune", "encoder"};
-    stages.push_back(options.stage);
-  }
+  if (options.resume && options.stage == "all") stages = {"encoder", "fine_tune", "denoiser"};
+  if (options.resume && options.stage != "all") stages = {options.stage};
+  if (options.stage == "fine_tune") stages.emplace_back("encoder");
   if (options.stage == "joint") stages.emplace_back("denoiser");
-  if (options.stage == "export") stages = {"joint", "denoiser"};
   return stages;
 }
 
@@ -71,14 +63,17 @@ json normalizerFacts(const diffusion::Normalizer& normalizer) {
   return {{"mean", rowsOf(normalizer.mean)}, {"scale", rowsOf(normalizer.scale)}};
 }
 
-diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset) {
+diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset,
+                                       const diffusion::Model* init) {
   for (const std::string& stage : sourcesOf(options)) {
-    const auto stored =
-        normalizerIn(StageRunner::pathOf(options.output, stage), dataset.schema().horizon);
-    if (stored) return *stored;
+    const fs::path path = StageRunner::pathOf(options.output, stage);
+    if (!fs::exists(path)) continue;
+    const json facts = readCheckpoint(path).facts;
+    // One without is of a time when each run fitted its own.
+    if (!facts.contains("normalizer")) return fitNormalizer(dataset, options.mirror);
+    return readNormalizer(facts.at("normalizer"), path, static_cast<int>(dataset.schema().horizon));
   }
-  if (!options.init.empty()) return diffusion::loadModel(options.init).normalizer;
-  return fitNormalizer(dataset, options.mirror);
+  return init != nullptr ? init->normalizer : fitNormalizer(dataset, options.mirror);
 }
 
 }  // namespace cdiff::training

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "e2e_cdiff/diffusion/normalizer.h"
+#include "e2e_cdiff/diffusion/model.h"
 #include "e2e_cdiff/training/dataset.h"
 #include "e2e_cdiff/training/trainer.h"
 
@@ -15,8 +15,10 @@ namespace cdiff::training {
 /// {"mean": T rows of 7, "scale": T rows of 7}; numbers are kept exactly.
 nlohmann::json normalizerFacts(const diffusion::Normalizer& normalizer);
 
-/// That of the checkpoint whose denoiser the run goes on with, else that of the model `init`, else
-/// one fitted to the data. Throws InputError naming the file for one that does not fit.
-diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset);
+/// That of the checkpoint that the run goes on with or starts from, else that of the model `init`
+/// (nullptr: none), else one fitted to the data; [T, 7] each, of m, rad, m/s and pedals. Throws
+/// InputError naming the file for one that does not fit.
+diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset,
+                                       const diffusion::Model* init);
 
 }  // namespace cdiff::training

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <ostream>
 
 #include "e2e_cdiff/diffusion/model.h"
@@ -49,6 +50,16 @@ diffusion::Architecture architectureOf(const TrainingOptions& options, const Sam
   return architecture;
 }
 
+/// The model of --init, if one is given.
+std::optional<diffusion::Model> initialModel(const TrainingOptions& options,
+                                             const diffusion::Architecture& architecture) {
+  if (options.init.empty()) return std::nullopt;
+  diffusion::Model model = diffusion::loadModel(options.init);
+  if (model.architecture == architecture) return model;
+  throw InputError("training: the architecture of '" + options.init + "' is " +
+                   model.architecture.toJson() + ", this run has " + architecture.toJson());
+}
+
 /// Up to `count` of the validation samples, evenly spaced.
 std::vector<std::size_t> chooseHeldOut(const Dataset& dataset, std::size_t count) {
   const std::vector<std::size_t>& all = dataset.validation();
@@ -67,7 +78,8 @@ class Trainer {
         log_(log),
         architecture_(architectureOf(options, dataset.schema())),
         device_(chooseDevice(options.device)),
-        normalizer_(chooseNormalizer(options, dataset)),
+        initial_(initialModel(options, architecture_)),
+        normalizer_(chooseNormalizer(options, dataset, initial_ ? &*initial_ : nullptr)),
         state_{dataset,
                options_,
                architecture_,
@@ -109,13 +121,10 @@ class Trainer {
   }
 
   void loadInitial() {
-    if (options_.init.empty()) return;
-    const diffusion::Model model = diffusion::loadModel(options_.init);
-    if (!(model.architecture == architecture_))
-      throw InputError("training: the architecture of '" + options_.init + "' is " +
-                       model.architecture.toJson() + ", this run has " + architecture_.toJson());
-    state_.encoder.parameters().load(model.encoder, options_.init);
-    state_.denoiser.parameters().load(model.denoiser, options_.init);
+    if (!initial_) return;
+    state_.encoder.parameters().load(initial_->encoder, options_.init);
+    state_.denoiser.parameters().load(initial_->denoiser, options_.init);
+    initial_.reset();
   }
 
   /// Loads a part from the first of the stages' checkpoints that exists; false if none does.
@@ -183,6 +192,7 @@ class Trainer {
   std::ostream& log_;
   diffusion::Architecture architecture_;
   at::Device device_;
+  std::optional<diffusion::Model> initial_;  ///< until its weights are loaded
   diffusion::Normalizer normalizer_;
   TrainingState state_;
   std::map<std::string, StageResult> results_;

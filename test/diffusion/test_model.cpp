@@ -167,6 +167,18 @@ TEST_F(ModelFiles, RoundTrip) {
   EXPECT_NE(halves.sha256, back.sha256);
 }
 
+TEST_F(ModelFiles, AnEncoderOfOtherWeightsIsRefused) {
+  Model model = smallModel();
+  model.encoder = filled(encoderTensors(model.architecture));
+  const fs::path folder = folder_.path();
+  saveModel(model, folder, TensorType::kF32, {});
+  const std::string denoiser = test::readBytes(folder / "denoiser.safetensors");
+  model.encoder.begin()->second.values.front() += 1.0F;
+  saveModel(model, folder, TensorType::kF32, {});
+  test::writeBytes(folder / "denoiser.safetensors", denoiser);
+  expectMentions(loadError(), "does not belong to the denoiser beside it");
+}
+
 TEST_F(ModelFiles, MissingMetadataIsNamed) {
   for (const char* key : {"format", "architecture", "normalizer", "spread"}) {
     expectMentions(errorWith(key, std::nullopt),

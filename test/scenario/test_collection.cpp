@@ -204,6 +204,14 @@ TEST(PerturbedPlanner, AStallThatFindsAStandingVehicleIsLeftOut) {
   EXPECT_EQ(marked, 0);
 }
 
+TEST(CollectionOptions, AStallMustEndBeforeAStandingVehicleIsReleased) {
+  CollectionOptions options;
+  options.standing_time = 5.0;
+  EXPECT_THROW(options.validate(), core::InputError);
+  options.noise.stall_share = 0.0;
+  options.validate();
+}
+
 TEST(PerturbedPlanner, IsDeterministicAndLeavesStandingVehiclesAlone) {
   EXPECT_EQ(noiseOf(1, 8.0, 600).actions, noiseOf(1, 8.0, 600).actions);
   EXPECT_NE(noiseOf(1, 8.0, 600).actions, noiseOf(2, 8.0, 600).actions);

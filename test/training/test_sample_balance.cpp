@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/training/sample_balance.h"
 #include "training/small_samples.h"
 
@@ -56,21 +57,40 @@ TEST(SampleBalance, WeightsRaiseRareClassesByThePowerAsked) {
   EXPECT_NEAR(half[80] / half[0], 2.0, 1e-9);
 }
 
-TEST(SampleBalance, ThoseThatGiveWayComeByTheirShare) {
-  const test::TemporaryFolder folder;
+/// 60 samples straight on at 10 m/s, 20 that stop to give way, 20 that stop for another reason.
+void writeYielding(const std::filesystem::path& file) {
   ShardWriter writer(test::smallSchema());
   for (std::size_t i = 0; i < 100; ++i) {
-    Sample sample = drivingAt(10.0, 10.0, 0);
+    Sample sample = drivingAt(10.0, i < 60 ? 10.0 : 0.0, 0);
     sample.session = i;
-    if (i < 20) sample.stop_reason = kStopYielding;
+    if (i >= 80) sample.stop_reason = kStopYielding;
     writer.append(sample);
   }
-  writer.write(folder.path() / "a.shard");
+  writer.write(file);
+}
+
+TEST(SampleBalance, ThoseThatGiveWayComeByTheirShare) {
+  const test::TemporaryFolder folder;
+  writeYielding(folder.path() / "a.shard");
   const Dataset dataset(folder.path(), 0.0);
-  const std::vector<double> weights = balanceWeights(dataset, 0.5, 0.25);
-  EXPECT_NEAR(weights[0] / weights[99], 0.25, 1e-9);
-  EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 100.0, 1e-9);
-  EXPECT_EQ(balanceWeights(dataset, 0.5, 0.0)[0], 0.0);
+  const std::vector<double> quarter = balanceWeights(dataset, 0.5, 0.25);
+  EXPECT_NEAR(quarter[99] / quarter[79], 0.25, 1e-9);
+  EXPECT_NEAR(std::accumulate(quarter.begin(), quarter.end(), 0.0), 100.0, 1e-9);
+  // Those left out do not count for their class either: its rest comes as often as the others.
+  const std::vector<double> none = balanceWeights(dataset, 1.0, 0.0);
+  EXPECT_EQ(none[99], 0.0);
+  EXPECT_NEAR(std::accumulate(none.begin(), none.begin() + 60, 0.0), 50.0, 1e-9);
+  EXPECT_NEAR(std::accumulate(none.begin() + 60, none.end(), 0.0), 50.0, 1e-9);
+}
+
+TEST(SampleBalance, NothingLeftIsSaid) {
+  const test::TemporaryFolder folder;
+  ShardWriter writer(test::smallSchema());
+  Sample sample = drivingAt(10.0, 0.0, 0);
+  sample.stop_reason = kStopYielding;
+  writer.append(sample);
+  writer.write(folder.path() / "a.shard");
+  EXPECT_THROW(balanceWeights(Dataset(folder.path(), 0.0), 0.5, 0.0), core::InputError);
 }
 
 TEST(SampleBalance, AnEpochHoldsEachSampleAsOftenAsItsWeight) {

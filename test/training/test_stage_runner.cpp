@@ -152,8 +152,23 @@ TEST_F(StageRunnerTest, RefusesToResumeAnotherRun) {
   options_.resume = true;
   ToyStage other;
   EXPECT_THROW(run(other, "other data"), InputError);
+  options_.yielding_share = 0.5;
+  EXPECT_THROW(run(other), InputError);
+  options_.yielding_share = 1.0;
   options_.seed = 2;
   EXPECT_THROW(run(other), InputError);
+}
+
+TEST_F(StageRunnerTest, RefusesToResumeWithAnotherNormalizer) {
+  const auto runWith = [&](double mean) {
+    ToyStage stage;
+    const nlohmann::json facts = {{"data", "data"}, {"normalizer", {{"mean", mean}}}};
+    StageRunner(stage, options_, facts, stop_, log_).run();
+  };
+  runWith(0.25);
+  options_.resume = true;
+  runWith(0.25);
+  EXPECT_THROW(runWith(0.5), InputError);
 }
 
 TEST_F(StageRunnerTest, SaysWhatIsWrongWithACheckpoint) {

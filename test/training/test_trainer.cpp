@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/diffusion/model.h"
 #include "e2e_cdiff/training/trainer.h"
+#include "stored_normalizer.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {
@@ -120,6 +121,41 @@ TEST_F(TrainerTest, WeightsKeepTheNormalizerTheyWereTrainedWith) {
   options_.resume = false;
   run("denoiser", 1);
   EXPECT_NE(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
+}
+
+TEST_F(TrainerTest, LaterStagesKeepTheNormalizerOfTheStageTheyStartFrom) {
+  run("encoder", 1);
+  const auto normalizerOf = [&](const char* stage) {
+    return readCheckpoint(folder_.path() / "model" / (std::string(stage) + ".checkpoint"))
+        .facts.at("normalizer");
+  };
+  const nlohmann::json expected = normalizerOf("encoder");
+  test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
+  run("fine_tune", 1);
+  EXPECT_EQ(normalizerOf("fine_tune"), expected);
+  run("denoiser", 1);
+  EXPECT_NE(normalizerOf("denoiser"), expected);
+  std::filesystem::remove(folder_.path() / "data" / "b.shard");
+  run("joint", 1);
+  EXPECT_EQ(normalizerOf("joint"), normalizerOf("denoiser"));
+  EXPECT_EQ(normalizerFacts(diffusion::loadModel(options_.output).normalizer),
+            normalizerOf("joint"));
+}
+
+TEST_F(TrainerTest, AnInitialModelOfOtherSizesIsNamed) {
+  run("encoder", 1);
+  run("denoiser", 1);
+  options_.init = options_.output;
+  options_.output = (folder_.path() / "second").string();
+  options_.architecture.state_hidden += 1;
+  try {
+    run("denoiser", 1);
+    FAIL() << "trained";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("the architecture of '" + options_.init),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(TrainerTest, SaysWhatIsMissing) {

@@ -74,12 +74,12 @@ class PdmLite : public Planner {
   double targetSpeed(const Situation& situation, const std::vector<RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;
   /// What the others mean for the vehicle.
-  struct Encounter {
+  struct Obstruction {
     double target;                   ///< by the free road and leaders [m/s]
-    std::optional<std::size_t> met;  ///< first step that meets a box; not even: a step
+    std::optional<std::size_t> met;  ///< step that meets a box, the first for an even style
   };
-  Encounter encounterOf(const Situation& situation, const std::vector<RolloutPoint>& rollout,
-                        Forecasts& forecasts) const;
+  Obstruction obstructionOf(const Situation& situation, const std::vector<RolloutPoint>& rollout,
+                            Forecasts& forecasts) const;
   /// First step at which the boxes meet.
   std::optional<std::size_t> meetsBox(const Situation& situation, const traffic::Vehicle& other,
                                       const std::vector<geometry::OrientedBox>& own,

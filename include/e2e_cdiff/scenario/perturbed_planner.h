@@ -39,7 +39,7 @@ class PerturbedPlanner : public planning::Planner {
     double steer = 0.0;       ///< in [-1, 1], of the largest
     double pedal = 0.0;       ///< in [-1, 1], of the largest; positive is throttle
     bool stall = false;       ///< stops the vehicle instead
-    bool begun = false;       ///< found a moving vehicle; a stall that did not is left out
+    bool begun = false;       ///< has acted; a stall that finds a standing vehicle never does
   };
   planning::DrivingStyle styleOf(const core::RandomKey& key) const;
   Burst drawn(const std::string& vehicle, std::uint32_t count, double after) const;
