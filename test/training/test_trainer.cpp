@@ -10,7 +10,6 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/diffusion/model.h"
 #include "e2e_cdiff/training/trainer.h"
-#include "stored_normalizer.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {
@@ -101,52 +100,16 @@ TEST_F(TrainerTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
     EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
 }
 
-TEST_F(TrainerTest, WeightsKeepTheNormalizerTheyWereTrainedWith) {
+TEST_F(TrainerTest, AnInitialModelBringsItsNormalizerAndMustFit) {
   run("encoder", 1);
   run("denoiser", 1);
-  const std::string first = options_.output;
-  const diffusion::Normalizer expected = diffusion::loadModel(first).normalizer;
+  const diffusion::Normalizer expected = diffusion::loadModel(options_.output).normalizer;
   test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
-  options_.init = first;
-  options_.output = (folder_.path() / "second").string();
-  run("denoiser", 1);
-  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
-  options_.init.clear();
-  std::filesystem::copy(folder_.path() / "model" / "encoder.checkpoint",
-                        folder_.path() / "second" / "encoder.checkpoint");
-  options_.resume = true;
-  run("denoiser", 2);
-  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
-  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.scale, expected.scale);
-  options_.resume = false;
-  run("denoiser", 1);
-  EXPECT_NE(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
-}
-
-TEST_F(TrainerTest, LaterStagesKeepTheNormalizerOfTheStageTheyStartFrom) {
-  run("encoder", 1);
-  const auto normalizerOf = [&](const char* stage) {
-    return readCheckpoint(folder_.path() / "model" / (std::string(stage) + ".checkpoint"))
-        .facts.at("normalizer");
-  };
-  const nlohmann::json expected = normalizerOf("encoder");
-  test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
-  run("fine_tune", 1);
-  EXPECT_EQ(normalizerOf("fine_tune"), expected);
-  run("denoiser", 1);
-  EXPECT_NE(normalizerOf("denoiser"), expected);
-  std::filesystem::remove(folder_.path() / "data" / "b.shard");
-  run("joint", 1);
-  EXPECT_EQ(normalizerOf("joint"), normalizerOf("denoiser"));
-  EXPECT_EQ(normalizerFacts(diffusion::loadModel(options_.output).normalizer),
-            normalizerOf("joint"));
-}
-
-TEST_F(TrainerTest, AnInitialModelOfOtherSizesIsNamed) {
-  run("encoder", 1);
-  run("denoiser", 1);
   options_.init = options_.output;
   options_.output = (folder_.path() / "second").string();
+  run("denoiser", 1);
+  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
+  EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.scale, expected.scale);
   options_.architecture.state_hidden += 1;
   try {
     run("denoiser", 1);
