@@ -33,7 +33,7 @@ struct SampleKinds {
 };
 
 SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
-/// Whether `state` lies off the route near `around.arc_length`.
+/// Whether `state` is more than kOffCourse or kOffTurn off the route at `around.arc_length`.
 bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& state);
 /// What its motion alone tells; the reason of a stop is "other".
 SampleKinds kindsOf(const training::Sample& sample);

@@ -17,11 +17,10 @@
 namespace cdiff::training {
 
 struct TrainingOptions {
-  std::string stage = "all";  ///< encoder | fine_tune | denoiser | joint | export | all
-  std::string data;           ///< folder with *.shard
-  std::string output;         ///< folder for checkpoints and the model
-  std::string
-      init;  ///< model to start from, with its normalizer, where no checkpoint is; empty: none
+  std::string stage = "all";   ///< encoder | fine_tune | denoiser | joint | export | all
+  std::string data;            ///< folder with *.shard
+  std::string output;          ///< folder for checkpoints and the model
+  std::string init;            ///< model to start from where no checkpoint is; empty: none
   std::int64_t steps = 20000;  ///< of the stage
   std::int64_t batch = 0;      ///< samples per step; 0: 32 with images, 128 on features
   std::int64_t threads = 1;
@@ -39,10 +38,9 @@ struct TrainingOptions {
   double average_decay = 0.999;  ///< of the moving average of the weights, at most
   double route_drop = 0.2;       ///< share of samples without route in diffusion stages
   double balance = 0.5;  ///< 0: samples as often as collected; 1: every kind of driving alike
-  double yielding_share =
-      1.0;                   ///< part kept of samples that stop to give way (Sample::stop_reason)
-  bool mirror = true;        ///< every second sample is mirrored
-  bool change_light = true;  ///< photometric changes of images
+  double yielding_share = 1.0;    ///< part kept of samples that stop to give way
+  bool mirror = true;             ///< every second sample is mirrored
+  bool change_light = true;       ///< photometric changes of images
   double validation_share = 0.1;  ///< of the sessions
   std::int64_t validation_samples = 256;
   std::int64_t validation_every = 1000;  ///< steps
