@@ -4,6 +4,7 @@
 A second argument names ctest's list of failed programs, one "number:name" a line: one that left no failed case
 (it crashed or ran out of time) counts as one. Exits 1 when any failed, a file cannot be read, or none was run.
 """
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -25,7 +26,10 @@ def programs_that_died(folder, failed_list):
     for line in failed_list.read_text().split():
         name = line.partition(":")[2]
         cases = []
-        for path in folder.rglob(f"*{name}.xml"):
+        for path in folder.rglob("*.xml"):
+            # gtest-NAME.xml of NAME, rostest-NAME.xml of _ctest_PACKAGE_rostest_NAME.test
+            if not name.removesuffix(".test").endswith(re.sub("^(gtest|rostest)-", "", path.stem)):
+                continue
             try:
                 cases += ElementTree.parse(path).getroot().iter("testcase")
             except ElementTree.ParseError:
