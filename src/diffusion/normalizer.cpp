@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
+#include "rollout_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -54,6 +55,22 @@ void Normalizer::validate(int horizon) const {
       }
     }
   }
+}
+
+std::string Normalizer::toJson() const {
+  return "{\"mean\":" + rolloutText(mean) + ",\"scale\":" + rolloutText(scale) + "}";
+}
+
+Normalizer Normalizer::fromJson(const std::string& text, std::int64_t horizon,
+                                const std::string& where) {
+  const Json value = parseStrictJson(text, where);
+  if (!value.is_object() || value.size() != 2 || !value.contains("mean") ||
+      !value.contains("scale")) {
+    throw core::InputError(where + " is " + kindOf(value) +
+                           "; an object of mean and scale was expected");
+  }
+  return {rolloutOf(value["mean"], horizon, where + "'s mean"),
+          rolloutOf(value["scale"], horizon, where + "'s scale")};
 }
 
 }  // namespace cdiff::diffusion

@@ -12,38 +12,19 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using traffic::Rollout;
 
-json rowsOf(const Rollout& matrix) {
-  json rows = json::array();
-  for (Eigen::Index t = 0; t < matrix.rows(); ++t) {
-    json row = json::array();
-    for (Eigen::Index column = 0; column < matrix.cols(); ++column)
-      row.push_back(matrix(t, column));
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-Rollout matrixOf(const json& rows) {
-  Rollout matrix(static_cast<Eigen::Index>(rows.size()), traffic::kRolloutColumns);
-  for (std::size_t t = 0; t < rows.size(); ++t) {
-    for (std::size_t column = 0; column < traffic::kRolloutColumns; ++column)
-      matrix(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(column)) =
-          rows.at(t).at(column).get<double>();
-  }
-  return matrix;
-}
-
-diffusion::Normalizer readNormalizer(const json& stored, const fs::path& path, int horizon) {
+diffusion::Normalizer readNormalizer(const json& stored, const fs::path& path,
+                                     std::int64_t horizon) {
+  const std::string where = "checkpoint '" + path.string() + "': normalizer";
+  if (!stored.is_string()) throw core::InputError(where + " is no text");
+  const auto normalizer =
+      diffusion::Normalizer::fromJson(stored.get<std::string>(), horizon, where);
   try {
-    const diffusion::Normalizer normalizer{matrixOf(stored.at("mean")),
-                                           matrixOf(stored.at("scale"))};
-    normalizer.validate(horizon);
-    return normalizer;
-  } catch (const std::exception& error) {
-    throw core::InputError("checkpoint '" + path.string() + "': normalizer: " + error.what());
+    normalizer.validate(static_cast<int>(horizon));
+  } catch (const core::InputError& error) {
+    throw core::InputError("checkpoint '" + path.string() + "': " + error.what());
   }
+  return normalizer;
 }
 
 /// Stages whose checkpoints the run takes weights from; those it goes on with are the first.
@@ -59,10 +40,6 @@ std::vector<std::string> sourcesOf(const TrainingOptions& options) {
 
 }  // namespace
 
-json normalizerFacts(const diffusion::Normalizer& normalizer) {
-  return {{"mean", rowsOf(normalizer.mean)}, {"scale", rowsOf(normalizer.scale)}};
-}
-
 diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dataset& dataset,
                                        const diffusion::Model* init) {
   for (const std::string& stage : sourcesOf(options)) {
@@ -71,7 +48,7 @@ diffusion::Normalizer chooseNormalizer(const TrainingOptions& options, const Dat
     const json facts = readCheckpoint(path).facts;
     // One without is of a time when each run fitted its own.
     if (!facts.contains("normalizer")) return fitNormalizer(dataset, options.mirror);
-    return readNormalizer(facts.at("normalizer"), path, static_cast<int>(dataset.schema().horizon));
+    return readNormalizer(facts.at("normalizer"), path, dataset.schema().horizon);
   }
   return init != nullptr ? init->normalizer : fitNormalizer(dataset, options.mirror);
 }

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Which normalizer a run uses: weights mean something only with the one they were trained with, so
-/// it travels with every checkpoint.
+/// it travels with every checkpoint as the fact "normalizer" (Normalizer::toJson).
 #pragma once
-
-#include <nlohmann/json.hpp>
 
 #include "e2e_cdiff/diffusion/model.h"
 #include "e2e_cdiff/training/dataset.h"
 #include "e2e_cdiff/training/trainer.h"
 
 namespace cdiff::training {
-
-/// {"mean": T rows of 7, "scale": T rows of 7}; numbers are kept exactly.
-nlohmann::json normalizerFacts(const diffusion::Normalizer& normalizer);
 
 /// That of the checkpoint that the run goes on with or starts from, else that of the model `init`
 /// (nullptr: none), else one fitted to the data; [T, 7] each, of m, rad, m/s and pedals. Throws

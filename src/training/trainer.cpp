@@ -148,7 +148,7 @@ class Trainer {
 
   void runStage(Stage& stage) {
     const nlohmann::json facts = {{"data", state_.dataset.sha256()},
-                                  {"normalizer", normalizerFacts(normalizer_)}};
+                                  {"normalizer", normalizer_.toJson()}};
     StageRunner runner(stage, options_, facts, stop_, log_);
     results_[stage.name()] = runner.run();
   }

@@ -33,7 +33,7 @@ class StoredNormalizerTest : public testing::Test {
     writeCheckpoint(StageRunner::pathOf(options_.output, stage), {facts, {}});
   }
   void write(const std::string& stage, double mean) {
-    writeFacts(stage, {{"normalizer", normalizerFacts(constant(mean))}});
+    writeFacts(stage, {{"normalizer", constant(mean).toJson()}});
   }
   /// First mean of the normalizer chosen for a stage.
   double chosen(const std::string& stage, bool resume, bool init = false) {
@@ -80,7 +80,7 @@ TEST_F(StoredNormalizerTest, AStageTakesThatOfTheStageItStartsFrom) {
 
 TEST_F(StoredNormalizerTest, NumbersComeBackToTheBit) {
   const diffusion::Normalizer expected = fitNormalizer(*dataset_, true);
-  writeFacts("denoiser", {{"normalizer", normalizerFacts(expected)}});
+  writeFacts("denoiser", {{"normalizer", expected.toJson()}});
   options_.stage = "denoiser";
   options_.resume = true;
   const diffusion::Normalizer found = chooseNormalizer(options_, *dataset_, &initial_);
@@ -91,7 +91,7 @@ TEST_F(StoredNormalizerTest, NumbersComeBackToTheBit) {
 TEST_F(StoredNormalizerTest, ACheckpointWithoutOneWasFittedAndAMalformedOneIsNamed) {
   writeFacts("denoiser", {{"steps", 1}});
   EXPECT_EQ(chosen("denoiser", true, true), fitted());
-  writeFacts("denoiser", {{"normalizer", {{"mean", {{1.0}}}}}});
+  writeFacts("denoiser", {{"normalizer", "{\"mean\":[[1]]}"}});
   try {
     chosen("denoiser", true);
     FAIL() << "taken";

@@ -4,6 +4,9 @@
 /// scale, cell by cell of [T, 7].
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::diffusion {
@@ -21,6 +24,12 @@ struct Normalizer {
   Trajectory toNormalizedGradient(const traffic::Rollout& gradient) const;
   /// Throws InputError when a mean is not finite, a scale is not positive, or T differs.
   void validate(int horizon) const;
+
+  /// {"mean": T rows of 7, "scale": T rows of 7}, to the bit.
+  std::string toJson() const;
+  /// Of `horizon` rows, not validated. Throws InputError that begins with `where`.
+  static Normalizer fromJson(const std::string& text, std::int64_t horizon,
+                             const std::string& where);
 };
 
 }  // namespace cdiff::diffusion
