@@ -6,17 +6,11 @@
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
 namespace cdiff::cli {
 namespace {
-
-void checkPlanner(const std::string& name, const scenario::SessionSetup& setup) {
-  if (name == "external") return;
-  planning::makePlanner(name, setup.options().plannerOptions(), setup.planningContext());
-}
 
 /// Checks one scenario as far as it goes without starting SUMO; answers whether it is good.
 bool validateOne(const std::string& scenario_name, bool print) {
@@ -25,8 +19,8 @@ bool validateOne(const std::string& scenario_name, bool print) {
     request.scenario = scenario_name;
     const scenario::ScenarioOptions options = scenario::resolveRequest(request);
     const scenario::SessionSetup setup(options);
-    checkPlanner(options.ego_planner, setup);
-    checkPlanner(options.cbv_planner, setup);
+    if (options.ego_planner != "external") setup.makeEgoPlanner();
+    setup.makeCbvPlanner();
     std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
     out << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())
         << " m)\n";

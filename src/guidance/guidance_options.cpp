@@ -62,17 +62,18 @@ void validateEntry(const WeightedObjective& entry, const std::string& group) {
 
 void requireStep(const std::string& key, std::int64_t step, int diffusion_steps) {
   if (step <= diffusion_steps) return;
-  throw InputError("key 'guidance." + key + "' is " + std::to_string(step) + "; expected at most " +
+  throw InputError("key '" + key + "' is " + std::to_string(step) + "; expected at most " +
                    std::to_string(diffusion_steps) + ", the model's number of diffusion steps K");
 }
 
-void requireVisit(const WeightedObjective& entry, const std::vector<int>& visited) {
+void requireVisit(const WeightedObjective& entry, const std::string& key,
+                  const std::vector<int>& visited) {
   std::vector<std::string> names;
   for (const int step : visited) {
     if (entry.actsAt(step)) return;
     names.push_back(std::to_string(step));
   }
-  throw InputError("key 'guidance." + entry.name + ".last_step' is " +
+  throw InputError("key '" + key + ".last_step' is " +
                    std::to_string(entry.last_step) + " and first_step is " +
                    std::to_string(entry.first_step) +
                    "; the sampler visits none of these diffusion steps, so the objective would "
@@ -129,6 +130,12 @@ WeightedObjective& GuidanceOptions::find(const std::string& name) {
                    core::nearestName(name, known) + "'");
 }
 
+bool GuidanceOptions::isActive(const std::string& name) const {
+  return std::any_of(objectives.begin(), objectives.end(), [&](const WeightedObjective& entry) {
+    return entry.name == name && entry.weight > 0.0;
+  });
+}
+
 void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number(
       {"trust_region", "",
@@ -147,12 +154,14 @@ void GuidanceOptions::validate(const std::string& group) const {
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }
 
-void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int>& visited) const {
+void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int>& visited,
+                                      const std::string& group) const {
   for (const WeightedObjective& entry : objectives) {
     if (!(entry.weight > 0.0)) continue;
-    requireStep(entry.name + ".first_step", entry.first_step, diffusion_steps);
-    requireStep(entry.name + ".last_step", entry.last_step, diffusion_steps);
-    requireVisit(entry, visited);
+    const std::string key = group + entry.name;
+    requireStep(key + ".first_step", entry.first_step, diffusion_steps);
+    requireStep(key + ".last_step", entry.last_step, diffusion_steps);
+    requireVisit(entry, key, visited);
   }
 }
 

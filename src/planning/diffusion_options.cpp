@@ -7,8 +7,10 @@ namespace cdiff::planning {
 void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"model", "", "Shipped model, or folder with its weight files."}, model, {});
   visitor.text(
-      {"conditioning", "", "What the network is told: image and route, or the image alone."},
-      conditioning, {"image_route", "image"});
+      {"conditioning", "",
+       "What the network is told: image and route, the image alone, or the image alone where "
+       "collision_seeking acts."},
+      conditioning, {"image_route", "image", "by_guidance"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
                state_branch, {"learned", "exact"});
   visitor.integer({"candidates", "", "Samples per vehicle and decision."}, candidates, 1, 64);

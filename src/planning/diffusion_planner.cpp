@@ -30,6 +30,12 @@ diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
   return sampler;
 }
 
+/// An attacker that knows its route stops in its lane before the ego instead of driving at it.
+bool isToldRoute(const std::string& conditioning, const guidance::GuidanceOptions& guidance) {
+  if (conditioning == "by_guidance") return !guidance.isActive("collision_seeking");
+  return conditioning == "image_route";
+}
+
 /// Rows of a rollout in a decision period.
 double rowsOf(const PlanningContext& context) {
   return context.decision_period / traffic::kRolloutStep;
@@ -68,9 +74,11 @@ struct DiffusionPlanner::Situation {
 DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
                                    const guidance::GuidanceOptions& guidance,
                                    const dynamics::BicycleModelOptions& vehicle,
-                                   const PlanningContext& context)
+                                   const PlanningContext& context,
+                                   const std::string& guidance_group)
     : options_(options),
       guidance_(guidance),
+      knows_route_(isToldRoute(options.conditioning, guidance)),
       vehicle_(vehicle),
       context_(context),
       model_(diffusion::loadModel(options.model)),
@@ -80,9 +88,9 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle) {
-  guidance_.validate("guidance.");
+  guidance_.validate(guidance_group);
   if (options.sampler.mode != "unguided") {
-    guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false));
+    guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
   }
 }
 
@@ -98,7 +106,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const PlanningTask& task, s
   if (auto fault = memory.watch.fault(expectation, task.image, task.vehicle->state, tick))
     return fault;
   const bool has_route = task.route != nullptr && !task.route->empty();
-  if (!has_route && options_.conditioning == "image_route") return "it has no route";
+  if (!has_route && knows_route_) return "it has no route";
   return std::nullopt;
 }
 
@@ -171,7 +179,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
     scene.route_arc_length = arc_length;
     const double place = std::clamp(arc_length, 0.0, task.route->length());
     scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
-    if (options_.conditioning == "image_route") {
+    if (knows_route_) {
       situation->context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
                                                         arc_length, vehicle.state.pose());
     }

@@ -23,8 +23,8 @@ struct Entry {
 /// Throws InputError if the camera has not the size of the model's images.
 std::unique_ptr<DiffusionPlanner> makeSeeing(const PlannerOptions& options,
                                              const PlanningContext& context) {
-  auto planner = std::make_unique<DiffusionPlanner>(options.diffusion, options.guidance,
-                                                    options.vehicle, context);
+  auto planner = std::make_unique<DiffusionPlanner>(
+      options.diffusion, options.guidance, options.vehicle, context, options.guidance_group);
   const diffusion::Architecture& sizes = planner->model().architecture;
   const rendering::CameraOptions& camera = options.camera;
   if (camera.width != sizes.image_width || camera.height != sizes.image_height) {

@@ -30,7 +30,7 @@ void checkSight(const planning::Planner& planner, bool session_expects, const st
 
 void EgoPlannerRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
-  planner_ = makePlanner(setup_->options().ego_planner, *setup_);
+  planner_ = setup_->makeEgoPlanner();
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
   images_ = ImageInbox(setup_->options().camera, setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(kEgoControlTopic);
@@ -76,7 +76,7 @@ std::vector<planning::PlannedAction> EgoPlannerRos::decide(
 
 void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
-  planner_ = makePlanner(setup_->options().cbv_planner, *setup_);
+  planner_ = setup_->makeCbvPlanner();
   checkSight(*planner_, graph().cbvsSee(), setup_->options().cbv_planner);
   for (int slot = 0; slot < graph().max_cbv; ++slot) {
     controls_.push_back(advertise<msgs::ControlAction>(cbvControlTopic(slot)));

@@ -27,11 +27,6 @@ std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
                                                   routeFromMsg(info));
 }
 
-std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
-                                               const scenario::SessionSetup& setup) {
-  return planning::makePlanner(name, setup.options().plannerOptions(), setup.planningContext());
-}
-
 SessionGraph graphOf(const scenario::ScenarioOptions& options, const GraphRequest& request,
                      const std::vector<std::string>& participants) {
   SessionGraph graph;

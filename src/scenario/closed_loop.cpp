@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/planning/planner_factory.h"
 
 namespace cdiff::scenario {
 namespace {
@@ -98,11 +97,8 @@ void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask
 
 ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
   const ScenarioOptions& options = setup.options();
-  const planning::PlannerOptions planner_options = options.plannerOptions();
-  ego_planner_ =
-      planning::makePlanner(options.ego_planner, planner_options, setup.planningContext());
-  cbv_planner_ =
-      planning::makePlanner(options.cbv_planner, planner_options, setup.planningContext());
+  ego_planner_ = setup.makeEgoPlanner();
+  cbv_planner_ = setup.makeCbvPlanner();
   if (ego_planner_->needsImages() || cbv_planner_->needsImages())
     camera_.emplace(options.camera, setup.network());
   selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),

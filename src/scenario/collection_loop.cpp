@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/random_route.h"
 
@@ -73,8 +72,8 @@ CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOption
       options_(options),
       seed_(static_cast<std::uint64_t>(setup.options().seed)),
       driver_(options, setup.graph(), setup.drivableArea(), seed_) {
-  ego_planner_ = perturbedPlanner(setup.options().ego_planner);
-  cbv_planner_ = perturbedPlanner(setup.options().cbv_planner);
+  ego_planner_ = perturbedPlanner(setup.makeEgoPlanner(), setup.options().ego_planner);
+  cbv_planner_ = perturbedPlanner(setup.makeCbvPlanner(), setup.options().cbv_planner);
   if (images) camera_.emplace(setup.options().camera, setup.network());
   world_ = std::make_unique<World>(setup);
   world_->setTakeOverDisturbance([this](const std::string& id, const traffic::VehicleState& state) {
@@ -84,9 +83,8 @@ CollectionLoop::CollectionLoop(const SessionSetup& setup, const CollectionOption
 
 CollectionLoop::~CollectionLoop() = default;
 
-std::unique_ptr<PerturbedPlanner> CollectionLoop::perturbedPlanner(const std::string& name) const {
-  auto planner =
-      planning::makePlanner(name, setup_.options().plannerOptions(), setup_.planningContext());
+std::unique_ptr<PerturbedPlanner> CollectionLoop::perturbedPlanner(
+    std::unique_ptr<planning::Planner> planner, const std::string& name) const {
   if (planner->needsImages())
     throw core::InputError("planner '" + name +
                            "' needs images; data are collected with planners "

@@ -165,7 +165,11 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.text(
       {"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
       guidance_profile, {});
-  visitor.group({"guidance", "", "Guidance objectives; defaults are the profile's."}, guidance);
+  visitor.group({"guidance", "", "Guidance of the CBVs; defaults are the profile's."}, guidance);
+  visitor.text({"ego_guidance_profile", "", "The same for an ego whose planner can be guided."},
+               ego_guidance_profile, {});
+  visitor.group({"ego_guidance", "", "Guidance of the ego; defaults are its profile's."},
+                ego_guidance);
   visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
@@ -188,6 +192,7 @@ void ScenarioOptions::validate() const {
   pdm_lite.validate();
   two_stage_pid.validate();
   guidance.validate("guidance.");
+  ego_guidance.validate("ego_guidance.");
   camera.validate();
   vehicle.validate();
   metrics.validate();

@@ -86,6 +86,7 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   ScenarioOptions base;
   base.guidance =
       guidance::loadProfile(first.guidance_profile.empty() ? first.mode : first.guidance_profile);
+  base.ego_guidance = guidance::loadProfile(first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);

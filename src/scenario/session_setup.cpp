@@ -43,6 +43,16 @@ planning::PlanningContext SessionSetup::planningContext() const {
           &ego_route_};
 }
 
+std::unique_ptr<planning::Planner> SessionSetup::makeEgoPlanner() const {
+  return planning::makePlanner(options_.ego_planner, options_.egoPlannerOptions(),
+                               planningContext());
+}
+
+std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
+  return planning::makePlanner(options_.cbv_planner, options_.cbvPlannerOptions(),
+                               planningContext());
+}
+
 metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   metrics::SessionMetricsOptions options;
   options.simulation_step = options_.simulation_step;

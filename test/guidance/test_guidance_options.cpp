@@ -72,6 +72,13 @@ TEST(GuidanceOptions, ReadsWeightWindowCapAndOwnKeys) {
   EXPECT_EQ(seeking.proximity.kappa, 7.0);
 }
 
+TEST(GuidanceOptions, AnObjectiveWithAWeightIsActive) {
+  const GuidanceOptions options = optionsFrom("speed:\n  weight: 1\nroute:\n  free_offset: 1\n");
+  EXPECT_TRUE(options.isActive("speed"));
+  EXPECT_FALSE(options.isActive("route"));
+  EXPECT_FALSE(options.isActive("no_such_objective"));
+}
+
 TEST(GuidanceOptions, WindowFromZeroActsFromTheFirstStepOn) {
   GuidanceOptions options = optionsFrom("speed:\n  weight: 1\n  last_step: 3\n");
   EXPECT_TRUE(options.find("speed").actsAt(100));
@@ -129,7 +136,7 @@ std::string windowError(std::int64_t first_step, std::int64_t last_step,
   speed.first_step = first_step;
   speed.last_step = last_step;
   try {
-    options.validateWindows(100, visited);
+    options.validateWindows(100, visited, "guidance.");
   } catch (const core::InputError& error) {
     return error.what();
   }

@@ -253,14 +253,34 @@ TEST_F(DiffusionModes, AClosedGateLeavesEveryBitOfThePlan) {
       {"paper", "none"}, {"real_time", "none"}, {"real_time", "safety_critical"}};
   for (const auto& [mode, profile] : cases) {
     SCOPED_TRACE(std::string(mode) + " " + profile);
+    DiffusionOptions options = optionsOf(mode);
+    options.conditioning = "image_route";  // else the objective decides it
     guidance_ = guidance::loadProfile(profile);
     guidance_.find("collision_seeking").weight = 0.0;
-    const auto without = firstPlans(optionsOf(mode));
+    const auto without = firstPlans(options);
     guidance_.find("collision_seeking") =
         std::move(guidance::loadProfile("safety_critical").find("collision_seeking"));
-    const auto with = firstPlans(optionsOf(mode));
+    const auto with = firstPlans(options);
     expectSamePlan(with[1], without[1]);
     EXPECT_FALSE(samePlan(with[0], without[0]));
+  }
+}
+
+TEST_F(DiffusionModes, ConditioningByGuidanceTellsAttackersAloneNoRoute) {
+  const auto planOf = [this](const std::string& conditioning) {
+    DiffusionOptions options = optionsOf();
+    options.conditioning = conditioning;
+    return makeDiffusion(options)->plan(snapshot_, tasks());
+  };
+  for (const std::string profile : {"naturalistic", "safety_critical"}) {
+    SCOPED_TRACE(profile);
+    guidance_ = guidance::loadProfile(profile);
+    const auto chosen = planOf("by_guidance");
+    const bool attacks = profile == "safety_critical";
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      EXPECT_TRUE(samePlan(chosen[i], planOf(attacks ? "image" : "image_route")[i]));
+      EXPECT_FALSE(samePlan(chosen[i], planOf(attacks ? "image_route" : "image")[i]));
+    }
   }
 }
 

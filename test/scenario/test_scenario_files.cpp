@@ -7,7 +7,6 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
@@ -24,8 +23,8 @@ TEST_P(ShippedScenario, LoadsWithNetworkRouteAndPlanners) {
   const SessionSetup setup(options);
   EXPECT_GE(setup.egoRoute().length(), 80.0);
   EXPECT_LE(setup.egoRoute().length(), 250.0);
-  EXPECT_NO_THROW(planning::makePlanner(options.ego_planner, {}, setup.planningContext()));
-  EXPECT_NO_THROW(planning::makePlanner(options.cbv_planner, {}, setup.planningContext()));
+  EXPECT_NO_THROW(setup.makeEgoPlanner());
+  EXPECT_NO_THROW(setup.makeCbvPlanner());
 }
 
 TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
@@ -56,6 +55,7 @@ TEST(ShippedScenarios, EveryFolderOfNetworksIsUsedAndImportsUnchanged) {
 std::string errorOf(const SessionRequest& request) {
   try {
     const SessionSetup setup(resolveRequest(request));
+    setup.makeEgoPlanner();
   } catch (const core::InputError& error) {
     return error.what();
   }
@@ -91,6 +91,35 @@ TEST(SessionRequest, BadKeysAndValuesNameTheSource) {
   EXPECT_TRUE(mentions(errorOf(request), "missing.rou.xml")) << errorOf(request);
   request.set = {"route.edges=[nothere]"};
   EXPECT_TRUE(mentions(errorOf(request), "nothere")) << errorOf(request);
+}
+
+TEST(SessionRequest, TheModeIsAboutTheCbvsAlone) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.ego_planner = "diffusion";
+  request.mode = "safety_critical";
+  const ScenarioOptions attacked = resolveRequest(request);
+  EXPECT_TRUE(attacked.cbvPlannerOptions().guidance.isActive("collision_seeking"));
+  EXPECT_FALSE(attacked.egoPlannerOptions().guidance.isActive("collision_seeking"));
+  EXPECT_TRUE(attacked.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+  request.set = {"guidance_profile=none", "ego_guidance_profile=ablation_speed",
+                 "ego_guidance.speed.factor=0.5"};
+  const ScenarioOptions named = resolveRequest(request);
+  EXPECT_FALSE(named.cbvPlannerOptions().guidance.isActive("speed"));
+  EXPECT_TRUE(named.egoPlannerOptions().guidance.isActive("speed"));
+  EXPECT_FALSE(named.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+}
+
+TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.ego_planner = "diffusion";
+  request.set = {"ego_guidance_profile=naturalistc"};
+  EXPECT_TRUE(mentions(errorOf(request), "'naturalistic'")) << errorOf(request);
+  request.set = {"ego_guidance.speed.first_step=5", "ego_guidance.speed.last_step=20"};
+  EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.first_step'")) << errorOf(request);
+  request.set = {"ego_guidance.speed.first_step=9"};
+  EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.last_step'")) << errorOf(request);
 }
 
 TEST(SessionRequest, ScenarioFileErrorsNameFileAndLine) {

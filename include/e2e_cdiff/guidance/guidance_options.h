@@ -42,12 +42,16 @@ struct GuidanceOptions {
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);
+  /// Whether an objective of this name has a weight; false for an unknown name.
+  bool isActive(const std::string& name) const;
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError; `group` is put before the keys that it names ("guidance.").
   void validate(const std::string& group = "") const;
-  /// Throws InputError naming the key of an active objective whose window reaches beyond
-  /// `diffusion_steps`, the model's K, or holds none of the steps that the sampler visits.
-  void validateWindows(int diffusion_steps, const std::vector<int>& visited) const;
+  /// Throws InputError naming the key, with `group` before it, of an active objective whose window
+  /// reaches beyond `diffusion_steps`, the model's K, or holds none of the steps that the sampler
+  /// visits.
+  void validateWindows(int diffusion_steps, const std::vector<int>& visited,
+                       const std::string& group = "") const;
 };
 
 /// Reads a profile by file name, or by the name of one in config/guidance. Throws InputError naming

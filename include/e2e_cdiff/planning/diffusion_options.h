@@ -11,12 +11,14 @@
 namespace cdiff::planning {
 
 struct DiffusionOptions {
-  std::string model = "default";             ///< shipped model or folder of the weight files
-  std::string conditioning = "image_route";  ///< image_route | image (the paper's)
-  std::string state_branch = "learned";      ///< learned | exact
-  std::int64_t candidates = 1;               ///< samples per vehicle
-  double hysteresis = 0.1;         ///< a new mode must be better by this share of the score
-  double frozen_image_time = 1.0;  ///< the same image for so long while moving is a fault [s]
+  std::string model = "default";  ///< shipped model or folder of the weight files
+  /// image_route | image (the paper's) | by_guidance: image where collision_seeking has a weight,
+  /// image_route elsewhere
+  std::string conditioning = "by_guidance";
+  std::string state_branch = "learned";  ///< learned | exact
+  std::int64_t candidates = 1;           ///< samples per vehicle
+  double hysteresis = 0.1;               ///< a new mode must be better by this share of the score
+  double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);

@@ -34,9 +34,11 @@ namespace cdiff::planning {
 
 class DiffusionPlanner : public Planner {
  public:
-  /// Loads the model. Throws InputError for a bad model or bad options.
+  /// Loads the model. Throws InputError for a bad model or bad options; `guidance_group` is put
+  /// before the keys of guidance that it names.
   DiffusionPlanner(const DiffusionOptions& options, const guidance::GuidanceOptions& guidance,
-                   const dynamics::BicycleModelOptions& vehicle, const PlanningContext& context);
+                   const dynamics::BicycleModelOptions& vehicle, const PlanningContext& context,
+                   const std::string& guidance_group = "guidance.");
   ~DiffusionPlanner() override;
 
   /// A vehicle with a NaN state, without a usable image, or without a route where one is asked for
@@ -68,6 +70,7 @@ class DiffusionPlanner : public Planner {
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;
+  bool knows_route_;  ///< whether the network is told the route
   dynamics::BicycleModelOptions vehicle_;
   PlanningContext context_;
   diffusion::Model model_;

@@ -22,7 +22,8 @@ struct PlannerOptions {
   PdmLiteOptions pdm_lite;
   DiffusionOptions diffusion;  ///< of two_stage_pid too
   TrajectoryTrackerOptions two_stage_pid;
-  guidance::GuidanceOptions guidance;  ///< of planners that can be guided
+  guidance::GuidanceOptions guidance;        ///< of planners that can be guided
+  std::string guidance_group = "guidance.";  ///< before its keys in errors
   dynamics::BicycleModelOptions vehicle;
   rendering::CameraOptions camera;  ///< that planners which see look through
 };

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What nodes make of a SessionInfo: the setup, planners, and who takes part.
+/// What nodes make of a SessionInfo: the setup, and who takes part.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "e2e_cdiff/SessionInfo.h"
-#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
 namespace cdiff::ros {
 
 std::unique_ptr<scenario::SessionSetup> setupOf(const ::e2e_cdiff::SessionInfo& info);
-std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
-                                               const scenario::SessionSetup& setup);
 
 /// What launch files and parameters add to the scenario.
 struct GraphRequest {

@@ -51,7 +51,8 @@ class CollectionLoop {
   Decision decide();
   void render(Decision& decision);
   bool imageDue(const planning::PlannedAction& action, std::int64_t decision);
-  std::unique_ptr<PerturbedPlanner> perturbedPlanner(const std::string& name) const;
+  std::unique_ptr<PerturbedPlanner> perturbedPlanner(std::unique_ptr<planning::Planner> planner,
+                                                     const std::string& name) const;
 
   const SessionSetup& setup_;
   CollectionOptions options_;

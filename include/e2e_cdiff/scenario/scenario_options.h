@@ -59,7 +59,9 @@ struct ScenarioOptions {
   planning::DiffusionOptions diffusion;
   planning::TrajectoryTrackerOptions two_stage_pid;
   std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
-  guidance::GuidanceOptions guidance;  ///< the profile's values, with what the scenario changes
+  guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
+  std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
+  guidance::GuidanceOptions ego_guidance;             ///< of an ego whose planner can be guided
   rendering::CameraOptions camera;     ///< that planners see through
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
@@ -77,8 +79,11 @@ struct ScenarioOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for fields that contradict each other.
   void validate() const;
-  planning::PlannerOptions plannerOptions() const {
-    return {pdm_lite, diffusion, two_stage_pid, guidance, vehicle, camera};
+  planning::PlannerOptions egoPlannerOptions() const {
+    return {pdm_lite, diffusion, two_stage_pid, ego_guidance, "ego_guidance.", vehicle, camera};
+  }
+  planning::PlannerOptions cbvPlannerOptions() const {
+    return {pdm_lite, diffusion, two_stage_pid, guidance, "guidance.", vehicle, camera};
   }
 
  private:

@@ -35,6 +35,9 @@ class SessionSetup {
   /// Always matched from its points, so that every deployment has the same.
   const map::Route& egoRoute() const { return ego_route_; }
   planning::PlanningContext planningContext() const;
+  /// The planners that the scenario names; they refer to this setup. Throw InputError.
+  std::unique_ptr<planning::Planner> makeEgoPlanner() const;
+  std::unique_ptr<planning::Planner> makeCbvPlanner() const;
   /// What the session is measured by, in every deployment.
   metrics::SessionMetricsOptions metricsOptions() const;
   /// Ticks from one decision to the next.
