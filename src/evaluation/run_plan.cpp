@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
@@ -189,6 +190,7 @@ class Planner {
     for (const ScenarioLevel& level : scenarioLevels(matrix_, source_)) {
       for (const Combination& combination : combinations_) addVariants(level, combination);
     }
+    requireDistinct();
     nameRuns();
     return std::move(runs_);
   }
@@ -243,6 +245,22 @@ class Planner {
       const std::string text = error.what();
       throw InputError(text.rfind(source_, 0) == 0 ? text
                                                    : source_ + ", scenario " + label + ": " + text);
+    }
+  }
+
+  /// A run that is there twice would count twice.
+  void requireDistinct() const {
+    std::set<std::map<std::string, std::string>> seen;
+    for (const PlannedRun& run : runs_) {
+      if (seen.insert(run.factors).second) continue;
+      std::vector<std::string> levels;
+      for (const std::string& factor : factorNames()) {
+        const std::string& level = run.factors.at(factor);
+        if (!level.empty()) levels.push_back(factor + " " + level);
+      }
+      throw InputError(source_ + ": a run is planned twice: " + core::joinText(levels, ", ") +
+                       "; give every level once and every variant and scenario file a name of its "
+                       "own (repetitions: 2 runs each twice)");
     }
   }
 

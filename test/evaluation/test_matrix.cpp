@@ -123,6 +123,25 @@ TEST(Plan, NamesWhatIsWrong) {
   expectIn("the nearest known key is 'target_speed'", errorOf(matrix));
 }
 
+TEST(Plan, ARunIsPlannedOnce) {
+  MatrixOptions matrix = oneScenario();
+  matrix.seeds = {"1", "2", "1"};
+  expectIn("matrix.yaml: a run is planned twice: scenario arterial_exit", errorOf(matrix));
+  expectIn("seed 1", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.scenarios.push_back(matrix.scenarios.front());
+  expectIn("planned twice", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.combinations = {"mode=naturalistic", "mode=naturalistic guidance_profile=naturalistic"};
+  expectIn("guidance_profile naturalistic", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.variants = {"slow: target_speed=4", "slow: target_speed=5"};
+  expectIn("variant slow", errorOf(matrix));
+  matrix = oneScenario();
+  matrix.repetitions = 2;
+  EXPECT_EQ(planRuns(matrix, "matrix.yaml").size(), 2U);
+}
+
 TEST(Matrix, ResolvesFilesAgainstItsFolder) {
   const test::TemporaryFolder scratch;
   std::ofstream(scratch.path() / "mine.yaml") << "network: arterial_merge\n";
