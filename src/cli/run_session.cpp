@@ -7,11 +7,13 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "progress.h"
@@ -46,10 +48,8 @@ void recordFailedStart(report::ResultWriter& writer, const std::string& text) {
   writer.observe(record);
 }
 
-int finish(report::ResultWriter& writer, Clock::time_point begin, bool quiet) {
-  writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
-  if (!quiet) std::cout << writer.table() << std::flush;
-  return writer.exitCode();
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 /// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
@@ -129,6 +129,17 @@ class VideoRecord {
   bool told_ = false;
 };
 
+/// What is there only where it was asked for.
+std::string extraRows(const std::filesystem::path& folder) {
+  std::string rows;
+  for (const auto& [name, file] :
+       {std::pair{"bag", "session.bag"}, std::pair{"video", report::kVideoFile}}) {
+    if (std::filesystem::exists(folder / file))
+      rows += report::tableRow(name, (folder / file).string());
+  }
+  return rows;
+}
+
 /// Runs the session and records it; an exit code.
 int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario::ClosedLoop& loop,
           const std::atomic<bool>& stop, Clock::time_point begin) {
@@ -144,7 +155,9 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
     VideoRecord video(setup, output.folder, loop);
     loop.run(stop);
     const bool recorded = bag.finish();
-    const int exit_code = video.finish(writer, finish(writer, begin, output.quiet));
+    writer.finish(secondsSince(begin));
+    const int exit_code = video.finish(writer, writer.exitCode());
+    if (!output.quiet) std::cout << writer.table() << extraRows(output.folder) << std::flush;
     return recorded || !isJudged(exit_code) ? exit_code : static_cast<int>(kRunTimeError);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
@@ -168,7 +181,9 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
     report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
-    return finish(writer, begin, output.quiet);
+    writer.finish(secondsSince(begin));
+    if (!output.quiet) std::cout << writer.table() << std::flush;
+    return writer.exitCode();
   }
   removeEarlierSession(output.folder);
   return drive(setup, output, *loop, stop, begin);

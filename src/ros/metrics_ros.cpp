@@ -109,8 +109,11 @@ int MetricsRos::conclude(Ending ending) {
     if (video_) video_->observe(record);
   }
   writer_->finish(wallSeconds());
-  std::cout << writer_->table() << std::flush;
   const int exit_code = finishVideo(writer_->exitCode());
+  std::cout << writer_->table();
+  if (video_ && video_->error().empty())
+    std::cout << report::tableRow("video", (results_ / report::kVideoFile).string());
+  std::cout << std::flush;
   writeExitCode(results_, exit_code);
   return exit_code;
 }

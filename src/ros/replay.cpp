@@ -33,6 +33,15 @@ void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot
   throw core::InputError(text);
 }
 
+/// Null where none is asked for; one of an earlier replay then goes.
+std::unique_ptr<report::SessionVideo> videoOf(const scenario::SessionSetup& setup,
+                                              const std::filesystem::path& results) {
+  if (setup.options().video) return std::make_unique<report::SessionVideo>(setup, results);
+  std::error_code ignored;
+  std::filesystem::remove(results / report::kVideoFile, ignored);
+  return nullptr;
+}
+
 }  // namespace
 
 std::size_t showTicks(RecordedSession& session,
@@ -83,12 +92,9 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   info.simulator_version = session.info().simulator_version;
   const bool deterministic = session.setup().options().real_time_factor == 0.0;
   report::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
-  std::unique_ptr<report::SessionVideo> video;
+  const auto video = videoOf(session.setup(), results);
   std::vector<scenario::SessionObserver*> observers = {&writer};
-  if (session.setup().options().video) {
-    video = std::make_unique<report::SessionVideo>(session.setup(), results);
-    observers.push_back(video.get());
-  }
+  if (video) observers.push_back(video.get());
   try {
     showTick(session, *first, observers);
     showTicks(session, observers);

@@ -13,6 +13,9 @@ namespace cdiff::report {
 /// `folder` is where the files lie.
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder);
 
+/// A further row of it.
+std::string tableRow(const std::string& name, const std::string& value);
+
 /// A figure with its unit and count, or why it is absent: "3.21 s (n = 40)", "not defined: no CBV
 /// was driven".
 std::string measureText(const metrics::Measure& measure, int decimals);
