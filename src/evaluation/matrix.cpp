@@ -53,8 +53,9 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
   visitor.list({"cbv_planners", "", "Planners of the CBVs; empty: the scenario's."}, cbv_planners);
   visitor.list({"modes", "", "naturalistic, safety_critical; empty: the scenario's."}, modes);
-  visitor.list({"guidance_profiles", "", "Shipped profiles or files; empty: that of the mode."},
-               guidance_profiles);
+  visitor.list(
+      {"guidance_profiles", "", "Of the CBVs: shipped profiles or files; empty: that of the mode."},
+      guidance_profiles);
   visitor.list({"combinations", "",
                 "Instead of the product of the four lists above: sets of their levels, each "
                 "\"ego_planner=NAME cbv_planner=NAME mode=MODE guidance_profile=NAME\" or a part "

@@ -9,7 +9,7 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text(
       {"conditioning", "",
        "What the network is told: image and route, the image alone, or the image alone where "
-       "collision_seeking acts."},
+       "collision_seeking has a weight."},
       conditioning, {"image_route", "image", "by_guidance"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
                state_branch, {"learned", "exact"});
@@ -19,6 +19,12 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
                  frozen_image_time, 0.1, 60.0);
   visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);
+}
+
+std::string DiffusionOptions::conditioningUnder(const guidance::GuidanceOptions& guidance) const {
+  if (conditioning != "by_guidance") return conditioning;
+  const bool attacks = sampler.mode != "unguided" && guidance.isActive("collision_seeking");
+  return attacks ? "image" : "image_route";
 }
 
 }  // namespace cdiff::planning

@@ -30,12 +30,6 @@ diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
   return sampler;
 }
 
-/// An attacker that knows its route stops in its lane before the ego instead of driving at it.
-bool isToldRoute(const std::string& conditioning, const guidance::GuidanceOptions& guidance) {
-  if (conditioning == "by_guidance") return !guidance.isActive("collision_seeking");
-  return conditioning == "image_route";
-}
-
 /// Rows of a rollout in a decision period.
 double rowsOf(const PlanningContext& context) {
   return context.decision_period / traffic::kRolloutStep;
@@ -78,7 +72,7 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
                                    const std::string& guidance_group)
     : options_(options),
       guidance_(guidance),
-      knows_route_(isToldRoute(options.conditioning, guidance)),
+      tells_route_(options.conditioningUnder(guidance) == "image_route"),
       vehicle_(vehicle),
       context_(context),
       model_(diffusion::loadModel(options.model)),
@@ -106,7 +100,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const PlanningTask& task, s
   if (auto fault = memory.watch.fault(expectation, task.image, task.vehicle->state, tick))
     return fault;
   const bool has_route = task.route != nullptr && !task.route->empty();
-  if (!has_route && knows_route_) return "it has no route";
+  if (!has_route && tells_route_) return "it has no route";
   return std::nullopt;
 }
 
@@ -179,7 +173,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
     scene.route_arc_length = arc_length;
     const double place = std::clamp(arc_length, 0.0, task.route->length());
     scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
-    if (knows_route_) {
+    if (tells_route_) {
       situation->context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
                                                         arc_length, vehicle.state.pose());
     }

@@ -53,14 +53,28 @@ std::string machineBlock() {
          line(1, "instruction_set", quoted(instructionSet()));
 }
 
+/// What the networks of ego and CBVs are told.
+std::string conditioningLines(const scenario::ScenarioOptions& options) {
+  const auto lineOf = [&](const char* key, const std::string& planner,
+                          const guidance::GuidanceOptions& guidance) {
+    return planning::seesImages(planner)
+               ? line(1, key, options.diffusion.conditioningUnder(guidance))
+               : "";
+  };
+  return lineOf("ego_conditioning", options.ego_planner, options.ego_guidance) +
+         lineOf("cbv_conditioning", options.cbv_planner, options.guidance);
+}
+
 /// What the bytes of a planned action depend on besides the scenario: model and instruction sets.
 std::string inferenceBlock(const scenario::ScenarioOptions& options, const RunFacts& facts) {
   if (!planning::seesImages(options.cbv_planner) && !planning::seesImages(options.ego_planner))
     return "";
   using diffusion::CpuDenoiser;
   if (!facts.recorded_by.empty())  // nothing was inferred here; the model may not even be here
-    return "inference:\n" + line(1, "model", quoted(options.diffusion.model));
+    return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
+           conditioningLines(options);
   return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
+         conditioningLines(options) +
          line(1, "model_files_sha256",
               quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
          line(1, "encoder_instruction_set", quoted(diffusion::ImageEncoder::instructionSet())) +

@@ -166,7 +166,8 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
       {"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
       guidance_profile, {});
   visitor.group({"guidance", "", "Guidance of the CBVs; defaults are the profile's."}, guidance);
-  visitor.text({"ego_guidance_profile", "", "The same for an ego whose planner can be guided."},
+  visitor.text({"ego_guidance_profile", "",
+                "Guidance profile of the ego: shipped or file; the mode does not change it."},
                ego_guidance_profile, {});
   visitor.group({"ego_guidance", "", "Guidance of the ego; defaults are its profile's."},
                 ego_guidance);

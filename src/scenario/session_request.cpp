@@ -67,6 +67,14 @@ ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOption
   return options;
 }
 
+guidance::GuidanceOptions profileOf(const std::string& key, const std::string& name) {
+  try {
+    return guidance::loadProfile(name);
+  } catch (const InputError& error) {
+    throw InputError("key '" + key + "': " + error.what());
+  }
+}
+
 /// The content of the file that speeds are compared with, so that a recording needs no file.
 void fillSpeedTarget(metrics::MetricsOptions& options) {
   if (options.speed_target != "file" || options.speed_target_file.empty() ||
@@ -84,9 +92,9 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
   // then lie below everything else.
   const ScenarioOptions first = applyRequest(request, {});
   ScenarioOptions base;
-  base.guidance =
-      guidance::loadProfile(first.guidance_profile.empty() ? first.mode : first.guidance_profile);
-  base.ego_guidance = guidance::loadProfile(first.ego_guidance_profile);
+  base.guidance = profileOf("guidance_profile",
+                            first.guidance_profile.empty() ? first.mode : first.guidance_profile);
+  base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);

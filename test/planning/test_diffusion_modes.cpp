@@ -266,6 +266,18 @@ TEST_F(DiffusionModes, AClosedGateLeavesEveryBitOfThePlan) {
   }
 }
 
+TEST(DiffusionOptions, WhatConditioningComesTo) {
+  DiffusionOptions options;
+  const auto natural = guidance::loadProfile("naturalistic");
+  const auto attack = guidance::loadProfile("safety_critical");
+  EXPECT_EQ(options.conditioningUnder(natural), "image_route");
+  EXPECT_EQ(options.conditioningUnder(attack), "image");
+  options.sampler.mode = "unguided";
+  EXPECT_EQ(options.conditioningUnder(attack), "image_route");
+  options.conditioning = "image";
+  EXPECT_EQ(options.conditioningUnder(natural), "image");
+}
+
 TEST_F(DiffusionModes, ConditioningByGuidanceTellsAttackersAloneNoRoute) {
   const auto planOf = [this](const std::string& conditioning) {
     DiffusionOptions options = optionsOf();

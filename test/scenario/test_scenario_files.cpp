@@ -103,8 +103,9 @@ TEST(SessionRequest, TheModeIsAboutTheCbvsAlone) {
   EXPECT_FALSE(attacked.egoPlannerOptions().guidance.isActive("collision_seeking"));
   EXPECT_TRUE(attacked.egoPlannerOptions().guidance.isActive("collision_avoidance"));
   request.set = {"guidance_profile=none", "ego_guidance_profile=ablation_speed",
-                 "ego_guidance.speed.factor=0.5"};
-  const ScenarioOptions named = resolveRequest(request);
+                 "ego_guidance.speed.weight=0.5"};
+  ScenarioOptions named = resolveRequest(request);
+  EXPECT_EQ(named.ego_guidance.find("speed").weight, 0.5);
   EXPECT_FALSE(named.cbvPlannerOptions().guidance.isActive("speed"));
   EXPECT_TRUE(named.egoPlannerOptions().guidance.isActive("speed"));
   EXPECT_FALSE(named.egoPlannerOptions().guidance.isActive("collision_avoidance"));
@@ -115,6 +116,7 @@ TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
   request.scenario = "crossing_left_turn";
   request.ego_planner = "diffusion";
   request.set = {"ego_guidance_profile=naturalistc"};
+  EXPECT_TRUE(mentions(errorOf(request), "key 'ego_guidance_profile'")) << errorOf(request);
   EXPECT_TRUE(mentions(errorOf(request), "'naturalistic'")) << errorOf(request);
   request.set = {"ego_guidance.speed.first_step=5", "ego_guidance.speed.last_step=20"};
   EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.first_step'")) << errorOf(request);

@@ -7,13 +7,13 @@
 
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/diffusion/sampler.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 
 namespace cdiff::planning {
 
 struct DiffusionOptions {
   std::string model = "default";  ///< shipped model or folder of the weight files
-  /// image_route | image (the paper's) | by_guidance: image where collision_seeking has a weight,
-  /// image_route elsewhere
+  /// image_route | image (the paper's) | by_guidance
   std::string conditioning = "by_guidance";
   std::string state_branch = "learned";  ///< learned | exact
   std::int64_t candidates = 1;           ///< samples per vehicle
@@ -22,6 +22,10 @@ struct DiffusionOptions {
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
+  /// What `conditioning` comes to under a guidance: by_guidance is image where collision_seeking
+  /// has a weight (an attacker that knows its route stops in its lane before the ego instead of
+  /// driving at it), image_route elsewhere and where the sampler's mode is unguided.
+  std::string conditioningUnder(const guidance::GuidanceOptions& guidance) const;
 };
 
 }  // namespace cdiff::planning

@@ -70,7 +70,7 @@ class DiffusionPlanner : public Planner {
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;
-  bool knows_route_;  ///< whether the network is told the route
+  bool tells_route_;  ///< the network the route
   dynamics::BicycleModelOptions vehicle_;
   PlanningContext context_;
   diffusion::Model model_;
