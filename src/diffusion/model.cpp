@@ -132,10 +132,10 @@ void saveModel(const Model& model, const fs::path& folder, TensorType type,
   if (error) {
     throw core::InputError("cannot make the folder '" + folder.string() + "': " + error.message());
   }
-  writeSafetensors(folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
   Metadata metadata = describeDenoiser(model);
   metadata.insert(training_facts.begin(), training_facts.end());
-  metadata[kEncoderKey] = readEncoder(folder / kEncoderFile, model, metadata).metadata.at("sha256");
+  metadata[kEncoderKey] =
+      writeSafetensors(folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
   writeSafetensors(folder / kDenoiserFile, {metadata, model.denoiser}, type);
 }
 

@@ -222,7 +222,8 @@ SafetensorsFile readSafetensors(
   return content;
 }
 
-void writeSafetensors(const fs::path& file, const SafetensorsFile& content, TensorType type) {
+std::string writeSafetensors(const fs::path& file, const SafetensorsFile& content,
+                             TensorType type) {
   std::string data;
   nlohmann::ordered_json header;
   header[kMetadataKey] = content.metadata;
@@ -234,7 +235,8 @@ void writeSafetensors(const fs::path& file, const SafetensorsFile& content, Tens
                     {"shape", tensor.shape},
                     {"data_offsets", {begin, data.size()}}};
   }
-  header[kMetadataKey][kChecksumKey] = core::sha256(data);
+  const std::string checksum = core::sha256(data);
+  header[kMetadataKey][kChecksumKey] = checksum;
   std::string text = header.dump();
   text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
   const std::uint64_t length = text.size();
@@ -246,6 +248,7 @@ void writeSafetensors(const fs::path& file, const SafetensorsFile& content, Tens
   bytes += text;
   bytes += data;
   core::writeFileAtomically(file, bytes);
+  return checksum;
 }
 
 }  // namespace cdiff::diffusion

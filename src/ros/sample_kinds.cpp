@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/planning/route_rules.h"
@@ -17,9 +18,9 @@ using training::kStanding;
 
 constexpr double kTurn = 15.0 * core::kPi / 180.0;  // of heading over the horizon [rad]
 
-constexpr std::uint8_t kOtherReason = 4;
 constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
 constexpr const char* kStopReasons[] = {"none", "light", "leader", "yielding", "other"};
+static_assert(std::size(kStopReasons) == training::kStopOther + 1);
 
 std::uint8_t maneuverOf(const training::Sample& sample, bool standing) {
   const double turned = sample.rollout(sample.rollout.rows() - 1, traffic::kRolloutHeading);
@@ -38,15 +39,16 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
     const double distance = (other.state.position - self.state.position).norm();
     if (other.id == id || distance > kLeaderDistance || traffic::onDifferentLevels(self, other))
       continue;
-    if (planning::isLeading(around.route, around.arc_length, other.state)) return 2;
+    if (planning::isLeading(around.route, around.arc_length, other.state))
+      return training::kStopLeader;
   }
   const auto light = planning::distanceToRedLight(around.route, around.arc_length, around.snapshot);
-  if (light && *light < kLightDistance) return 1;
+  if (light && *light < kLightDistance) return training::kStopLight;
   for (const auto& [from, to] : around.route.junctionStretches()) {
     if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance)
       return training::kStopYielding;
   }
-  return kOtherReason;
+  return training::kStopOther;
 }
 
 }  // namespace
@@ -60,14 +62,15 @@ SampleKinds kindsOf(const training::Sample& sample) {
   kinds.stopping = sample.speed > kMoving && speeds.minCoeff() < kStanding;
   kinds.maneuver = maneuverOf(sample, kinds.standing);
   const bool stops = std::min(sample.speed, speeds.minCoeff()) < kStanding && !kinds.starting;
-  kinds.stop_reason = stops ? kOtherReason : 0;
+  kinds.stop_reason = stops ? training::kStopOther : training::kStopNone;
   return kinds;
 }
 
 SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& around) {
   SampleKinds kinds = kindsOf(sample);
   const traffic::VehicleState& state = around.snapshot.find(sample.vehicle)->state;
-  if (kinds.stop_reason != 0) kinds.stop_reason = stopReasonOf(around, sample.vehicle);
+  if (kinds.stop_reason != training::kStopNone)
+    kinds.stop_reason = stopReasonOf(around, sample.vehicle);
   kinds.off_road = !around.setup.drivableArea().contains(state.position, state.elevation);
   kinds.in_junction = around.route.inJunctionAt(around.arc_length);
   kinds.off_course = offCourse(around, state);

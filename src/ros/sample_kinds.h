@@ -21,12 +21,12 @@ constexpr double kOffCourse = 0.4;                    // [m]
 constexpr double kOffTurn = 5.0 * core::kPi / 180.0;  // [rad]
 
 struct SampleKinds {
-  std::uint8_t maneuver = 0;     ///< as Sample::maneuver
-  std::uint8_t stop_reason = 0;  ///< as Sample::stop_reason
-  bool standing = false;         ///< all the time
-  bool starting = false;         ///< from standing to more than 2 m/s
-  bool stopping = false;         ///< from more than 2 m/s to standing
-  bool off_road = false;         ///< its centre at planning time
+  std::uint8_t maneuver = 0;                       ///< as Sample::maneuver
+  std::uint8_t stop_reason = training::kStopNone;  ///< as Sample::stop_reason
+  bool standing = false;                           ///< all the time
+  bool starting = false;                           ///< from standing to more than 2 m/s
+  bool stopping = false;                           ///< from more than 2 m/s to standing
+  bool off_road = false;                           ///< its centre at planning time
   bool in_junction = false;
   bool off_course = false;  ///< more than kOffCourse or kOffTurn off its route
   bool displaced = false;   ///< put beside its way (OffsetSamples)

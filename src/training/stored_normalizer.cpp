@@ -16,7 +16,8 @@ using nlohmann::json;
 diffusion::Normalizer readNormalizer(const json& stored, const fs::path& path,
                                      std::int64_t horizon) {
   const std::string where = "checkpoint '" + path.string() + "': normalizer";
-  if (!stored.is_string()) throw core::InputError(where + " is no text");
+  if (!stored.is_string())
+    throw core::InputError(where + " is no text, so an earlier version wrote it; train anew");
   const auto normalizer =
       diffusion::Normalizer::fromJson(stored.get<std::string>(), horizon, where);
   try {

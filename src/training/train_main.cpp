@@ -16,7 +16,9 @@ std::atomic<bool> stop_requested{false};
 
 void requestStop(int) { stop_requested = true; }
 
-void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
+using cdiff::training::TrainingOptions;
+
+void addRunOptions(CLI::App& program, TrainingOptions& options) {
   program.add_option("--stage", options.stage,
                      "encoder | fine_tune | denoiser | joint | export | all");
   program.add_option("--data", options.data, "Folder with *.shard")->required();
@@ -35,6 +37,14 @@ void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
   program.add_option("--device", options.device, "auto | cpu | cuda");
   program.add_option("--precision", options.precision,
                      "Of the encoder's convolutions in training: auto | f32 | bf16");
+  program.add_option("--validation-share", options.validation_share, "Of the sessions");
+  program.add_option("--validation-samples", options.validation_samples);
+  program.add_option("--validation-every", options.validation_every, "Steps");
+  program.add_option("--checkpoint-every", options.checkpoint_every, "Seconds");
+  program.add_option("--report-every", options.report_every, "Seconds");
+}
+
+void addLearningOptions(CLI::App& program, TrainingOptions& options) {
   program.add_option("--image-scale", options.image_scale, "Of stage encoder: 1 or 0.5");
   program.add_option("--learning-rate", options.learning_rate);
   program.add_option("--weight-decay", options.weight_decay);
@@ -48,19 +58,15 @@ void addOptions(CLI::App& program, cdiff::training::TrainingOptions& options) {
                      "Part kept of samples that stop to give way");
   program.add_flag("!--no-mirror", options.mirror, "Do not mirror samples");
   program.add_flag("!--no-light", options.change_light, "Do not change the light of images");
-  program.add_option("--validation-share", options.validation_share, "Of the sessions");
-  program.add_option("--validation-samples", options.validation_samples);
-  program.add_option("--validation-every", options.validation_every, "Steps");
-  program.add_option("--checkpoint-every", options.checkpoint_every, "Seconds");
-  program.add_option("--report-every", options.report_every, "Seconds");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App program{"cdiff_train: train the diffusion planner on collected shards"};
-  cdiff::training::TrainingOptions options;
-  addOptions(program, options);
+  TrainingOptions options;
+  addRunOptions(program, options);
+  addLearningOptions(program, options);
   try {
     program.parse(argc, argv);
     std::signal(SIGINT, requestStop);

@@ -40,9 +40,10 @@ SafetensorsFile readSafetensors(
 
 enum class TensorType { kF16, kF32 };
 
-/// Writes atomically, tensors by name, with metadata "sha256" of the data section added. F16 rounds
-/// to nearest even; a value out of its range throws InputError naming the tensor.
-void writeSafetensors(const std::filesystem::path& file, const SafetensorsFile& content,
-                      TensorType type);
+/// Writes atomically, tensors by name, with metadata "sha256" of the data section added, which is
+/// returned. F16 rounds to nearest even; a value out of its range throws InputError naming the
+/// tensor.
+std::string writeSafetensors(const std::filesystem::path& file, const SafetensorsFile& content,
+                             TensorType type);
 
 }  // namespace cdiff::diffusion

@@ -13,7 +13,14 @@
 
 namespace cdiff::training {
 
-constexpr std::uint8_t kStopYielding = 3;  ///< Sample::stop_reason of one that gives way
+/// Why a sample's vehicle comes to stand or stands; numbers are those of the shard files.
+enum StopReason : std::uint8_t {
+  kStopNone = 0,
+  kStopLight = 1,
+  kStopLeader = 2,
+  kStopYielding = 3,
+  kStopOther = 4
+};
 
 struct Sample {
   traffic::CameraImage image;  ///< rgb8; its tick is not stored apart from `tick`
@@ -25,8 +32,7 @@ struct Sample {
   std::uint64_t tick = 0;      ///< planning time
   bool recovering = false;     ///< shortly (about 2 s) after a disturbance
   std::uint8_t maneuver = 0;   ///< of the collector: 0 straight on, 1 left, 2 right, 3 other
-  std::uint8_t stop_reason =
-      0;  ///< of the collector: 0 none, 1 light, 2 leader, 3 yielding, 4 other
+  std::uint8_t stop_reason = kStopNone;  ///< of the collector: a StopReason
   std::vector<float> auxiliary;  ///< targets that the schema names, of order 1; NaN: not known
 };
 
