@@ -29,11 +29,14 @@ using Clock = std::chrono::steady_clock;
 
 bool isJudged(int exit_code) { return exit_code == kPassed || exit_code == kVerdictFailed; }
 
-/// What an earlier session left in the folder that this one may not write anew.
+/// What an earlier session left in the folder that this one may not write anew; the user is told of
+/// recordings.
 void removeEarlierSession(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile}) {
-    std::filesystem::remove(folder / name, ignored);
+    if (std::filesystem::remove(folder / name, ignored) && std::string(name) != "exit_code")
+      std::cerr << "cdiff: " << name << " of an earlier session is removed from '"
+                << folder.string() << "', which this one writes into\n";
   }
   core::removeTemporaries(folder);
 }

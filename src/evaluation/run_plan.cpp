@@ -165,7 +165,7 @@ void checkSeeds(const std::vector<std::string>& seeds, const std::string& source
     const bool digits = !seed.empty() && seed.find_first_not_of("0123456789") == std::string::npos;
     if (digits && seed.size() <= 10) continue;  // its range is that of the scenario's key
     throw InputError(source + ": key 'seeds' holds '" + seed +
-                     "'; expected whole numbers, e.g. [1, 2, 3]");
+                     "'; expected whole numbers from 0 on, e.g. [1, 2, 3]");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/ros/tick_record.h"
 
@@ -105,7 +106,10 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   }
   const std::string video_error = video ? video->error() : "";
   const bool whole = session.findings().empty() && video_error.empty();
-  return {whole ? writer.exitCode() : 2, writer.table(), session.findings(), video_error};
+  std::string table = writer.table();
+  if (video && video_error.empty())
+    table += report::tableRow("video", (results / report::kVideoFile).string());
+  return {whole ? writer.exitCode() : 2, table, session.findings(), video_error};
 }
 
 }  // namespace cdiff::ros

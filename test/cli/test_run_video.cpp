@@ -49,6 +49,8 @@ TEST(RunVideo, AnOptionOfTheScenarioGivesAVideoAndItsAbsenceNone) {
   const std::string trace = core::readFile(folder / "trace.csv", "trace");
   // Another session into the same folder, without a video: none is left, and the trace is the same.
   ASSERT_EQ(exitCodeOf(CDIFF_PROGRAM, sessionIn(folder, "false"), output), 0);
+  EXPECT_NE(core::readFile(output, "output").find("session.mp4 of an earlier session is removed"),
+            std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "session.mp4"));
   EXPECT_EQ(core::readFile(folder / "trace.csv", "trace"), trace);
 }
