@@ -7,7 +7,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <utility>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -132,15 +131,11 @@ class VideoRecord {
   bool told_ = false;
 };
 
-/// What is there only where it was asked for.
-std::string extraRows(const std::filesystem::path& folder) {
-  std::string rows;
-  for (const auto& [name, file] :
-       {std::pair{"bag", "session.bag"}, std::pair{"video", report::kVideoFile}}) {
-    if (std::filesystem::exists(folder / file))
-      rows += report::tableRow(name, (folder / file).string());
-  }
-  return rows;
+/// The session's table, and what it was asked to record.
+void printTable(const report::ResultWriter& writer, const RunOutput& output) {
+  if (output.quiet) return;
+  std::cout << writer.table() << report::fileRow("bag", output.folder / "session.bag")
+            << report::fileRow("video", output.folder / report::kVideoFile) << std::flush;
 }
 
 /// Runs the session and records it; an exit code.
@@ -160,7 +155,7 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
     const bool recorded = bag.finish();
     writer.finish(secondsSince(begin));
     const int exit_code = video.finish(writer, writer.exitCode());
-    if (!output.quiet) std::cout << writer.table() << extraRows(output.folder) << std::flush;
+    printTable(writer, output);
     return recorded || !isJudged(exit_code) ? exit_code : static_cast<int>(kRunTimeError);
   } catch (const std::exception& error) {
     // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
@@ -185,7 +180,7 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
     writer.finish(secondsSince(begin));
-    if (!output.quiet) std::cout << writer.table() << std::flush;
+    printTable(writer, output);
     return writer.exitCode();
   }
   removeEarlierSession(output.folder);

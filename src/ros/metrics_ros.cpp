@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/metric_diagnostics.h"
 #include "e2e_cdiff/ros/replay.h"
@@ -110,10 +111,8 @@ int MetricsRos::conclude(Ending ending) {
   }
   writer_->finish(wallSeconds());
   const int exit_code = finishVideo(writer_->exitCode());
-  std::cout << writer_->table();
-  if (video_ && video_->error().empty())
-    std::cout << report::tableRow("video", (results_ / report::kVideoFile).string());
-  std::cout << std::flush;
+  std::cout << writer_->table() << report::fileRow("video", results_ / report::kVideoFile)
+            << std::flush;
   writeExitCode(results_, exit_code);
   return exit_code;
 }

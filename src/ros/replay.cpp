@@ -106,10 +106,9 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   }
   const std::string video_error = video ? video->error() : "";
   const bool whole = session.findings().empty() && video_error.empty();
-  std::string table = writer.table();
-  if (video && video_error.empty())
-    table += report::tableRow("video", (results / report::kVideoFile).string());
-  return {whole ? writer.exitCode() : 2, table, session.findings(), video_error};
+  return {whole ? writer.exitCode() : 2,
+          writer.table() + report::fileRow("video", results / report::kVideoFile),
+          session.findings(), video_error};
 }
 
 }  // namespace cdiff::ros

@@ -13,8 +13,8 @@ namespace cdiff::report {
 /// `folder` is where the files lie.
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder);
 
-/// A further row of it.
-std::string tableRow(const std::string& name, const std::string& value);
+/// A further row of it that names a file; empty where that file is not.
+std::string fileRow(const std::string& name, const std::filesystem::path& file);
 
 /// A figure with its unit and count, or why it is absent: "3.21 s (n = 40)", "not defined: no CBV
 /// was driven".

@@ -11,7 +11,6 @@
 
 #include "diagnostic_updater/diagnostic_updater.h"
 #include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/ros/markers.h"
 #include "e2e_cdiff/ros/metric_reporter.h"
