@@ -73,9 +73,8 @@ void requireVisit(const WeightedObjective& entry, const std::string& key,
     if (entry.actsAt(step)) return;
     names.push_back(std::to_string(step));
   }
-  throw InputError("key '" + key + ".last_step' is " +
-                   std::to_string(entry.last_step) + " and first_step is " +
-                   std::to_string(entry.first_step) +
+  throw InputError("key '" + key + ".last_step' is " + std::to_string(entry.last_step) +
+                   " and first_step is " + std::to_string(entry.first_step) +
                    "; the sampler visits none of these diffusion steps, so the objective would "
                    "never act; visited: " +
                    core::joinText(names, ", "));

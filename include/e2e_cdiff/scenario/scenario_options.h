@@ -62,7 +62,7 @@ struct ScenarioOptions {
   guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
   guidance::GuidanceOptions ego_guidance;             ///< of an ego whose planner can be guided
-  rendering::CameraOptions camera;     ///< that planners see through
+  rendering::CameraOptions camera;                    ///< that planners see through
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
