@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Matrices of a row per rollout step, [T, 7], as JSON text in files of weights.
+/// Matrices of a rollout's shape, [T, 7] (columns of traffic::Rollout: m, rad, m/s, pedals), as the
+/// JSON text that a normalizer and the spread have in weight files and checkpoints.
 #pragma once
 
 #include <string>

@@ -8,6 +8,7 @@
 ///  - the image is encoded once per decision, the denoiser runs on its features;
 ///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
 ///    nearest other vehicle, for the ego;
+///  - attackers are not told their route (DiffusionOptions::conditioningUnder);
 ///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
 ///    brake the larger one acts;
 ///  - of several candidates the one with the lowest weighted objective drives, unless the one
