@@ -91,13 +91,17 @@ TEST_F(StoredNormalizerTest, NumbersComeBackToTheBit) {
 TEST_F(StoredNormalizerTest, ACheckpointWithoutOneWasFittedAndAMalformedOneIsNamed) {
   writeFacts("denoiser", {{"steps", 1}});
   EXPECT_EQ(chosen("denoiser", true, true), fitted());
-  writeFacts("denoiser", {{"normalizer", "{\"mean\":[[1]]}"}});
-  try {
-    chosen("denoiser", true);
-    FAIL() << "taken";
-  } catch (const core::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("denoiser.checkpoint': normalizer"), std::string::npos)
-        << error.what();
+  const nlohmann::json malformed[] = {"{\"mean\":[[1]]}", {{"mean", {{1.0}}}}};
+  for (const nlohmann::json& normalizer : malformed) {
+    writeFacts("denoiser", {{"normalizer", normalizer}});
+    try {
+      chosen("denoiser", true);
+      FAIL() << "taken";
+    } catch (const core::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("denoiser.checkpoint': normalizer"),
+                std::string::npos)
+          << error.what();
+    }
   }
 }
 
