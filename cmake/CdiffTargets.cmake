@@ -29,9 +29,18 @@ function(cdiff_program name)
   endif()
 endfunction()
 
-# cdiff_gtest(NAME SOURCES file... LINK target... [TIMEOUT s]): one gtest program; results where catkin looks for them.
+# cdiff_nightly(TEST...): tests of this folder that only `scripts/test --nightly` runs, by their names in ctest.
+function(cdiff_nightly)
+  foreach(test ${ARGN})
+    set_property(TEST ${test} APPEND PROPERTY LABELS nightly)
+  endforeach()
+endfunction()
+
+# cdiff_gtest(NAME SOURCES file... LINK target... [TIMEOUT s] [NIGHTLY] [NIGHTLY_CASES pattern]): one gtest program; results
+# where catkin looks for them. NIGHTLY: only `scripts/test --nightly` builds and runs it. NIGHTLY_CASES: it runs the cases of this
+# gtest filter, as NAME_nightly, and `scripts/test` all others.
 function(cdiff_gtest name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "NIGHTLY" "TIMEOUT;NIGHTLY_CASES" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/test)
   target_compile_options(${name} PRIVATE ${CDIFF_WARNINGS} -ffp-contract=off)
@@ -39,8 +48,24 @@ function(cdiff_gtest name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
-  add_test(NAME ${name}
-           COMMAND ${name} --gtest_output=xml:${CMAKE_BINARY_DIR}/test_results/e2e_cdiff/gtest-${name}.xml)
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT
+  set(filter)
+  if(ARG_NIGHTLY_CASES)
+    cdiff_gtest_run(${name}_nightly ${name} ${ARG_TIMEOUT} --gtest_filter=${ARG_NIGHTLY_CASES})
+    cdiff_nightly(${name}_nightly)
+    set(filter --gtest_filter=-${ARG_NIGHTLY_CASES})
+  endif()
+  cdiff_gtest_run(${name} ${name} ${ARG_TIMEOUT} ${filter})
+  if(ARG_NIGHTLY)
+    cdiff_nightly(${name})
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_dependencies(nightly_tests ${name})
+  endif()
+endfunction()
+
+# One run of a gtest program (used by cdiff_gtest). A filter that leaves no case fails.
+function(cdiff_gtest_run test program timeout)
+  add_test(NAME ${test} COMMAND ${program} --gtest_output=xml:${CMAKE_BINARY_DIR}/test_results/e2e_cdiff/gtest-${test}.xml
+                                           ${ARGN})
+  set_tests_properties(${test} PROPERTIES TIMEOUT ${timeout} FAIL_REGULAR_EXPRESSION "Running 0 tests" ENVIRONMENT
                        "SUMO_HOME=/usr/share/sumo;E2E_CDIFF_SHARE=${PROJECT_SOURCE_DIR}")
 endfunction()
