@@ -22,6 +22,8 @@ target_include_directories(e2e_cdiff_messages SYSTEM INTERFACE
   ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_messages INTERFACE ${catkin_LIBRARIES})
 add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
+# In every language: rostopic echo reads those of Python.
+add_dependencies(e2e_cdiff_programs ${PROJECT_NAME}_generate_messages)
 
 # Images as messages, for the layer ros alone.
 add_library(e2e_cdiff_images INTERFACE)

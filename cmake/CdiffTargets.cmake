@@ -16,6 +16,9 @@ function(cdiff_layer name)
   endif()
 endfunction()
 
+# All programs that rosrun finds, without tests and benchmarks.
+add_custom_target(e2e_cdiff_programs)
+
 # cdiff_program(NAME SOURCES file... LINK target...): program that rosrun finds.
 function(cdiff_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
@@ -24,6 +27,7 @@ function(cdiff_program name)
   target_compile_options(${name} PRIVATE ${CDIFF_WARNINGS} -ffp-contract=off)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib;$ORIGIN;$ORIGIN/..")
+  add_dependencies(e2e_cdiff_programs ${name})
   if(E2E_CDIFF_ROS)
     install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   endif()
@@ -58,7 +62,7 @@ function(cdiff_gtest name)
   if(ARG_NIGHTLY)
     cdiff_nightly(${name})
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
-    add_dependencies(nightly_tests ${name})
+    add_dependencies(e2e_cdiff_nightly_tests ${name})
   endif()
 endfunction()
 

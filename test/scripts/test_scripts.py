@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""What the scripts have built and run, seen by stand-ins for cmake, ninja and ctest.
+
+    test_scripts.py BUILD SOURCE RESULT.xml
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
+
+BUILD, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+STAND_INS = ["cmake", "ninja", "ctest", "roslaunch"]
+
+
+def calls_of(script, *arguments):
+    """The commands that a script gave to the stand-ins, each as a list of words."""
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "calls"
+        # Exported functions of bash come before any program of that name.
+        environment = {**os.environ, **{f"BASH_FUNC_{name}%%": f'() {{ echo {name} "$@" >>{log}; }}' for name in STAND_INS}}
+        (Path(folder) / "devel").mkdir()
+        (Path(folder) / "devel" / "setup.bash").touch()
+        subprocess.run([SOURCE / "scripts" / script, *arguments], env={**environment, "BUILD": folder}, cwd=folder, timeout=60,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        return [line.split() for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def targets_of(calls):
+    """What ninja was asked for: the words behind -C FOLDER -j N."""
+    return [call[5:] for call in calls if call[0] == "ninja"]
+
+
+class Scripts(unittest.TestCase):
+    def test_benchmark_builds_itself_only(self):
+        self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
+        self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
+
+    def test_the_benchmark_of_the_loop_needs_the_nodes(self):
+        for arguments in ([], ["loop"], ["--json", "x"]):
+            self.assertEqual(targets_of(calls_of("benchmark", *arguments)), [["cdiff_benchmark", "e2e_cdiff_nodes"]])
+
+    def test_demo_builds_no_test_and_no_benchmark(self):
+        with tempfile.TemporaryDirectory() as results:
+            self.assertEqual(targets_of(calls_of("demo", results)), [["e2e_cdiff_programs"]])
+
+    def test_those_targets_need_no_file_of_a_test(self):
+        for targets in (["cdiff_benchmark", "e2e_cdiff_nodes"], ["e2e_cdiff_programs"]):
+            inputs = subprocess.run(["ninja", "-C", BUILD, "-t", "inputs", *targets], check=True, capture_output=True, text=True).stdout
+            self.assertIn("src/core/CMakeFiles/e2e_cdiff_core.dir/csv.cpp.o", inputs)
+            self.assertNotIn("test/", inputs)
+
+    def test_setup_refuses_what_it_does_not_know(self):
+        self.assertEqual(calls_of("setup", "--no-test"), [])
+        self.assertEqual(calls_of("setup", "--only"), [])
+
+    def test_nightly_tests_are_left_to_nightly(self):
+        def ctest(*arguments):
+            return next(call for call in calls_of("test", *arguments) if call[0] == "ctest")
+        self.assertEqual(ctest()[-2:], ["-LE", "nightly"])
+        self.assertNotIn("-LE", ctest("--nightly"))
+        self.assertEqual(ctest("--nightly", "soak")[-2:], ["-R", "soak"])
+        self.assertEqual(calls_of("test", "--nighty"), [])
+        self.assertIn(["e2e_cdiff_nightly_tests"], targets_of(calls_of("test", "--nightly")))
+
+
+if __name__ == "__main__":
+    suite = unittest.defaultTestLoader.loadTestsFromTestCase(Scripts)
+    names = [test.id() for test in suite]
+    outcome = unittest.TextTestRunner(verbosity=2).run(suite)
+    junit.write_unittest(sys.argv[3], "scripts", outcome, names)
+    sys.exit(not outcome.wasSuccessful())

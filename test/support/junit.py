@@ -1,0 +1,20 @@
+"""JUnit files of checks written in Python, where `scripts/test` counts them."""
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+
+def write(path, suite, cases):
+    """Writes `cases`, a list of (name, seconds, failure text or None)."""
+    root = ElementTree.Element("testsuite", name=suite)
+    for name, seconds, failure in cases:
+        case = ElementTree.SubElement(root, "testcase", classname=suite, name=name, time=f"{seconds:.3f}")
+        if failure is not None:
+            ElementTree.SubElement(case, "failure", message=failure)
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def write_unittest(path, suite, result, names):
+    """Writes the outcome of `unittest` for the tests `names`."""
+    problems = {test.id(): text for test, text in result.failures + result.errors}
+    write(path, suite, [(name.rpartition(".")[2], 0.0, problems.get(name)) for name in names])
