@@ -71,9 +71,8 @@ constexpr FigureDefinition kRows[] = {
      "0.",
      "", [](const M& m) { return numberMeasure(m.blocked ? 1.0 : 0.0, ""); }},
     {"ego_collisions", "/ego/collisions", "Collisions of the ego", "count", kLower,
-     "Contacts of the ego's box with any other vehicle's box on the same level; the same pair "
-     "counts "
-     "again only after 5 s without overlap.",
+     "Contacts of the ego's box with any other vehicle's box on the same level; who touches it "
+     "leaves at the next tick.",
      "", [](const M& m) { return countMeasure(m.ego_collisions); }},
     {"ego_off_road_percent", "/ego/off_road_percent", "Ego off the road", "%", kLower,
      "100 x ticks with the centre of the ego's box off the drivable area of its level / ticks with "

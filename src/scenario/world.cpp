@@ -383,19 +383,12 @@ void World::findContacts() {
 }
 
 void World::checkContact(const Vehicle& ours, const Vehicle& other) {
-  constexpr double kCountAgainAfter = 5.0;  // [s]
   const double reach = 0.5 * (ours.dimensions.length + ours.dimensions.width +
                               other.dimensions.length + other.dimensions.width);
   if ((ours.state.position - other.state.position).squaredNorm() > reach * reach) return;
   if (traffic::onDifferentLevels(ours, other) || !geometry::overlap(ours.box(), other.box()))
     return;
-  const auto again =
-      static_cast<std::uint64_t>(std::llround(kCountAgainAfter / setup_.options().simulation_step));
   const std::pair<std::string, std::string> pair = std::minmax(ours.id, other.id);
-  const auto [entry, is_new] = last_overlap_.try_emplace(pair, snapshot_.tick);
-  const bool counts = is_new || snapshot_.tick - entry->second > again;
-  entry->second = snapshot_.tick;
-  if (!counts) return;
   snapshot_.contacts.push_back({pair.first, pair.second});
   for (const Vehicle* vehicle : {&ours, &other}) {
     if (vehicle->role != VehicleRole::kEgo) to_remove_.push_back(vehicle->id);

@@ -9,6 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "support/real_data.h"
 
 namespace cdiff::core {
 namespace {
@@ -22,6 +23,13 @@ TEST(Text, NumbersRoundTrip) {
   EXPECT_FALSE(parseNumber(""));
   EXPECT_FALSE(parseNumber("nan"));
   EXPECT_FALSE(parseNumber("inf"));
+}
+
+// ctest runs each test in a folder of its own, and the compiler may know the source by a relative path.
+TEST(RealData, IsFoundFromAnyFolder) {
+  ::unsetenv("E2E_CDIFF_DATA");
+  ::setenv("E2E_CDIFF_SHARE", "/somewhere/package", 1);
+  EXPECT_EQ(test::realData("towns/a.xml"), "/somewhere/package/../shared/data/towns/a.xml");
 }
 
 TEST(Text, SplitAndJoin) {

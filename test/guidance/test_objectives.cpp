@@ -16,6 +16,7 @@
 #include "e2e_cdiff/guidance/speed_objective.h"
 #include "e2e_cdiff/guidance/traffic_avoidance_objective.h"
 #include "guidance/guidance_world.h"
+#include "support/network_text.h"
 
 namespace cdiff::guidance {
 namespace {
@@ -63,6 +64,24 @@ TEST(TrafficAvoidanceObjective, DrawsAPlanThroughALeaderBackBehindIt) {
   const Rollout beyond = standing(27.0, 0.0);
   EXPECT_LT(descended(TrafficAvoidanceObjective(), world.scene(), beyond)(0, traffic::kRolloutX),
             27.0);
+}
+
+// The vehicle is 5 m behind and 1 m beside the other in the other's frame; A = 8.5, B = 2.6. One
+// that heads the same way is a leader: (1 - (1 / B)^2)^2 (A - 5)^2. One that crosses, 90 degrees,
+// is passed: A^2 (1 - rho)^2 with rho^2 = (5 / A)^2 + (1 / B)^2 + 1e-4.
+TEST(TrafficAvoidanceObjective, TakesOnlyWhoHeadsTheSameWayForALeader) {
+  GuidanceWorld world;
+  const TrafficAvoidanceObjective objective;
+  const double across = 1.0 / 2.6;
+  world.scene().traffic.clear();
+  world.addTraffic(45.0, -1.0, 0.0);
+  const double behind = std::pow(1.0 - across * across, 2) * 3.5 * 3.5;
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(0, 0, 0, 0, 1)), behind, 1e-9);
+  world.scene().traffic.clear();
+  world.addTraffic(41.0, 5.0, 0.5 * core::kPi);
+  const double rho = std::sqrt(std::pow(5.0 / 8.5, 2) + across * across + 1e-4);
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(0, 0, 0, 0, 1)),
+              8.5 * 8.5 * std::pow(1.0 - rho, 2), 1e-9);
 }
 
 TEST(TrafficAvoidanceObjective, LeavesPassingTrafficAloneAndEvadesWhoComesNear) {
@@ -212,6 +231,25 @@ TEST(RouteObjective, CountsTheOffsetBeyondTheCorridor) {
   EXPECT_NEAR(valueOf(turned, world.scene(), standing(3, 0, 0.5, 0, 1)), 1.0, 1e-9);
   world.scene().route = nullptr;
   EXPECT_EQ(valueOf(turned, world.scene(), standing(3, 2, 0.5)), 0.0);
+}
+
+// East for 100 m along y = 0, 4 m north and back west along y = 4. The vehicle is on its way back
+// at x = 50, arc length 154; a place 2.1 m left of it, y = 1.9, is nearer to the way out (1.9 m),
+// which it passed long ago and which leads the other way.
+TEST(RouteObjective, TakesThePassOfALoopThatTheVehicleIsOn) {
+  const map::RoadNetwork network =
+      test::NetworkText().edge("loop", {"0,0 100,0 100,4 0,4"}).network();
+  const map::Route route = map::matchRoute(
+      network, {{0, 0, 0}, {50, 0, 0}, {100, 0, 0}, {100, 4, 0}, {50, 4, 0}, {0, 4, 0}});
+  GuidanceWorld world;
+  world.scene().route = &route;
+  world.scene().route_arc_length = 154.0;
+  world.scene().state.position = {50.0, 4.0};
+  world.scene().state.heading = core::kPi;
+  RouteObjective objective;
+  objective.heading_weight = 4.0;
+  const double excess = 2.1 - objective.free_offset;
+  EXPECT_NEAR(valueOf(objective, world.scene(), standing(3, 2.1, 0, 0, 1)), excess * excess, 1e-9);
 }
 
 TEST(ComfortObjective, CountsChangesOfActionAndLateralAcceleration) {

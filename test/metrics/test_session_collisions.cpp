@@ -66,6 +66,25 @@ TEST_F(SessionCollisions, BetweenTwoCbvsCountOnceButTwiceForRift) {
   EXPECT_NEAR(*measures.rift_compat.at("collisions_per_km").value, 20.0, 1e-9);
 }
 
+// The ego's partner stands first or second in a pair, by its id. The second contact is 20 m on and
+// 0.05 s later: with another partner it is another collision, with the same one it would belong to
+// the first.
+TEST_F(SessionCollisions, OfTheEgoWithTwoPartnersAreTwo) {
+  for (const auto& [first, second] :
+       {std::pair<traffic::Contact, traffic::Contact>{{"a", "ego"}, {"c", "ego"}},
+        {{"ego", "x"}, {"ego", "y"}}}) {
+    SessionMetrics metrics({}, road_.drivable_area, road_.route);
+    auto snapshot = test::snapshot(0, {ego(10, 0, 5)});
+    snapshot.contacts = {first};
+    metrics.observe(snapshot, nullptr);
+    snapshot = test::snapshot(1, {ego(30, 0, 5)});
+    snapshot.contacts = {second};
+    metrics.observe(snapshot, nullptr);
+    EXPECT_EQ(metrics.measures().ego_collisions, 2U);
+    EXPECT_EQ(*metrics.measures().infractions.at("vehicle_collisions").value, 2.0) << first.first;
+  }
+}
+
 TEST_F(SessionCollisions, CountForACbvThatTheContactRemoved) {
   const SessionMeasures measures = after({{"a", "c"}}, {ego(10, 0, 5), background("c", 120, 0, 5)});
   EXPECT_EQ(measures.cbv_collisions, 1U);

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/metrics/session_metrics.h"
 #include "metrics/straight_road.h"
+#include "support/network_text.h"
 
 namespace cdiff::metrics {
 namespace {
@@ -205,6 +207,35 @@ TEST_F(SessionMetricsTest, CountsCornersOffTheRoadOnTheVehiclesLevel) {
   EXPECT_NEAR(*metrics_.measures().cbv_off_road_rate_percent.value, 25.0, 1e-9);
   EXPECT_NEAR(*metrics_.measures().cbv_corner_off_road_rate_percent.value, 50.0, 1e-9);
   EXPECT_EQ(metrics_.measures().cbv_corner_off_road_rate_percent.n, 4U);
+}
+
+// A lane of 3.2 m north along x = 50, 8 m above the lane east along y = 0. At y = 30 there is no
+// road on the ground.
+TEST(SessionMetricsOnABridge, MeasuresVehiclesOnTheirOwnLevel) {
+  const map::RoadNetwork network =
+      test::NetworkText()
+          .edge("east", {"0,0 100,0"}, "a", "b", {3.2, 10.0, ""})
+          .edge("bridge", {"50,-50,8 50,50,8"}, "c", "d", {3.2, 10.0, ""})
+          .network();
+  const map::DrivableArea area(network);
+  const auto observed = [&](double x, double elevation) {
+    SessionMetrics metrics({}, area, {});
+    std::vector<traffic::Vehicle> vehicles = {ego(x, 30, 5), cbv("a", x, 30, 5)};
+    for (traffic::Vehicle& vehicle : vehicles) {
+      vehicle.state.elevation = elevation;
+      vehicle.state.heading = 0.5 * core::kPi;
+    }
+    metrics.observe(snapshot(0, vehicles), nullptr);
+    const SessionMeasures measures = metrics.measures();
+    return std::vector<double>{*measures.ego_off_road_percent.value,
+                               *measures.cbv_off_road_rate_percent.value,
+                               *measures.cbv_corner_off_road_rate_percent.value};
+  };
+  EXPECT_EQ(observed(50.0, 8.0), (std::vector<double>{0.0, 0.0, 0.0}));
+  EXPECT_EQ(observed(50.0, 0.0), (std::vector<double>{100.0, 100.0, 100.0}));
+  // Half a lane is 1.6 m, half a vehicle 0.9 m: 1 m aside the corners are off the bridge, the
+  // centre is not.
+  EXPECT_EQ(observed(51.0, 8.0), (std::vector<double>{0.0, 0.0, 100.0}));
 }
 
 TEST_F(SessionMetricsTest, TellsCbvsFromAllVehicles) {

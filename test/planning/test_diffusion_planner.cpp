@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -14,6 +15,10 @@ namespace {
 class DiffusionPlannerTest : public testing::ModelCourse {
  protected:
   DiffusionPlanner makePlanner() const { return {optionsOf(), guidance_, {}, context_}; }
+  static map::RoadNetwork makeTurn() {
+    return testing::makeNetwork(
+        {{"turn", {{0.0, 0.0, 0.0}, {10.0, 0.0, 0.0}, {10.0, 100.0, 0.0}}}});
+  }
 };
 
 TEST_F(DiffusionPlannerTest, PlansAWholeRolloutForEveryVehicle) {
@@ -112,6 +117,64 @@ TEST_F(DiffusionPlannerTest, ImageConditioningNeedsNoRoute) {
   std::vector<PlanningTask> without = tasks();
   without[0].route = nullptr;
   EXPECT_EQ(planner.plan(snapshot_, without)[0].fault, "");
+}
+
+double reported(const PlannedAction& planned, const std::string& objective) {
+  for (const guidance::ObjectiveReport& report : planned.guidance.objectives) {
+    if (report.name == objective) return report.value;
+  }
+  ADD_FAILURE() << "no objective " << objective;
+  return 0.0;
+}
+
+// The ego's route goes east for 10 m, then north; the CBV's goes on eastward. At 5 m/s the ego is
+// 0.5 m farther along its own route at each row of the plan.
+TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
+  const map::RoadNetwork turning = makeTurn();
+  const map::Route ego_route = testing::routeAlong(turning, {"turn"});
+  context_.ego_route = &ego_route;
+  DiffusionPlanner planner = makePlanner();
+  const PlannedAction planned = planner.plan(snapshot_, tasks())[0];
+  ASSERT_EQ(planned.fault, "");
+  const traffic::Vehicle& cbv = snapshot_.vehicles[1];
+  guidance::OtherMotion ego{snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}};
+  traffic::Rollout places = traffic::Rollout::Zero(32, traffic::kRolloutColumns);
+  for (Eigen::Index row = 0; row < 32; ++row) {
+    const double s = 0.5 * static_cast<double>(row + 1);
+    ego.predicted.push_back(ego.now);
+    ego.predicted.back().position =
+        s < 10.0 ? Eigen::Vector2d(s, 0.0) : Eigen::Vector2d(10.0, s - 10.0);
+    const auto& state = planned.rollout[static_cast<std::size_t>(row)].state;
+    places.row(row).head<2>() = cbv.state.pose().toBody(state.position).transpose();
+  }
+  guidance::GuidanceScene scene;
+  scene.state = cbv.state;
+  scene.dimensions = cbv.dimensions;
+  scene.other = &ego;
+  for (const guidance::WeightedObjective& entry : guidance_.objectives) {
+    if (entry.name != "collision_avoidance") continue;
+    traffic::Rollout unused = places;
+    EXPECT_NEAR(reported(planned, entry.name), entry.objective->evaluate(scene, places, unused),
+                1e-6);
+  }
+}
+
+// v* = 8 m/s on a lane with a limit of 5 m/s: J_speed = sum over the rows of (v - 5)^2.
+TEST_F(DiffusionPlannerTest, AimsAtTheLanesLimitWhereItIsLowerThanTheTarget) {
+  const map::RoadNetwork slow =
+      testing::makeNetwork({{"road", testing::straight(-50, 0, 250, 0), 5.0}});
+  const map::Route route = testing::routeAlong(slow, {"road"});
+  DiffusionPlanner planner(optionsOf("real_time", "exact"), guidance_, {}, context_);
+  std::vector<PlanningTask> limited = tasks();
+  limited[0].route = &route;
+  const auto planned = planner.plan(snapshot_, limited);
+  const double limits[] = {5.0, 8.0};  // the other CBV's lane allows 13.89 m/s
+  for (std::size_t i = 0; i < 2; ++i) {
+    double sum = 0.0;
+    for (const RolloutPoint& point : planned[i].rollout)
+      sum += std::pow(point.state.speed - limits[i], 2);
+    EXPECT_NEAR(reported(planned[i], "speed"), sum, 1e-4 * sum) << i;
+  }
 }
 
 TEST_F(DiffusionPlannerTest, UnknownModelNamesWhatIsThere) {

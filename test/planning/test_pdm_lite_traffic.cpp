@@ -269,6 +269,41 @@ TEST_F(CrossRoads, TrailingCarDoesNotStopIt) {
   EXPECT_EQ(hardest, 0.0);
 }
 
+// The trailer is 5.5 m behind bumper to bumper and 9 m/s faster than the ego, which reaches at most
+// 8 m/s: within the forecast of 2 s their boxes meet, but who comes from behind is to give way.
+TEST_F(CrossRoads, FasterTrailingCarDoesNotStopIt) {
+  for (const double speed : {4.0, 13.0}) {
+    ClosedLoop loop(network_);
+    loop.drive(vehicleAt("ego", 20.0, 0.0, 0.0, 4.0), east_);
+    loop.add(vehicleAt("behind", 10.0, 0.0, 0.0, speed));
+    loop.advance();
+    EXPECT_EQ(loop.actions()[0].action.brake, 0.0) << speed;
+    EXPECT_GT(loop.actions()[0].action.throttle, 0.5) << speed;
+  }
+}
+
+// Of vehicles that give way to one another the ego goes first, then the CBVs by slot: a CBV waits
+// until its way has been clear for 0.5 s + 0.2 s x slot. Decisions are 0.1 s apart and the first
+// clear one counts 0.1 s, so it goes at decision 5, 7 and 9.
+TEST_F(CrossRoads, CbvThatGaveWayRestartsByItsSlot) {
+  for (const auto& [slot, goes] : {std::pair{-1, 1}, {0, 5}, {1, 7}, {2, 9}}) {
+    ClosedLoop loop(network_);
+    loop.drive(vehicleAt("car", 90.0, 0.0, 0.0, 0.0), east_, slot);
+    traffic::Vehicle crossing = vehicleAt("crossing", 100.0, -12.0, kNorth, 8.0);
+    crossing.lane_id = "north_0";
+    loop.add(crossing);
+    loop.advance();
+    ASSERT_EQ(loop.actions()[0].action.throttle, 0.0) << "slot " << slot << " gives way";
+    loop.snapshot().vehicles.pop_back();
+    int decision = 0;
+    do {
+      loop.advance();
+      ++decision;
+    } while (loop.actions()[0].action.throttle == 0.0 && decision < 20);
+    EXPECT_EQ(decision, goes) << "slot " << slot;
+  }
+}
+
 class Light : public ::testing::Test {
  protected:
   map::RoadNetwork network_ =

@@ -30,6 +30,29 @@ class Nothing : public CleanObjective {
   }
 };
 
+/// J = c / 2 |a - goal|^2 over the actions, with c r^2 = 1e4 and the goal at u = 0.01.
+class Stiff : public CleanObjective {
+ public:
+  explicit Stiff(const std::vector<std::vector<float>>& centers) : centers_(centers) {}
+  bool actsAt(std::size_t, int) const override { return true; }
+  double evaluate(std::size_t sample, int, const Trajectory& clean, Trajectory& gradient) override {
+    constexpr double kCurvature = 1e4 / (kRadius * kRadius);
+    gradient.setZero();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kCells; ++i) {
+      const auto row = static_cast<Eigen::Index>(i / 3);
+      const auto column = traffic::kRolloutThrottle + static_cast<Eigen::Index>(i % 3);
+      const double away = clean(row, column) - centers_[sample][i] - 0.01 * kRadius;
+      gradient(row, column) = static_cast<float>(kCurvature * away);
+      sum += 0.5 * kCurvature * away * away;
+    }
+    return sum;
+  }
+
+ private:
+  const std::vector<std::vector<float>>& centers_;
+};
+
 /// A batch of random actions of a random small network near other vehicles and the road's border,
 /// all objectives at work.
 class ProximalStep : public ::testing::Test {
@@ -129,6 +152,26 @@ TEST_F(ProximalStep, LowersTheSumThroughTheDynamics) {
   ExactStateBranch branch({}, model_.normalizer, std::vector<double>(kSamples, 8.0));
   guide(0.2);
   expectDescent(branch, 2.0);
+}
+
+// The first step reaches half of the trust region, u = 0.05 in every cell: J rises from 24 x 5000 x
+// 0.01^2 = 12 to 24 x 5000 x 0.04^2 = 192, so nothing is taken. Half of it, 0.025, gives 27:
+// nothing either. 0.0125 gives 0.75.
+TEST_F(ProximalStep, TakesNoStepThatOvershoots) {
+  LearnedStateBranch branch(denoiser_);
+  for (const auto& [iterations, most] : {std::pair{1, 12.0}, {2, 12.0}, {3, 0.76}}) {
+    predict(branch);
+    std::vector<std::vector<float>> centers;
+    for (std::size_t b = 0; b < kSamples; ++b) centers.push_back(actionsOf(b));
+    Stiff stiff(centers);
+    proximalStep({iterations, 0.1}, std::vector<float>(kCells, kRadius), kStep, branch, stiff,
+                 batch_);
+    const std::vector<double> end = batch_.evaluate(stiff, kStep);
+    for (std::size_t b = 0; b < kSamples; ++b) {
+      EXPECT_EQ(actionsOf(b) == centers[b], iterations < 3) << b;
+      EXPECT_NEAR(end[b], most, 0.05) << b;
+    }
+  }
 }
 
 TEST_F(ProximalStep, WhereNothingPullsEveryBitStays) {

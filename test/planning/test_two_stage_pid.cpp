@@ -51,6 +51,44 @@ TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
   }
 }
 
+/// Plans of 5.1 m/s and slightly to the left for vehicles of 5 m/s: the normalizer's mean, from
+/// which the random model moves by millimetres. So the tracker's pedals stay within their range,
+/// and what it remembers shows.
+std::string writeSmoothModel(const std::filesystem::path& folder) {
+  diffusion::Model model = cdiff::testing::randomModel();
+  model.normalizer.scale.setConstant(0.001);
+  for (Eigen::Index row = 0; row < model.normalizer.mean.rows(); ++row) {
+    const double x = 0.51 * static_cast<double>(row + 1);
+    model.normalizer.mean.row(row) << x, 0.05 * x, 0.0, 5.1, 0.5, 0.0, 0.0;
+  }
+  diffusion::saveModel(model, folder, diffusion::TensorType::kF16, {});
+  return folder.string();
+}
+
+// An error e of the speed gives 5 e + 0.5 e / 20 + 1 e at first, and 5 e + 0.5 (2 e) / 20 when it
+// is the same again: 0.6025 and 0.505 for 0.1 m/s.
+TEST_F(TwoStagePidTest, RemembersTheErrorsOfEveryVehicle) {
+  const test::TemporaryFolder folder;
+  DiffusionOptions options = optionsOf();
+  options.model = writeSmoothModel(folder.path());
+  TwoStagePid planner(ModelCourse::makeDiffusion(options), {});
+  const auto diffusion = ModelCourse::makeDiffusion(options);
+  TrajectoryTracker trackers[2];
+  for (const std::uint64_t tick : {0U, 2U, 4U}) {
+    goTo(tick);
+    const auto actions = planner.plan(snapshot_, tasks());
+    const auto plans = diffusion->plan(snapshot_, tasks());
+    for (std::size_t i = 0; i < 2; ++i) {
+      const traffic::Vehicle& vehicle = snapshot_.vehicles[i + 1];
+      EXPECT_EQ(actions[i].action, tracked(trackers[i], vehicle, plans[i]));
+      EXPECT_NEAR(actions[i].action.throttle, tick == 0 ? 0.6025 : 0.505, 0.1);
+      TrajectoryTracker fresh;
+      const traffic::ControlAction without = tracked(fresh, vehicle, plans[i]);
+      EXPECT_EQ(actions[i].action == without, tick == 0) << tick;
+    }
+  }
+}
+
 TEST_F(TwoStagePidTest, SameCallsSameActionsAndEachVehicleAlone) {
   TwoStagePid first = makePlanner();
   TwoStagePid second = makePlanner();

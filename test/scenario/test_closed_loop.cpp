@@ -190,8 +190,9 @@ TEST(World, NoVehicleJumps) {
     void observe(const TickRecord& record) override {
       for (const traffic::Vehicle& vehicle : record.snapshot->vehicles) {
         const auto before = last_.find(vehicle.id);
-        if (before != nullptr &&
-            (vehicle.role != VehicleRole::kBackground || before->role != VehicleRole::kBackground))
+        if (before == nullptr) continue;
+        hand_overs += vehicle.role == VehicleRole::kCbv && before->role == VehicleRole::kBackground;
+        if ((vehicle.role != VehicleRole::kBackground || before->role != VehicleRole::kBackground))
           check(*before, vehicle);
       }
       last_ = *record.snapshot;
@@ -204,10 +205,12 @@ TEST(World, NoVehicleJumps) {
           << after.id << " at tick " << last_.tick;
     }
     traffic::TrafficSnapshot last_;
+    int hand_overs = 0;
   } steps;
   loop.addObserver(steps);
   const std::atomic<bool> stop{false};
   loop.run(stop);
+  EXPECT_GT(steps.hand_overs, 0) << "the test needs a vehicle that is taken over";
 }
 
 // Real demand of a real junction, lights on: the ego goes straight through the signal.

@@ -48,6 +48,11 @@ TEST_F(Protocol, BlockedAfterThreeSeconds) {
   EXPECT_EQ(at(0.0, 0.0, 0.05), SessionStatus::kBlocked);
 }
 
+// Standing is slower than 0.1 m/s; 0.1 m/s is driving, for 5 s as well.
+TEST_F(Protocol, NotBlockedAtTheSpeedItself) {
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(at(0.0, 0.0, 0.1), SessionStatus::kRunning) << i;
+}
+
 TEST_F(Protocol, MovingResetsTheBlockedClock) {
   for (int i = 0; i < 50; ++i) at(0.0, 0.0, 0.0);
   EXPECT_EQ(at(0.1, 0.0, 0.2), SessionStatus::kRunning);

@@ -106,7 +106,9 @@ TEST_F(Grid, FillsToTheDensityWithIdsInOrder) {
 TEST_F(Grid, KeepsTheStartClear) {
   options_.clear_start = 40.0;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    for (const DemandVehicle& vehicle : fill(seed)) {
+    const std::vector<DemandVehicle> vehicles = fill(seed);
+    EXPECT_FALSE(vehicles.empty());
+    for (const DemandVehicle& vehicle : vehicles) {
       EXPECT_GT((boxOf(vehicle).center - start()).norm(), 40.0) << vehicle.id;
     }
   }

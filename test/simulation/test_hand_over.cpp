@@ -186,6 +186,22 @@ TEST(ReleaseAskew, TurnsIntoTheLane) {
   EXPECT_NEAR(world.find("other")->state.heading, 0.0, 0.01);
 }
 
+// On the lane, but more than 30 degrees off its direction: SUMO would turn it at once.
+TEST(ReleaseAskew, AcrossTheLaneIsRefused) {
+  for (const auto& [degrees, released] :
+       {std::pair{25.0, true}, {35.0, false}, {45.0, false}, {-45.0, false}}) {
+    CrossingWorld world;
+    addOther(world, 8.0);
+    world.simulator().takeOver("other");
+    traffic::VehicleState state = world.find("other")->state;
+    state.heading = core::degreesToRadians(degrees);
+    const DrivenVehicle vehicle = ahead(world, state);
+    world.simulator().step({vehicle});
+    EXPECT_EQ(world.find("other")->lane_id, "west_0");
+    EXPECT_EQ(world.simulator().release(vehicle), released) << degrees;
+  }
+}
+
 TEST(ReleaseAskew, AgainstTheLaneIsRefused) {
   CrossingWorld world;
   addOther(world, 8.0);

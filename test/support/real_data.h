@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where tests find real input: E2E_CDIFF_DATA, else ../shared/data beside the source tree. Tests
-/// skip where it is missing.
+/// Where tests find real input: E2E_CDIFF_DATA, else ../shared/data beside the source tree, which
+/// ctest names in E2E_CDIFF_SHARE. Tests skip where it is missing.
 #pragma once
 
 #include <cstdlib>
@@ -13,8 +13,13 @@ namespace cdiff::test {
 /// The path of a file of the real input, whether it exists or not.
 inline std::filesystem::path realData(const std::string& relative) {
   const char* given = std::getenv("E2E_CDIFF_DATA");
-  const std::filesystem::path source = std::filesystem::path(__FILE__).parent_path() / "../..";
-  return (given ? std::filesystem::path(given) : source / "../shared/data") / relative;
+  if (given != nullptr) return std::filesystem::path(given) / relative;
+  // __FILE__ is relative under ccache's base folder.
+  const char* share = std::getenv("E2E_CDIFF_SHARE");
+  const std::filesystem::path source =
+      share ? std::filesystem::path(share)
+            : std::filesystem::path(__FILE__).parent_path() / "../..";
+  return source / "../shared/data" / relative;
 }
 
 }  // namespace cdiff::test

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -87,8 +86,6 @@ class World {
   traffic::TrafficSnapshot snapshot_;
   std::vector<std::unique_ptr<Driven>> driven_;  ///< ego first, then CBVs by slot
   std::vector<traffic::Fault> pending_faults_;
-  std::map<std::pair<std::string, std::string>, std::uint64_t>
-      last_overlap_;                    ///< tick of each pair's last overlap
   std::vector<std::string> to_remove_;  ///< in contact at the present tick
   TakeOverDisturbance disturbance_;     ///< may be empty
 };
