@@ -8,6 +8,10 @@ find_package(cv_bridge REQUIRED)
 find_package(image_transport REQUIRED)
 find_library(CDIFF_CV_BRIDGE_LIBRARY cv_bridge REQUIRED)
 find_library(CDIFF_IMAGE_TRANSPORT_LIBRARY image_transport REQUIRED)
+# Its exports are actionlib and all that belongs to it.
+find_package(tf2_ros REQUIRED)
+find_library(CDIFF_TF2_ROS_LIBRARY tf2_ros REQUIRED)
+find_library(CDIFF_TF2_LIBRARY tf2 REQUIRED)
 
 file(GLOB CDIFF_MESSAGES RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/msg/*.msg)
@@ -31,6 +35,11 @@ target_include_directories(e2e_cdiff_images SYSTEM INTERFACE
   ${cv_bridge_INCLUDE_DIRS} ${image_transport_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_images INTERFACE
   ${CDIFF_CV_BRIDGE_LIBRARY} ${CDIFF_IMAGE_TRANSPORT_LIBRARY} opencv_core)
+
+# Transforms, for the layer ros alone.
+add_library(e2e_cdiff_transforms INTERFACE)
+target_include_directories(e2e_cdiff_transforms SYSTEM INTERFACE ${tf2_ros_INCLUDE_DIRS})
+target_link_libraries(e2e_cdiff_transforms INTERFACE ${CDIFF_TF2_ROS_LIBRARY} ${CDIFF_TF2_LIBRARY})
 
 foreach(folder config launch networks rviz weights)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})

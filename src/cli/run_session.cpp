@@ -142,8 +142,7 @@ void printTable(const report::ResultWriter& writer, const RunOutput& output) {
 int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario::ClosedLoop& loop,
           const std::atomic<bool>& stop, Clock::time_point begin) {
   const scenario::ScenarioOptions& options = setup.options();
-  const bool deterministic = options.real_time_factor == 0.0;
-  report::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), deterministic},
+  report::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
                               output.folder);
   Progress progress(scenario::longestTime(options.protocol, setup.egoRoute()));
   loop.addObserver(writer);

@@ -84,7 +84,7 @@ void BagFile::writeTick(const TickMessages& tick) {
 
 void BagFile::writeDisplay(const TickMessages& tick, const ::ros::Time& stamp) {
   const traffic::TrafficSnapshot snapshot = fromMsg(*tick.snapshot);
-  bag_->write("/tf", stamp, tick.images.empty() ? toTfMsg(snapshot) : toTfMsg(snapshot, camera_));
+  bag_->write("/tf", stamp, toTfMsg(snapshot, tick.images.empty() ? nullptr : &camera_));
   if (const traffic::Vehicle* ego = snapshot.ego())
     bag_->write(naming_(kEgoOdometryTopic), stamp, toOdometryMsg(*ego, snapshot.time));
 }

@@ -4,6 +4,7 @@
 
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/image_conversions.h"
+#include "e2e_cdiff/ros/message_checks.h"
 #include "e2e_cdiff/ros/session_parts.h"
 
 namespace cdiff::ros {
@@ -20,7 +21,9 @@ void CameraRos::begin(const msgs::SessionInfo& info) {
   if (!graph().imagesOfCbvs()) return;
   for (int slot = 0; slot < graph().max_cbv; ++slot) open(slot);
   listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& selection) {
-    selections_.emplace(selection->tick, selection);
+    const std::string wrong = unusable(*selection, graph().max_cbv);
+    if (wrong.empty()) selections_.emplace(selection->tick, selection);
+    return wrong;
   });
 }
 

@@ -69,8 +69,8 @@ nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time) {
   return message;
 }
 
-tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot) {
-  tf2_msgs::TFMessage message;
+Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
+  Transforms transforms;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
     auto transform = transformBetween(kMapFrame, frameOf(vehicle), snapshot.time);
@@ -78,32 +78,49 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot) {
     transform.transform.translation.y = vehicle.state.position.y();
     transform.transform.translation.z = vehicle.state.elevation;
     transform.transform.rotation = toQuaternion(vehicle.state.heading);
-    message.transforms.push_back(transform);
+    transforms.push_back(transform);
   }
-  return message;
+  return transforms;
+}
+
+Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
+                            const rendering::CameraOptions& camera) {
+  return {mount(vehicle, time, camera), optical(vehicle, time)};
 }
 
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
-                            const rendering::CameraOptions& camera) {
-  tf2_msgs::TFMessage message = toTfMsg(snapshot);
+                            const rendering::CameraOptions* camera) {
+  tf2_msgs::TFMessage message;
+  message.transforms = vehicleTransforms(snapshot);
+  if (camera == nullptr) return message;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    message.transforms.push_back(mount(vehicle, snapshot.time, camera));
-    message.transforms.push_back(optical(vehicle, snapshot.time));
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera))
+      message.transforms.push_back(std::move(transform));
   }
   return message;
 }
 
 Display::Display(::ros::NodeHandle& node)
-    : odometry_(node.advertise<nav_msgs::Odometry>(kEgoOdometryTopic, 100)),
-      transforms_(node.advertise<tf2_msgs::TFMessage>("/tf", 100)) {}
+    : odometry_(node.advertise<nav_msgs::Odometry>(kEgoOdometryTopic, 100)) {}
 
-void Display::publish(const traffic::TrafficSnapshot& snapshot) const {
+void Display::publish(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego != nullptr && odometry_.getNumSubscribers() > 0)
     odometry_.publish(toOdometryMsg(*ego, snapshot.time));
-  if (transforms_.getNumSubscribers() == 0) return;
-  transforms_.publish(camera_ ? toTfMsg(snapshot, *camera_) : toTfMsg(snapshot));
+  if (camera_) mountCameras(snapshot);
+  transforms_.sendTransform(vehicleTransforms(snapshot));
+}
+
+void Display::mountCameras(const traffic::TrafficSnapshot& snapshot) {
+  Transforms added;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
+    if (!mounted_.insert(vehicle.id).second) continue;
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera_))
+      added.push_back(std::move(transform));
+  }
+  if (!added.empty()) mounts_.sendTransform(added);
 }
 
 }  // namespace cdiff::ros

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/observer.h"
 
+#include "e2e_cdiff/ros/message_checks.h"
+
 namespace cdiff::ros {
 
 namespace msgs = ::e2e_cdiff;
@@ -11,8 +13,11 @@ void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
   const bool guided = graph().cbvsSee();
   const ExpectedAnswers expected{guided, true, images.ego, images.cbvs};
   answers_ = TickAnswers(options.simulation_step, expected, options.camera);
-  listen<msgs::CbvSelection>(kSelectionTopic,
-                             [this](const auto& message) { answers_.add(message); });
+  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) {
+    const std::string wrong = unusable(*message, graph().max_cbv);
+    if (wrong.empty()) answers_.add(message);
+    return wrong;
+  });
   listen<msgs::ControlAction>(kEgoControlTopic,
                               [this](const auto& message) { answers_.addEgo(message); });
   if (guided) {
@@ -27,10 +32,16 @@ void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
 }
 
 void Observer::listenToSlot(int slot) {
-  listen<msgs::ControlAction>(
-      cbvControlTopic(slot), [this, slot](const auto& message) { answers_.addCbv(slot, message); });
-  listen<msgs::Rollout>(cbvRolloutTopic(slot),
-                        [this, slot](const auto& message) { answers_.addRollout(slot, message); });
+  listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
+    if (message->slot != slot) return wrongSlot(message->slot);
+    answers_.addCbv(slot, message);
+    return std::string();
+  });
+  listen<msgs::Rollout>(cbvRolloutTopic(slot), [this, slot](const auto& message) {
+    if (message->slot != slot) return wrongSlot(message->slot);
+    answers_.addRollout(slot, message);
+    return std::string();
+  });
 }
 
 void Observer::listenToImages(int slot) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/participant.h"
 
+#include <cmath>
 #include <exception>
 
 #include "e2e_cdiff/core/text.h"
@@ -17,6 +18,8 @@ constexpr double kPeriod =
 constexpr double kStopPatience =
     6.0;  // [s] after a stop signal until a node leaves without a last snapshot
 constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
+constexpr double kLead =
+    1.0;  // [s] beyond the next decision that answers may come before their snapshot
 
 void spin() { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(kPeriod)); }
 
@@ -25,8 +28,13 @@ void spin() { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration
 Participant::Participant(StopSignal& stop)
     : stop_(stop), name_(baseName(::ros::this_node::getName())) {
   acks_ = connections_.advertise<msgs::TickAck>(node_, kTickAckTopic, {kTrafficSimulatorNode});
-  session_input_ = subscribe<msgs::SessionInfo>(
-      node_, kSessionTopic, [this](const auto& message) { session_ = message; });
+  gate_.setReport([this](const std::string& text) {
+    ROS_WARN("%s: %s", name_.c_str(), text.c_str());
+    tell(msgs::TickAck::FAULT, lastTick(), text);
+  });
+  session_input_ = gate_.subscribe<msgs::SessionInfo>(
+      node_, kSessionTopic, siblingNodes({kTrafficSimulatorNode}),
+      [this](const auto& message) { session_ = message; });
 }
 
 int Participant::run() {
@@ -45,13 +53,21 @@ bool Participant::waitForSession() {
   graph_ = graphOf(*session_);
   if (graph_.has(name_)) return true;
   ROS_DEBUG("%s: the session does not need this node", name_.c_str());
+  session_input_.shutdown();
+  // A node that left would be one that "has died" to roswtf.
+  while (::ros::ok() && !stop_.raised() && !simulatorGone()) spin();
   return false;
 }
 
 int Participant::runSession() {
   begin(*session_);
-  traffic_input_ = subscribe<msgs::TrafficSnapshot>(
-      node_, kTrafficTopic, [this](const auto& message) { queue(message); });
+  const scenario::ScenarioOptions options = optionsFromMsg(*session_);
+  simulation_step_ = options.simulation_step;
+  lead_ = static_cast<std::uint64_t>(
+      std::llround((options.decision_period + kLead) / simulation_step_));
+  traffic_input_ = gate_.subscribe<msgs::TrafficSnapshot>(
+      node_, kTrafficTopic, siblingNodes({kTrafficSimulatorNode}),
+      [this](const auto& message) { queue(message); });
   ::ros::WallTime stopped_at;
   ::ros::WallTime reported_at;
   while (!handleQueue()) {
@@ -73,6 +89,7 @@ int Participant::runSession() {
 void Participant::queue(const Snapshot& snapshot) {
   if (snapshot->tick < next_tick_) return;  // sent again for a late listener
   next_tick_ = snapshot->tick + 1;
+  gate_.setNewestTick(snapshot->tick + lead_, simulation_step_);
   snapshots_.push_back(snapshot);
 }
 

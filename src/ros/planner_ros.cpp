@@ -4,6 +4,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/ros/markers.h"
+#include "e2e_cdiff/ros/message_checks.h"
 #include "e2e_cdiff/ros/session_parts.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 
@@ -83,10 +84,11 @@ void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
     rollouts_.push_back(advertise<msgs::Rollout>(cbvRolloutTopic(slot)));
   }
   markers_ = advertise<visualization_msgs::MarkerArray>(kRolloutMarkersTopic);
-  listen<msgs::CbvSelection>(kSelectionTopic,
-                             [this](const msgs::CbvSelection::ConstPtr& selection) {
-                               selections_.emplace(selection->tick, selection);
-                             });
+  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& selection) {
+    const std::string wrong = unusable(*selection, graph().max_cbv);
+    if (wrong.empty()) selections_.emplace(selection->tick, selection);
+    return wrong;
+  });
 }
 
 bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {

@@ -9,10 +9,10 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/message_checks.h"
 #include "e2e_cdiff/ros/session_parts.h"
 #include "e2e_cdiff/ros/tick_record.h"
 #include "recorded_channels.h"
-#include "recorded_checks.h"
 
 namespace cdiff::ros {
 namespace {

@@ -104,8 +104,9 @@ void ReplayRos::advertise() {
   offer<visualization_msgs::MarkerArray>(kRolloutMarkersTopic);
   if (graph_.cbvsSee()) offer<msgs::GuidanceReport>(kGuidanceTopic);
   for (int slot = kEgoSlot; slot < graph_.max_cbv; ++slot) advertiseSlot(slot);
-  acks_ =
-      subscribe<msgs::TickAck>(node_, kTickAckTopic, [this](const auto& ack) { book_.note(*ack); });
+  gate_.setReport([](const std::string& text) { ROS_WARN("%s", text.c_str()); });
+  acks_ = gate_.subscribe<msgs::TickAck>(node_, kTickAckTopic, {siblingNode(kMetricsNode)},
+                                         [this](const auto& ack) { book_.note(*ack); });
 }
 
 void ReplayRos::advertiseSlot(int slot) {

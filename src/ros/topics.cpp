@@ -74,6 +74,16 @@ std::string answererOf(const std::string& topic, const SessionGraph& graph) {
   return graph.cbvsSee() ? kDiffusionPlannerNode : kCbvPlannerNode;
 }
 
+std::vector<std::string> publishersOf(const std::string& topic, const SessionGraph& graph) {
+  if (topic == kEgoControlTopic && graph.external_ego) return {};
+  if (topic == kSessionTopic || topic == kTrafficTopic || topic == kEgoRouteTopic)
+    return {kTrafficSimulatorNode};
+  if (topic == kMetricsTopic) return {kMetricsNode};
+  if (topic == kTickAckTopic) return graph.participants;
+  const bool image = topic.find("/camera/") != std::string::npos;
+  return {image ? kCameraNode : answererOf(topic, graph), kTrafficSimulatorNode};
+}
+
 bool isObserver(const std::string& node) { return node == kMetricsNode || node == kRecorderNode; }
 
 }  // namespace cdiff::ros

@@ -5,6 +5,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/message_checks.h"
 #include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/session_parts.h"
 #include "rosgraph_msgs/Clock.h"
@@ -89,19 +90,39 @@ void TrafficSimulatorRos::advertise() {
 }
 
 void TrafficSimulatorRos::listen() {
-  inputs_.push_back(subscribe<msgs::TickAck>(node_, kTickAckTopic,
-                                             [this](const auto& ack) { book_.note(*ack); }));
-  inputs_.push_back(subscribe<msgs::CbvSelection>(
-      node_, kSelectionTopic, [this](const auto& message) { answers_.add(message); }));
-  ego_control_ =
-      subscribe<msgs::ControlAction>(node_, kEgoControlTopic, [this](const auto& message) {
-        answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
-      });
+  gate_.setReport([this](const std::string& text) { noteFault(kTrafficSimulatorNode, text); });
+  gate_.setNewestTick(0, setup_->options().simulation_step);
+  listenTo<msgs::TickAck>(kTickAckTopic, [this](const auto& ack) {
+    if (ack->kind == msgs::TickAck::FAULT)
+      noteFault(ack->node, ack->text);
+    else
+      book_.note(*ack);
+  });
+  listenTo<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) {
+    std::string wrong = unusable(*message, graph_.max_cbv);
+    if (wrong.empty()) wrong = unusable(*message, setup_->network());
+    if (wrong.empty()) answers_.add(message);
+    return wrong;
+  });
+  listenTo<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) {
+    answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
+  });
+  ego_control_ = inputs_.back();
   for (int slot = 0; slot < graph_.max_cbv; ++slot) {
-    inputs_.push_back(subscribe<msgs::ControlAction>(
-        node_, cbvControlTopic(slot),
-        [this, slot](const auto& message) { answers_.addCbv(slot, message); }));
+    listenTo<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
+      if (message->slot != slot) return wrongSlot(message->slot);
+      answers_.addCbv(slot, message);
+      return std::string();
+    });
   }
+}
+
+/// A fault that a node reports is recorded once, whoever else reports it too.
+void TrafficSimulatorRos::noteFault(const std::string& source, const std::string& text) {
+  constexpr std::size_t kMostFaults = 200;
+  if (noted_faults_.size() == kMostFaults || !noted_faults_.insert(text).second) return;
+  ROS_WARN("%s: %s", source.c_str(), text.c_str());
+  world_->recordFault(source, text);
 }
 
 void TrafficSimulatorRos::publishSession() {

@@ -48,13 +48,25 @@ void TrafficSimulatorRos::publishTick() {
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
   msgs::TrafficSnapshot message = toMsg(snapshot);
   message.late_answers = paced_answers_.late();
+  if (snapshot.status != SessionStatus::kRunning) addTotals(message);
   rosgraph_msgs::Clock clock;
   clock.clock = message.header.stamp;
   published_ = boost::make_shared<const msgs::TrafficSnapshot>(std::move(message));
   clock_.publish(clock);
+  gate_.setNewestTick(published_->tick, setup_->options().simulation_step);
   traffic_.publish(published_);
   published_at_ = Clock::now();
   display_.publish(snapshot);
+}
+
+/// How much was ignored, in the last snapshot.
+void TrafficSimulatorRos::addTotals(msgs::TrafficSnapshot& message) const {
+  for (const std::string& text : gate_.totals()) {
+    message.faults.emplace_back();
+    message.faults.back().tick = message.tick;
+    message.faults.back().source = kTrafficSimulatorNode;
+    message.faults.back().text = text;
+  }
 }
 
 std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() const {
@@ -72,17 +84,27 @@ std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() c
 }
 
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForTick() {
-  return waitFor([this] { return missingAtTick(); }, limits_.answer);
+  if (auto cause = waitFor([this] { return missingAtTick(); }, limits_.answer)) return cause;
+  const double at_most = setup_->options().at_most;
+  return at_most > 0.0 ? sleepUntil(published_->time / at_most) : std::nullopt;
+}
+
+/// `due`: wall time since the first tick [s].
+std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::sleepUntil(double due) {
+  while (true) {
+    if (auto cause = disturbance()) return cause;
+    const double left = due - secondsSince(begin_);
+    if (left <= 0.0) return std::nullopt;
+    spin(std::min(left, kSpinPeriod));
+  }
 }
 
 /// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
   const scenario::ScenarioOptions& options = setup_->options();
+  spin(0.0);  // what has come counts, however late this tick began
   const double due = (published_->time + options.simulation_step) / options.real_time_factor;
-  do {
-    if (const auto cause = disturbance()) return cause;
-    spin(std::clamp(due - secondsSince(begin_), 0.0, kSpinPeriod));
-  } while (secondsSince(begin_) < due);
+  if (auto cause = sleepUntil(due)) return cause;
   const std::vector<std::string> behind = book_.notAcknowledged(published_->tick);
   if (behind.empty() || published_->tick == 0) acknowledged_at_ = Clock::now();
   if (secondsSince(acknowledged_at_) > limits_.answer) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::scenario {
 namespace {
@@ -38,15 +39,24 @@ bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<Pla
 }
 
 /// Sleeps until the wall clock has come as far as the simulation asks for, or a stop is asked for.
-void pace(Clock::time_point begin, double simulated_seconds, double real_time_factor,
+void pace(Clock::time_point begin, double simulated_seconds, double at_most,
           const std::atomic<bool>& stop) {
   constexpr auto kSlice = std::chrono::milliseconds(50);
-  if (real_time_factor <= 0.0) return;
-  const std::chrono::duration<double> due(simulated_seconds / real_time_factor);
+  if (at_most <= 0.0) return;
+  const std::chrono::duration<double> due(simulated_seconds / at_most);
   const Clock::time_point wake = begin + std::chrono::duration_cast<Clock::duration>(due);
   while (!stop && Clock::now() < wake) {
     std::this_thread::sleep_until(std::min(wake, Clock::now() + kSlice));
   }
+}
+
+/// One process asks its planners one after the other: nobody can be late.
+void requireLockstep(const ScenarioOptions& options) {
+  if (options.real_time_factor <= 0.0) return;
+  throw core::InputError(
+      "key 'real_time_factor' is " + core::formatNumber(options.real_time_factor) +
+      ", which needs the node graph (roslaunch e2e_cdiff session.launch): in one process no answer "
+      "can be late; expected 0 here, and 'at_most' to limit the pace");
 }
 
 }  // namespace
@@ -97,6 +107,7 @@ void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask
 
 ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
   const ScenarioOptions& options = setup.options();
+  requireLockstep(options);
   ego_planner_ = setup.makeEgoPlanner();
   cbv_planner_ = setup.makeCbvPlanner();
   if (ego_planner_->needsImages() || cbv_planner_->needsImages())
@@ -179,7 +190,7 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       world_->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
       continue;
     }
-    pace(begin, snapshot.time, setup_.options().real_time_factor, stop);
+    pace(begin, snapshot.time, setup_.options().at_most, stop);
     world_->advance(record.selection, decision.actions);
   }
 }

@@ -181,8 +181,11 @@ void ScenarioOptions::describeTime(core::OptionsVisitor& visitor) {
                  target_speed, 0.5, 40.0);
   visitor.number({"simulation_step", "s", "Simulation step."}, simulation_step, 0.05, 0.1);
   visitor.number({"decision_period", "s", "Time between decisions."}, decision_period, 0.05, 1.0);
-  visitor.number({"real_time_factor", "", "Pace against wall time; 0 is as fast as possible."},
+  visitor.number({"real_time_factor", "",
+                  "Node graph: the wall clock rules, late answers are replaced; 0 is lockstep."},
                  real_time_factor, 0.0, 100.0);
+  visitor.number({"at_most", "", "Lockstep, at most so many times real time; 0 is without limit."},
+                 at_most, 0.0, 100.0);
 }
 
 void ScenarioOptions::validate() const {
@@ -223,6 +226,12 @@ void ScenarioOptions::validateTime() const {
     throw InputError("key 'decision_period' is " + core::formatNumber(decision_period) +
                      " s; expected a multiple of simulation_step (" +
                      core::formatNumber(simulation_step) + " s)");
+  }
+  if (at_most > 0.0 && real_time_factor > 0.0) {
+    throw InputError("keys 'at_most' (" + core::formatNumber(at_most) +
+                     ") and 'real_time_factor' (" + core::formatNumber(real_time_factor) +
+                     ") are both set; expected one of them: at_most waits for every answer, "
+                     "real_time_factor replaces late ones");
   }
 }
 

@@ -13,6 +13,14 @@ using namespace ros;  // NOLINT: a test of that layer
 
 namespace {
 
+template <class Message, class Callback>
+::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const std::string& topic,
+                            Callback callback) {
+  return node_handle.subscribe<Message>(
+      topic, 1000, boost::function<void(const boost::shared_ptr<const Message>&)>(callback), {},
+      ::ros::TransportHints().tcpNoDelay());
+}
+
 scenario::ScenarioOptions scenarioFor(const std::string& node,
                                       const std::filesystem::path& results) {
   scenario::ScenarioOptions options = scenario::loadScenario("crossing_left_turn");

@@ -79,7 +79,7 @@ TEST(Display, CameraSitsOnTheMountAndLooksDownTheRoad) {
   camera.mount_forward = 0.5;
   camera.mount_height = 1.4;
   camera.pitch = 30.0;
-  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), camera);
+  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), &camera);
   ASSERT_EQ(message.transforms.size(), 6U);  // base_link of two, then camera and optical frame each
   const auto& mount = message.transforms[4];
   EXPECT_EQ(mount.header.frame_id, "bg_7/base_link");

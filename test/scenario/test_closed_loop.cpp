@@ -109,6 +109,28 @@ TEST(ClosedLoop, UnknownPlannerAndExternalEgoAreInputErrors) {
   EXPECT_THROW(ClosedLoop{external}, core::InputError);
 }
 
+TEST(ClosedLoop, AtMostSleepsAndChangesNothing) {
+  const Course free = runScenario(scenarioWith("crossing_left_turn", {"protocol.time_limit=2"}));
+  const auto begin = std::chrono::steady_clock::now();
+  const Course slow =
+      runScenario(scenarioWith("crossing_left_turn", {"protocol.time_limit=2", "at_most=2"}));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(slow.hash(), free.hash());
+  EXPECT_GE(taken.count(), 0.975);  // the last tick is published at 1.95 s / 2
+}
+
+TEST(ClosedLoop, RealTimeFactorNeedsTheNodeGraph) {
+  const SessionSetup paced(scenarioWith("crossing_left_turn", {"real_time_factor=1"}));
+  try {
+    ClosedLoop loop(paced);
+    FAIL() << "no error";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("at_most"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(scenarioWith("crossing_left_turn", {"real_time_factor=1", "at_most=1"}),
+               core::InputError);
+}
+
 TEST(ClosedLoop, StopEndsAsInterrupted) {
   const SessionSetup setup(scenarioWith("crossing_left_turn", {}));
   ClosedLoop loop(setup);

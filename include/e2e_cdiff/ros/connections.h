@@ -56,15 +56,4 @@ class Connections {
 /// Name of a node without its namespace.
 std::string baseName(const std::string& node);
 
-/// Subscribes without delaying small messages (TCP_NODELAY); `callback` takes a shared pointer to a
-/// constant message.
-template <class Message, class Callback>
-::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const std::string& topic,
-                            Callback callback) {
-  constexpr std::uint32_t kQueueSize = 1000;
-  return node_handle.subscribe<Message>(
-      topic, kQueueSize, boost::function<void(const boost::shared_ptr<const Message>&)>(callback),
-      {}, ::ros::TransportHints().tcpNoDelay());
-}
-
 }  // namespace cdiff::ros

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/TickAck.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/stop_signal.h"
 #include "e2e_cdiff/ros/topics.h"
 #include "ros/ros.h"
@@ -50,9 +51,11 @@ class Participant {
   ::ros::Publisher advertise(const std::string& topic, bool latch = false) {
     return connections_.advertise<Message>(node_, topic, listeners(topic, graph_), latch);
   }
+  /// Takes what the topic's publisher sends; see MessageGate::subscribe.
   template <class Message, class Callback>
   void listen(const std::string& topic, Callback callback) {
-    inputs_.push_back(subscribe<Message>(node_, topic, callback));
+    inputs_.push_back(gate_.subscribe<Message>(
+        node_, topic, siblingNodes(publishersOf(topic, graph_)), callback));
   }
   /// Tells the traffic simulator that a tick is dealt with.
   void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
@@ -76,6 +79,7 @@ class Participant {
 
   StopSignal& stop_;
   Connections connections_;
+  MessageGate gate_;
   ::ros::NodeHandle node_;
   std::string name_;
   SessionGraph graph_;
@@ -85,7 +89,9 @@ class Participant {
   std::vector<::ros::Subscriber> inputs_;
   ::e2e_cdiff::SessionInfo::ConstPtr session_;
   std::deque<Snapshot> snapshots_;
-  std::uint64_t next_tick_ = 0;  ///< snapshots before it were seen
+  std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
+  double simulation_step_ = 0.05;  ///< [s]
+  std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
   bool final_handled_ = false;
 };
 

@@ -14,6 +14,7 @@
 
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/parameters.h"
 #include "e2e_cdiff/ros/participant_book.h"
 #include "e2e_cdiff/ros/recorded_session.h"
@@ -61,6 +62,7 @@ class ReplayRos {
   RecordedSession session_;
   SessionGraph graph_;  ///< of the replay: without recorder
   ParticipantBook book_;
+  MessageGate gate_;
   Connections connections_;
   ::ros::NodeHandle node_;
   std::map<std::string, ::ros::Publisher> topics_;

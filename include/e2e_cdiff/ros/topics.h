@@ -70,6 +70,11 @@ std::vector<std::string> listeners(const std::string& topic, const SessionGraph&
 /// planner.
 std::string answererOf(const std::string& topic, const SessionGraph& graph);
 
+/// The nodes whose messages count on a topic, without namespace: its publisher, and the traffic
+/// simulator, in whose name a replay publishes everything. Empty where whoever comes first counts
+/// (the control of an external ego).
+std::vector<std::string> publishersOf(const std::string& topic, const SessionGraph& graph);
+
 /// Whether a node acknowledges every tick (metrics and recorder do).
 bool isObserver(const std::string& node);
 

@@ -9,11 +9,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/parameters.h"
 #include "e2e_cdiff/ros/participant_book.h"
@@ -57,12 +59,20 @@ class TrafficSimulatorRos {
   bool startWorld();
   void advertise();
   void listen();
+  template <class Message, class Callback>
+  void listenTo(const std::string& topic, Callback callback) {
+    inputs_.push_back(gate_.subscribe<Message>(
+        node_, topic, siblingNodes(publishersOf(topic, graph_)), callback));
+  }
+  void noteFault(const std::string& source, const std::string& text);
   void publishSession();
   std::optional<Ending> waitForParticipants();
   void runTicks();
   void publishTick();
+  void addTotals(::e2e_cdiff::TrafficSnapshot& message) const;
   std::optional<Ending> waitForTick();
   std::optional<Ending> waitUntilDue();
+  std::optional<Ending> sleepUntil(double due);
   std::optional<Ending> waitFor(const MissingNow& missing_now, double seconds);
   std::optional<Ending> disturbance();
   void endSession(const Ending& ending);
@@ -91,6 +101,8 @@ class TrafficSimulatorRos {
   ParticipantBook book_;
   TickAnswers answers_;
   PacedAnswers paced_answers_;
+  MessageGate gate_;
+  std::set<std::string> noted_faults_;  ///< texts
   Connections connections_;
   ::ros::NodeHandle node_;
   ::ros::Publisher clock_;

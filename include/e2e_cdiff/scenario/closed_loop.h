@@ -36,8 +36,8 @@ std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
 
 class ClosedLoop {
  public:
-  /// `setup` must outlive the loop. Throws InputError for unknown planners and for the external
-  /// ego, which needs the node graph.
+  /// `setup` must outlive the loop. Throws InputError for unknown planners, and for the external
+  /// ego and a real_time_factor, which need the node graph.
   explicit ClosedLoop(const SessionSetup& setup);
   ~ClosedLoop();
 

@@ -73,7 +73,8 @@ struct ScenarioOptions {
   double target_speed = 8.0;      ///< v* [m/s], capped by the lane's limit
   double simulation_step = 0.05;  ///< [s]
   double decision_period = 0.1;   ///< [s], a multiple of simulation_step
-  double real_time_factor = 0.0;  ///< 0: as fast as possible
+  double real_time_factor = 0.0;  ///< of nodes that the wall clock rules; 0: lockstep
+  double at_most = 0.0;           ///< times real time, in lockstep; 0: as fast as possible
   std::int64_t seed = 1;
 
   void describe(core::OptionsVisitor& visitor);

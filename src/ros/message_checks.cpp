@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "recorded_checks.h"
+#include "e2e_cdiff/ros/message_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +84,26 @@ std::string unusable(const msgs::CbvSelection& message, const map::RoadNetwork& 
     const std::string wrong = wrongRoute(assignment, network);
     if (!wrong.empty())
       return "the route of CBV '" + core::fileName(assignment.vehicle_id) + "' " + wrong;
+  }
+  return "";
+}
+
+std::string wrongSlot(int slot) {
+  return "it names slot " + std::to_string(slot) + ", which is not the topic's";
+}
+
+std::string unusable(const msgs::CbvSelection& message, int max_cbv) {
+  const std::string slots = "; the session has " + std::to_string(max_cbv) + " slots";
+  if (message.assignments.size() > static_cast<std::size_t>(max_cbv))
+    return "it holds " + std::to_string(message.assignments.size()) + " assignments" + slots;
+  std::set<int> taken;
+  std::set<std::string_view> vehicles;
+  for (const msgs::CbvAssignment& assignment : message.assignments) {
+    const std::string name = "slot " + std::to_string(assignment.slot);
+    if (assignment.slot < 0 || assignment.slot >= max_cbv) return "it names " + name + slots;
+    if (!taken.insert(assignment.slot).second) return "it names " + name + " twice";
+    if (!vehicles.insert(assignment.vehicle_id).second)
+      return "it names vehicle '" + core::fileName(assignment.vehicle_id) + "' twice";
   }
   return "";
 }

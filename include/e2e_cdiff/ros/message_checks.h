@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Whether recorded messages can be what a session published: bytes that were overwritten in a bag
-/// can still be a message.
+/// Whether messages can be what a session's nodes publish: bytes that were overwritten in a bag can
+/// still be a message, and so can what a node of the user's sends.
 #pragma once
 
 #include <string>
@@ -19,5 +19,12 @@ std::string unusable(const ::e2e_cdiff::TrafficSnapshot& message, double simulat
 
 /// The same for a selection (a lane that the network does not have, a route without points).
 std::string unusable(const ::e2e_cdiff::CbvSelection& message, const map::RoadNetwork& network);
+
+/// Why a message of another slot than its topic's cannot be used.
+std::string wrongSlot(int slot);
+
+/// The same for its slots: more assignments than slots, a slot that there is not or twice, a
+/// vehicle twice.
+std::string unusable(const ::e2e_cdiff::CbvSelection& message, int max_cbv);
 
 }  // namespace cdiff::ros

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/ros/message_gate.h"
+
+#include <gtest/gtest.h>
+
+#include "e2e_cdiff/ros/message_checks.h"
+
+namespace cdiff::ros {
+namespace {
+
+namespace msgs = ::e2e_cdiff;
+using Texts = std::vector<std::string>;
+
+/// Keeps what a gate reports.
+struct GateLog {
+  explicit GateLog(MessageGate& gate) {
+    gate.setReport([this](const std::string& text) { texts.push_back(text); });
+  }
+  Texts texts;
+};
+
+TEST(MessageGate, AdmitsTheTopicsPublisherAlone) {
+  MessageGate gate;
+  GateLog log(gate);
+  EXPECT_TRUE(gate.admits("cbv/selection", {"/a", "/b"}, "/b"));
+  EXPECT_FALSE(gate.admits("cbv/selection", {"/a", "/b"}, "/other/a"));
+  EXPECT_EQ(log.texts, Texts{"1 message on cbv/selection from /other/a is ignored: the session "
+                             "listens to /a"});
+}
+
+TEST(MessageGate, WhoeverComesFirstCountsWhereAnyoneMaySend) {
+  MessageGate gate;
+  EXPECT_TRUE(gate.admits("ego/control", {}, "/mine"));
+  EXPECT_FALSE(gate.admits("ego/control", {}, "/second"));
+  EXPECT_TRUE(gate.admits("ego/control", {}, "/mine"));
+}
+
+TEST(MessageGate, RefusesTicksThatHaveNotBeen) {
+  MessageGate gate;
+  EXPECT_TRUE(gate.admitsTick("ego/control", "/ego", 7));  // no tick is known yet
+  gate.setNewestTick(6, 0.05);
+  EXPECT_TRUE(gate.admitsTick("ego/control", "/ego", 6));
+  EXPECT_FALSE(gate.admitsTick("ego/control", "/ego", 7));
+}
+
+TEST(MessageGate, ReportsAtPowersOfTenAndCountsTheRest) {
+  MessageGate gate;
+  GateLog log(gate);
+  for (int i = 0; i < 1234; ++i) gate.refuse("ego/control", "/rogue", "why");
+  ASSERT_EQ(log.texts.size(), 4U);  // the 1st, 10th, 100th and 1000th
+  EXPECT_EQ(log.texts[3], "1000 messages on ego/control from /rogue so far are ignored: why");
+  EXPECT_EQ(gate.totals(), Texts{"1234 messages on ego/control from /rogue were ignored in all"});
+}
+
+TEST(MessageGate, CountsManySendersTogether) {
+  MessageGate gate;
+  GateLog log(gate);
+  for (int i = 0; i < 10000; ++i) gate.refuse("traffic", "/rogue_" + std::to_string(i), "why");
+  // 100 of their own; the other 9900 report at 1, 10, 100 and 1000.
+  EXPECT_EQ(log.texts.size(), 104U);
+  EXPECT_EQ(gate.totals(), Texts{"9900 messages on any topic from others were ignored in all"});
+}
+
+TEST(Selection, WithSlotsThatThereAreNotCannotBeUsed) {
+  const auto unusableWith = [](const std::vector<std::pair<int, std::string>>& assigned) {
+    msgs::CbvSelection selection;
+    for (const auto& [slot, vehicle] : assigned) {
+      selection.assignments.emplace_back();
+      selection.assignments.back().slot = slot;
+      selection.assignments.back().vehicle_id = vehicle;
+    }
+    return unusable(selection, 2);
+  };
+  EXPECT_EQ(unusableWith({{0, "a"}, {1, "b"}}), "");
+  EXPECT_NE(unusableWith({{2, "a"}}).find("slot 2"), std::string::npos);
+  EXPECT_NE(unusableWith({{-1, "a"}}), "");
+  EXPECT_NE(unusableWith({{0, "a"}, {0, "b"}}).find("twice"), std::string::npos);
+  EXPECT_NE(unusableWith({{0, "a"}, {1, "a"}}).find("twice"), std::string::npos);
+  EXPECT_NE(unusableWith({{0, "a"}, {1, "b"}, {0, "c"}}).find("3 assignments"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cdiff::ros
