@@ -30,6 +30,14 @@ TEST(Sampler, UnguidedDdpmDrawsThePrior) {
   }
 }
 
+// At k = 1 the posterior's weights are 1 and 0 and its noise is left out: what a denoiser is sure
+// of (s = 0) comes out to the bit.
+TEST(Sampler, TheLastStepAddsNoNoise) {
+  const Moments moments = sampleMoments(mode("unguided"), 0.0, 0.0, 20);
+  EXPECT_EQ(moments.mean, 0.0);
+  EXPECT_EQ(moments.deviation, 0.0);
+}
+
 // Known bias of the paper's rule (mean - beta_k g, K = 100): it overshoots by up to 27 %. The means
 // are those of an independent run of the same rule on the same problem (1500 samples there:
 // standard error 0.026 s).

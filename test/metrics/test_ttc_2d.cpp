@@ -48,6 +48,16 @@ TEST(TimeToCollision2d, IsAbsentWithoutContactAhead) {
   EXPECT_FALSE(timeToCollision2d(car(0, 0, 0, 0), car(20, 0, 0, 0)).has_value());     // both stand
 }
 
+// Both 4 m x 2 m, the second turned by 45 degrees. Along x the shadows, 2 + 3 / sqrt 2 = 4.1213 m
+// to each side, overlap while |15 - 2 t| <= 4.1213: 5.44 to 9.56 s; along the second's heading, as
+// long, while |-35 + 3 t| / sqrt 2 <= 4.1213: 9.72 to 13.61 s. The one is over when the other
+// begins, though both axes across overlap then.
+TEST(TimeToCollision2d, IsAbsentWhenOneShadowHasLeftBeforeAnotherComes) {
+  const MovingBox first{{{0.0, 0.0}, 0.0, 4.0, 2.0}, {0.0, 0.0}};
+  const MovingBox second{{{15.0, -50.0}, core::degreesToRadians(45.0), 4.0, 2.0}, {-2.0, 5.0}};
+  EXPECT_FALSE(timeToCollision2d(first, second).has_value());
+}
+
 TEST(TimeToCollision2d, IsZeroWhenOverlapping) {
   EXPECT_EQ(timeToCollision2d(car(0, 0, 0, 10), car(3, 1, 0, 0)), 0.0);
   EXPECT_EQ(timeToCollision2d(car(0, 0, 0, 0), car(3, 1, 30, 0)), 0.0);

@@ -3,7 +3,7 @@
 
     mutants.py BUILD SOURCE RESULT.xml [WORD...]
 
-Builds below BUILD/mutants. With words, only the mutants in whose name or file one occurs. GTEST_FILTER is
+The copy lies in a temporary folder, apart from the package that ROS finds. With words, only the mutants in whose name or file one occurs. GTEST_FILTER is
 handed on to the tests. A mutant that survives, does not compile or no longer applies is a failure, and so is a test that fails
 without any.
 """
@@ -11,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -20,22 +21,20 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
 
 BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
-COPY = BUILD / "mutants"
+COPY = Path(tempfile.gettempdir()) / f"e2e_cdiff_mutants_{os.getpid()}"
 COPY_BUILD = COPY / "build"  # at the same place as usual, so that ccache knows the files
 LEFT_OUT = {".git", "build", "devel", "install", "results"}
 
 
 def copy_source():
-    """The copy gets what changed since the last run, so that a second one compiles little."""
+    COPY.mkdir()
     for top in SOURCE.iterdir():
         if top.name in LEFT_OUT or top == BUILD:
             continue
-        for path in [top, *top.rglob("*")] if top.is_dir() else [top]:
-            there = COPY / path.relative_to(SOURCE)
-            if path.is_dir():
-                there.mkdir(parents=True, exist_ok=True)
-            elif not there.is_file() or there.read_bytes() != path.read_bytes():
-                shutil.copy(path, there)
+        if top.is_dir():
+            shutil.copytree(top, COPY / top.name)
+        else:
+            shutil.copy(top, COPY)
 
 
 def ninja(targets):
@@ -92,7 +91,6 @@ def main():
     mutants = yaml.safe_load((Path(__file__).parent / "mutants.yaml").read_text())
     words = sys.argv[4:]
     mutants = [m for m in mutants if not words or any(word in m["name"] + " " + m["file"] for word in words)]
-    COPY.mkdir(parents=True, exist_ok=True)
     copy_source()
     subprocess.run(["cmake", "-S", COPY, "-B", COPY_BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                     "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"],
@@ -115,4 +113,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    finally:
+        shutil.rmtree(COPY, ignore_errors=True)

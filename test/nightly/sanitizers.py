@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Build with a sanitizer of gcc in a folder of its own and run the unit tests in it.
+
+    sanitizers.py address|thread BUILD SOURCE RESULT.xml
+
+`address`: AddressSanitizer and UndefinedBehaviorSanitizer, all layers without ROS and libtorch, sessions with the real SUMO among
+their tests. `thread`: ThreadSanitizer, the tests of what runs processes and threads. ROS, libtorch and oneDNN come without
+instrumentation, so what belongs to them is left out or suppressed. Each test program is one case.
+"""
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
+
+KIND, BUILD, SOURCE, RESULT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), Path(sys.argv[4])
+FLAGS = {"address": "-fsanitize=address,undefined -fno-sanitize-recover=undefined", "thread": "-fsanitize=thread"}
+LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "rendering", "guidance", "diffusion", "planning",
+          "simulation", "scenario", "suite", "report", "evaluation"]
+# Nothing of memory or threads is in these that the others do not run too, and with a sanitizer they take many minutes.
+SLOW = {"test_suite_suite_generator", "test_suite_shipped_suite", "test_planning_guided_plans", "test_planning_diffusion_modes",
+        "test_planning_mirror_symmetry", "test_diffusion_safetensors_memory", "test_scenario_soak"}
+THREADED = ["test_evaluation_executor", "test_evaluation_process_pool", "test_simulation_sumo_loss", "test_diffusion_image_encoder",
+            "test_report_session_video"]
+OPTIONS = {"ASAN_OPTIONS": "detect_leaks=1:abort_on_error=0", "UBSAN_OPTIONS": "print_stacktrace=1",
+           "TSAN_OPTIONS": "halt_on_error=0:exitcode=66:second_deadlock_stack=1"}
+
+
+def programs(folder):
+    """Names of the test programs to build."""
+    if KIND == "thread":
+        return THREADED
+    listed = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
+    names = {line.partition(":")[0] for line in listed.splitlines() if line.endswith(": phony")}
+    return sorted(name for name in names if name not in SLOW and any(name.startswith(f"test_{layer}_") for layer in LAYERS))
+
+
+def build(folder):
+    subprocess.run(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DE2E_CDIFF_ROS=OFF",
+                    "-DE2E_CDIFF_TRAINING=OFF", "-DE2E_CDIFF_BENCHMARKS=OFF", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache",
+                    f"-DCMAKE_CXX_FLAGS=-O1 -g1 -fno-omit-frame-pointer {FLAGS[KIND]}"], check=True, stdout=subprocess.DEVNULL)
+    names = programs(folder)
+    subprocess.run(["ninja", "-C", folder, *names], check=True)
+    return names
+
+
+def run(program):
+    """None when the program passes, else the end of what it wrote."""
+    environment = {**os.environ, **OPTIONS, "E2E_CDIFF_SHARE": str(SOURCE), "SUMO_HOME": "/usr/share/sumo"}
+    environment.setdefault("E2E_CDIFF_DATA", str(SOURCE / ".." / "shared" / "data"))
+    # Limits of wall-clock time are for programs at full speed.
+    arguments = [program, "--gtest_filter=-*WithinASecond:*Memory*:*AfterTheStepTimeout"]
+    try:
+        done = subprocess.run(arguments, env=environment, cwd=program.parent, timeout=900, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    except subprocess.TimeoutExpired:
+        return "no end within 900 s"
+    return None if done.returncode == 0 else f"exit code {done.returncode}\n" + done.stdout[-6000:]
+
+
+def main():
+    folder = BUILD / f"sanitizer_{KIND}"
+    cases = []
+    for name in build(folder):
+        begin = time.monotonic()
+        failure = run(next(path for path in folder.rglob(name) if path.is_file()))
+        cases.append((name, time.monotonic() - begin, failure))
+        print(f"{cases[-1][1]:7.1f} s  {'FAILED' if failure else 'passed'}  {name}", flush=True)
+        if failure:
+            print(failure, flush=True)
+    junit.write(RESULT, f"sanitizer_{KIND}", cases)
+    return any(failure for _, _, failure in cases)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
