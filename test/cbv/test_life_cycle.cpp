@@ -91,6 +91,21 @@ TEST(LifeCycle, RemovedVehicleCountsAsContact) {
   EXPECT_EQ(selection.released[0].reason, kContact);
 }
 
+// The contact falls on a tick between decisions and its vehicles are gone at the next; pairs are
+// sorted, so the CBV may be second.
+TEST(LifeCycle, ContactBetweenDecisionsIsRemembered) {
+  for (const traffic::Contact& contact : {traffic::Contact{"a", "b"}, traffic::Contact{"0", "a"}}) {
+    CrossingWorld world;
+    world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+    auto between = crossingSnapshot(kFirst + 1, 70.0, {});
+    between.contacts.push_back(contact);
+    world.selector.observe(between);
+    const auto selection = world.selector.update(crossingSnapshot(kFirst + 2, 70.0, {}));
+    ASSERT_EQ(selection.released.size(), 1u);
+    EXPECT_EQ(selection.released[0].reason, kContact) << contact.first;
+  }
+}
+
 TEST(LifeCycle, VanishedVehicleIsGone) {
   CrossingWorld world;
   world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));

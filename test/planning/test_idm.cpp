@@ -38,6 +38,15 @@ TEST(Idm, StandsAtTheMinimumGap) {
   EXPECT_GT(idmSpeed(0.0, 8.0, standingLeader(9.0)), 0.0);
 }
 
+// Behind a leader as fast as it, at the gap s* = s0 + v T = 4 + 8 x 0.25 = 6 m: dv/dt = -24 (8 /
+// 20)^4 = -0.614 m/s^2 at first, less as s* shrinks with v. Euler's method in steps of 10 us
+// gives 7.97334 m/s after 0.05 s.
+TEST(Idm, FollowsALeaderOfItsOwnSpeedAtTheWantedGap) {
+  IdmObstacle leader = standingLeader(6.0 + 4.9);
+  leader.speed = 8.0;
+  EXPECT_NEAR(idmSpeed(8.0, 20.0, leader), 7.97334, 1e-5);
+}
+
 TEST(Idm, NeverAsksForReverse) { EXPECT_EQ(idmSpeed(8.0, 8.0, standingLeader(5.0)), 0.0); }
 
 TEST(Idm, DesiredSpeedZeroStops) { EXPECT_EQ(idmSpeed(3.0, 0.0, standingLeader(100.0)), 0.0); }
