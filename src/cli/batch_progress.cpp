@@ -29,7 +29,8 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_
             << " failed, " << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1)
             << " x real time, " << core::formatFixed(left, 0) << " s left: " << record.id << " "
-            << record.status << (record.cause.empty() ? "" : " (" + record.cause + ")")
+            << record.status << (record.complete() ? ", " + report::wordOf(record.verdict) : "")
+            << (record.cause.empty() ? "" : " (" + record.cause + ")")
             << (terminal_ && !record.failed() ? "" : "\n");
   std::cerr.flush();
 }

@@ -92,7 +92,7 @@ int exitCodeOf(const std::vector<RunRecord>& records, const std::atomic<bool>& s
   int exit_code = kPassed;
   for (const RunRecord& record : records) {
     if (!record.complete()) return kRunTimeError;
-    if (!record.passed) exit_code = kVerdictFailed;
+    if (record.has(report::Outcome::kFailed)) exit_code = kVerdictFailed;
   }
   return exit_code;
 }

@@ -14,6 +14,7 @@ namespace cdiff::evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using report::Outcome;
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -49,7 +50,10 @@ Json cellJson(const Cell& cell) {
 struct Counts {
   std::size_t failed = 0;
   std::size_t missing = 0;
-  std::size_t not_passed = 0;  ///< complete, but the verdict failed
+  std::size_t passed = 0;
+  std::size_t struck = 0;
+  std::size_t not_judged = 0;
+  std::size_t verdict_failed = 0;  ///< complete, but the verdict failed
 };
 
 Counts countOf(const std::vector<RunRecord>& records) {
@@ -57,7 +61,10 @@ Counts countOf(const std::vector<RunRecord>& records) {
   for (const RunRecord& record : records) {
     counts.failed += record.failed();
     counts.missing += !record.failed() && !record.complete();
-    counts.not_passed += record.complete() && !record.passed;
+    counts.passed += record.has(Outcome::kPassed);
+    counts.struck += record.has(Outcome::kStruck);
+    counts.not_judged += record.has(Outcome::kNotJudged);
+    counts.verdict_failed += record.has(Outcome::kFailed);
   }
   return counts;
 }
@@ -70,10 +77,16 @@ std::string caseXml(const std::string& name, const RunRecord& record) {
   std::string text = "    <testcase" + attribute("classname", "e2e_cdiff." + name) +
                      attribute("name", record.id) +
                      attribute("time", core::formatFixed(record.wall_seconds, 3));
-  if (record.complete() && record.passed) return text + "/>\n";
+  if (record.has(Outcome::kPassed)) return text + "/>\n";
+  const std::string reasons = core::joinText(record.reasons, "; ");
+  if (record.has(Outcome::kStruck) || record.has(Outcome::kNotJudged)) {  // count as passed
+    return text + ">\n      <system-out>" +
+           report::escapeMarkup(report::wordOf(record.verdict) + ": " + reasons) +
+           "</system-out>\n    </testcase>\n";
+  }
   const std::string tag = record.failed() ? "error" : record.complete() ? "failure" : "skipped";
   const std::string message = record.failed()     ? record.cause
-                              : record.complete() ? core::joinText(record.failures, "; ")
+                              : record.complete() ? reasons
                                                   : record.status;
   text += ">\n      <" + tag;
   if (tag != "skipped") text += attribute("type", record.status);
@@ -142,7 +155,7 @@ std::string cellsTable(const std::vector<Cell>& cells) {
 std::string runsCsv(const std::vector<RunRecord>& records) {
   std::vector<std::string> head = {"id"};
   head.insert(head.end(), factorNames().begin(), factorNames().end());
-  head.insert(head.end(), {"status", "passed", "exit_code", "attempts", "wall_seconds"});
+  head.insert(head.end(), {"status", "verdict", "exit_code", "attempts", "wall_seconds"});
   head.insert(head.end(), figureNames().begin(), figureNames().end());
   head.emplace_back("cause");
   std::string text = core::joinText(head, ",") + "\n";
@@ -151,9 +164,8 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
     text += core::csvCell(record.id);
     for (const std::string& factor : factorNames())
       text += "," + core::csvCell(record.factors.at(factor));
-    text += "," + record.status + "," +
-            (record.complete() ? (record.passed ? "true" : "false") : "") + "," +
-            (started ? std::to_string(record.exit_code) : "") + "," +
+    text += "," + record.status + "," + (record.complete() ? report::toText(record.verdict) : "") +
+            "," + (started ? std::to_string(record.exit_code) : "") + "," +
             std::to_string(record.attempts) + "," +
             (started ? core::formatFixed(record.wall_seconds, 3) : "");
     for (const std::string& name : figureNames()) {
@@ -167,9 +179,15 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
 
 std::string batchSummaryJson(const std::string& name, const std::vector<RunRecord>& records) {
   const Counts counts = countOf(records);
-  Json summary = {{"schema_version", 1},       {"evaluation", name},
-                  {"runs", records.size()},    {"failed", counts.failed},
-                  {"not_run", counts.missing}, {"verdict_failed", counts.not_passed},
+  Json summary = {{"schema_version", 1},
+                  {"evaluation", name},
+                  {"runs", records.size()},
+                  {"failed", counts.failed},
+                  {"not_run", counts.missing},
+                  {"verdict_passed", counts.passed},
+                  {"verdict_struck", counts.struck},
+                  {"verdict_failed", counts.verdict_failed},
+                  {"verdict_not_judged", counts.not_judged},
                   {"cells", Json::array()}};
   for (const Cell& cell : cellsOf(records)) summary["cells"].push_back(cellJson(cell));
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -180,7 +198,7 @@ std::string batchJunitXml(const std::string& name, const std::vector<RunRecord>&
   double wall = 0.0;
   for (const RunRecord& record : records) wall += record.wall_seconds;
   const std::string figures = attribute("tests", std::to_string(records.size())) +
-                              attribute("failures", std::to_string(counts.not_passed)) +
+                              attribute("failures", std::to_string(counts.verdict_failed)) +
                               attribute("errors", std::to_string(counts.failed)) +
                               attribute("skipped", std::to_string(counts.missing)) +
                               attribute("time", core::formatFixed(wall, 3));
@@ -194,8 +212,10 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
   const Counts counts = countOf(records);
   return "# " + name + "\n\n" + std::to_string(records.size()) +
          " runs: " + std::to_string(counts.failed) + " failed, " + std::to_string(counts.missing) +
-         " not run or interrupted, " + std::to_string(counts.not_passed) +
-         " ended with a failed verdict. Mean \xC2\xB1 standard deviation over seeds (number of "
+         " not run or interrupted, " + std::to_string(counts.verdict_failed) +
+         " ended with a failed verdict, " + std::to_string(counts.struck) + " were struck, " +
+         std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +
+         " passed. Mean \xC2\xB1 standard deviation over seeds (number of "
          "seeds that have the figure).\n\n" +
          cellsTable(cellsOf(records));
 }

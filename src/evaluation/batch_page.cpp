@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
+#include <iterator>
+#include <map>
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/batch_report.h"
@@ -29,25 +31,64 @@ std::string headOf(const std::string& name) {
                           std::string(report::kPanelSheetStyle) + kPageStyle);
 }
 
-/// Broke, was interrupted or not run: 0; verdict failed: 1; passed: 2.
-int rankOf(const RunRecord& record) {
-  if (!record.complete()) return 0;
-  return record.passed ? 2 : 1;
+using report::Outcome;
+
+/// Outcomes of runs in the order of the page; what broke, was interrupted or did not run is an
+/// error.
+constexpr Outcome kOrder[] = {Outcome::kError, Outcome::kFailed, Outcome::kStruck,
+                              Outcome::kNotJudged, Outcome::kPassed};
+
+Outcome outcomeOf(const RunRecord& record) {
+  return record.complete() ? record.verdict : Outcome::kError;
+}
+
+/// Place in kOrder.
+std::ptrdiff_t rankOf(const RunRecord& record) {
+  return std::find(std::begin(kOrder), std::end(kOrder), outcomeOf(record)) - std::begin(kOrder);
+}
+
+/// The first outcome in kOrder that a run has; passed without runs.
+Outcome worstOf(const std::vector<BatchRun>& runs) {
+  std::ptrdiff_t rank = std::size(kOrder) - 1;
+  for (const BatchRun& run : runs) rank = std::min(rank, rankOf(run.record));
+  return kOrder[rank];
+}
+
+const char* headlineOf(Outcome worst) {
+  switch (worst) {
+    case Outcome::kPassed:
+      return "All runs passed";
+    case Outcome::kStruck:
+      return "No run failed, but egos were struck";
+    case Outcome::kFailed:
+      return "Verdicts failed";
+    case Outcome::kNotJudged:
+      return "No run failed, but not every run was judged";
+    case Outcome::kError:
+    case Outcome::kInterrupted:
+      break;
+  }
+  return "Not every run could be judged";
+}
+
+const char* signOf(Outcome worst) {
+  if (worst == Outcome::kPassed) return "✓";
+  if (worst == Outcome::kFailed) return "✗";
+  return worst == Outcome::kNotJudged ? "–" : "!";
 }
 
 std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs) {
-  std::size_t counts[3] = {0, 0, 0};
-  for (const BatchRun& run : runs) ++counts[rankOf(run.record)];
-  const std::string outcome = counts[0] > 0 ? "error" : counts[1] > 0 ? "failed" : "passed";
-  const std::string word = counts[0] > 0   ? "Not every run could be judged"
-                           : counts[1] > 0 ? "Verdicts failed"
-                                           : "All runs passed";
-  const std::string sign = counts[0] > 0 ? "!" : counts[1] > 0 ? "✗" : "✓";
+  const Outcome worst = worstOf(runs);
+  std::map<Outcome, std::size_t> counts;
+  for (const BatchRun& run : runs) ++counts[outcomeOf(run.record)];
+  const auto count = [&](Outcome outcome) { return std::to_string(counts[outcome]); };
   return "<header>\n<h1>" + escapeMarkup(name) + "</h1>\n<p class=\"sub\">evaluation of " +
-         std::to_string(runs.size()) + " runs</p>\n<div class=\"banner " + outcome +
-         "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + sign +
-         "</span><div><strong>" + word + "</strong><p>" + std::to_string(counts[2]) + " passed, " +
-         std::to_string(counts[1]) + " ended with a failed verdict, " + std::to_string(counts[0]) +
+         std::to_string(runs.size()) + " runs</p>\n<div class=\"banner " + report::toText(worst) +
+         "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + signOf(worst) +
+         "</span><div><strong>" + headlineOf(worst) + "</strong><p>" + count(Outcome::kPassed) +
+         " passed, " + count(Outcome::kStruck) + " were struck, " + count(Outcome::kNotJudged) +
+         " were not judged, " + count(Outcome::kFailed) + " ended with a failed verdict, " +
+         count(Outcome::kError) +
          " broke, were interrupted or did not run</p></div></div>\n"
          "</header>\n";
 }
@@ -58,17 +99,16 @@ std::string figureText(const BatchRun& run, const std::string& name, int decimal
 }
 
 std::string runRow(const BatchRun& run) {
-  const char* classes[] = {"error", "failed", "passed"};
   const RunRecord& record = run.record;
   const std::string link = "runs/" + record.id + "/report.html";
   const bool has_report = std::filesystem::exists(run.folder / "report.html");
   const std::string name =
       has_report ? "<a href=\"" + escapeMarkup(link) + "\">" + escapeMarkup(record.id) + "</a>"
                  : escapeMarkup(record.id);
-  const std::string why = record.complete() ? core::joinText(record.failures, "; ") : record.cause;
-  std::string html = "<tr class=\"" + std::string(classes[rankOf(record)]) + "\"><td>" + name +
-                     "</td><td>" + record.status +
-                     (record.complete() && !record.passed ? ", verdict failed" : "") + "</td>";
+  const std::string why = record.complete() ? core::joinText(record.reasons, "; ") : record.cause;
+  std::string html = "<tr class=\"" + std::string(report::toText(outcomeOf(record))) + "\"><td>" +
+                     name + "</td><td>" + record.status +
+                     (record.complete() ? ", " + report::wordOf(record.verdict) : "") + "</td>";
   const std::pair<const char*, int> figures[] = {
       {"ego_completion_percent", 1}, {"ego_driving_score", 1},  {"ego_collisions", 0},
       {"cbv_decisions", 0},          {"cbv_ego_collisions", 0}, {"cbv_minimum_distance_m", 1}};

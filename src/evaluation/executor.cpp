@@ -210,8 +210,8 @@ class Executor {
       return;
     }
     record.status = facts.status;
-    record.passed = facts.passed;
-    record.failures = facts.failures;
+    record.verdict = facts.verdict;
+    record.reasons = facts.reasons;
     record.simulated_seconds = facts.simulated_seconds;
     record.figures = facts.figures;
   }

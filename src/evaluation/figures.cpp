@@ -79,8 +79,8 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
     SummaryFacts facts;
     facts.status = summary.at("status");
     facts.fault = lastFault(summary);
-    facts.passed = summary.at("verdict").at("passed");
-    facts.failures = summary.at("verdict").at("failures").get<std::vector<std::string>>();
+    facts.verdict = report::outcomeOf(summary.at("verdict").at("outcome"));
+    facts.reasons = summary.at("verdict").at("reasons").get<std::vector<std::string>>();
     facts.simulated_seconds = summary.at("simulated_seconds");
     for (const auto& [name, place] : places()) {
       const json::json_pointer pointer(place);

@@ -28,8 +28,8 @@ RunRecord fromJson(const Json& json) {
   record.attempts = json.at("attempts");
   record.wall_seconds = json.at("wall_seconds");
   record.simulated_seconds = json.at("simulated_seconds");
-  record.passed = json.at("passed");
-  record.failures = json.at("failures").get<std::vector<std::string>>();
+  record.verdict = report::outcomeOf(json.at("verdict"));
+  record.reasons = json.at("reasons").get<std::vector<std::string>>();
   for (const auto& [name, value] : json.at("figures").items()) record.figures[name] = value;
   return record;
 }
@@ -63,8 +63,8 @@ std::string recordJson(const RunRecord& record) {
                      {"attempts", record.attempts},
                      {"wall_seconds", record.wall_seconds},
                      {"simulated_seconds", record.simulated_seconds},
-                     {"passed", record.passed},
-                     {"failures", record.failures},
+                     {"verdict", report::toText(record.verdict)},
+                     {"reasons", record.reasons},
                      {"figures", figures}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

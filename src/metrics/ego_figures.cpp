@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <iterator>
 
 #include "figure_rows.h"
@@ -74,6 +75,17 @@ constexpr FigureDefinition kRows[] = {
      "Contacts of the ego's box with any other vehicle's box on the same level; who touches it "
      "leaves at the next tick.",
      "", [](const M& m) { return countMeasure(m.ego_collisions); }},
+    {"ego_contacts_at_fault", "/ego/contacts_at_fault", "Contacts that are the ego's fault",
+     "count", kLower,
+     "Of the ego's contacts, those in which it strikes the other, by their motion at first touch; "
+     "a "
+     "standing ego is never at fault (docs/protocols.md).",
+     "",
+     [](const M& m) {
+       return countMeasure(static_cast<std::size_t>(
+           std::count_if(m.ego_contacts.begin(), m.ego_contacts.end(),
+                         [](const EgoContact& contact) { return contact.ego_at_fault; })));
+     }},
     {"ego_off_road_percent", "/ego/off_road_percent", "Ego off the road", "%", kLower,
      "100 x ticks with the centre of the ego's box off the drivable area of its level / ticks with "
      "the ego.",

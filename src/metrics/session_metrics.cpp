@@ -8,6 +8,7 @@
 
 #include "e2e_cdiff/metrics/cbv_measures.h"
 #include "e2e_cdiff/metrics/comfort_measures.h"
+#include "e2e_cdiff/metrics/contact_fault.h"
 #include "e2e_cdiff/metrics/ego_measures.h"
 #include "e2e_cdiff/metrics/interaction_statistics.h"
 #include "e2e_cdiff/metrics/normality_measures.h"
@@ -59,6 +60,7 @@ class SessionMetrics::Accumulator {
         drivable_area_(drivable_area),
         ego_(ego_route, options.completion_percent, options.completion_distance,
              EgoInfractions(options.network, ego_route, options.infractions)),
+        ego_contacts_(options.network, options.infractions.collision_minimum_speed),
         comfort_(options.decision_period),
         encroachments_(options.post_encroachment_limit),
         rift_(options.decision_period),
@@ -70,6 +72,7 @@ class SessionMetrics::Accumulator {
     tick.route_completion_percent = ego_.routeCompletionPercent();
     blocked_ = snapshot.status == traffic::SessionStatus::kBlocked;
     observeContacts(snapshot);
+    ego_contacts_.observe(snapshot);
     observeCbvs(snapshot, tick);
     encroachments_.observe(snapshot);
     return tick;
@@ -80,6 +83,7 @@ class SessionMetrics::Accumulator {
     result.route_completion_percent = ego_.routeCompletionPercent();
     result.driving_score = ego_.drivingScore();
     result.ego_collisions = ego_.collisions();
+    result.ego_contacts = ego_contacts_.contacts();
     result.protocol = options_.protocol;
     result.blocked = blocked_;
     result.penalty = ego_.infractions().penalty();
@@ -203,6 +207,7 @@ class SessionMetrics::Accumulator {
   SessionMetricsOptions options_;
   const map::DrivableArea& drivable_area_;
   EgoMeasures ego_;
+  EgoContacts ego_contacts_;
   bool blocked_ = false;  ///< by the last snapshot
   CbvMeasures cbvs_;
   ComfortMeasures comfort_;

@@ -28,32 +28,54 @@ std::string head(const SessionResult& result) {
   return pageHead(result.setup.options().name + " – session report");
 }
 
+/// What the banner says first.
+struct Headline {
+  const char* sign;
+  const char* text;
+};
+
+Headline headlineOf(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kPassed:
+      return {"✓", "Passed"};
+    case Outcome::kStruck:
+      return {"!", "Struck: the ego met its rules, but was hit"};
+    case Outcome::kFailed:
+      return {"✗", "Failed"};
+    case Outcome::kNotJudged:
+      return {"–", "Not judged"};
+    case Outcome::kInterrupted:
+      return {"!", "Interrupted: the session was not judged"};
+    case Outcome::kError:
+      break;
+  }
+  return {"!", "Error: the session could not be judged"};
+}
+
+/// Of a session that passed.
+std::string metText(const SessionResult& result) {
+  const auto& checks = result.verdict.checks;
+  const bool all = std::none_of(checks.begin(), checks.end(), [](const Check& check) {
+    return check.outcome == CheckOutcome::kSkipped;
+  });
+  return "the session ended with status '" + std::string(traffic::toText(result.status)) +
+         (all ? "' and met every rule of the scenario"
+              : "' and met every rule of the scenario that applies");
+}
+
 std::string banner(const SessionResult& result) {
   const scenario::ScenarioOptions& options = result.setup.options();
-  const bool judged = endedByItself(result.status);
-  const std::string outcome = !judged ? "error" : result.verdict.passed ? "passed" : "failed";
-  const std::string word = !judged ? (result.status == traffic::SessionStatus::kError
-                                          ? "Error: the session could not be judged"
-                                          : "Interrupted: the session was not judged")
-                           : result.verdict.passed ? "Passed"
-                                                   : "Failed";
-  const std::string mark = !judged ? "!" : result.verdict.passed ? "✓" : "✗";
+  const Headline headline = headlineOf(result.verdict.outcome);
   std::string html = "<header>\n<h1>" + escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
                      escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) +
                      " · ego " + escapeMarkup(options.ego_planner) + " · CBV " +
-                     escapeMarkup(options.cbv_planner) + "</p>\n<div class=\"banner " + outcome +
-                     "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + mark +
-                     "</span><div><strong>" + word + "</strong>";
-  for (const std::string& failure : result.verdict.failures) {
-    html += "<p>" + escapeMarkup(failure) + "</p>";
-  }
-  if (result.verdict.failures.empty()) {
-    const bool all =
-        std::none_of(result.checks.begin(), result.checks.end(),
-                     [](const Check& check) { return check.outcome == CheckOutcome::kSkipped; });
-    html += "<p>the session ended with status '" + std::string(traffic::toText(result.status)) +
-            (all ? "' and every rule was met</p>" : "' and every rule that applies was met</p>");
-  }
+                     escapeMarkup(options.cbv_planner) + "</p>\n<div class=\"banner " +
+                     toText(result.verdict.outcome) +
+                     "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" +
+                     headline.sign + "</span><div><strong>" + headline.text + "</strong>";
+  for (const std::string& reason : result.verdict.reasons)
+    html += "<p>" + escapeMarkup(reason) + "</p>";
+  if (result.verdict.outcome == Outcome::kPassed) html += "<p>" + metText(result) + "</p>";
   html += "<p class=\"story\">";
   for (const std::string& sentence : sessionStory(result)) html += escapeMarkup(sentence) + " ";
   return html + "</p></div></div>\n</header>\n";
@@ -85,7 +107,10 @@ std::string figures(const SessionResult& result) {
          figure("Driving score", core::formatFixed(measures.driving_score, 1), "",
                 "of 100, by " + measures.protocol) +
          figure("Ego collisions", std::to_string(measures.ego_collisions), "",
-                std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
+                std::to_string(std::count_if(
+                    measures.ego_contacts.begin(), measures.ego_contacts.end(),
+                    [](const metrics::EgoContact& contact) { return contact.ego_at_fault; })) +
+                    " its fault, " + std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
          figure("CBVs", std::to_string(measures.cbv_count), "",
                 std::to_string(measures.cbv_decisions) + " decisions, " +
                     core::formatFixed(measures.cbv_distance_m, 0) + " m") +
@@ -130,7 +155,7 @@ std::string htmlReport(const SessionResult& result) {
          section("Infractions of the ego", infractionTable(result.measures)) +
          section("Critical background vehicles", selectionTable(result)) +
          section("Why others were no CBVs", rejectionTable(result.cbv)) +
-         section("Contacts", contactTable(result.timeline)) +
+         section("Contacts", contactTable(result)) +
          section("Planner latency", latencyTable(result.latencies)) +
          section("Faults", faultTable(result.faults)) +
          section("Configuration and versions", configuration(result)) +

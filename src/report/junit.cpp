@@ -14,16 +14,26 @@ std::string attribute(const std::string& name, const std::string& value) {
   return " " + name + "=\"" + escapeMarkup(value) + "\"";
 }
 
+/// What a case that counts as passed has to say; empty for most.
+std::string noteOf(const SessionResult& result, const Check& check) {
+  if (check.outcome == CheckOutcome::kStruck) return "struck: " + check.text;
+  const bool not_judged = result.verdict.outcome == Outcome::kNotJudged;
+  return not_judged ? "not judged: " + result.verdict.reasons.front() : "";
+}
+
 std::string caseXml(const SessionResult& result, const Check& check) {
   const bool session = check.name == "session";
   std::string text = "    <testcase" +
                      attribute("classname", "e2e_cdiff." + result.setup.options().name) +
                      attribute("name", check.name) +
                      attribute("time", session ? core::formatFixed(result.wall_seconds, 3) : "0");
-  if (check.outcome == CheckOutcome::kPassed) return text + "/>\n";
+  const std::string note = noteOf(result, check);
+  if (check.outcome == CheckOutcome::kPassed && note.empty()) return text + "/>\n";
   const std::string type = traffic::toText(result.status);
   text += ">\n      ";
-  if (check.outcome == CheckOutcome::kSkipped) {
+  if (!note.empty()) {
+    text += "<system-out>" + escapeMarkup(note) + "</system-out>";
+  } else if (check.outcome == CheckOutcome::kSkipped) {
     text += "<skipped" + attribute("message", check.text) + "/>";
   } else {
     const std::string tag = check.outcome == CheckOutcome::kError ? "error" : "failure";
@@ -42,15 +52,17 @@ std::string countOf(const std::vector<Check>& checks, CheckOutcome outcome) {
 }  // namespace
 
 std::string junitXml(const SessionResult& result) {
-  const std::string counts = attribute("tests", std::to_string(result.checks.size())) +
-                             attribute("failures", countOf(result.checks, CheckOutcome::kFailed)) +
-                             attribute("errors", countOf(result.checks, CheckOutcome::kError)) +
-                             attribute("skipped", countOf(result.checks, CheckOutcome::kSkipped)) +
+  const std::vector<Check>& checks = result.verdict.checks;
+  const std::string counts = attribute("tests", std::to_string(checks.size())) +
+                             attribute("failures", countOf(checks, CheckOutcome::kFailed)) +
+                             attribute("errors", countOf(checks, CheckOutcome::kError)) +
+                             attribute("skipped", countOf(checks, CheckOutcome::kSkipped)) +
                              attribute("time", core::formatFixed(result.wall_seconds, 3));
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
                      ">\n  <testsuite" + attribute("name", result.setup.options().name) + counts +
-                     ">\n";
-  for (const Check& check : result.checks) text += caseXml(result, check);
+                     ">\n    <properties>\n      <property" + attribute("name", "verdict") +
+                     attribute("value", toText(result.verdict.outcome)) + "/>\n    </properties>\n";
+  for (const Check& check : checks) text += caseXml(result, check);
   return text + "  </testsuite>\n</testsuites>\n";
 }
 

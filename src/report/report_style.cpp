@@ -12,7 +12,7 @@ const char kReportStyleSheet[] = R"CSS(
   --ego: #c62828; --bg: #1f6fc4; --goal: #2e7d32; --conflict: #111417; --contact: #e65100;
   --c0: #7b1fa2; --c1: #d01884; --c2: #5b3bd1; --c3: #a06bc4; --c4: #4a0d66;
   --passed: #1b6e36; --passed-back: #e2f4e6; --failed: #a31919; --failed-back: #fde8e6;
-  --error: #7a4a00; --error-back: #fdf0d5;
+  --error: #5b2a86; --error-back: #f1e8fa; --struck: #7a4a00; --struck-back: #fdf0d5;
 }
 @media screen and (prefers-color-scheme: dark) {
   :root {
@@ -21,7 +21,7 @@ const char kReportStyleSheet[] = R"CSS(
     --ego: #ff6b60; --bg: #6ab0ff; --goal: #7bd389; --conflict: #ffffff; --contact: #ffa14a;
     --c0: #d29bea; --c1: #ff85cf; --c2: #ab9bff; --c3: #ecd6f7; --c4: #a25fd0;
     --passed: #8fe0a3; --passed-back: #12301c; --failed: #ffb0a8; --failed-back: #3d1513;
-    --error: #ffd08a; --error-back: #3a2a0c;
+    --error: #d9b8f5; --error-back: #2e1d3d; --struck: #ffd08a; --struck-back: #3a2a0c;
   }
 }
 * { box-sizing: border-box; }
@@ -39,7 +39,9 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .banner .sign { font-size: 2rem; line-height: 1; font-weight: 700; }
 .banner.passed { color: var(--passed); background: var(--passed-back); }
 .banner.failed { color: var(--failed); background: var(--failed-back); }
-.banner.error { color: var(--error); background: var(--error-back); }
+.banner.struck { color: var(--struck); background: var(--struck-back); }
+.banner.not_judged { color: var(--soft); background: var(--panel); }
+.banner.error, .banner.interrupted { color: var(--error); background: var(--error-back); }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); gap: 10px;
   margin-top: 16px; }
 .figure { background: var(--panel); border-radius: 8px; padding: 10px 14px; display: flex;
@@ -157,6 +159,7 @@ th.number { white-space: normal; }
 tr.absent td { color: var(--soft); }
 tr.passed td:nth-child(2) { color: var(--passed); font-weight: 600; }
 tr.failed td:nth-child(2) { color: var(--failed); font-weight: 600; }
+tr.struck td:nth-child(2) { color: var(--struck); font-weight: 600; }
 tr.error td:nth-child(2) { color: var(--error); font-weight: 600; }
 tr.skipped td { color: var(--soft); }
 details { margin-top: 14px; } summary { cursor: pointer; font-weight: 600; }

@@ -80,7 +80,7 @@ void measureRow(Table& table, const std::string& name, const metrics::Measure& m
 
 std::string ruleTable(const SessionResult& result) {
   Table table({"Rule", "Outcome", "Found"});
-  for (const Check& check : result.checks) {
+  for (const Check& check : result.verdict.checks) {
     table.row({check.name, toText(check.outcome), check.text}, toText(check.outcome));
   }
   return table.html();
@@ -179,11 +179,25 @@ std::string rejectionTable(const CbvLog& cbv) {
   return table.html();
 }
 
-std::string contactTable(const Timeline& timeline) {
-  if (timeline.contacts().empty()) return "<p class=\"note\">No vehicles touched.</p>\n";
-  Table table({"#Time [s]", "Vehicle", "Vehicle"});
-  for (const TimelineContact& contact : timeline.contacts()) {
-    table.row({fixed(contact.time, 2), contact.first, contact.second});
+std::string contactTable(const SessionResult& result) {
+  const auto& all = result.timeline.contacts();
+  if (all.empty()) return "<p class=\"note\">No vehicles touched.</p>\n";
+  Table table(
+      {"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]", "#Other [m/s]"});
+  auto own = result.measures.ego_contacts.begin();  // in the order of `all`
+  for (const TimelineContact& contact : all) {
+    std::vector<std::string> cells = {fixed(contact.time, 2), contact.first, contact.second};
+    const bool ego = own != result.measures.ego_contacts.end() &&
+                     (contact.first == own->partner || contact.second == own->partner) &&
+                     contact.time == own->seconds;
+    if (ego) {
+      cells.insert(cells.end(), {own->ego_at_fault ? "yes" : "no", own->reason,
+                                 fixed(own->ego_speed, 1), fixed(own->partner_speed, 1)});
+      ++own;
+    } else {
+      cells.insert(cells.end(), {"–", "", "", ""});
+    }
+    table.row(cells);
   }
   return table.html();
 }

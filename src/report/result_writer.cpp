@@ -103,9 +103,8 @@ class ResultWriter::Record {
     result_.trace_sha256 = trace_.finish();
     result_.measures = metrics_.measures();
     result_.latencies = latencies_.figures();
-    result_.checks = evaluateChecks(result_.setup.options().verdict, result_.status,
-                                    result_.measures, result_.faults);
-    result_.verdict = verdictOf(result_.checks);
+    result_.verdict =
+        judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
   }
 
   fs::path folder_;
@@ -138,12 +137,7 @@ std::string ResultWriter::table() const {
   return sessionTable(record_->result(), record_->folder());
 }
 
-int ResultWriter::exitCode() const {
-  const SessionResult& result = record_->result();
-  if (result.status == traffic::SessionStatus::kInterrupted) return 130;
-  if (!endedByItself(result.status)) return 2;
-  return result.verdict.passed ? 0 : 1;
-}
+int ResultWriter::exitCode() const { return exitCodeOf(record_->result().verdict.outcome); }
 
 const SessionResult& ResultWriter::result() const { return record_->result(); }
 

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/scenario/world.h"
 
 namespace cdiff::report {
 namespace {
@@ -35,18 +34,14 @@ std::string approach(const SessionResult& result) {
 }
 
 std::string contact(const SessionResult& result) {
-  std::size_t with_ego = 0;
-  const TimelineContact* first = nullptr;
-  for (const TimelineContact& contact : result.timeline.contacts()) {
-    if (contact.first != scenario::kEgoId && contact.second != scenario::kEgoId) continue;
-    if (first == nullptr) first = &contact;
-    ++with_ego;
-  }
-  if (first == nullptr) return "Nobody touched the ego.";
-  const std::string& other = first->first == scenario::kEgoId ? first->second : first->first;
-  return other + " and the ego touched at " + core::formatFixed(first->time, 2) + " s" +
-         (with_ego > 1 ? ", the first of " + std::to_string(with_ego) + " contacts of the ego."
-                       : ".");
+  const std::vector<metrics::EgoContact>& contacts = result.measures.ego_contacts;
+  if (contacts.empty()) return "Nobody touched the ego.";
+  const metrics::EgoContact& first = contacts.front();
+  return first.partner + " and the ego touched at " + core::formatFixed(first.seconds, 2) + " s" +
+         (contacts.size() > 1
+              ? ", the first of " + std::to_string(contacts.size()) + " contacts of the ego"
+              : "") +
+         (first.ego_at_fault ? "; the ego was at fault." : "; the ego was not at fault.");
 }
 
 }  // namespace

@@ -70,10 +70,8 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
   std::string text = headRows(result) + figureRows(result.measures) + latencyRows(result.latencies);
   if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));
-  text += row("verdict", result.verdict.passed          ? "passed"
-                         : endedByItself(result.status) ? "FAILED"
-                                                        : "not judged");
-  for (const std::string& failure : result.verdict.failures) text += row("", "- " + failure);
+  text += row("verdict", capitalsOf(result.verdict.outcome));
+  for (const std::string& reason : result.verdict.reasons) text += row("", "- " + reason);
   return text + row("report", (folder / "report.html").string()) + row("results", folder.string());
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -67,6 +68,25 @@ void addFigures(Json& object, const std::string& section,
   }
 }
 
+/// Each contact of the ego, with who is at fault and why.
+Json contactList(const std::vector<metrics::EgoContact>& contacts) {
+  Json list = Json::array();
+  for (const metrics::EgoContact& contact : contacts) {
+    list.push_back({{"tick", contact.tick},
+                    {"seconds", contact.seconds},
+                    {"with", contact.partner},
+                    {"ego_at_fault", contact.ego_at_fault},
+                    {"why", contact.reason},
+                    {"ego_speed_mps", contact.ego_speed},
+                    {"other_speed_mps", contact.partner_speed},
+                    {"ego_side", contact.ego_side},
+                    {"other_side", contact.partner_side},
+                    {"x", contact.x},
+                    {"y", contact.y}});
+  }
+  return list;
+}
+
 Json egoObject(const metrics::SessionMeasures& measures) {
   Json object = {{"route_completion_percent", measures.route_completion_percent},
                  {"driving_score", measures.driving_score},
@@ -80,6 +100,10 @@ Json egoObject(const metrics::SessionMeasures& measures) {
   }
   object["blocked"] = measures.blocked;
   object["collisions"] = measures.ego_collisions;
+  object["contacts_at_fault"] =
+      std::count_if(measures.ego_contacts.begin(), measures.ego_contacts.end(),
+                    [](const metrics::EgoContact& contact) { return contact.ego_at_fault; });
+  object["contacts"] = contactList(measures.ego_contacts);
   addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
   return object;
 }
@@ -204,6 +228,15 @@ Json latencyObject(const std::map<std::string, LatencyFigures>& latencies) {
   return object;
 }
 
+Json verdictObject(const Verdict& verdict) {
+  Json rules = Json::array();
+  for (const Check& check : verdict.checks) {
+    rules.push_back(
+        {{"rule", check.name}, {"outcome", toText(check.outcome)}, {"found", check.text}});
+  }
+  return {{"outcome", toText(verdict.outcome)}, {"reasons", verdict.reasons}, {"rules", rules}};
+}
+
 Json faultList(const std::vector<traffic::Fault>& faults) {
   Json list = Json::array();
   for (const traffic::Fault& fault : faults) {
@@ -259,7 +292,7 @@ std::string summaryJson(const SessionResult& result) {
   addFigures(summary["metrics"], "metrics", result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
   summary["faults"] = faultList(result.faults);
-  summary["verdict"] = {{"passed", result.verdict.passed}, {"failures", result.verdict.failures}};
+  summary["verdict"] = verdictObject(result.verdict);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -3,8 +3,10 @@
 #include "e2e_cdiff/report/verdict.h"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 
 namespace cdiff::report {
@@ -13,6 +15,9 @@ namespace {
 using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
+
+constexpr Outcome kOutcomes[] = {Outcome::kPassed,    Outcome::kStruck, Outcome::kFailed,
+                                 Outcome::kNotJudged, Outcome::kError,  Outcome::kInterrupted};
 
 Check judged(const std::string& name, bool met, const std::string& text) {
   return {name, met ? CheckOutcome::kPassed : CheckOutcome::kFailed, text};
@@ -30,99 +35,231 @@ Check sessionCheck(SessionStatus status, const std::vector<traffic::Fault>& faul
           text + ": " + faults.back().source + ": " + faults.back().text};
 }
 
-Check statusCheck(const scenario::VerdictOptions& rules, SessionStatus status) {
-  const auto& allowed = rules.statuses;
-  const bool met = allowed.empty() || std::find(allowed.begin(), allowed.end(),
-                                                traffic::toText(status)) != allowed.end();
-  const std::string asked =
-      allowed.empty() ? "any but error and interrupted" : core::joinText(allowed, ", ");
-  return judged("status", met,
-                "the session ended with status " + quotedStatus(status) + "; allowed: " + asked);
+std::string countText(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-Check completionCheck(const scenario::VerdictOptions& rules, double percent) {
-  return judged("route_completion", percent >= rules.minimum_route_completion,
-                "the ego completed " + core::formatFixed(percent, 1) +
-                    " % of its route; at least " +
-                    core::formatNumber(rules.minimum_route_completion) + " % is asked");
+std::vector<std::string> contactTexts(const metrics::SessionMeasures& measures, bool at_fault) {
+  std::vector<std::string> texts;
+  for (const metrics::EgoContact& contact : measures.ego_contacts) {
+    if (contact.ego_at_fault == at_fault) texts.push_back(contactText(contact));
+  }
+  return texts;
 }
 
-Check scoreCheck(const scenario::VerdictOptions& rules, const metrics::SessionMeasures& measures) {
-  return judged("driving_score", measures.driving_score >= rules.minimum_driving_score,
-                "the ego's driving score by " + measures.protocol + " was " +
-                    core::formatFixed(measures.driving_score, 1) + " %; at least " +
-                    core::formatNumber(rules.minimum_driving_score) + " % is asked");
-}
+/// Adds a check for each rule that the scenario sets.
+class RuleBook {
+ public:
+  RuleBook(const scenario::ScenarioOptions& options, SessionStatus status,
+           const metrics::SessionMeasures& measures)
+      : rules_(options.verdict), mode_(options.mode), status_(status), measures_(measures) {}
 
-Check collisionCheck(const scenario::VerdictOptions& rules, std::size_t collisions) {
-  const double limit = rules.maximum_ego_collisions;
-  const std::string found = "the ego had " + std::to_string(collisions) +
-                            (collisions == 1 ? " collision" : " collisions");
-  return judged("ego_collisions", static_cast<double>(collisions) <= limit,
-                limit >= kNoLimit ? found + "; no limit is set"
-                                  : found + "; at most " + core::formatNumber(limit) + " allowed");
-}
+  std::vector<Check> checks() {
+    if (!rules_.judge) return {};
+    addStatus();
+    addCompletion();
+    addContacts();
+    addScore();
+    addCollisions();
+    addInfraction("red_lights", "red lights that the ego ran", rules_.maximum_red_lights, kNoLimit);
+    addInfraction("stop_signs", "stop signs that the ego did not obey", rules_.maximum_stop_signs,
+                  kNoLimit);
+    addInfraction("outside_lanes_percent", "share of its way that the ego drove outside the lanes",
+                  rules_.maximum_outside_lanes_percent, 100.0);
+    addOffRoad();
+    return std::move(checks_);
+  }
 
-/// A limit on one of the ego's infractions.
-struct InfractionRule {
-  std::string infraction;
-  std::string text;  ///< what is counted, in a sentence
-  double limit;
-  int decimals;
+ private:
+  void addStatus() {
+    const auto& allowed = rules_.statuses;
+    if (allowed.empty()) return;
+    const bool met =
+        std::find(allowed.begin(), allowed.end(), traffic::toText(status_)) != allowed.end();
+    checks_.push_back(judged("status", met,
+                             "the session ended with status " + quotedStatus(status_) +
+                                 "; allowed: " + core::joinText(allowed, ", ")));
+  }
+
+  void addCompletion() {
+    const double least = rules_.minimum_route_completion;
+    const double percent = measures_.route_completion_percent;
+    if (least <= 0.0) return;
+    checks_.push_back(judged("route_completion", percent >= least,
+                             "the ego completed " + core::formatFixed(percent, 1) +
+                                 " % of its route; at least " + core::formatNumber(least) +
+                                 " % is asked"));
+  }
+
+  void addContacts() {
+    const std::vector<std::string> own = contactTexts(measures_, true);
+    const double most = rules_.maximum_contacts_at_fault;
+    if (most < kNoLimit) {
+      checks_.push_back(
+          judged("contacts_at_fault", static_cast<double>(own.size()) <= most,
+                 "the ego was at fault in " + countText(own.size(), "contact") + "; at most " +
+                     core::formatNumber(most) + " allowed" +
+                     (own.empty() ? "" : ": with " + core::joinText(own, "; with "))));
+    }
+    addContactsWithoutFault(contactTexts(measures_, false));
+  }
+
+  void addContactsWithoutFault(const std::vector<std::string>& others) {
+    std::string meaning = rules_.contact_without_fault;
+    if (meaning == "allowed") return;
+    const bool by_mode = meaning == "by_mode";
+    if (by_mode) meaning = mode_ == "safety_critical" ? "struck" : "failed";
+    Check check{"contact_without_fault", CheckOutcome::kPassed, "nobody struck the ego"};
+    if (!others.empty()) {
+      check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
+      check.text = "the ego was struck without fault in " + countText(others.size(), "contact") +
+                   ", by " + core::joinText(others, "; by ") +
+                   (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
+    }
+    checks_.push_back(check);
+  }
+
+  void addScore() {
+    if (rules_.minimum_driving_score <= 0.0) return;
+    checks_.push_back(judged("driving_score",
+                             measures_.driving_score >= rules_.minimum_driving_score,
+                             "the ego's driving score by " + measures_.protocol + " was " +
+                                 core::formatFixed(measures_.driving_score, 1) + " %; at least " +
+                                 core::formatNumber(rules_.minimum_driving_score) + " % is asked"));
+  }
+
+  void addCollisions() {
+    const double limit = rules_.maximum_ego_collisions;
+    if (limit >= kNoLimit) return;
+    const std::size_t count = measures_.ego_collisions;
+    checks_.push_back(judged("ego_collisions", static_cast<double>(count) <= limit,
+                             "the ego had " + countText(count, "collision") + "; at most " +
+                                 core::formatNumber(limit) + " allowed"));
+  }
+
+  /// A limit on one of the ego's infractions; `none` is the limit that allows all.
+  void addInfraction(const std::string& name, const std::string& what, double limit, double none) {
+    if (limit >= none) return;
+    const auto found = measures_.infractions.find(name);
+    if (found == measures_.infractions.end() || !found->second.value) {
+      const std::string reason =
+          found == measures_.infractions.end() ? "it was not measured" : found->second.reason;
+      checks_.push_back(
+          {name, CheckOutcome::kSkipped, name + " of the ego is not defined: " + reason});
+      return;
+    }
+    const double value = *found->second.value;
+    const std::string unit = found->second.unit.empty() ? "" : " " + found->second.unit;
+    checks_.push_back(judged(name, value <= limit,
+                             what + ": " + core::formatFixed(value, unit.empty() ? 0 : 2) + unit +
+                                 "; at most " + core::formatNumber(limit) + unit + " allowed"));
+  }
+
+  void addOffRoad() {
+    const double limit = rules_.maximum_cbv_off_road_percent;
+    const metrics::Measure& rate = measures_.cbv_off_road_rate_percent;
+    if (limit >= 100.0) return;
+    if (!rate.value) {
+      checks_.push_back({"cbv_off_road", CheckOutcome::kSkipped,
+                         "the off-road rate of the CBVs is not defined: " + rate.reason});
+      return;
+    }
+    checks_.push_back(judged("cbv_off_road", *rate.value <= limit,
+                             "the CBVs were off the road " + core::formatFixed(*rate.value, 2) +
+                                 " % of their time; at most " + core::formatNumber(limit) +
+                                 " % allowed"));
+  }
+
+  const scenario::VerdictOptions& rules_;
+  std::string mode_;
+  SessionStatus status_;
+  const metrics::SessionMeasures& measures_;
+  std::vector<Check> checks_;
 };
 
-Check infractionCheck(const InfractionRule& rule, const metrics::SessionMeasures& measures) {
-  const auto found = measures.infractions.find(rule.infraction);
-  if (found == measures.infractions.end() || !found->second.value) {
-    const std::string reason =
-        found == measures.infractions.end() ? "it was not measured" : found->second.reason;
-    return {rule.infraction, CheckOutcome::kSkipped,
-            rule.infraction + " of the ego is not defined: " + reason};
-  }
-  const double value = *found->second.value;
-  const std::string unit = found->second.unit.empty() ? "" : " " + found->second.unit;
-  const std::string text = rule.text + ": " + core::formatFixed(value, rule.decimals) + unit;
-  return judged(rule.infraction, value <= rule.limit,
-                rule.limit >= kNoLimit
-                    ? text + "; no limit is set"
-                    : text + "; at most " + core::formatNumber(rule.limit) + unit + " allowed");
+bool has(const std::vector<Check>& checks, CheckOutcome outcome) {
+  return std::any_of(checks.begin(), checks.end(),
+                     [outcome](const Check& check) { return check.outcome == outcome; });
 }
 
-std::vector<Check> infractionChecks(const scenario::VerdictOptions& rules,
-                                    const metrics::SessionMeasures& measures) {
-  const InfractionRule all[] = {
-      {"red_lights", "red lights that the ego ran", rules.maximum_red_lights, 0},
-      {"stop_signs", "stop signs that the ego did not obey", rules.maximum_stop_signs, 0},
-      {"outside_lanes_percent", "share of its way that the ego drove outside the lanes",
-       rules.maximum_outside_lanes_percent, 2}};
-  std::vector<Check> checks;
-  for (const InfractionRule& rule : all) checks.push_back(infractionCheck(rule, measures));
-  return checks;
+Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
+  if (status == SessionStatus::kInterrupted) return Outcome::kInterrupted;
+  if (!endedByItself(status)) return Outcome::kError;
+  if (checks.size() == 1) return Outcome::kNotJudged;
+  if (has(checks, CheckOutcome::kFailed)) return Outcome::kFailed;
+  return has(checks, CheckOutcome::kStruck) ? Outcome::kStruck : Outcome::kPassed;
 }
 
-Check offRoadCheck(const scenario::VerdictOptions& rules, const metrics::Measure& rate) {
-  if (!rate.value) {
-    return {"cbv_off_road", CheckOutcome::kSkipped,
-            "the off-road rate of the CBVs is not defined: " + rate.reason};
+/// The texts of the checks that made the outcome.
+std::vector<std::string> reasonsOf(const Verdict& verdict, bool judge) {
+  if (verdict.outcome == Outcome::kNotJudged) {
+    return {judge ? "the scenario has no rules (group 'verdict')"
+                  : "the scenario is not to be judged (verdict.judge is false)"};
   }
-  return judged("cbv_off_road", *rate.value <= rules.maximum_cbv_off_road_percent,
-                "the CBVs were off the road " + core::formatFixed(*rate.value, 2) +
-                    " % of their time; at most " +
-                    core::formatNumber(rules.maximum_cbv_off_road_percent) + " % allowed");
+  std::vector<std::string> reasons;
+  for (const Check& check : verdict.checks) {
+    const bool decided =
+        check.outcome != CheckOutcome::kPassed && check.outcome != CheckOutcome::kSkipped;
+    if (decided) reasons.push_back(check.text);
+  }
+  return reasons;
 }
 
 }  // namespace
+
+const char* toText(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kPassed:
+      return "passed";
+    case Outcome::kStruck:
+      return "struck";
+    case Outcome::kFailed:
+      return "failed";
+    case Outcome::kNotJudged:
+      return "not_judged";
+    case Outcome::kInterrupted:
+      return "interrupted";
+    case Outcome::kError:
+      break;
+  }
+  return "error";
+}
+
+std::string wordOf(Outcome outcome) {
+  return outcome == Outcome::kNotJudged ? "not judged" : toText(outcome);
+}
+
+std::string capitalsOf(Outcome outcome) {
+  std::string text = wordOf(outcome);
+  for (char& letter : text) letter = static_cast<char>(std::toupper(letter));
+  return text;
+}
+
+Outcome outcomeOf(const std::string& text) {
+  for (const Outcome outcome : kOutcomes) {
+    if (text == toText(outcome)) return outcome;
+  }
+  throw core::InputError("'" + text + "' is no outcome of a session");
+}
+
+int exitCodeOf(Outcome outcome) {
+  if (outcome == Outcome::kInterrupted) return 130;
+  if (outcome == Outcome::kError) return 2;
+  return outcome == Outcome::kFailed ? 1 : 0;
+}
 
 const char* toText(CheckOutcome outcome) {
   switch (outcome) {
     case CheckOutcome::kPassed:
       return "passed";
+    case CheckOutcome::kStruck:
+      return "struck";
     case CheckOutcome::kFailed:
       return "failed";
-    case CheckOutcome::kError:
-      return "error";
     case CheckOutcome::kSkipped:
       return "skipped";
+    case CheckOutcome::kError:
+      break;
   }
   return "error";
 }
@@ -132,32 +269,25 @@ bool endedByItself(SessionStatus status) {
          status != SessionStatus::kRunning;
 }
 
-std::vector<Check> evaluateChecks(const scenario::VerdictOptions& rules, SessionStatus status,
-                                  const metrics::SessionMeasures& measures,
-                                  const std::vector<traffic::Fault>& faults) {
-  std::vector<Check> checks = {sessionCheck(status, faults), statusCheck(rules, status),
-                               completionCheck(rules, measures.route_completion_percent),
-                               scoreCheck(rules, measures),
-                               collisionCheck(rules, measures.ego_collisions)};
-  for (Check& check : infractionChecks(rules, measures)) checks.push_back(std::move(check));
-  checks.push_back(offRoadCheck(rules, measures.cbv_off_road_rate_percent));
-  if (endedByItself(status)) return checks;
-  for (std::size_t i = 1; i < checks.size(); ++i) {
-    checks[i].outcome = CheckOutcome::kSkipped;
-    checks[i].text = "not judged: the session ended with status " + quotedStatus(status);
+Verdict judge(const scenario::ScenarioOptions& options, SessionStatus status,
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults) {
+  Verdict verdict;
+  verdict.checks = {sessionCheck(status, faults)};
+  for (Check& check : RuleBook(options, status, measures).checks()) {
+    if (!endedByItself(status)) {
+      check.outcome = CheckOutcome::kSkipped;
+      check.text = "not judged: the session ended with status " + quotedStatus(status);
+    }
+    verdict.checks.push_back(std::move(check));
   }
-  return checks;
+  verdict.outcome = outcomeFrom(status, verdict.checks);
+  verdict.reasons = reasonsOf(verdict, options.verdict.judge);
+  return verdict;
 }
 
-Verdict verdictOf(const std::vector<Check>& checks) {
-  Verdict verdict;
-  for (const Check& check : checks) {
-    const bool met =
-        check.outcome == CheckOutcome::kPassed || check.outcome == CheckOutcome::kSkipped;
-    if (!met) verdict.failures.push_back(check.text);
-  }
-  verdict.passed = verdict.failures.empty();
-  return verdict;
+std::string contactText(const metrics::EgoContact& contact) {
+  return contact.partner + " at " + core::formatFixed(contact.seconds, 2) + " s (" +
+         contact.reason + ")";
 }
 
 }  // namespace cdiff::report

@@ -38,28 +38,6 @@ constexpr int kBoxWidth = 900;   // [pixels]
 constexpr int kLineHeight = 28;  // [pixels]
 constexpr std::size_t kMostLines = 14;
 
-bool isPlaced(const Vehicle& vehicle) {
-  return vehicle.state.position.allFinite() && std::isfinite(vehicle.state.heading) &&
-         std::isfinite(vehicle.state.elevation);
-}
-
-/// Of slot 0, else of the CBV nearest to the ego (ties: the lower slot); nullptr without a CBV.
-const Vehicle* shownCbv(const traffic::TrafficSnapshot& snapshot) {
-  const Vehicle* ego = snapshot.ego();
-  const Vehicle* shown = nullptr;
-  double nearest = 0.0;
-  for (const Vehicle& vehicle : snapshot.vehicles) {
-    if (vehicle.role != VehicleRole::kCbv || !isPlaced(vehicle)) continue;
-    if (vehicle.cbv_slot == 0) return &vehicle;
-    const double distance =
-        ego == nullptr ? 0.0 : (ego->state.position - vehicle.state.position).norm();
-    if (shown != nullptr && !(distance < nearest)) continue;
-    shown = &vehicle;
-    nearest = distance;
-  }
-  return shown;
-}
-
 /// A value in [low, 1] as a bar that grows from 0.
 void drawBar(cv::Mat picture, const cv::Point& left, double value, double low,
              const cv::Scalar& color) {
@@ -88,15 +66,26 @@ std::vector<std::string> wrapped(const std::string& text, int width, double size
   return lines;
 }
 
-std::pair<std::string, cv::Scalar> verdictWord(const SessionResult& result) {
-  if (!endedByItself(result.status)) return {"NOT JUDGED", ink::kError};
-  if (result.verdict.passed) return {"PASSED", ink::kPassed};
-  return {"FAILED", ink::kFailed};
+cv::Scalar inkOf(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kPassed:
+      return ink::kPassed;
+    case Outcome::kStruck:
+      return ink::kStruck;
+    case Outcome::kFailed:
+      return ink::kFailed;
+    case Outcome::kNotJudged:
+      return ink::kSoft;
+    case Outcome::kError:
+    case Outcome::kInterrupted:
+      break;
+  }
+  return ink::kError;
 }
 
-/// Why it failed, and what happened.
+/// Why, and what happened.
 std::vector<std::string> verdictLines(const SessionResult& result, int width) {
-  std::vector<std::string> sentences = result.verdict.failures;
+  std::vector<std::string> sentences = result.verdict.reasons;
   for (const std::string& sentence : sessionStory(result)) sentences.push_back(sentence);
   std::vector<std::string> lines;
   for (const std::string& sentence : sentences) {
@@ -112,11 +101,23 @@ VideoFrame::VideoFrame(const scenario::SessionSetup& setup)
     : setup_(setup),
       camera_(cameraForPeople(setup, kViewWidth, kViewHeight)),
       map_(setup, {kFrameWidth - kViewWidth, kFrameHeight - kHeadHeight}),
+      contacts_(setup),
       picture_(kFrameHeight, kFrameWidth, CV_8UC3) {}
 
 void VideoFrame::observe(const scenario::TickRecord& record) {
   snapshot_ = *record.snapshot;
   map_.observe(record);
+  const Vehicle* nearest = followed_.update(snapshot_);
+  shown_ = nearest == nullptr ? "" : nearest->id;
+  contacts_.update(snapshot_);
+  const ContactMark* contact = contacts_.ofEgo();
+  if (contact == nullptr || contact->begin < snapshot_.time) return;
+  const Vehicle* partner = snapshot_.find(contact->partner);
+  if (partner == nullptr || partner->role != VehicleRole::kCbv || !isPlaced(*partner)) return;
+  contact_view_.create(kViewHeight, kViewWidth, CV_8UC3);
+  drawCbvView(contact_view_, *partner,
+              ", at the contact, " + core::formatFixed(snapshot_.time, 2) + " s");
+  contact_view_end_ = snapshot_.time + kContactTime;
 }
 
 std::vector<std::uint8_t> VideoFrame::draw() {
@@ -126,8 +127,9 @@ std::vector<std::uint8_t> VideoFrame::draw() {
 
 void VideoFrame::drawScene() {
   picture_.setTo(ink::kPage);
-  map_.draw(picture_(
-      cv::Rect(kViewWidth, kHeadHeight, kFrameWidth - kViewWidth, kFrameHeight - kHeadHeight)));
+  map_.draw(picture_(cv::Rect(kViewWidth, kHeadHeight, kFrameWidth - kViewWidth,
+                              kFrameHeight - kHeadHeight)),
+            contacts_.marks());
   drawFrontView();
   drawTable();
   drawHead();
@@ -146,22 +148,42 @@ void VideoFrame::drawHead() {
 
 void VideoFrame::drawFrontView() {
   cv::Mat view = picture_(cv::Rect(0, kHeadHeight, kViewWidth, kViewHeight));
-  const Vehicle* cbv = shownCbv(snapshot_);
-  if (cbv == nullptr) {
+  const Vehicle* cbv = shown_.empty() ? nullptr : snapshot_.find(shown_);
+  if (snapshot_.time <= contact_view_end_) {
+    contact_view_.copyTo(view);
+  } else if (cbv != nullptr) {
+    drawCbvView(view, *cbv, ", nearest to the ego");
+  } else {
     view.setTo(ink::kPanel);
     const std::string text = "No CBV is driven";
     writeText(view, text, {(kViewWidth - textWidth(text, 0.8)) / 2, kViewHeight / 2}, 0.8,
               ink::kSoft);
-    return;
   }
-  traffic::CameraImage image = camera_.render(snapshot_, *cbv);
+  if (const ContactMark* contact = contacts_.ofEgo()) drawContact(view, *contact);
+}
+
+void VideoFrame::drawCbvView(cv::Mat view, const Vehicle& cbv, const std::string& note) {
+  traffic::CameraImage image = camera_.render(snapshot_, cbv);
   const cv::Mat red_first(image.height, image.width, CV_8UC3, image.rgb.data());
   cv::cvtColor(red_first, view, cv::COLOR_RGB2BGR);
-  const std::string name =
-      cutText("CBV " + cbv->id + ", slot " + std::to_string(cbv->cbv_slot), kViewWidth - 40, 0.6);
+  const std::string name = cutText(
+      "CBV " + cbv.id + ", slot " + std::to_string(cbv.cbv_slot) + note, kViewWidth - 40, 0.6);
   cv::rectangle(view, cv::Rect(0, 0, textWidth(name, 0.6) + 28, 32),
-                inkOf(VehicleRole::kCbv, cbv->cbv_slot), cv::FILLED);
+                inkOf(VehicleRole::kCbv, cbv.cbv_slot), cv::FILLED);
   writeText(view, name, {14, 22}, 0.6, ink::kPage);
+}
+
+void VideoFrame::drawContact(cv::Mat view, const ContactMark& contact) const {
+  std::vector<std::string> lines = wrapped(contact.reason, kViewWidth - 28, 0.5);
+  if (lines.size() > 3) lines.resize(3);
+  const int height = 34 + 20 * static_cast<int>(lines.size());
+  const cv::Rect plate(0, kViewHeight - height, kViewWidth, height);
+  cv::rectangle(view, plate, inkOf(contact), cv::FILLED);
+  const std::string head =
+      "Contact at " + core::formatFixed(contact.begin, 2) + " s: " + contact.label;
+  writeText(view, cutText(head, kViewWidth - 28, 0.6), {14, plate.y + 23}, 0.6, ink::kPage, true);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    writeText(view, lines[i], {14, plate.y + 44 + 20 * static_cast<int>(i)}, 0.5, ink::kPage);
 }
 
 void VideoFrame::drawTable() {
@@ -206,7 +228,8 @@ std::vector<std::uint8_t> VideoFrame::drawVerdict(const SessionResult& result) {
   const std::vector<std::string> lines = verdictLines(result, kBoxWidth - 60);
   const int height = 90 + kLineHeight * static_cast<int>(lines.size());
   const cv::Rect box((kFrameWidth - kBoxWidth) / 2, (kFrameHeight - height) / 2, kBoxWidth, height);
-  const auto [word, color] = verdictWord(result);
+  const std::string word = capitalsOf(result.verdict.outcome);
+  const cv::Scalar color = inkOf(result.verdict.outcome);
   cv::rectangle(picture_, box, ink::kPage, cv::FILLED);
   cv::rectangle(picture_, box, color, 4, cv::LINE_AA);
   writeText(picture_, word + ": status " + traffic::toText(result.status), {box.x + 28, box.y + 46},

@@ -30,6 +30,11 @@ cv::Scalar inkOf(traffic::VehicleRole role, int slot) {
   return kShades[static_cast<std::size_t>(slot < 0 ? 0 : slot) % std::size(kShades)];
 }
 
+cv::Scalar inkOf(const ContactMark& contact) {
+  if (contact.partner.empty()) return ink::kContact;
+  return contact.ego_at_fault ? ink::kFailed : ink::kStruck;
+}
+
 void writeText(cv::Mat picture, const std::string& text, const cv::Point& at, double size,
                const cv::Scalar& color, bool bold) {
   cv::putText(picture, inAscii(text), at, kFont, size, color, bold ? 2 : 1, cv::LINE_AA);

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "e2e_cdiff/report/video_focus.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::report {
@@ -24,11 +25,15 @@ inline const cv::Scalar kBackground{196, 111, 31};
 inline const cv::Scalar kContact{0, 81, 230};
 inline const cv::Scalar kPassed{54, 110, 27};
 inline const cv::Scalar kFailed{25, 25, 163};
-inline const cv::Scalar kError{0, 74, 122};
+inline const cv::Scalar kStruck{0, 74, 122};
+inline const cv::Scalar kError{134, 42, 91};
 }  // namespace ink
 
 /// Red for the ego, blue for background vehicles, a shade of purple by slot for CBVs.
 cv::Scalar inkOf(traffic::VehicleRole role, int slot);
+
+/// Red where the ego is at fault, amber where it is struck, orange where it has no part.
+cv::Scalar inkOf(const ContactMark& contact);
 
 /// One line of text, its left lower corner at `at` [pixels]; letters that are not ASCII appear as
 /// '?'. `size` 1 is 22 pixels high.

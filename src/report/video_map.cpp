@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "video_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -12,10 +13,9 @@ namespace {
 
 using traffic::VehicleRole;
 
-constexpr double kWidth = 120.0;      // of what is shown [m]
-constexpr double kTrailTime = 20.0;   // [s]
-constexpr double kContactTime = 2.0;  // that a contact is marked [s]
-constexpr int kShift = 4;             // sub-pixel bits of OpenCV's drawing
+constexpr double kWidth = 120.0;     // of what is shown [m]
+constexpr double kTrailTime = 20.0;  // [s]
+constexpr int kShift = 4;            // sub-pixel bits of OpenCV's drawing
 
 cv::Point subPixel(const Eigen::Vector2d& pixel) {
   constexpr double kParts = 1 << kShift;
@@ -43,10 +43,6 @@ void drawLine(cv::Mat picture, const MapCanvas& canvas, const Points& line, cons
   }
 }
 
-bool isPlaced(const traffic::Vehicle& vehicle) {
-  return vehicle.state.position.allFinite() && std::isfinite(vehicle.state.heading);
-}
-
 MapCanvas canvasAround(const Eigen::Vector2d& center, const cv::Size& size) {
   const Eigen::Vector2d pixels(size.width, size.height);
   const Eigen::Vector2d half = 0.5 * kWidth / pixels.x() * pixels;
@@ -66,6 +62,22 @@ std::vector<cv::Point> outline(const traffic::Vehicle& vehicle, const MapCanvas&
     pixels.push_back(subPixel(canvas.toPixels(point)));
   }
   return pixels;
+}
+
+/// A ring around the place and a plate with the names below it.
+void drawContact(cv::Mat picture, const MapCanvas& canvas, const ContactMark& contact) {
+  if (!canvas.shows(contact.position)) return;
+  const cv::Scalar color = inkOf(contact);
+  const Eigen::Vector2d pixel = canvas.toPixels(contact.position);
+  cv::circle(picture, subPixel(pixel), 26 << kShift, ink::kPage, 7, cv::LINE_AA, kShift);
+  cv::circle(picture, subPixel(pixel), 26 << kShift, color, 4, cv::LINE_AA, kShift);
+  const std::string text = cutText(contact.label, picture.cols - 40, 0.5);
+  const int width = textWidth(text, 0.5) + 16;
+  const cv::Point at = wholePixel(pixel);
+  const int left = std::clamp(at.x - width / 2, 4, std::max(4, picture.cols - width - 4));
+  const int top = std::clamp(at.y + 36, 4, picture.rows - 30);
+  cv::rectangle(picture, cv::Rect(left, top, width, 24), color, cv::FILLED);
+  writeText(picture, text, {left + 8, top + 17}, 0.5, ink::kPage);
 }
 
 }  // namespace
@@ -94,18 +106,9 @@ void VideoMap::observe(const scenario::TickRecord& record) {
   for (auto& [id, trail] : trails_) {
     while (!trail.empty() && trail.front().first < snapshot_.time - kTrailTime) trail.pop_front();
   }
-  for (const traffic::Contact& contact : snapshot_.contacts) {
-    const traffic::Vehicle* first = snapshot_.find(contact.first);
-    const traffic::Vehicle* second = snapshot_.find(contact.second);
-    if (first == nullptr || second == nullptr || !isPlaced(*first) || !isPlaced(*second)) continue;
-    contacts_.push_back({snapshot_.time, 0.5 * (first->state.position + second->state.position)});
-  }
-  while (!contacts_.empty() && contacts_.front().time < snapshot_.time - kContactTime) {
-    contacts_.pop_front();
-  }
 }
 
-void VideoMap::draw(cv::Mat picture) const {
+void VideoMap::draw(cv::Mat picture, const std::deque<ContactMark>& contacts) const {
   const MapCanvas canvas = canvasAround(center_, size_);
   picture.setTo(ink::kGround);
   drawRoad(picture, canvas);
@@ -117,7 +120,8 @@ void VideoMap::draw(cv::Mat picture) const {
       drawVehicle(picture, canvas, *vehicle);
     }
   }
-  drawMarks(picture, canvas);
+  drawConflicts(picture, canvas);
+  for (const ContactMark& contact : contacts) drawContact(picture, canvas, contact);
   drawScale(picture, canvas);
 }
 
@@ -172,16 +176,12 @@ void VideoMap::drawVehicle(cv::Mat picture, const MapCanvas& canvas,
   writeText(picture, vehicle.id, at + cv::Point(12, -10), 0.45, color);
 }
 
-void VideoMap::drawMarks(cv::Mat picture, const MapCanvas& canvas) const {
+void VideoMap::drawConflicts(cv::Mat picture, const MapCanvas& canvas) const {
   for (const cbv::CbvAssignment& assignment : assignments_) {
     const Eigen::Vector2d position = assignment.conflict_point.position.head<2>();
     if (!canvas.shows(position)) continue;
     cv::drawMarker(picture, wholePixel(canvas.toPixels(position)), ink::kText,
                    cv::MARKER_TILTED_CROSS, 14, 2, cv::LINE_AA);
-  }
-  for (const Mark& contact : contacts_) {
-    cv::circle(picture, subPixel(canvas.toPixels(contact.position)), 22 << kShift, ink::kContact, 3,
-               cv::LINE_AA, kShift);
   }
 }
 

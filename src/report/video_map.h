@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "e2e_cdiff/report/map_canvas.h"
+#include "e2e_cdiff/report/video_focus.h"
 #include "e2e_cdiff/scenario/session_observer.h"
 #include "e2e_cdiff/scenario/session_setup.h"
 
@@ -27,24 +28,21 @@ class VideoMap {
   void observe(const scenario::TickRecord& record);
   /// Draws the last tick into `picture`, 8-bit blue, green, red, of the map's size. The ego's
   /// centre lies in the middle; without an ego, what was there last.
-  void draw(cv::Mat picture) const;
+  /// Contacts are marked with who touched whom.
+  void draw(cv::Mat picture, const std::deque<ContactMark>& contacts) const;
 
  private:
   using Polygons = std::vector<std::vector<cv::Point>>;
   void drawRoad(cv::Mat picture, const MapCanvas& canvas) const;
   void drawRoute(cv::Mat picture, const MapCanvas& canvas) const;
   void drawTrails(cv::Mat picture, const MapCanvas& canvas) const;
-  void drawMarks(cv::Mat picture, const MapCanvas& canvas) const;
+  void drawConflicts(cv::Mat picture, const MapCanvas& canvas) const;
   void drawVehicle(cv::Mat picture, const MapCanvas& canvas, const traffic::Vehicle& vehicle) const;
   void drawScale(cv::Mat picture, const MapCanvas& canvas) const;
   const std::vector<Points>& ringsAt(double elevation) const;
 
   /// Where a vehicle was and when [s].
   using Trail = std::deque<std::pair<double, Eigen::Vector2d>>;
-  struct Mark {
-    double time = 0.0;  ///< [s]
-    Eigen::Vector2d position = Eigen::Vector2d::Zero();
-  };
   const scenario::SessionSetup& setup_;
   cv::Size size_;
   std::vector<Points> lanes_;
@@ -54,7 +52,6 @@ class VideoMap {
   double elevation_ = 0.0;  ///< of the ego [m]
   std::map<std::string, Trail> trails_;
   std::vector<cbv::CbvAssignment> assignments_;
-  std::deque<Mark> contacts_;
 };
 
 }  // namespace cdiff::report

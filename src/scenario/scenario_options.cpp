@@ -99,12 +99,28 @@ void requirePlanner(const std::string& key, const std::string& name, bool or_ext
 
 }  // namespace
 
+VerdictOptions VerdictOptions::standard() {
+  VerdictOptions rules;
+  rules.minimum_route_completion = 90.0;
+  rules.statuses = {"completed", "timed_out", "collided"};
+  rules.maximum_contacts_at_fault = 0.0;
+  rules.contact_without_fault = "by_mode";
+  return rules;
+}
+
 void VerdictOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.flag({"judge", "", "Whether the rules below are applied."}, judge);
   visitor.number({"minimum_route_completion", "%", "Least route completion of the ego."},
                  minimum_route_completion, 0.0, 100.0);
+  visitor.number({"maximum_contacts_at_fault", "", "Most contacts that are the ego's fault."},
+                 maximum_contacts_at_fault, 0.0, kInfinite);
+  visitor.text({"contact_without_fault", "",
+                "What a contact that is not the ego's fault makes of the session; by_mode: failed "
+                "in naturalistic, struck in safety_critical."},
+               contact_without_fault, {"allowed", "struck", "failed", "by_mode"});
   visitor.number({"minimum_driving_score", "%", "Least driving score of the ego."},
                  minimum_driving_score, 0.0, 100.0);
-  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego."},
+  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego, whoever's fault."},
                  maximum_ego_collisions, 0.0, kInfinite);
   visitor.number({"maximum_red_lights", "", "Most red lights that the ego runs."},
                  maximum_red_lights, 0.0, kInfinite);
@@ -131,7 +147,7 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   describePlanners(visitor);
   visitor.group({"protocol", "", "When a session ends."}, protocol);
   visitor.group({"metrics", "", "What the session is measured against."}, metrics);
-  visitor.group({"verdict", "", "When a session passes."}, verdict);
+  visitor.group({"verdict", "", "Rules by which the session is judged."}, verdict);
   visitor.group({"report", "", "What report.html holds."}, report);
   visitor.flag({"video", "", "Also write session.mp4: front view beside the picture from above."},
                video);

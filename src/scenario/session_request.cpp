@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::InputError;
 
-/// A scenario made of a Bench2Drive route alone, with generated demand.
+/// A scenario made of a Bench2Drive route alone, with generated demand and the standard rules.
 ScenarioOptions bench2DriveScenario(const SessionRequest& request, const ScenarioOptions& base) {
   if (request.route.empty())
     throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
@@ -25,6 +25,7 @@ ScenarioOptions bench2DriveScenario(const SessionRequest& request, const Scenari
   }
   ScenarioOptions options = base;
   options.name = "bench2drive_" + request.route;
+  options.verdict = VerdictOptions::standard();
   options.route.bench2drive_file = fs::absolute(request.bench2drive).string();
   options.route.bench2drive_id = request.route;
   return options;

@@ -21,7 +21,7 @@ constexpr const char* kMatrix =
     "  - cbv_planner=diffusion mode=safety_critical\n"
     "  - cbv_planner=two_stage_pid mode=naturalistic\n"
     "seeds: [2, 3]\n"
-    "set: [protocol.time_limit=4]\n";
+    "set: [protocol.time_limit=4, verdict.judge=false]\n";
 
 /// Processes whose command line holds a text.
 std::vector<pid_t> processesWith(const std::string& text) {
@@ -108,7 +108,7 @@ TEST_F(BatchRobustness, KilledAndResumedItGivesTheSameFiles) {
 TEST_F(BatchRobustness, TablesAndFiguresAreMadeAgainFromTheFolderAlone) {
   const std::string matrix = write("matrix.yaml",
                                    "scenarios: [roundabout_entry]\nseeds: [3]\n"
-                                   "set: [protocol.time_limit=6]\n");
+                                   "set: [protocol.time_limit=6, verdict.judge=false]\n");
   const fs::path results = folder("results");
   ASSERT_EQ(cdiff({"evaluate", matrix, "--results", results.string()}), 0) << output();
   const auto before = test::filesWithoutWallClock(results);
@@ -143,7 +143,7 @@ TEST_F(BatchRobustness, RepeatsARunWhoseSumoWasKilled) {
   const std::string matrix =
       write("matrix.yaml",
             "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nretries: 1\nset: "
-            "[protocol.time_limit=2, real_time_factor=1]\n");
+            "[protocol.time_limit=2, real_time_factor=1, verdict.judge=false]\n");
   const std::string results = folder("results");
   ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results},
                        scratch_.path() / "output");
@@ -164,7 +164,7 @@ TEST_F(BatchRobustness, RepeatsARunWhoseSumoWasKilled) {
 TEST_F(BatchRobustness, NamesADamagedRecordOnResume) {
   const std::string matrix = write("matrix.yaml",
                                    "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: "
-                                   "[protocol.time_limit=1]\n");
+                                   "[protocol.time_limit=1, verdict.judge=false]\n");
   const std::string results = folder("results");
   const std::vector<std::string> evaluate = {"evaluate", matrix, "--results", results, "--resume"};
   ASSERT_EQ(cdiff(evaluate), 0) << output();

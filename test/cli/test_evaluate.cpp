@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using test::EvaluateCommand;
 
 /// A session of 3 simulated seconds.
-constexpr const char* kShort = "set: [protocol.time_limit=3]\n";
+constexpr const char* kShort = "set: [protocol.time_limit=3, verdict.judge=false]\n";
 
 TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const std::string matrix =

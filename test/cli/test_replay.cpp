@@ -76,7 +76,7 @@ TEST_F(ReplayCommand, HasTheResultOfARuleDrivenSessionWithoutItsNetworkFile) {
       core::shareFolder() / "networks" / "crossing_district" / "crossing_district.net.xml",
       network);
   record({"crossing_left_turn", "--network", network.string(), "--seed", "2", "--cbv-planner",
-          "pdm_lite", "--set", "protocol.time_limit=15"});
+          "pdm_lite", "--set", "protocol.time_limit=15", "--set", "verdict.judge=false"});
   fs::remove(network);
   EXPECT_EQ(replay(), 0) << output();
   EXPECT_GT(summary()["cbv"]["count"], 0) << "the session shows no CBV; choose one that does";
@@ -85,7 +85,7 @@ TEST_F(ReplayCommand, HasTheResultOfARuleDrivenSessionWithoutItsNetworkFile) {
 
 TEST_F(ReplayCommand, HasTheResultOfASafetyCriticalSessionOfTheDiffusionPlanner) {
   record({"roundabout_cross", "--mode", "safety_critical", "--seed", "1", "--cbv-planner",
-          "diffusion", "--set", "protocol.time_limit=10"});
+          "diffusion", "--set", "protocol.time_limit=10", "--set", "verdict.judge=false"});
   EXPECT_EQ(replay(), 0) << output();
   EXPECT_GT(summary()["planner_latency_ms"]["cbv:diffusion"]["n"], 0);
   EXPECT_FALSE(summary()["guidance"].is_null());
@@ -96,7 +96,7 @@ TEST_F(ReplayCommand, HasTheResultOfASafetyCriticalSessionOfTheDiffusionPlanner)
 
 TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
   record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
-          "protocol.time_limit=4"});
+          "protocol.time_limit=4", "--set", "verdict.judge=false"});
   EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string()}), 3);
   EXPECT_NE(output().find("--results"), std::string::npos) << output();
   EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", "none.bag", "--results", replayed().string()}), 3);
@@ -114,7 +114,7 @@ TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
 
 TEST_F(ReplayCommand, LeavesTheResultOfADrivenSessionAlone) {
   record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
-          "protocol.time_limit=2"});
+          "protocol.time_limit=2", "--set", "verdict.judge=false"});
   const std::string session = core::readFile(live() / "session.yaml", "session");
   EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", live().string()}), 3);
   EXPECT_NE(output().find("give another --results"), std::string::npos) << output();
@@ -148,7 +148,7 @@ TEST_F(ReplayCommand, ABagThatCannotBeWrittenLeavesTheOtherResultsWhole) {
 
 TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
   record({"crossing_left_turn", "--seed", "2", "--cbv-planner", "pdm_lite", "--set",
-          "protocol.time_limit=4"});
+          "protocol.time_limit=4", "--set", "verdict.judge=false"});
   // No file may grow beyond the limit (in KiB): as a disk that is full.
   for (const char* limit : {"1", "20", "60"}) {
     fs::remove_all(replayed());

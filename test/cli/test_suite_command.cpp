@@ -16,8 +16,8 @@ TEST_F(SuiteCommand, MakesASuiteThatAMatrixDrives) {
   ASSERT_EQ(cdiff({"suite", "test", "--seed", "1", "--results", path("suite")}), 0);
   expectOutput("10 routes on 7 networks");
   EXPECT_FALSE(fs::exists(path("suite.part")));
-  std::ofstream(path("matrix.yaml"))
-      << "suite: suite\ncbv_planners: [pdm_lite]\nset: [protocol.time_limit=1]\n";
+  std::ofstream(path("matrix.yaml")) << "suite: suite\ncbv_planners: [pdm_lite]\nset: "
+                                        "[protocol.time_limit=1, verdict.judge=false]\n";
   ASSERT_EQ(cdiff({"evaluate", path("matrix.yaml"), "--results", path("runs"), "--jobs", "2"}), 0);
   expectOutput("10/10 done, 0 failed");
   EXPECT_TRUE(fs::exists(path("runs/runs/test_merge_1__seed10/summary.json")));

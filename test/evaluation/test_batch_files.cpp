@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/evaluation/batch_files.h"
+#include "e2e_cdiff/evaluation/batch_report.h"
 #include "evaluation/run_records.h"
+#include "report/verdict_cases.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -21,10 +24,16 @@ class BatchFiles : public testing::Test {
     failed.attempts = 2;
     failed.exit_code = 2;
     RunRecord not_passed = recordWith({"s", "2"}, 20);
-    not_passed.passed = false;
-    not_passed.failures = {"score < 30"};
-    records_ = {recordWith({"s", "1"}, 10), not_passed, failed,
-                recordWithout({"t", "1"}, "not_run")};
+    not_passed.verdict = report::Outcome::kFailed;
+    not_passed.reasons = {"score < 30"};
+    RunRecord struck = recordWith({"u", "1"}, 30);
+    struck.verdict = report::Outcome::kStruck;
+    struck.reasons = {"struck by cbv_1"};
+    RunRecord not_judged = recordWith({"v", "1"}, 40);
+    not_judged.verdict = report::Outcome::kNotJudged;
+    not_judged.reasons = {"no rules"};
+    records_ = {recordWith({"s", "1"}, 10),           not_passed, failed,
+                recordWithout({"t", "1"}, "not_run"), struck,     not_judged};
   }
   static void expectIn(const std::string& part, const std::string& text) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nin\n" << text;
@@ -34,14 +43,17 @@ class BatchFiles : public testing::Test {
 
 TEST_F(BatchFiles, CsvHasARowPerPlannedRun) {
   const std::string csv = runsCsv(records_);
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
   expectIn(
       "id,scenario,ego_planner,cbv_planner,mode,guidance_profile,variant,seed,repetition,"
-      "status,passed,exit_code,attempts,wall_seconds,ego_completion_percent,ego_driving_score",
+      "status,verdict,exit_code,attempts,wall_seconds,ego_completion_percent,ego_driving_score",
       csv);
   // The score's column is filled, the one before it (completion) and the one after it are empty.
-  expectIn("\ns_none_1_1,s,pdm_lite,pdm_lite,naturalistic,none,,1,1,completed,true,0,1,0.000,,10,,",
-           csv);
+  expectIn(
+      "\ns_none_1_1,s,pdm_lite,pdm_lite,naturalistic,none,,1,1,completed,passed,0,1,0.000,,10,,",
+      csv);
+  expectIn("1,1,completed,struck,0,", csv);
+  expectIn("1,1,completed,not_judged,0,", csv);
   expectIn(",error,,2,2,0.000,,", csv);
   expectIn(",\"SUMO said \"\"no\"\", twice\"\n", csv);
   expectIn(",not_run,,,0,,", csv);
@@ -50,8 +62,9 @@ TEST_F(BatchFiles, CsvHasARowPerPlannedRun) {
 TEST_F(BatchFiles, SummaryHasACellPerCombination) {
   const std::string summary = batchSummaryJson("night", records_);
   expectIn(
-      "\"evaluation\": \"night\",\n  \"runs\": 4,\n  \"failed\": 1,\n  \"not_run\": 1,\n"
-      "  \"verdict_failed\": 1,",
+      "\"evaluation\": \"night\",\n  \"runs\": 6,\n  \"failed\": 1,\n  \"not_run\": 1,\n"
+      "  \"verdict_passed\": 1,\n  \"verdict_struck\": 1,\n  \"verdict_failed\": 1,\n  "
+      "\"verdict_not_judged\": 1,",
       summary);
   expectIn("\"runs\": 3,\n      \"failed\": 1,\n      \"not_run\": 0,", summary);
   // 10 and 20: mean 15, s = sqrt(50).
@@ -63,20 +76,77 @@ TEST_F(BatchFiles, SummaryHasACellPerCombination) {
 
 TEST_F(BatchFiles, JunitTellsErrorsFailuresAndWhatWasNotRun) {
   const std::string xml = batchJunitXml("night", records_);
-  expectIn("<testsuites tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
+  expectIn("<testsuites tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
   expectIn("<failure type=\"completed\" message=\"score &lt; 30\"/>", xml);
   expectIn("<error type=\"error\" message=\"SUMO said &quot;no&quot;, twice\"/>", xml);
+  expectIn("<system-out>struck: struck by cbv_1</system-out>", xml);
+  expectIn("<system-out>not judged: no rules</system-out>", xml);
   expectIn("<skipped message=\"not_run\"/>", xml);
 }
 
 TEST_F(BatchFiles, MarkdownShowsTheFactorsThatVary) {
   const std::string text = batchMarkdown("night", records_);
-  expectIn("4 runs: 1 failed, 1 not run or interrupted, 1 ended with a failed verdict", text);
+  expectIn(
+      "6 runs: 1 failed, 1 not run or interrupted, 1 ended with a failed verdict, 1 were struck, 1 "
+      "were not judged, 1 passed.",
+      text);
   expectIn("| scenario | runs | failed | not run | ego_completion_percent | ego_driving_score |",
            text);
   expectIn("| s | 3 | 1 | 0 | - | 15.00 \xC2\xB1 7.07 (2) |", text);
   expectIn("| t | 1 | 0 | 1 | - | - |", text);
 }
+
+/// The record that a batch keeps of a session.
+RunRecord recordOf(const test::VerdictCase& wanted, const std::filesystem::path& folder) {
+  const test::SampleSetup sample(test::optionsOf(wanted));
+  report::ResultWriter writer(sample.setup, test::sampleFacts(), folder);
+  test::playCase(writer, wanted);
+  writer.finish(1.0);
+  const SummaryFacts facts =
+      readSummary(core::readFile(folder / "summary.json", "summary"), wanted.name);
+  RunRecord record = recordWithout({wanted.name}, facts.status);
+  record.verdict = facts.verdict;
+  record.reasons = facts.reasons;
+  record.exit_code = writer.exitCode();
+  record.attempts = 1;
+  return record;
+}
+
+class BatchVerdict : public testing::TestWithParam<test::VerdictCase> {};
+
+/// The row of the run in runs.csv, the counts, JUnit and the page say what the session's files say.
+TEST_P(BatchVerdict, IsThatOfTheSession) {
+  const test::VerdictCase& wanted = GetParam();
+  const test::TemporaryFolder folder;
+  const RunRecord record = recordOf(wanted, folder.path());
+  const std::string word = report::toText(wanted.outcome);
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string status = traffic::toText(wanted.status);
+  const std::string csv = runsCsv({record});
+  EXPECT_TRUE(has(csv, "," + status + "," + (record.complete() ? word : "") + "," +
+                           std::to_string(wanted.exit_code) + ",1,"))
+      << csv;
+  const std::string summary = batchSummaryJson("night", {record});
+  for (const char* each : {"passed", "struck", "failed", "not_judged"})
+    EXPECT_TRUE(
+        has(summary, std::string("\"verdict_") + each + "\": " + (word == each ? "1" : "0")))
+        << each << summary;
+  const std::string xml = batchJunitXml("night", {record});
+  EXPECT_EQ(has(xml, "<failure"), wanted.outcome == report::Outcome::kFailed);
+  EXPECT_EQ(has(xml, "<error"), wanted.outcome == report::Outcome::kError);
+  EXPECT_EQ(has(xml, "<skipped"), wanted.outcome == report::Outcome::kInterrupted);
+  EXPECT_EQ(has(xml, "<system-out>struck: "), wanted.outcome == report::Outcome::kStruck);
+  EXPECT_EQ(has(xml, "<system-out>not judged: "), wanted.outcome == report::Outcome::kNotJudged);
+  const std::string shown = record.complete() ? word : "error";
+  const std::string page = batchPage("night", {{record, folder.path(), {}}}, {}, {});
+  EXPECT_TRUE(has(page, "class=\"banner " + shown + "\""));
+  EXPECT_TRUE(has(page, "<tr class=\"" + shown + "\">"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BatchVerdict, testing::ValuesIn(test::verdictCases()),
+                         [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace cdiff::evaluation

@@ -23,7 +23,7 @@ echo attempt >> $folder/attempts
 succeed() {
   cat > $folder/summary.json <<EOF
 {"status": "completed", "simulated_seconds": 4.0, "ego": {"driving_score": 80},
- "faults": [], "verdict": {"passed": true, "failures": []}}
+ "faults": [], "verdict": {"outcome": "passed", "reasons": []}}
 EOF
   exit 0
 }
@@ -88,7 +88,7 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   const auto records = execute(plan({"good", "refuses", "half", "good"}));
   ASSERT_EQ(records.size(), 4U);
   EXPECT_EQ(records[0].status, "completed");
-  EXPECT_TRUE(records[0].passed);
+  EXPECT_TRUE(records[0].has(report::Outcome::kPassed));
   EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
   EXPECT_DOUBLE_EQ(records[0].simulated_seconds, 4.0);
   EXPECT_EQ(records[1].status, "error");

@@ -21,12 +21,12 @@ TEST(Figures, OfASummary) {
       {"conflict_point_passed": false}]},
     "faults": [{"tick": 1, "source": "a", "text": "first"},
                {"tick": 2, "source": "a", "text": "last"}],
-    "verdict": {"passed": false, "failures": ["too slow"]}})",
+    "verdict": {"outcome": "failed", "reasons": ["too slow"], "rules": []}})",
                                          "file");
   EXPECT_EQ(facts.status, "completed");
   EXPECT_EQ(facts.fault, "last");
-  EXPECT_FALSE(facts.passed);
-  EXPECT_EQ(facts.failures, std::vector<std::string>{"too slow"});
+  EXPECT_EQ(facts.verdict, report::Outcome::kFailed);
+  EXPECT_EQ(facts.reasons, std::vector<std::string>{"too slow"});
   EXPECT_DOUBLE_EQ(facts.simulated_seconds, 12.5);
   EXPECT_DOUBLE_EQ(facts.figures.at("ego_completion_percent"), 80.0);
   EXPECT_DOUBLE_EQ(facts.figures.at("ego_collisions"), 0.0);

@@ -38,7 +38,9 @@ TEST(SessionStory, TellsWayApproachAndContact) {
   // At 6 s the centres are 49 m and 22 m apart. Outlines: 49 - 2.25 - 0.9 and 22 - 2.25 - 0.9.
   EXPECT_EQ(story[1],
             "bg_1 was the only CBV and came as near as 49.57 m between the outlines, at 6.00 s.");
-  EXPECT_EQ(story[2], "bg_2 and the ego touched at 2.00 s, the first of 2 contacts of the ego.");
+  EXPECT_EQ(story[2],
+            "bg_2 and the ego touched at 2.00 s, the first of 2 contacts of the ego; the ego "
+            "was not at fault.");
 }
 
 TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {

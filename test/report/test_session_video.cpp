@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +13,8 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/report/video_encoder.h"
-#include "report/sample_session.h"
+#include "e2e_cdiff/report/video_focus.h"
+#include "report/verdict_cases.h"
 
 namespace cdiff::report {
 namespace {
@@ -134,6 +136,94 @@ TEST(SessionVideo, ShowsACbvWhereItIs) {
   ASSERT_EQ(frames.count(), 1u);
   // 16 / 3 pixels per metre: 160 to the left, 80 up.
   expectColor(frames.pixel(0, 960 - 160, 382 - 80), {123, 31, 162});
+}
+
+/// Left border of the box with the verdict, for a session of these cases; the video has its last
+/// ticks alone.
+std::array<int, 3> verdictColor(const std::string& name) {
+  const auto& cases = test::verdictCases();
+  const auto wanted =
+      std::find_if(cases.begin(), cases.end(),
+                   [&](const test::VerdictCase& candidate) { return candidate.name == name; });
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample(test::optionsOf(*wanted));
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  SessionVideo video(sample.setup, scratch.path());
+  test::playCase(writer, *wanted);
+  writer.finish(1.0);
+  video.finish(writer.result());
+  EXPECT_EQ(video.error(), "");
+  // 900 pixels wide in the middle of 1280 x 720, with a frame of 4 pixels.
+  return decode(scratch.path() / kVideoFile, "eq(n,0)").pixel(0, 190, 360);
+}
+
+TEST(SessionVideo, EndsWithTheVerdictInItsColor) {
+  expectColor(verdictColor("completed"), {27, 110, 54});
+  expectColor(verdictColor("struck_attacked"), {122, 74, 0});
+  expectColor(verdictColor("struck"), {163, 25, 25});
+  expectColor(verdictColor("no_rules"), {93, 102, 112});
+  expectColor(verdictColor("broken"), {91, 42, 134});
+}
+
+/// bg_1, a CBV, stands in the ego's way: a contact at 1 s, after which it is gone.
+void contactAtOneSecond(traffic::TrafficSnapshot& snapshot) {
+  traffic::Vehicle& other = snapshot.vehicles[1];
+  other.role = traffic::VehicleRole::kCbv;
+  other.cbv_slot = 0;
+  // 4.4 m ahead of the ego at 1 s, standing: 0.3 m apart at the tick before.
+  other.state.position = {5.0 + 8.0 + 4.4, -2.0};
+  other.state.heading = 0.0;
+  other.state.speed = 0.0;
+  if (snapshot.tick == 20) snapshot.contacts = {{"bg_1", "ego"}};
+  if (snapshot.tick > 20) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+}
+
+TEST(SessionVideo, AContactOfTheEgoStaysToBeSeen) {
+  const test::TemporaryFolder scratch;
+  ASSERT_EQ(videoError(scratch.path(), 60, &contactAtOneSecond), "");
+  const Decoded frames = decode(scratch.path() / kVideoFile, "eq(n,9)+eq(n,10)+eq(n,25)+eq(n,26)");
+  ASSERT_EQ(frames.count(), 4u);
+  // The plate at the lower border of the front view (y 44 to 428), red: the ego is at fault.
+  const auto plate = [&](std::size_t frame) { return frames.pixel(frame, 4, 424); };
+  for (const std::size_t during : {1U, 2U}) {
+    expectColor(plate(during), {163, 25, 25});
+    // The front view is that of the contact although its CBV is gone: the label's purple.
+    expectColor(frames.pixel(during, 4, 48), {123, 31, 162});
+  }
+  // The ring of 26 pixels is around the place of the contact, 2.25 m (12 pixels) ahead of the ego
+  // at 1 s: above it at (972, 356).
+  expectColor(frames.pixel(1, 972, 356), {163, 25, 25});
+  EXPECT_GT(plate(0)[2], 60);  // a road, no red
+  expectColor(plate(3), {245, 246, 248});
+}
+
+/// CBVs "a" (slot 0) and "b" (slot 1) at these distances east of the ego.
+std::string followed(FollowedCbv& focus, double a, double b) {
+  traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+  snapshot.vehicles.resize(1);
+  const Eigen::Vector2d ego = snapshot.vehicles[0].state.position;
+  for (const auto& [id, distance] : {std::pair("a", a), std::pair("b", b)}) {
+    snapshot.vehicles.push_back(test::sampleVehicle(id, traffic::VehicleRole::kCbv,
+                                                    ego + Eigen::Vector2d(distance, 0), 0.0, 5.0));
+    snapshot.vehicles.back().cbv_slot = id[0] - 'a';
+  }
+  const traffic::Vehicle* shown = focus.update(snapshot);
+  return shown == nullptr ? "" : shown->id;
+}
+
+TEST(FollowedCbv, IsTheNearestAndChangesOnlyForOneThatIsClearlyNearer) {
+  FollowedCbv focus;
+  EXPECT_EQ(followed(focus, 30, 20), "b");  // not slot 0
+  EXPECT_EQ(followed(focus, 18, 20), "b");  // 2 m nearer
+  EXPECT_EQ(followed(focus, 20, 20), "b");
+  EXPECT_EQ(followed(focus, 16, 20), "a");  // 4 m nearer
+  EXPECT_EQ(followed(focus, 19, 17), "a");
+  EXPECT_EQ(followed(focus, 19, 16), "b");  // 3 m
+  traffic::TrafficSnapshot alone = test::sampleSnapshot(0);
+  EXPECT_EQ(focus.update(alone), nullptr);
+  EXPECT_EQ(followed(focus, 20, 21), "a");
+  FollowedCbv fresh;
+  EXPECT_EQ(followed(fresh, 20, 20), "a");  // a tie: the lower slot
 }
 
 TEST(SessionVideo, EqualSessionsGiveEqualFiles) {

@@ -168,9 +168,11 @@ TEST(Metrics, AcknowledgesEveryTickAndWritesTheResult) {
   const fs::path folder = resultFolder();
   FakeSimulator simulator(ros::kMetricsNode, folder);
   runObserver(simulator);
-  EXPECT_EQ(core::readFile(folder / "exit_code", "exit code"), "0\n");
+  // It ended as completed, but drove far less than the 90 % that the scenario's rules ask for.
+  EXPECT_EQ(core::readFile(folder / "exit_code", "exit code"), "1\n");
   const std::string summary = core::readFile(folder / "summary.json", "summary");
   EXPECT_NE(summary.find("\"status\": \"completed\""), std::string::npos) << summary;
+  EXPECT_NE(summary.find("\"outcome\": \"failed\""), std::string::npos) << summary;
   EXPECT_NE(summary.find("\"ego:test\""), std::string::npos) << summary;
   const std::string trace = core::readFile(folder / "trace.csv", "trace");
   EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'),

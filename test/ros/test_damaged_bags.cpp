@@ -59,7 +59,7 @@ class DamagedBags : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TemporaryFolder>();
     test::recordSession(folder_->path() / "live",
-                        {"cbv_planner=pdm_lite", "protocol.time_limit=20"});
+                        {"cbv_planner=pdm_lite", "protocol.time_limit=20", "verdict.judge=false"});
     bytes_ = core::readFile(bag(), "bag");
   }
   static void TearDownTestSuite() { folder_.reset(); }

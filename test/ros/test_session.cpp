@@ -120,16 +120,16 @@ std::map<std::string, int> countsIn(const fs::path& bag_file) {
 }
 
 TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
-  const std::string log =
-      launch("e2e_cdiff session.launch",
-             "scenario:=crossing_left_turn seed:=2 record:=true set:=protocol.time_limit=8");
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=crossing_left_turn seed:=2 record:=true "
+                                 "set:=\"protocol.time_limit=8 verdict.judge=false\"");
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   EXPECT_EQ(summary()["status"], "timed_out") << log;
   EXPECT_EQ(exitCode(), "0\n");
   scenario::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
-  request.set = {"protocol.time_limit=8"};
+  request.set = {"protocol.time_limit=8", "verdict.judge=false"};
   const fs::path alone = folder_ / "one_process";
   EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, alone));
   EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
@@ -182,12 +182,12 @@ BagImages imagesIn(const fs::path& file) {
 TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
   const std::string log = launch("e2e_cdiff session.launch",
                                  "scenario:=crossing_left_turn seed:=2 record:=true camera:=true "
-                                 "set:=protocol.time_limit=8");
+                                 "set:=\"protocol.time_limit=8 verdict.judge=false\"");
   EXPECT_EQ(exitCode(), "0\n") << log;
   scenario::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
-  request.set = {"protocol.time_limit=8"};
+  request.set = {"protocol.time_limit=8", "verdict.judge=false"};
   EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));
   BagImages images = imagesIn(results() / "session.bag");
   EXPECT_GT(images.occupied.size(), 0U) << "the session shows no CBV; choose one that does";
@@ -199,7 +199,7 @@ TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
 TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag) {
   const fs::path alone = folder_ / "one_process";
   const std::string model = testing::writeRandomModel(folder_ / "model");
-  const std::string settings = "protocol.time_limit=8 diffusion.model=" + model;
+  const std::string settings = "protocol.time_limit=8 verdict.judge=false diffusion.model=" + model;
   const std::string log = launch("e2e_cdiff session.launch",
                                  "scenario:=crossing_left_turn seed:=2 record:=true "
                                  "cbv_planner:=diffusion set:=\"" +
@@ -249,11 +249,12 @@ void expectSameResult(const fs::path& replayed, const fs::path& live) {
 
 TEST_F(Session, ReplayOfTheNodeGraphsBagHasItsResultOnTheCommandLineAndFromRoslaunch) {
   const std::string model = testing::writeRandomModel(folder_ / "model");
-  const std::string log = launch("e2e_cdiff session.launch",
-                                 "scenario:=crossing_left_turn seed:=2 record:=true "
-                                 "cbv_planner:=diffusion set:=\"protocol.time_limit=8 "
-                                 "diffusion.model=" +
-                                     model + "\"");
+  const std::string log =
+      launch("e2e_cdiff session.launch",
+             "scenario:=crossing_left_turn seed:=2 record:=true "
+             "cbv_planner:=diffusion set:=\"protocol.time_limit=8 verdict.judge=false "
+             "diffusion.model=" +
+                 model + "\"");
   ASSERT_EQ(exitCode(), "0\n") << log;
   const fs::path live = folder_ / "live";
   fs::rename(results(), live);

@@ -27,6 +27,11 @@ TEST_P(ShippedScenario, LoadsWithNetworkRouteAndPlanners) {
   EXPECT_NO_THROW(setup.makeCbvPlanner());
 }
 
+TEST_P(ShippedScenario, CarriesTheStandardRules) {
+  EXPECT_EQ(core::dumpOptions(loadScenario(GetParam()).verdict),
+            core::dumpOptions(VerdictOptions::standard()));
+}
+
 TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
   const std::string text = core::dumpOptions(loadScenario(GetParam()));
   ScenarioOptions again;
@@ -64,6 +69,17 @@ std::string errorOf(const SessionRequest& request) {
 
 bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+TEST(SessionRequest, ABench2DriveRouteCarriesTheStandardRules) {
+  SessionRequest request;
+  request.bench2drive = "routes.xml";
+  request.route = "28035";
+  request.network = "roundabout";
+  EXPECT_EQ(core::dumpOptions(resolveRequest(request).verdict),
+            core::dumpOptions(VerdictOptions::standard()));
+  request.set = {"verdict.minimum_route_completion=50"};
+  EXPECT_EQ(resolveRequest(request).verdict.minimum_route_completion, 50.0);
 }
 
 TEST(SessionRequest, UnknownScenarioNamesTheNearest) {

@@ -64,6 +64,11 @@ TEST(ShippedTestSuite, IsWhatTheCommandMakes) {
 
 class TestRoute : public testing::TestWithParam<SuiteRoute> {};
 
+TEST_P(TestRoute, CarriesTheStandardRules) {
+  EXPECT_EQ(core::dumpOptions(scenarioOf(GetParam(), {}).verdict),
+            core::dumpOptions(scenario::VerdictOptions::standard()));
+}
+
 /// From the route's own points, independent of what the manifest says.
 TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
   const SuiteRoute& planned = GetParam();

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/report/verdict.h"
+
 namespace cdiff::evaluation {
 
 /// Values by name; a figure that a session does not have is not there.
@@ -19,8 +21,8 @@ const std::vector<std::string>& figureNames();
 struct SummaryFacts {
   std::string status;
   std::string fault;  ///< text of the last fault, or empty
-  bool passed = false;
-  std::vector<std::string> failures;  ///< of the verdict
+  report::Outcome verdict = report::Outcome::kError;
+  std::vector<std::string> reasons;  ///< of the verdict
   double simulated_seconds = 0.0;
   Figures figures;
 };

@@ -24,12 +24,14 @@ struct RunRecord {
   int attempts = 0;
   double wall_seconds = 0.0;  ///< of the last attempt
   double simulated_seconds = 0.0;
-  bool passed = false;                ///< the scenario's verdict
-  std::vector<std::string> failures;  ///< of the verdict
-  Figures figures;                    ///< of a session that ended by its own rules
+  report::Outcome verdict = report::Outcome::kError;  ///< of a session that ended by its own rules
+  std::vector<std::string> reasons;                   ///< of the verdict
+  Figures figures;                                    ///< of a session that ended by its own rules
 
   /// Whether the session ended by its own rules.
   bool complete() const;
+  /// Whether the session ended by its own rules, with this verdict.
+  bool has(report::Outcome outcome) const { return complete() && verdict == outcome; }
   /// Whether it was started, and broke.
   bool failed() const { return status == "error"; }
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,15 +36,31 @@ struct PostEncroachment {
   std::string reason;             ///< why it is absent; else empty
 };
 
+/// A contact of the ego and who is at fault (contact_fault.h).
+struct EgoContact {
+  std::uint64_t tick = 0;  ///< first tick with overlap
+  double seconds = 0.0;    ///< its time [s]
+  std::string partner;     ///< id of the other vehicle
+  bool ego_at_fault = false;
+  std::string reason;          ///< why, in a short sentence
+  double ego_speed = 0.0;      ///< at that tick [m/s]
+  double partner_speed = 0.0;  ///< [m/s]
+  std::string ego_side;        ///< "front", "rear", "left side", "right side"; empty: not known
+  std::string partner_side;
+  double x = 0.0;  ///< of the contact, map frame [m]
+  double y = 0.0;  ///< [m]
+};
+
 /// Every number here that is published has a row in figure_definitions.h.
 struct SessionMeasures {
   // Ego.
   double route_completion_percent = 0.0;
   double driving_score = 0.0;
-  std::size_t ego_collisions = 0;  ///< contacts of the ego, charged or not
-  std::string protocol;            ///< preset whose rules the score and the infractions follow
-  bool blocked = false;            ///< the session ended because the ego stood still
-  Measure penalty;                 ///< of the infractions, in [0, 1]
+  std::size_t ego_collisions = 0;        ///< contacts of the ego, charged or not
+  std::vector<EgoContact> ego_contacts;  ///< each of them, in order of time
+  std::string protocol;  ///< preset whose rules the score and the infractions follow
+  bool blocked = false;  ///< the session ended because the ego stood still
+  Measure penalty;       ///< of the infractions, in [0, 1]
   std::map<std::string, Measure> infractions;  ///< by name, see EgoInfractions::measures
   Measure ego_off_road_percent;  ///< share of ticks with the ego's centre off the drivable area
   // CBVs, all slots together.

@@ -18,7 +18,8 @@ std::string selectionTable(const SessionResult& result);
 std::string planTable(const PlanLog& plans);
 std::string guidanceTable(const GuidanceLog& log);
 std::string rejectionTable(const CbvLog& cbv);
-std::string contactTable(const Timeline& timeline);
+/// Of all vehicles; those of the ego with who is at fault and why.
+std::string contactTable(const SessionResult& result);
 std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies);
 std::string faultTable(const std::vector<traffic::Fault>& faults);
 std::string originTable(const SessionResult& result);

@@ -30,7 +30,7 @@ class ResultWriter : public scenario::SessionObserver {
   Verdict finish(double wall_seconds);
   /// The table that a terminal shows: the main figures, the verdict, the paths.
   std::string table() const;
-  /// Exit code of `cdiff` for this session: 0 passed, 1 verdict failed, 2 error, 130 interrupted.
+  /// Exit code of `cdiff` for this session (exitCodeOf its outcome).
   int exitCode() const;
   /// What was found; complete after `finish`.
   const SessionResult& result() const;

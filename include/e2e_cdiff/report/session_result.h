@@ -49,7 +49,6 @@ struct SessionResult {
   metrics::SessionMeasures measures = {};
   std::map<std::string, LatencyFigures> latencies = {};
   std::vector<traffic::Fault> faults = {};
-  std::vector<Check> checks = {};
   Verdict verdict = {};
 };
 

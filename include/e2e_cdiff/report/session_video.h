@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Makes session.mp4 while a session runs: 1280 x 720 pixels, 10 frames per simulated second; the
-/// front view of a CBV and what ego and CBVs do on the left, the world from above around the ego on
-/// the right; two seconds with the verdict at the end. Frames are functions of the session alone.
+/// front view of the CBV nearest to the ego and what ego and CBVs do on the left, the world from
+/// above around the ego on the right; two seconds with the verdict at the end. Frames are functions
+/// of the session alone.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +29,7 @@ class SessionVideo : public scenario::SessionObserver {
   SessionVideo(const scenario::SessionSetup& setup, const std::filesystem::path& folder);
   ~SessionVideo() override;
 
-  /// The front view is that of slot 0; without a CBV there, of the CBV nearest to the ego.
+  /// The front view is that of the CBV nearest to the ego; contacts of the ego stay for 1.5 s.
   void observe(const scenario::TickRecord& record) override;
   /// Adds the verdict and gives the file its name. Call once, when the result is complete.
   void finish(const SessionResult& result);

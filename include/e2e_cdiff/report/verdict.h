@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Judges a session by its scenario's rules. A session that ended with error or interrupted is
-/// never passed, and its rules are not judged.
+/// Judges a session by its scenario's rules. `judge` is the one place that decides: report, video,
+/// summary, JUnit, tables, batches and exit codes read what it found.
 #pragma once
 
 #include <string>
@@ -13,34 +13,55 @@
 
 namespace cdiff::report {
 
-/// What the verdict says.
-struct Verdict {
-  bool passed = false;
-  std::vector<std::string> failures;  ///< one sentence per rule that was not met
+/// What became of a session.
+enum class Outcome {
+  kPassed,
+  kStruck,     ///< passed, but somebody drove into the ego
+  kFailed,     ///< a rule was not met
+  kNotJudged,  ///< ended by itself, without any rule
+  kError,      ///< broke
+  kInterrupted
 };
 
-enum class CheckOutcome { kPassed, kFailed, kError, kSkipped };
+/// "passed", "struck", "failed", "not_judged", "error" or "interrupted": in files.
+const char* toText(Outcome outcome);
+/// The same for people: "not judged".
+std::string wordOf(Outcome outcome);
+/// In capitals: "NOT JUDGED".
+std::string capitalsOf(Outcome outcome);
+/// Throws InputError for any other text.
+Outcome outcomeOf(const std::string& text);
+/// Of `cdiff`, scripts/session and the file exit_code: 0 passed, struck and not judged; 1 failed;
+/// 2 error; 130 interrupted.
+int exitCodeOf(Outcome outcome);
 
-/// "passed", "failed", "error" or "skipped".
+enum class CheckOutcome { kPassed, kStruck, kFailed, kError, kSkipped };
+
+/// "passed", "struck", "failed", "error" or "skipped".
 const char* toText(CheckOutcome outcome);
 
-/// One rule, or the session itself (name "session").
+/// One rule of the scenario, or the session itself (name "session").
 struct Check {
   std::string name;
   CheckOutcome outcome = CheckOutcome::kPassed;
   std::string text;  ///< what was found and what was asked
 };
 
+struct Verdict {
+  Outcome outcome = Outcome::kError;
+  std::vector<std::string> reasons;  ///< a sentence for each check that decided; empty when passed
+  std::vector<Check> checks;         ///< the session first, then each rule that the scenario sets
+};
+
 /// Whether the session ended by its own rules, so that it can be judged.
 bool endedByItself(traffic::SessionStatus status);
 
-/// The session first, then every rule in a fixed order.
-std::vector<Check> evaluateChecks(const scenario::VerdictOptions& rules,
-                                  traffic::SessionStatus status,
-                                  const metrics::SessionMeasures& measures,
-                                  const std::vector<traffic::Fault>& faults);
+/// Applies the rules of `options.verdict` in `options.mode`. A session that broke or was
+/// interrupted is not judged by them.
+Verdict judge(const scenario::ScenarioOptions& options, traffic::SessionStatus status,
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults);
 
-/// Passed when no check failed; the texts of those that did.
-Verdict verdictOf(const std::vector<Check>& checks);
+/// "cbv_1 at 5.85 s (the other's front struck the ego's rear ...)".
+std::string contactText(const metrics::EgoContact& contact);
 
 }  // namespace cdiff::report

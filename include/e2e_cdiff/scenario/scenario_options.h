@@ -19,9 +19,14 @@
 
 namespace cdiff::scenario {
 
-/// When a session passes.
+/// The rules by which a session is judged; the defaults are none.
 struct VerdictOptions {
-  double minimum_route_completion = 0.0;         ///< of the ego [%]
+  bool judge = true;                       ///< false: as if there were no rules
+  double minimum_route_completion = 0.0;   ///< of the ego [%]
+  double maximum_contacts_at_fault = 1e9;  ///< contacts that are the ego's fault
+  std::string contact_without_fault =
+      "allowed";  ///< allowed | struck | failed | by_mode: failed where CBVs drive naturalistically
+                  ///< and struck where they attack
   double minimum_driving_score = 0.0;            ///< of the ego, by the protocol [%]
   double maximum_ego_collisions = 1e9;           ///< contacts
   double maximum_red_lights = 1e9;               ///< run by the ego
@@ -32,6 +37,9 @@ struct VerdictOptions {
       statuses;  ///< allowed final statuses; empty: all but error and interrupted
 
   void describe(core::OptionsVisitor& visitor);
+  /// Rules for routes that bring none of their own, and those of the shipped scenarios: the route
+  /// driven to 90 %, neither blocked nor deviated, no contact at fault, others by mode.
+  static VerdictOptions standard();
 };
 
 /// What the report holds.
