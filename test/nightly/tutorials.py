@@ -36,12 +36,11 @@ LEFT_OUT = [
 SMALLER = [
     (r" rviz:=true", ""),
     (r"\[--quiet\]", "--quiet"),
-    (r"evaluate test_routes", "evaluate test_routes --seeds 1 --set protocol.time_limit=4"),
+    (r"evaluate test_routes", "evaluate test_routes --seeds 1 --set protocol.time_limit=4 --set verdict.judge=false"),
     (r"collect --suite (\S+)", r"collect --scenarios $(ls \1/scenarios/*.yaml | head -12)"),
     (r"(collect .*?)( --duration \d+)?$", r"\1 --duration 6"),
     (r"--time-limit \d+", "--time-limit 40"),
     (r"sampler\.mode=paper", "sampler.mode=paper --set protocol.time_limit=4"),
-    (r"(cdiff run .*--results results/my_run)$", r"\1 --record"),  # the replay further down reads its bag
 ]
 # Commands whose results an example begins with.
 BEFORE = {
