@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Build with a sanitizer of gcc in a folder of its own and run the unit tests in it.
 
-    sanitizers.py address|thread BUILD SOURCE RESULT.xml
+    sanitizers.py address|thread BUILD SOURCE RESULT.xml [PROGRAM...]
 
 `address`: AddressSanitizer and UndefinedBehaviorSanitizer, all layers without ROS and libtorch, sessions with the real SUMO among
 their tests. `thread`: ThreadSanitizer, the tests of what runs processes and threads. ROS, libtorch and oneDNN come without
@@ -30,7 +30,9 @@ OPTIONS = {"ASAN_OPTIONS": "detect_leaks=1:abort_on_error=0", "UBSAN_OPTIONS": "
 
 
 def programs(folder):
-    """Names of the test programs to build."""
+    """Names of the test programs to build: those asked for, else all that the sanitizer is for."""
+    if sys.argv[5:]:
+        return sys.argv[5:]
     if KIND == "thread":
         return THREADED
     listed = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
