@@ -16,10 +16,20 @@ namespace {
 using core::InputError;
 using Groups = std::map<Factors, std::vector<const RunRecord*>>;
 
+/// Factors that say which runs belong together, whatever is compared.
+const std::set<std::string> kAlwaysPairs = {"scenario", "seed", "repetition"};
+
 std::set<std::string> levelsOf(const std::vector<RunRecord>& records, const std::string& factor) {
   std::set<std::string> levels;
   for (const RunRecord& record : records) levels.insert(record.factors.at(factor));
   return levels;
+}
+
+/// The one level of a factor that all records have; nullopt where they differ.
+std::optional<std::string> onlyLevel(const std::vector<RunRecord>& records,
+                                     const std::string& factor) {
+  const std::set<std::string> levels = levelsOf(records, factor);
+  return levels.size() == 1 ? std::make_optional(*levels.begin()) : std::nullopt;
 }
 
 /// Complete runs by their levels of the factors that pair.
@@ -74,12 +84,25 @@ std::string intervalText(const Statistics& difference) {
          core::formatFixed(*difference.mean + *difference.half_width, 3) + "]";
 }
 
+std::string levelText(const std::string& level) { return level.empty() ? "(none)" : level; }
+
+/// "; guidance_profile follows (A naturalistic, B safety_critical)".
+std::string followersText(const Comparison& comparison) {
+  std::string text;
+  for (const auto& [factor, levels] : comparison.followers) {
+    text += "; " + factor + " follows (A " + levelText(levels.first) + ", B " +
+            levelText(levels.second) + ")";
+  }
+  return text;
+}
+
 std::string tableOf(const Comparison& comparison) {
   std::string text =
       "## A = " + comparison.a + ", B = " + comparison.b + "\n\n" +
       std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
       " runs of A and " + std::to_string(comparison.runs_b) + " of B; paired by " +
       core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
+      followersText(comparison) +
       ".\n\n| figure | pairs | mean A | mean B | B - A | 95 % interval |\n"
       "|---|---|---|---|---|---|\n";
   for (const FigureComparison& figure : comparison.figures) {
@@ -91,10 +114,33 @@ std::string tableOf(const Comparison& comparison) {
   return text;
 }
 
+std::map<std::string, RunSet> setsByLevel(const std::vector<RunRecord>& records,
+                                          const std::string& factor) {
+  std::map<std::string, RunSet> sets;
+  for (const RunRecord& record : records) {
+    RunSet& set = sets[record.factors.at(factor)];
+    set.name = factor + " " + record.factors.at(factor);
+    set.records.push_back(record);
+  }
+  return sets;
+}
+
+/// Paired over all factors but `factor` and those that follow it.
+Comparison compareLevel(const RunSet& a, const RunSet& b, const std::string& factor,
+                        const std::vector<std::string>& names) {
+  const Followers followers = followingFactors(a, b, factor);
+  std::set<std::string> paired_by(factorNames().begin(), factorNames().end());
+  paired_by.erase(factor);
+  for (const auto& follower : followers) paired_by.erase(follower.first);
+  Comparison comparison = compareRuns(a, b, paired_by, names);
+  comparison.followers = followers;
+  return comparison;
+}
+
 }  // namespace
 
 std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b) {
-  std::set<std::string> shared = {"scenario", "seed", "repetition"};
+  std::set<std::string> shared = kAlwaysPairs;
   for (const std::string& factor : factorNames()) {
     const std::set<std::string> of_b = levelsOf(b.records, factor);
     for (const std::string& level : levelsOf(a.records, factor)) {
@@ -104,11 +150,27 @@ std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b) {
   return shared;
 }
 
+Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& factor) {
+  Followers followers;
+  for (const std::string& other : factorNames()) {
+    if (other == factor || kAlwaysPairs.count(other) != 0) continue;
+    const auto level_a = onlyLevel(a.records, other);
+    const auto level_b = onlyLevel(b.records, other);
+    if (level_a && level_b && *level_a != *level_b) followers[other] = {*level_a, *level_b};
+  }
+  return followers;
+}
+
 Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
                        const std::vector<std::string>& names) {
   const Groups groups_a = grouped(a.records, paired_by);
   const Groups groups_b = grouped(b.records, paired_by);
-  Comparison comparison{a.name, b.name, paired_by, 0, a.records.size(), b.records.size(), {}};
+  Comparison comparison;
+  comparison.a = a.name;
+  comparison.b = b.name;
+  comparison.paired_by = paired_by;
+  comparison.runs_a = a.records.size();
+  comparison.runs_b = b.records.size();
   for (const auto& [key, records] : groups_a) comparison.pairs += groups_b.count(key);
   for (const std::string& figure : names.empty() ? figureNames() : names) {
     FigureComparison compared = compareFigure(figure, groups_a, groups_b);
@@ -123,23 +185,16 @@ std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
   const auto& factors = factorNames();
   if (std::find(factors.begin(), factors.end(), factor) == factors.end())
     throw InputError("--factor '" + factor + "' is no factor" + nearest(factor, factors));
-  const std::set<std::string> levels = levelsOf(records, factor);
-  if (levels.count(baseline) == 0) {
+  const std::map<std::string, RunSet> sets = setsByLevel(records, factor);
+  if (sets.count(baseline) == 0) {
+    const std::set<std::string> levels = levelsOf(records, factor);
     throw InputError("--baseline '" + baseline + "' is no level of " + factor +
                      nearest(baseline, {levels.begin(), levels.end()}));
   }
-  std::map<std::string, RunSet> sets;
-  for (const RunRecord& record : records) {
-    RunSet& set = sets[record.factors.at(factor)];
-    set.name = factor + " " + record.factors.at(factor);
-    set.records.push_back(record);
-  }
-  std::set<std::string> paired_by(factors.begin(), factors.end());
-  paired_by.erase(factor);
   std::vector<Comparison> comparisons;
   for (const auto& [level, set] : sets) {
-    if (level == baseline) continue;
-    comparisons.push_back(compareRuns(sets.at(baseline), set, paired_by, names));
+    if (level != baseline)
+      comparisons.push_back(compareLevel(sets.at(baseline), set, factor, names));
   }
   return comparisons;
 }

@@ -7,6 +7,8 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/evaluation/comparison.h"
+#include "e2e_cdiff/evaluation/matrix.h"
+#include "e2e_cdiff/evaluation/run_plan.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {
@@ -62,6 +64,49 @@ TEST(Comparison, PairsALevelWithItsBaseline) {
   EXPECT_EQ(comparisons[0].figures.front().difference.n, 1U);
   EXPECT_FALSE(comparisons[0].figures.front().difference.half_width.has_value());
   EXPECT_DOUBLE_EQ(*comparisons[1].figures.front().difference.mean, 4.0);  // of 3 and 5
+}
+
+/// Runs of a matrix as if all had been driven, those of `mode` with a score `gain` above 50.
+std::vector<RunRecord> drivenRuns(const std::string& matrix, const std::string& mode, double gain) {
+  std::vector<RunRecord> records;
+  for (const PlannedRun& run : planRuns(loadMatrix(matrix), matrix)) {
+    records.push_back(recordOf(run));
+    records.back().status = "completed";
+    records.back().figures["ego_driving_score"] =
+        50.0 + (run.factors.at("mode") == mode ? gain : 0.0);
+  }
+  return records;
+}
+
+TEST(Comparison, AFactorThatFollowsTheComparedOneDoesNotPair) {
+  // 10 scenarios x 3 seeds in 2 modes, each mode with the guidance profile of its name: 30 pairs.
+  const auto records = drivenRuns("test_routes", "safety_critical", -8.0);
+  const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_EQ(comparisons[0].pairs, 30U);
+  EXPECT_DOUBLE_EQ(*comparisons[0].figures.front().difference.mean, -8.0);
+  EXPECT_EQ(comparisons[0].paired_by.count("guidance_profile"), 0U);
+  EXPECT_NE(comparisonMarkdown(comparisons)
+                .find("; guidance_profile follows (A naturalistic, B safety_critical)."),
+            std::string::npos);
+}
+
+TEST(Comparison, AFactorWithSeveralLevelsPairs) {
+  // Seed 1 drove both profiles in both modes: the profile does not follow, so profiles pair.
+  std::vector<RunRecord> records;
+  for (const char* mode : {"naturalistic", "safety_critical"}) {
+    for (const char* profile : {"none", "naturalistic"}) {
+      records.push_back(recordWith({"s", "1", profile}, profile[1] == 'o' ? 10 : 30));
+      records.back().factors["mode"] = mode;
+    }
+  }
+  const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_EQ(comparisons[0].pairs, 2U);
+  EXPECT_TRUE(comparisons[0].followers.empty());
+  // Scenarios and seeds say which runs belong together, whatever is compared.
+  records[2].factors["seed"] = records[3].factors["seed"] = "2";
+  EXPECT_EQ(compareLevels(records, "mode", "naturalistic", {})[0].pairs, 0U);
 }
 
 TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {

@@ -4,8 +4,10 @@
 /// figure is compared over the pairs (paired t).
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/evaluation/run_record.h"
@@ -21,10 +23,14 @@ struct FigureComparison {
   Statistics difference;  ///< of B - A; n is the number of pairs
 };
 
+/// Factors that change together with the one compared, each with its level in A and in B.
+using Followers = std::map<std::string, std::pair<std::string, std::string>>;
+
 struct Comparison {
   std::string a;  ///< names for people
   std::string b;
   std::set<std::string> paired_by;  ///< factors
+  Followers followers;              ///< factors that neither pair nor are compared
   std::size_t pairs = 0;            ///< whose runs are both complete
   std::size_t runs_a = 0;           ///< all of them
   std::size_t runs_b = 0;
@@ -40,12 +46,17 @@ struct RunSet {
 /// Scenario, seed, repetition, and every other factor of which both sets have a level in common.
 std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b);
 
+/// Factors, other than scenario, seed and repetition, that have one level in A and another in B:
+/// they follow `factor`, as the guidance profile follows the mode where nothing else sets it.
+Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& factor);
+
 /// Figures of `names`, or all when empty. Runs of one side that agree in all of `paired_by` count
 /// as one by their mean.
 Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
                        const std::vector<std::string>& names);
 
-/// Each level of a factor against its baseline level, paired over everything else. Throws
+/// Each level of a factor against its baseline level, paired over all other factors but those that
+/// follow it. Throws
 /// InputError for an unknown factor or a baseline that no run has, naming the nearest.
 std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
                                       const std::string& factor, const std::string& baseline,
