@@ -24,9 +24,9 @@ CbvSelector::CbvSelector(const CbvOptions& options, int max_cbv, const map::Lane
                          const map::Route& ego_route)
     : options_(validated(options)),
       max_cbv_(max_cbv),
-      graph_(graph),
+      graph_(graph.allowingTurnsOf(ego_route)),
       ego_route_(ego_route),
-      search_(options_, graph, ego_route) {
+      search_(options_, graph_, ego_route) {
   if (max_cbv < 0)
     throw core::InputError("max_cbv is " + std::to_string(max_cbv) + "; expected 0 or more");
 }

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/map/lane_graph.h"
 #include "e2e_cdiff/map/network_import.h"
 
 namespace cdiff::cli {
@@ -23,6 +24,8 @@ void importOne(const std::string& source, const std::string& output) {
             << "edges     " << network.edgeIds().size() << "\n"
             << "junctions " << network.junctions().size() << "\n"
             << "levels    " << area.levelCount() << "\n";
+  const std::string turns = map::turnRoundText(network);
+  if (!turns.empty()) std::cout << "turns     " << turns << "\n";
   for (const std::string& change : imported.changes) std::cout << "change    " << change << "\n";
   if (!output.empty()) core::writeFileAtomically(output, imported.text);
 }

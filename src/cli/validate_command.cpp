@@ -24,6 +24,8 @@ bool validateOne(const std::string& scenario_name, bool print) {
     std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
     out << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())
         << " m)\n";
+    const std::string turns = map::turnRoundText(setup.network());
+    if (!turns.empty()) out << "  network: " << turns << "\n";
     for (const std::string& change : setup.import().changes) out << "  network: " << change << "\n";
     if (print) std::cout << core::dumpOptions(options, true);
     return true;

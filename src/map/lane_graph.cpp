@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
 #include "lane_search.h"
 #include "route_builder.h"
 
@@ -15,11 +16,22 @@ namespace {
 
 constexpr double kBeyondJunction = 10.0;  // [m] at least so much of the edge after a junction
 
-SearchLimits limitsOf(double max_length, bool lane_changes) {
+SearchLimits limitsOf(double max_length, bool lane_changes, const TurnRounds& turn_rounds) {
   SearchLimits limits;
   limits.max_length = max_length;
   limits.lane_changes = lane_changes;
+  limits.turn_rounds = &turn_rounds;
   return limits;
+}
+
+/// The first lane outside the junction that a link leads into.
+const Lane& laneAfter(const RoadNetwork& network, LaneIndex lane) {
+  constexpr int kLongestChain = 8;  // internal lanes in a row
+  for (int i = 0; i < kLongestChain && network.lane(lane).internal; ++i) {
+    if (network.lane(lane).next.empty()) break;
+    lane = network.lane(lane).next.front().to;
+  }
+  return network.lane(lane);
 }
 
 double endHeading(const Lane& lane) { return lane.centerline.headingAt(lane.centerline.length()); }
@@ -27,7 +39,8 @@ double endHeading(const Lane& lane) { return lane.centerline.headingAt(lane.cent
 /// Goes straight on along routable lanes.
 class Continuation {
  public:
-  Continuation(const RoadNetwork& network, LaneIndex lane) : network_(network) {
+  Continuation(const RoadNetwork& network, const TurnRounds& turn_rounds, LaneIndex lane)
+      : network_(network), turn_rounds_(turn_rounds) {
     path_.lanes.push_back(lane);
   }
 
@@ -79,6 +92,8 @@ class Continuation {
     for (const LaneLink& link : network_.lane(from).next) {
       const Lane& next = network_.lane(link.to);
       if (!next.routable) continue;
+      if (turnsRound(network_.lane(from), link) && turn_rounds_.count({from, link.to}) == 0)
+        continue;
       const double heading = next.internal ? endHeading(next) : next.centerline.headingAt(0.0);
       const double turn = std::abs(core::angleDifference(heading, endHeading(network_.lane(from))));
       if (best != kNoLane && turn >= smallest) continue;
@@ -89,20 +104,60 @@ class Continuation {
   }
 
   const RoadNetwork& network_;
+  const TurnRounds& turn_rounds_;
   LanePath path_;
   double surplus_ = 0.0;
 };
 
 }  // namespace
 
+TurnRounds turnRounds(const RoadNetwork& network) {
+  TurnRounds found;
+  for (std::size_t i = 0; i < network.lanes().size(); ++i) {
+    for (const LaneLink& link : network.lanes()[i].next) {
+      if (turnsRound(network.lanes()[i], link)) found.emplace(static_cast<LaneIndex>(i), link.to);
+    }
+  }
+  return found;
+}
+
+std::string turnRoundText(const RoadNetwork& network) {
+  constexpr std::size_t kShown = 3;
+  const TurnRounds found = turnRounds(network);
+  if (found.empty()) return {};
+  std::vector<std::string> shown;
+  for (const auto& [from, to] : found) {
+    if (shown.size() == kShown) break;
+    shown.push_back(network.lane(from).id + " -> " + laneAfter(network, to).id);
+  }
+  if (found.size() > kShown) shown.emplace_back("...");
+  return std::to_string(found.size()) +
+         (found.size() == 1 ? " connection turns" : " connections turn") + " round (" +
+         core::joinText(shown, ", ") + "); CBVs use those of the ego's route only";
+}
+
+LaneGraph LaneGraph::allowingTurnsOf(const Route& route) const {
+  const std::set<LaneIndex> driven(route.lanes().begin(), route.lanes().end());
+  std::set<std::pair<LaneIndex, LaneIndex>> steps;  // a route skips lanes shorter than its spacing
+  for (std::size_t i = 1; i < route.lanes().size(); ++i)
+    steps.emplace(route.lanes()[i - 1], route.lanes()[i]);
+  LaneGraph graph(network_);
+  for (const auto& [from, to] : turnRounds(network_)) {
+    const bool inside = network_.lane(to).internal && driven.count(to) != 0;
+    const LaneIndex after = network_.findLane(laneAfter(network_, to).id);
+    if (inside || steps.count({from, after}) != 0) graph.turn_rounds_.emplace(from, to);
+  }
+  return graph;
+}
+
 std::optional<LanePath> LaneGraph::shortestPath(const LanePosition& start, const LanePosition& goal,
                                                 double max_length, bool lane_changes) const {
-  return LaneSearch(network_, start, limitsOf(max_length, lane_changes)).pathTo(goal);
+  return LaneSearch(network_, start, limitsOf(max_length, lane_changes, turn_rounds_)).pathTo(goal);
 }
 
 std::vector<double> LaneGraph::distancesFrom(const LanePosition& start, double max_length,
                                              bool lane_changes) const {
-  const LaneSearch search(network_, start, limitsOf(max_length, lane_changes));
+  const LaneSearch search(network_, start, limitsOf(max_length, lane_changes, turn_rounds_));
   std::vector<double> lengths(network_.lanes().size());
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     lengths[i] = search.lengthToBegin(static_cast<LaneIndex>(i));
@@ -125,7 +180,7 @@ Route LaneGraph::extended(const Route& route, double length) const {
   if (missing <= 0.0 && !network_.lane(last).internal) return route;
   const Eigen::Vector3d end = route.path().points().back();
   const double begin = line.project(end.head<2>()).arc_length;
-  Continuation continuation(network_, last);
+  Continuation continuation(network_, turn_rounds_, last);
   continuation.extend(begin, std::max(0.0, missing));
   const bool stays = continuation.path().lanes.size() == 1;
   if (stays && continuation.goal() - begin < 0.1) return route;

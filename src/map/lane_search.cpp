@@ -34,6 +34,10 @@ double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_l
   return beside.project(line.positionAt(arc_length), begin, end).arc_length;
 }
 
+bool turnsRound(const Lane& from, const LaneLink& link) {
+  return link.direction == 't' && !from.internal;
+}
+
 LaneSearch::LaneSearch(const RoadNetwork& network, const LanePosition& start,
                        const SearchLimits& limits)
     : network_(network),
@@ -66,6 +70,9 @@ void LaneSearch::expand(std::size_t node) {
   const double remaining = node < count() ? length : std::max(0.0, length + driven_[node]);
   for (const LaneLink& next : lane.next) {
     if (!network_.lane(next.to).allows_cars) continue;
+    if (limits_.turn_rounds != nullptr && turnsRound(lane, next) &&
+        limits_.turn_rounds->count({index, next.to}) == 0)
+      continue;
     relax(static_cast<std::size_t>(next.to), node, rank_[node] + remaining, driven_[node] + length);
   }
   if (!limits_.lane_changes) return;

@@ -20,11 +20,15 @@ double laneChangePenalty(const Lane& lane, double available);
 double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length,
                         LaneIndex to);
 
+/// Whether a link enters a junction to turn round (SUMO's direction t). What has entered may leave.
+bool turnsRound(const Lane& from, const LaneLink& link);
+
 /// What a search may use.
 struct SearchLimits {
   double max_length = std::numeric_limits<double>::infinity();  ///< driven [m]
   bool lane_changes = true;
-  bool routable_only = true;  ///< the start's and the goal's lane always count
+  bool routable_only = true;                ///< the start's and the goal's lane always count
+  const TurnRounds* turn_rounds = nullptr;  ///< the only ones to use; nullptr: all
 };
 
 class LaneSearch {

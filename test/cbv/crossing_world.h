@@ -32,10 +32,9 @@ inline test::NetworkText crossingText() {
 
 /// Network, ego route (x = 0..290: arc length = x) and a selector.
 struct CrossingWorld {
-  explicit CrossingWorld(const CbvOptions& options = {}, int max_cbv = 2)
-      : network(crossingText().network()),
-        graph(network),
-        selector(options, max_cbv, graph, route) {}
+  explicit CrossingWorld(const CbvOptions& options = {}, int max_cbv = 2,
+                         const test::NetworkText& text = crossingText())
+      : network(text.network()), graph(network), selector(options, max_cbv, graph, route) {}
 
   map::RoadNetwork network;
   map::LaneGraph graph;

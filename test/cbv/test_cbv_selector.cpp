@@ -125,6 +125,21 @@ TEST(CbvSelector, NamesTheFirstGateThatFails) {
                      [](const auto& a, const auto& b) { return a.vehicle_id < b.vehicle_id; }));
 }
 
+TEST(CbvSelector, NoConflictLiesBeyondATurnRound) {
+  // Against the ego along y = 6, then back along its exit: 28 m to the turn, 10 m round it, x - 112
+  // m on; the ego has x - 70 m to go, so the distances differ by 4 m.
+  for (const char direction : {'l', 't'}) {
+    test::NetworkText text = crossingText();
+    text.edge("oncoming", {"160,6 112,6"}, "v", "j").edge(":j_3", {"112,6 108,3 112,0"});
+    text.connection("oncoming_0", "east_0", ":j_3_0", direction);
+    CrossingWorld world({}, 2, text);
+    const auto selection = world.selector.update(
+        crossingSnapshot(kFirst, 70.0, {test::vehicle("a", {140.0, 6.0, 180.0, 9.0})}));
+    EXPECT_EQ(selection.assignments.size(), direction == 'l' ? 1U : 0U);
+    EXPECT_EQ(reasonOf(selection, "a"), direction == 'l' ? "" : kNoWay);
+  }
+}
+
 TEST(CbvSelector, FieldOfViewIsAFullAngle) {
   // At the preview point (105, -28) looking north, the grid's points with x >= 112 lie at atan((x -
   // 105) / 28) >= 14.04 degrees on the right; those with a way from it are only these.

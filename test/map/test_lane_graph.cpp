@@ -103,6 +103,61 @@ TEST_F(LaneGraphTest, MeasuresToManyLanesAtOnce) {
   EXPECT_TRUE(std::isinf(straight[static_cast<std::size_t>(lane("c_0"))]));
 }
 
+/// "a" eastwards to "b" (100 m each), and back on "d" and "e"; a car may turn round from "a" to "e"
+/// inside ":j" (10 m), or go on to "b" and turn at its end inside ":k" (20 m) to "d".
+test::NetworkText thereAndBack() {
+  test::NetworkText text;
+  text.edge("a", {"0,0 100,0"}, "i", "j")
+      .edge("b", {"100,0 200,0"}, "j", "k")
+      .edge("d", {"200,4 100,4"}, "k", "j")
+      .edge("e", {"100,4 0,4"}, "j", "i")
+      .edge(":j_0", {"100,0 105,2 100,4"})
+      .edge(":k_0", {"200,0 209,2 200,4"})
+      .connection("a_0", "b_0")
+      .connection("d_0", "e_0")
+      .connection("a_0", "e_0", ":j_0_0", 't')
+      .connection("b_0", "d_0", ":k_0_0", 't');
+  return text;
+}
+
+TEST(LaneGraphTurns, WaysDoNotTurnRound) {
+  const RoadNetwork network = thereAndBack().network();
+  const LaneGraph graph(network);
+  const LanePosition start{network.findLane("a_0"), 20.0};
+  const LaneIndex back = network.findLane("e_0");
+  EXPECT_TRUE(graph.shortestPath(start, {network.findLane("b_0"), 50.0}, 1000.0).has_value());
+  EXPECT_FALSE(graph.shortestPath(start, {back, 50.0}, 1000.0).has_value());
+  EXPECT_TRUE(std::isinf(graph.distancesFrom(start, 1000.0)[static_cast<std::size_t>(back)]));
+  // Straight on to the end of "b", 180 m from the start, and not back from there.
+  const auto path = graph.shortestPath(start, {network.findLane("b_0"), 50.0}, 1000.0);
+  const Route longer = graph.extended(graph.toRoute(*path, 20.0, 50.0), 500.0);
+  EXPECT_NEAR(longer.length(), 180.0, 1.0);
+  // Who is turning already may finish.
+  const LanePosition turning{network.findLane(":j_0_0"), 2.0};
+  EXPECT_TRUE(graph.shortestPath(turning, {back, 50.0}, 1000.0).has_value());
+}
+
+TEST(LaneGraphTurns, WaysTurnRoundWhereTheEgoDoes) {
+  const RoadNetwork network = thereAndBack().network();
+  const LaneGraph graph(network);
+  LanePath turn;
+  for (const char* id : {"a_0", ":j_0_0", "e_0"}) turn.lanes.push_back(network.findLane(id));
+  const LaneGraph allowing = graph.allowingTurnsOf(graph.toRoute(turn, 10.0, 50.0));
+  const LanePosition start{network.findLane("a_0"), 20.0};
+  const auto path = allowing.shortestPath(start, {network.findLane("e_0"), 50.0}, 1000.0);
+  ASSERT_TRUE(path.has_value());
+  EXPECT_EQ(path->lanes, turn.lanes);
+  // The turn at the end of "b" is not the ego's.
+  EXPECT_FALSE(allowing.shortestPath(start, {network.findLane("d_0"), 50.0}, 1000.0).has_value());
+}
+
+TEST(LaneGraphTurns, NamesConnectionsThatTurnRound) {
+  EXPECT_EQ(turnRoundText(thereAndBack().network()),
+            "2 connections turn round (a_0 -> e_0, b_0 -> d_0); CBVs use those of the ego's route "
+            "only");
+  EXPECT_EQ(turnRoundText(fork().network()), "");
+}
+
 TEST_F(LaneGraphTest, PlacesPointsEveryMetreOnTheCentreLine) {
   const auto path = graph_.shortestPath({lane("a_0"), 20.0}, {lane("b_0"), 30.0}, 1000.0);
   const Route route = graph_.toRoute(*path, 20.0, 30.0);

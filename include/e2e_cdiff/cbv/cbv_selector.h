@@ -25,7 +25,7 @@ namespace cdiff::cbv {
 /// `observe` at all others.
 class CbvSelector {
  public:
-  /// Keeps references: graph and route must outlive the selector. Throws InputError for bad options
+  /// Keeps references: the graph's network and the route must outlive the selector. Throws InputError for bad options
   /// or a negative count.
   CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
               const map::Route& ego_route);
@@ -62,7 +62,7 @@ class CbvSelector {
 
   CbvOptions options_;
   int max_cbv_;
-  const map::LaneGraph& graph_;
+  map::LaneGraph graph_;  ///< turns round only where the ego's route does
   const map::Route& ego_route_;
   ConflictSearch search_;
   std::map<int, HeldCbv> slots_;

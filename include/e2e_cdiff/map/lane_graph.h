@@ -5,6 +5,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/map/route.h"
@@ -24,10 +27,24 @@ struct LanePath {
   double length = 0.0;  ///< driven length from start to goal [m], lane-change penalty not included
 };
 
+/// Connections that turn round (SUMO's direction t): the lane that they leave and the next one, an
+/// internal lane where there is one.
+using TurnRounds = std::set<std::pair<LaneIndex, LaneIndex>>;
+
+/// All of a network.
+TurnRounds turnRounds(const RoadNetwork& network);
+
+/// How many there are and the lanes of the first few, for people; empty when there is none.
+std::string turnRoundText(const RoadNetwork& network);
+
+/// Ways of the graph use no connection that turns round, but for those allowed.
 class LaneGraph {
  public:
   /// Keeps a reference: the network must outlive the graph.
   explicit LaneGraph(const RoadNetwork& network) : network_(network) {}
+
+  /// The graph with the turns round that a route of the network makes.
+  LaneGraph allowingTurnsOf(const Route& route) const;
 
   /// Shortest way between two places over routable lanes (the start's and the goal's lane always
   /// count); nullopt when there is none no longer than `max_length` [m]. `lane_changes` allows
@@ -56,6 +73,7 @@ class LaneGraph {
 
  private:
   const RoadNetwork& network_;
+  TurnRounds turn_rounds_;  ///< allowed
 };
 
 }  // namespace cdiff::map
