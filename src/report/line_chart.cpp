@@ -25,16 +25,30 @@ ChartAxes axesOf(const Chart& chart) {
   return {0.0, durationOf(chart), chart.bottom, top};
 }
 
+std::string pathOf(const std::string& style, const std::string& data) {
+  return data.empty() ? data : "<path class=\"series " + style + "\" d=\"" + data + "\"/>\n";
+}
+
+/// Points with a value are joined; one without neighbours is a dot.
 std::string seriesPath(const ChartSeries& series, const ChartAxes& axes) {
-  std::string data;
-  bool open = false;
-  for (const auto& [time, value] : series.points) {
-    if (std::isfinite(value)) {
-      data += (open ? "L" : "M") + shortNumber(axes.x(time)) + " " + shortNumber(axes.y(value));
+  std::string lines;
+  std::string dots;
+  const auto& points = series.points;
+  const auto drawn = [&](std::size_t i) {
+    return i < points.size() && std::isfinite(points[i].second);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!drawn(i)) continue;
+    const bool joins = i > 0 && drawn(i - 1);
+    const std::string place =
+        shortNumber(axes.x(points[i].first)) + " " + shortNumber(axes.y(points[i].second));
+    if (joins || drawn(i + 1)) {
+      lines += (joins ? "L" : "M") + place;
+    } else {
+      dots += "M" + place + "h0.01";
     }
-    open = std::isfinite(value);
   }
-  return data.empty() ? data : "<path class=\"series " + series.style + "\" d=\"" + data + "\"/>\n";
+  return pathOf(series.style, lines) + pathOf("dot " + series.style, dots);
 }
 
 std::string markSvg(const ChartMark& mark, const ChartAxes& axes) {

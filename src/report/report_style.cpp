@@ -122,6 +122,7 @@ svg path.stay { stroke: var(--own); stroke-width: 9; stroke-linecap: butt; }
 .chart text { fill: var(--soft); }
 svg text.end { text-anchor: end; } svg text.middle { text-anchor: middle; }
 svg path.series { stroke-width: 2; }
+svg path.series.dot { stroke-width: 6; stroke-linecap: round; }
 svg circle.mark { fill: var(--page); stroke: var(--conflict); stroke-width: 2; }
 .chart text.mark-text { fill: var(--text); font-weight: 600; paint-order: stroke;
   stroke: var(--page); stroke-width: 3px; }

@@ -25,6 +25,23 @@ void mirrorRollout(Rollout& rollout) {
     rollout.col(column) *= -1.0;
 }
 
+/// Sessions whose draw lies below the share; where that is none or all of several, the lowest draw
+/// is held out or the highest is not.
+std::set<std::uint64_t> drawHeldOut(const std::set<std::uint64_t>& sessions, double share) {
+  const core::RandomStream stream(0, "validation sessions");
+  const auto draw = [&](std::uint64_t session) { return stream.uniform({session}, 0); };
+  const auto lower = [&](std::uint64_t a, std::uint64_t b) { return draw(a) < draw(b); };
+  std::set<std::uint64_t> held_out;
+  for (const std::uint64_t session : sessions) {
+    if (draw(session) < share) held_out.insert(session);
+  }
+  if (sessions.size() < 2 || share <= 0.0) return held_out;
+  if (held_out.empty()) held_out.insert(*std::min_element(sessions.begin(), sessions.end(), lower));
+  if (held_out.size() == sessions.size())
+    held_out.erase(*std::max_element(sessions.begin(), sessions.end(), lower));
+  return held_out;
+}
+
 bool endsInLeft(const std::string& name) {
   const std::string ending = "_left";
   return name.size() >= ending.size() &&
@@ -55,15 +72,12 @@ void Dataset::readShards(const std::filesystem::path& folder) {
 }
 
 void Dataset::split(double validation_share) {
-  const core::RandomStream stream(0, "validation sessions");
   std::set<std::uint64_t> all;
-  std::set<std::uint64_t> held_out;
+  for (const Place& place : places_) all.insert(shards_[place.shard].session(place.index));
+  const std::set<std::uint64_t> held_out = drawHeldOut(all, validation_share);
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const std::uint64_t session = shards_[places_[i].shard].session(places_[i].index);
-    all.insert(session);
-    const bool held = stream.uniform({session}, 0) < validation_share;
-    if (held) held_out.insert(session);
-    (held ? validation_ : training_).push_back(i);
+    (held_out.count(session) != 0 ? validation_ : training_).push_back(i);
   }
   sessions_ = all.size();
   validation_sessions_ = held_out.size();

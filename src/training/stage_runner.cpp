@@ -143,6 +143,15 @@ void StageRunner::record(const Loss& loss, double norm, double samples_per_secon
   curves_->add(result_.steps, seconds(), figures);
 }
 
+/// Against what ends the stage first at this pace: its steps or the time limit.
+std::string StageRunner::progressText() const {
+  const std::string step = "step " + std::to_string(result_.steps);
+  const double share = static_cast<double>(result_.steps) / static_cast<double>(options_.steps);
+  const bool timed = options_.time_limit > 0.0 && seconds() / options_.time_limit >= share;
+  if (!timed) return step + "/" + std::to_string(options_.steps);
+  return step + ", " + clockText(seconds()) + " of " + clockText(options_.time_limit);
+}
+
 void StageRunner::logProgress(const Loss& loss, double norm) {
   const double elapsed = std::max(1e-9, now() - last_report_);
   const auto steps = static_cast<double>(result_.steps - last_report_step_);
@@ -150,8 +159,7 @@ void StageRunner::logProgress(const Loss& loss, double norm) {
   double left =
       static_cast<double>(options_.steps - result_.steps) * elapsed / std::max(1.0, steps);
   if (options_.time_limit > 0.0) left = std::min(left, options_.time_limit - seconds());
-  log_ << stage_.name() << " step " << result_.steps << "/" << options_.steps << " loss "
-       << formatFixed(result_.loss, 4);
+  log_ << stage_.name() << " " << progressText() << " loss " << formatFixed(result_.loss, 4);
   for (const auto& [name, term] : loss.terms)
     log_ << " " << name << " " << formatFixed(term.item<double>(), 4);
   log_ << " gradient " << formatFixed(norm, 2) << " rate " << formatFixed(rate() * 1e6, 1)

@@ -48,6 +48,7 @@ class StageRunner {
   void record(const Loss& loss, double norm, double samples_per_second);
   void judge();
   double progress() const;
+  std::string progressText() const;
   double rate() const;
   double seconds() const;
   bool finished() const;

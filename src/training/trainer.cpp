@@ -108,7 +108,10 @@ class Trainer {
       loadEncoder({"joint", "fine_tune", "encoder"});
       load({"joint", "denoiser"}, {"denoiser", &state_.denoiser.parameters()});
     }
-    if (options_.stage == "encoder" || options_.stage == "fine_tune") return;
+    if (!hasDenoiser()) {
+      log_ << "no model is written yet: train stage denoiser on this encoder next" << std::endl;
+      return;
+    }
     gatherResults();
     exportModel(state_, results_);
     log_ << "model written to " << options_.output << std::endl;
@@ -144,6 +147,15 @@ class Trainer {
     throw InputError("training: '" + options_.output +
                      "' holds no checkpoint of an encoder; train stage 'encoder' first, or give a "
                      "model with init");
+  }
+
+  /// Whether the model is whole: a fine-tuned encoder goes with the denoiser of an earlier run or of
+  /// the initial model.
+  bool hasDenoiser() {
+    if (options_.stage == "encoder") return false;
+    if (options_.stage != "fine_tune") return true;
+    return load({"joint", "denoiser"}, {"denoiser", &state_.denoiser.parameters()}) ||
+           !options_.init.empty();
   }
 
   void runStage(Stage& stage) {

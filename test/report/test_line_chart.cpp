@@ -32,6 +32,22 @@ TEST(LineChart, PlacesPointsOnItsAxesAndBreaksWhereAValueIsMissing) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
+TEST(LineChart, APointWithoutNeighboursIsADot) {
+  Chart chart;
+  chart.duration = 10.0;
+  chart.least_top = 10.0;
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  chart.series = {{"ego", {{5.0, 10.0}}}};
+  EXPECT_NE(chartSvg(chart).find("<path class=\"series dot ego\" d=\"M285 12h0.01\"/>"),
+            std::string::npos)
+      << chartSvg(chart);
+  EXPECT_EQ(chartSvg(chart).find("class=\"series ego\""), std::string::npos);
+  chart.series = {{"ego", {{0.0, 0.0}, {5.0, 10.0}, {6.0, nothing}, {10.0, 0.0}}}};
+  EXPECT_NE(chartSvg(chart).find("class=\"series ego\" d=\"M42 166L285 12\""), std::string::npos);
+  EXPECT_NE(chartSvg(chart).find("class=\"series dot ego\" d=\"M528 166h0.01\""),
+            std::string::npos);
+}
+
 TEST(LineChart, ReachesItsHighestValueWithAWholeStep) {
   Chart chart;
   chart.duration = 1.0;

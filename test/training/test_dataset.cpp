@@ -32,6 +32,19 @@ TEST(Dataset, HoldsOutWholeSessions) {
     EXPECT_EQ(held_out.count(dataset.sample(i).session), 0U);
 }
 
+TEST(Dataset, OfTwoSessionsOneIsHeldOutWhateverTheShare) {
+  const test::TemporaryFolder folder;
+  ShardWriter writer(test::smallSchema());
+  for (std::size_t i = 0; i < 6; ++i) writer.append(test::smallSample(i, i / 3));
+  writer.write(folder.path() / "a.shard");
+  for (const double share : {1e-9, 0.1, 0.9}) {
+    const Dataset dataset(folder.path(), share);
+    EXPECT_EQ(dataset.validationSessions(), 1U) << share;
+    EXPECT_EQ(dataset.validation().size(), 3U) << share;
+    EXPECT_EQ(dataset.training().size(), 3U) << share;
+  }
+}
+
 TEST(Dataset, RefusesASplitWithoutBothPartsAndForeignSchemas) {
   const test::TemporaryFolder folder;
   test::writeShard(folder.path() / "a.shard", 4);

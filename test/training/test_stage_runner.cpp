@@ -207,6 +207,23 @@ TEST_F(StageRunnerTest, TimeLimitEndsTheStage) {
   EXPECT_EQ(stored().facts.at("done"), true);
 }
 
+TEST_F(StageRunnerTest, ProgressIsAgainstWhatEndsTheStageFirst) {
+  options_.report_every = 0.0;
+  ToyStage by_steps;
+  options_.time_limit = 3600.0;  // 40 steps take far less
+  run(by_steps);
+  EXPECT_NE(log_.str().find("toy step 40/40 loss"), std::string::npos) << log_.str();
+  log_.str("");
+  ToyStage by_time;
+  options_.steps = 1000000000;
+  options_.time_limit = 1.0;
+  options_.report_every = 0.3;
+  run(by_time);
+  // At 0.3 s 30 % of the time is over, and far less than 1e9 steps.
+  EXPECT_NE(log_.str().find(", 0:00:00 of 0:00:01 loss"), std::string::npos) << log_.str();
+  EXPECT_EQ(log_.str().find("/1000000000"), std::string::npos) << log_.str();
+}
+
 TEST(Optimizer, FirstStepMovesByTheRate) {
   // m' = g and v' = g^2 after the first step: w = 1 - 0.1 sign(g), without decay for one dimension;
   // the average takes 1 - 1/10 of the way: 1 + 0.9 (w - 1).

@@ -121,6 +121,25 @@ TEST_F(TrainerTest, AnInitialModelBringsItsNormalizerAndMustFit) {
   }
 }
 
+TEST_F(TrainerTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
+  run("encoder", 1);
+  EXPECT_NE(log_.str().find("no model is written yet: train stage denoiser"), std::string::npos);
+  EXPECT_THROW(diffusion::loadModel(options_.output), core::InputError);
+  run("denoiser", 1);
+  const diffusion::Model initial = diffusion::loadModel(options_.output);
+  options_.init = options_.output;
+  options_.output = (folder_.path() / "tuned").string();
+  run("fine_tune", 2);
+  const diffusion::Model tuned = diffusion::loadModel(options_.output);
+  const auto sameValues = [](const auto& left, const auto& right) {
+    return std::equal(
+        left.begin(), left.end(), right.begin(), right.end(),
+        [](const auto& a, const auto& b) { return a.second.values == b.second.values; });
+  };
+  EXPECT_TRUE(sameValues(tuned.denoiser, initial.denoiser));
+  EXPECT_FALSE(sameValues(tuned.encoder, initial.encoder));
+}
+
 TEST_F(TrainerTest, SaysWhatIsMissing) {
   EXPECT_THROW(run("denoiser", 1), core::InputError);
   EXPECT_THROW(run("export", 1), core::InputError);
