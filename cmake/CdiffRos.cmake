@@ -41,7 +41,12 @@ add_library(e2e_cdiff_transforms INTERFACE)
 target_include_directories(e2e_cdiff_transforms SYSTEM INTERFACE ${tf2_ros_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_transforms INTERFACE ${CDIFF_TF2_ROS_LIBRARY} ${CDIFF_TF2_LIBRARY})
 
-foreach(folder config launch networks rviz weights)
+# Type maps for SUMO's netconvert, and SUMO_HOME where the environment's is no folder.
+file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION})
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/sumo ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_SHARE_DESTINATION}/sumo SYMBOLIC)
+catkin_add_env_hooks(50.e2e_cdiff SHELLS sh DIRECTORY ${PROJECT_SOURCE_DIR}/env-hooks)
+
+foreach(folder config launch networks rviz sumo weights)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder}/ DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/${folder})
   endif()

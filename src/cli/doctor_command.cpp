@@ -73,6 +73,16 @@ Finding shippedModel() {
   }
 }
 
+/// A folder that exists, with the type maps that imports need.
+Finding sumoHome() {
+  const char* given = std::getenv("SUMO_HOME");
+  const fs::path used = core::sumoHome();
+  if (given != nullptr && used == given) return {true, "SUMO_HOME", used.string()};
+  return {true, "SUMO_HOME",
+          (given == nullptr ? "not set" : "'" + std::string(given) + "' is no folder") +
+              std::string(": SUMO's programs are started with ") + used.string()};
+}
+
 Finding rosIp() {
   const char* ip = std::getenv("ROS_IP");
   const bool good = ip != nullptr && std::string(ip) == "127.0.0.1";
@@ -90,6 +100,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
     const std::vector<Finding> findings = {program("sumo", "sumo"),
                                            program("netconvert", "sumo"),
                                            program("roslaunch", "python3-roslaunch"),
+                                           sumoHome(),
                                            folder("package share", core::shareFolder),
                                            folder("cache folder", core::cacheFolder),
                                            shippedModel(),

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/failure.h"
+#include "e2e_cdiff/core/text.h"
+#include "version.h"
 
 namespace {
 
@@ -27,27 +31,37 @@ void addCommands(CLI::App& program, int& exit_code) {
 #endif
 }
 
+/// CLI11 only says that some command is required.
+void requireKnownCommand(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
+  const std::string given = argv[1];
+  if (std::find(known.begin(), known.end(), given) != known.end()) return;
+  throw cdiff::core::InputError("unknown command '" + cdiff::core::shortened(given) + "'" +
+                                cdiff::core::didYouMean(given, known) +
+                                "; known: " + cdiff::core::joinText(known, ", "));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   CLI::App program{"cdiff: closed-loop traffic scenarios without a ROS master"};
   program.require_subcommand(1);
+  program.set_version_flag("--version", cdiff::cli::versionText,
+                           "Print version, revision, SUMO's version and instruction sets");
   int exit_code = cdiff::cli::kPassed;
   addCommands(program, exit_code);
   try {
+    requireKnownCommand(program, argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? cdiff::cli::kPassed : cdiff::cli::kBadInput;
-  } catch (const cdiff::core::InputError& error) {
-    std::cerr << "cdiff: " << error.what() << "\n";
-    return cdiff::cli::kBadInput;
-  } catch (const cdiff::core::Interrupted& error) {
-    std::cerr << "cdiff: " << error.what() << "\n";
-    return cdiff::cli::kInterrupted;
   } catch (const std::exception& error) {
-    std::cerr << "cdiff: " << error.what() << "\n";
-    return cdiff::cli::kRunTimeError;
+    const cdiff::core::Failure failure = cdiff::core::failureOf(error);
+    std::cerr << "cdiff: " << failure.text << "\n";
+    return failure.exit_code;
   }
   return exit_code;
 }

@@ -67,7 +67,7 @@ void requirePairs(const std::vector<evaluation::Comparison>& comparisons,
 /// Tables, figures and page of a finished batch again, without running anything.
 int makeTables(const fs::path& results) {
   const fs::path file = results / "matrix.yaml";
-  if (!fs::is_regular_file(file)) {
+  if (!core::isFile(file)) {
     throw InputError("'" + results.string() +
                      "' is no result folder of `cdiff evaluate`: it has no matrix.yaml");
   }
@@ -83,8 +83,8 @@ int report(const ReportArguments& arguments) {
                     (arguments.training.empty() ? 0 : 1);
   if (asked != 1) throw InputError("give one of --compare A B, --tables DIR and --training DIR");
   if (!arguments.training.empty()) {
-    std::cout << "curves of the training: " << writeTrainingPage(arguments.training).string()
-              << "\n";
+    const fs::path page = writeTrainingPage(arguments.training);
+    std::cout << "curves of the training: " << page.string() << "\n";
     return kPassed;
   }
   if (!arguments.tables.empty()) return makeTables(arguments.tables);

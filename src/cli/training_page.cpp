@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 fs::path writeTrainingPage(const fs::path& folder) {
   const fs::path curves = folder / "curves.csv";
-  if (!fs::is_regular_file(curves)) {
+  if (!core::isFile(curves)) {
     throw core::InputError("'" + folder.string() +
                            "' is no output folder of `cdiff train`: it has no curves.csv");
   }

@@ -2,12 +2,29 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/core/csv.h"
 
+#include "e2e_cdiff/core/text.h"
+
 namespace cdiff::core {
+namespace {
+
+constexpr char kMark = '\'';
+
+/// Whether a spreadsheet would compute the text: what begins with = + - @, a tab or a line end and
+/// is no number. Marks before that count too, so that texts read back as they were.
+bool isFormula(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(kMark);
+  if (first == std::string::npos) return false;
+  const bool operation = std::string_view("=+-@\t\r\n").find(text[first]) != std::string_view::npos;
+  return operation && text != "-inf" && (first > 0 || !parseNumber(text));
+}
+
+}  // namespace
 
 std::string csvCell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  const std::string shown = isFormula(text) ? kMark + text : text;
+  if (shown.find_first_of(",\"\n\r") == std::string::npos) return shown;
   std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  for (const char letter : shown) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
   return quoted + "\"";
 }
 
@@ -31,6 +48,9 @@ std::vector<std::string> csvCells(std::string_view row) {
     } else {
       cells.back() += letter;
     }
+  }
+  for (std::string& cell : cells) {
+    if (!cell.empty() && cell.front() == kMark && isFormula(cell)) cell.erase(0, 1);
   }
   return cells;
 }

@@ -16,11 +16,14 @@
 #include <vector>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::core {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;  // [bytes]
 
 EVP_MD_CTX* digestContext(void* context) { return static_cast<EVP_MD_CTX*>(context); }
 
@@ -47,18 +50,49 @@ bool writeAll(int descriptor, std::string_view content) {
   return ::fsync(descriptor) == 0 || errno == EINVAL;
 }
 
+fs::file_type statusOf(const fs::path& path) {
+  std::error_code error;
+  const fs::file_type type = fs::status(path, error).type();
+  if (type != fs::file_type::none) return type;
+  throw InputError("cannot use '" + shortened(path.string()) + "': " + error.message() +
+                   "; a path that exists and can be read was expected");
+}
+
 fs::path firstEnvironmentFolder() {
   if (const char* folder = std::getenv("E2E_CDIFF_CACHE")) return folder;
   if (const char* folder = std::getenv("XDG_CACHE_HOME")) return fs::path(folder) / "e2e_cdiff";
   if (const char* folder = std::getenv("HOME")) return fs::path(folder) / ".cache" / "e2e_cdiff";
-  return fs::temp_directory_path() / ("e2e_cdiff_" + std::to_string(::getuid()));
+  return temporaryFolder() / ("e2e_cdiff_" + std::to_string(::getuid()));
 }
 
 }  // namespace
 
+bool isFile(const fs::path& path) { return statusOf(path) == fs::file_type::regular; }
+
+bool isFolder(const fs::path& path) { return statusOf(path) == fs::file_type::directory; }
+
+fs::path temporaryFolder() {
+  std::error_code error;
+  fs::path folder = fs::temp_directory_path(error);
+  if (!error) return folder;
+  for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
+    const char* given = std::getenv(name);
+    if (given == nullptr) continue;
+    throw InputError(std::string("environment variable ") + name + " is '" + given +
+                     "', which is no folder that can be used; set it to one, or unset it");
+  }
+  throw InputError("no temporary folder can be used; set TMPDIR to one");
+}
+
 std::string readFile(const fs::path& path, const std::string& what) {
-  if (fs::is_directory(path)) {
+  if (isFolder(path)) {
     throw InputError(what + " '" + path.string() + "' is a folder; a file was expected");
+  }
+  std::error_code unknown_size;
+  const std::uintmax_t size = fs::file_size(path, unknown_size);
+  if (!unknown_size && size > kLargestFile) {
+    throw InputError(what + " '" + path.string() + "' has " + std::to_string(size) +
+                     " bytes; at most " + std::to_string(kLargestFile) + " were expected");
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
@@ -123,14 +157,28 @@ std::string sha256(std::string_view content) {
 
 fs::path shareFolder() {
   std::vector<fs::path> candidates;
-  if (const char* folder = std::getenv("E2E_CDIFF_SHARE")) candidates.emplace_back(folder);
+  if (const char* folder = std::getenv("E2E_CDIFF_SHARE")) {
+    if (!isFolder(fs::path(folder) / "config")) {
+      throw InputError("environment variable E2E_CDIFF_SHARE is '" + std::string(folder) +
+                       "', which holds no folder config; set it to the package's share folder, or "
+                       "unset it");
+    }
+    candidates.emplace_back(folder);
+  }
   candidates.push_back(libraryFolder().parent_path() / "share" / "e2e_cdiff");
   candidates.emplace_back(E2E_CDIFF_SOURCE_FOLDER);
   for (const fs::path& candidate : candidates) {
-    if (fs::is_directory(candidate / "config")) return fs::weakly_canonical(candidate);
+    if (isFolder(candidate / "config")) return fs::weakly_canonical(candidate);
   }
   throw InputError(
       "the package's config folder was not found; set E2E_CDIFF_SHARE to the folder that holds it");
+}
+
+fs::path sumoHome() {
+  const char* given = std::getenv("SUMO_HOME");
+  std::error_code error;
+  if (given != nullptr && fs::is_directory(given, error)) return given;
+  return shareFolder() / "sumo";
 }
 
 fs::path cacheFolder() {

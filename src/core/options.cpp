@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/core/options.h"
 
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -10,13 +11,13 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
+#include "options_dump.h"
 
 namespace cdiff::core::detail {
 namespace {
 
-std::string rangeText(const std::string& low, const std::string& high, const char* unit) {
-  return "[" + low + ", " + high + "]" + (*unit ? std::string(" ") + unit : std::string());
-}
+constexpr std::size_t kLargestYaml = 8 << 20;  // [bytes]
+constexpr std::size_t kLongestText = 1 << 16;  // [bytes] of a key or value
 
 /// Takes values out of a YAML map and remembers which keys exist, so that unknown ones can be
 /// named.
@@ -70,9 +71,10 @@ class LoadVisitor : public OptionsVisitor {
     if (!node.IsScalar()) fail(node, info.key, "a text");
     const std::string given = node.Scalar();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
+      const std::string close = closeName(given, choices);
       fail(node, info.key,
-           "one of {" + joinText(choices, ", ") + "}; did you mean '" +
-               nearestName(given, choices) + "'?");
+           "one of {" + joinText(choices, ", ") + "}" +
+               (close.empty() ? ": " + std::string(info.text) : "; did you mean '" + close + "'?"));
     }
     value = given;
   }
@@ -84,6 +86,7 @@ class LoadVisitor : public OptionsVisitor {
     value.clear();
     for (const YAML::Node& item : node) {
       if (!item.IsScalar()) fail(item, info.key, "a list of texts, e.g. [a, b]");
+      requireShort(item, info.key);
       value.push_back(item.Scalar());
     }
   }
@@ -117,8 +120,8 @@ class LoadVisitor : public OptionsVisitor {
       const std::string key = item.first.Scalar();
       const auto& known = levels_.back().known;
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      throw InputError(place(item.first) + ": unknown key '" + levels_.back().prefix + key +
-                       "'; the nearest known key is '" + nearestName(key, known) +
+      throw InputError(place(item.first) + ": unknown key '" + levels_.back().prefix +
+                       shortened(key) + "'; the nearest known key is '" + nearestName(key, known) +
                        "' (known here: " + joinText(known, ", ") + ")");
     }
   }
@@ -137,6 +140,8 @@ class LoadVisitor : public OptionsVisitor {
       if (!item.first.IsScalar()) {
         throw InputError(place(item.first) + ": a key must be a plain word");
       }
+      if (item.first.Scalar().size() > kLongestText)
+        throw InputError(place(item.first) + ": a key is longer than any known one");
       if (!seen.insert(item.first.Scalar()).second) {
         throw InputError(place(item.first) + ": key '" + prefix + item.first.Scalar() +
                          "' is given twice");
@@ -148,7 +153,16 @@ class LoadVisitor : public OptionsVisitor {
   YAML::Node take(const FieldInfo& info) {
     levels_.back().known.emplace_back(info.key);
     const YAML::Node& level = levels_.back().node;
-    return level[info.key];
+    const YAML::Node node = level[info.key];
+    if (node && node.IsScalar()) requireShort(node, info.key);
+    return node;
+  }
+
+  void requireShort(const YAML::Node& node, const std::string& key) const {
+    if (node.Scalar().size() <= kLongestText) return;
+    throw InputError(place(node) + ": key '" + levels_.back().prefix + key + "' is a text of " +
+                     std::to_string(node.Scalar().size()) + " bytes; at most " +
+                     std::to_string(kLongestText) + " were expected");
   }
 
   std::string place(const YAML::Node& node) const {
@@ -158,7 +172,8 @@ class LoadVisitor : public OptionsVisitor {
 
   [[noreturn]] void fail(const YAML::Node& node, const std::string& key,
                          const std::string& expected) const {
-    const std::string given = node.IsScalar() ? "'" + node.Scalar() + "'" : "not such a value";
+    const std::string given =
+        node.IsScalar() ? "'" + shortened(node.Scalar()) + "'" : "not such a value";
     throw InputError(place(node) + ": key '" + levels_.back().prefix + key + "' is " + given +
                      "; expected " + expected);
   }
@@ -178,72 +193,6 @@ class LoadVisitor : public OptionsVisitor {
   std::string source_;
   bool lines_;
   std::vector<Level> levels_;
-};
-
-std::string quoted(const std::string& text) {
-  YAML::Emitter emitter;
-  YAML::Node parsed;
-  emitter << YAML::DoubleQuoted << text;
-  return emitter.c_str();
-}
-
-/// Writes the fields as indented YAML.
-class DumpVisitor : public OptionsVisitor {
- public:
-  explicit DumpVisitor(bool with_comments) : with_comments_(with_comments) {}
-
-  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
-    line(info, formatNumber(value),
-         rangeText(formatNumber(minimum), formatNumber(maximum), info.unit));
-  }
-  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
-               std::int64_t maximum) override {
-    line(info, std::to_string(value),
-         rangeText(std::to_string(minimum), std::to_string(maximum), info.unit));
-  }
-  void flag(const FieldInfo& info, bool& value) override {
-    line(info, value ? "true" : "false", "true | false");
-  }
-  void text(const FieldInfo& info, std::string& value,
-            const std::vector<std::string>& choices) override {
-    line(info, quoted(value), joinText(choices, " | "));
-  }
-  void list(const FieldInfo& info, std::vector<std::string>& value) override {
-    std::vector<std::string> items;
-    for (const std::string& item : value) items.push_back(quoted(item));
-    line(info, "[" + joinText(items, ", ") + "]", "");
-  }
-  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
-    std::vector<std::string> items;
-    for (const Eigen::Vector3d& item : value) {
-      items.push_back("[" + formatNumber(item.x()) + ", " + formatNumber(item.y()) + ", " +
-                      formatNumber(item.z()) + "]");
-    }
-    line(info, "[" + joinText(items, ", ") + "]", info.unit);
-  }
-  bool enter(const FieldInfo& info) override {
-    comment(info, "");
-    text_ += indent_ + info.key + ":\n";
-    indent_ += "  ";
-    return true;
-  }
-  void leave() override { indent_.resize(indent_.size() - 2); }
-
-  const std::string& written() const { return text_; }
-
- private:
-  void comment(const FieldInfo& info, const std::string& range) {
-    if (!with_comments_) return;
-    text_ += indent_ + "# " + info.text + (range.empty() ? "" : " " + range) + "\n";
-  }
-  void line(const FieldInfo& info, const std::string& value, const std::string& range) {
-    comment(info, range);
-    text_ += indent_ + info.key + ": " + value + "\n";
-  }
-
-  bool with_comments_;
-  std::string indent_;
-  std::string text_;
 };
 
 /// Collects the full path of every leaf and group.
@@ -302,8 +251,15 @@ YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
 }
 
 YAML::Node parse(const YamlSource& source) {
+  if (source.text.size() > kLargestYaml) {
+    throw InputError(source.name + ": holds " + std::to_string(source.text.size()) +
+                     " bytes of YAML; at most " + std::to_string(kLargestYaml) + " were expected");
+  }
   try {
     return YAML::Load(source.text);
+  } catch (const YAML::DeepRecursion& error) {
+    throw InputError(source.name + ":" + std::to_string(error.mark.line + 1) +
+                     ": lists or groups are nested deeper than any option");
   } catch (const YAML::ParserException& error) {
     throw InputError(source.name + ":" + std::to_string(error.mark.line + 1) +
                      ": not valid YAML: " + error.msg);
@@ -334,12 +290,6 @@ void override_(const std::string& assignment, const std::string& source, void* o
   const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
   LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value), false);
   describe(options, visitor);
-}
-
-std::string dump(void* options, Describe describe, bool with_comments) {
-  DumpVisitor visitor(with_comments);
-  describe(options, visitor);
-  return visitor.written();
 }
 
 }  // namespace cdiff::core::detail

@@ -58,6 +58,26 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
   });
 }
 
+std::string closeName(const std::string& name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLeastPart = 3;  // letters
+  const std::string nearest = nearestName(name, known);
+  if (3 * editDistance(name, nearest) <= std::max(name.size(), nearest.size())) return nearest;
+  if (name.size() < kLeastPart) return {};
+  const auto containing = std::find_if(known.begin(), known.end(), [&](const std::string& text) {
+    return text.find(name) != std::string::npos;
+  });
+  return containing == known.end() ? std::string() : *containing;
+}
+
+std::string didYouMean(const std::string& name, const std::vector<std::string>& known) {
+  const std::string close = closeName(name, known);
+  return close.empty() ? close : "; did you mean '" + close + "'?";
+}
+
+std::string shortened(const std::string& text, std::size_t length) {
+  return text.size() <= length ? text : text.substr(0, length) + "...";
+}
+
 std::string fileName(std::string text) {
   for (char& letter : text) {
     const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||

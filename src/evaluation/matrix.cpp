@@ -18,9 +18,9 @@ using core::InputError;
 fs::path matrixFolder() { return core::shareFolder() / "config" / "evaluations"; }
 
 fs::path findMatrix(const std::string& name_or_file) {
-  if (fs::is_regular_file(name_or_file)) return fs::absolute(name_or_file);
+  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
   const fs::path shipped = matrixFolder() / (name_or_file + ".yaml");
-  if (fs::is_regular_file(shipped)) return shipped;
+  if (core::isFile(shipped)) return shipped;
   const std::vector<std::string> known = shippedMatrices();
   throw InputError("evaluation '" + name_or_file +
                    "' is neither a file nor a shipped evaluation; the nearest shipped one is '" +
@@ -28,9 +28,11 @@ fs::path findMatrix(const std::string& name_or_file) {
                    "' (all: " + core::joinText(known, ", ") + ")");
 }
 
+bool isThere(const fs::path& path) { return core::isFile(path) || core::isFolder(path); }
+
 /// A name stays when there is nothing of that name in the folder.
 void resolveAgainst(const fs::path& folder, std::string& name) {
-  if (name.empty() || fs::path(name).is_absolute() || !fs::exists(folder / name)) return;
+  if (name.empty() || fs::path(name).is_absolute() || !isThere(folder / name)) return;
   name = fs::weakly_canonical(folder / name).string();
 }
 
@@ -79,7 +81,7 @@ MatrixOptions loadMatrix(const std::string& name_or_file) {
   const fs::path folder = file.parent_path();
   for (std::string& scenario : matrix.scenarios) resolveAgainst(folder, scenario);
   for (std::string& profile : matrix.guidance_profiles) resolveAgainst(folder, profile);
-  if (fs::exists(folder / matrix.suite / "suite.yaml")) resolveAgainst(folder, matrix.suite);
+  if (core::isFile(folder / matrix.suite / "suite.yaml")) resolveAgainst(folder, matrix.suite);
   resolveAgainst(folder, matrix.bench2drive.file);
   resolveAgainst(folder, matrix.bench2drive.networks);
   return matrix;

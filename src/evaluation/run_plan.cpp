@@ -10,164 +10,14 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/map/route_source.h"
-#include "e2e_cdiff/planning/planner_factory.h"
 #include "e2e_cdiff/scenario/session_request.h"
-#include "e2e_cdiff/suite/suite.h"
+#include "matrix_levels.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
 using core::InputError;
-
-/// One level of the factor scenario.
-struct ScenarioLevel {
-  std::string label;
-  scenario::SessionRequest request;
-};
-
-struct Variant {
-  std::string name;
-  std::vector<std::string> set;
-};
-
-std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) {
-  std::vector<ScenarioLevel> levels;
-  std::vector<std::string> missing = options.routes;
-  for (const map::Bench2DriveEntry& entry : map::listBench2DriveRoutes(options.file)) {
-    const auto& wanted = options.routes;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end())
-      continue;
-    const fs::path network = fs::path(options.networks) / (entry.town + ".net.xml");
-    if (!fs::exists(network)) continue;
-    missing.erase(std::remove(missing.begin(), missing.end(), entry.id), missing.end());
-    scenario::SessionRequest request;
-    request.bench2drive = options.file;
-    request.route = entry.id;
-    request.network = network.string();
-    levels.push_back({entry.id, request});
-  }
-  if (!missing.empty()) {
-    throw InputError("routes " + core::joinText(missing, ", ") + " are not in '" + options.file +
-                     "', or the network of their town is not in '" + options.networks + "'");
-  }
-  if (levels.empty()) {
-    throw InputError("no route of '" + options.file +
-                     "' lies in a town whose TOWN.net.xml is in '" + options.networks + "'");
-  }
-  return levels;
-}
-
-/// Those named, then those of the suite.
-std::vector<std::string> scenariosOf(const MatrixOptions& matrix) {
-  std::vector<std::string> scenarios = matrix.scenarios;
-  if (matrix.suite.empty()) return scenarios;
-  for (const std::string& file : suite::scenarioFiles(suite::loadSuite(matrix.suite)))
-    scenarios.push_back(file);
-  return scenarios;
-}
-
-std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std::string& source) {
-  std::vector<ScenarioLevel> levels;
-  for (const std::string& name : scenariosOf(matrix)) {
-    scenario::SessionRequest request;
-    request.scenario = name;
-    levels.push_back({fs::is_regular_file(name) ? fs::path(name).stem().string() : name, request});
-  }
-  if (!matrix.bench2drive.file.empty()) {
-    for (ScenarioLevel& level : bench2DriveLevels(matrix.bench2drive)) levels.push_back(level);
-  }
-  if (levels.empty()) {
-    throw InputError(source +
-                     ": the matrix is empty; give scenarios: [...], a suite or a bench2drive.file");
-  }
-  return levels;
-}
-
-std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& source) {
-  std::vector<Variant> variants;
-  for (const std::string& text : matrix.variants) {
-    const std::size_t colon = text.find(':');
-    const auto names = core::splitText(text.substr(0, colon), ' ');
-    if (colon == std::string::npos || names.size() != 1) {
-      throw InputError(source + ": key 'variants' holds '" + text +
-                       "'; expected \"name: key=value key=value\"");
-    }
-    variants.push_back({names.front(), core::splitText(text.substr(colon + 1), ' ')});
-  }
-  if (variants.empty()) variants.emplace_back();
-  return variants;
-}
-
-/// Levels of the factors that are chosen together.
-struct Combination {
-  std::string ego_planner;
-  std::string cbv_planner;
-  std::string mode;
-  std::string guidance_profile;
-};
-
-Combination combinationOf(const std::string& text, const std::string& source) {
-  Combination combination;
-  std::map<std::string, std::string*> fields = {
-      {"ego_planner", &combination.ego_planner},
-      {"cbv_planner", &combination.cbv_planner},
-      {"mode", &combination.mode},
-      {"guidance_profile", &combination.guidance_profile}};
-  for (const std::string& word : core::splitText(text, ' ')) {
-    const std::size_t equals = word.find('=');
-    const auto field = fields.find(word.substr(0, equals));
-    if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
-      throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
-                       "' is wrong; expected ego_planner=, cbv_planner=, mode= and "
-                       "guidance_profile=, each once at most");
-    }
-    *field->second = word.substr(equals + 1);
-  }
-  return combination;
-}
-
-/// A product of lists, of which an empty one leaves the factor as the scenario has it.
-std::vector<Combination> productOf(const MatrixOptions& matrix) {
-  const auto levels = [](const std::vector<std::string>& given) {
-    return given.empty() ? std::vector<std::string>{""} : given;
-  };
-  std::vector<Combination> product;
-  for (const std::string& ego : levels(matrix.ego_planners)) {
-    for (const std::string& cbv : levels(matrix.cbv_planners)) {
-      for (const std::string& mode : levels(matrix.modes)) {
-        for (const std::string& profile : levels(matrix.guidance_profiles))
-          product.push_back({ego, cbv, mode, profile});
-      }
-    }
-  }
-  return product;
-}
-
-std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source) {
-  if (matrix.combinations.empty()) return productOf(matrix);
-  for (const auto* list :
-       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
-    if (list->empty()) continue;
-    throw InputError(source +
-                     ": key 'combinations' stands instead of ego_planners, cbv_planners, modes "
-                     "and guidance_profiles; give either it or them");
-  }
-  std::vector<Combination> combinations;
-  for (const std::string& text : matrix.combinations)
-    combinations.push_back(combinationOf(text, source));
-  return combinations;
-}
-
-void checkSeeds(const std::vector<std::string>& seeds, const std::string& source) {
-  for (const std::string& seed : seeds) {
-    const bool digits = !seed.empty() && seed.find_first_not_of("0123456789") == std::string::npos;
-    if (digits && seed.size() <= 10) continue;  // its range is that of the scenario's key
-    throw InputError(source + ": key 'seeds' holds '" + seed +
-                     "'; expected whole numbers from 0 on, e.g. [1, 2, 3]");
-  }
-}
 
 /// The names are checked as those of any scenario.
 void checkEgoPlanner(const std::string& name) {
@@ -187,7 +37,9 @@ class Planner {
   }
 
   std::vector<PlannedRun> plan() {
-    for (const ScenarioLevel& level : scenarioLevels(matrix_, source_)) {
+    const std::vector<ScenarioLevel> levels = scenarioLevels(matrix_, source_);
+    requireFeasible(levels.size());
+    for (const ScenarioLevel& level : levels) {
       for (const Combination& combination : combinations_) addVariants(level, combination);
     }
     requireDistinct();
@@ -196,6 +48,25 @@ class Planner {
   }
 
  private:
+  /// Checked before anything is resolved.
+  void requireFeasible(std::size_t scenarios) const {
+    const auto as_double = [](std::size_t count) { return static_cast<double>(count); };
+    const double runs = as_double(scenarios) * as_double(combinations_.size()) *
+                        as_double(variants_.size()) *
+                        as_double(std::max<std::size_t>(1, matrix_.seeds.size())) *
+                        static_cast<double>(matrix_.repetitions);
+    if (runs <= as_double(kMostRuns)) return;
+    throw InputError(source_ + ": " + core::formatNumber(runs) + " runs would be planned (" +
+                     std::to_string(scenarios) + " scenarios x " +
+                     std::to_string(combinations_.size()) +
+                     " combinations of planners, modes and "
+                     "profiles x " +
+                     std::to_string(variants_.size()) + " variants x " +
+                     std::to_string(std::max<std::size_t>(1, matrix_.seeds.size())) + " seeds x " +
+                     std::to_string(matrix_.repetitions) + " repetitions); at most " +
+                     std::to_string(kMostRuns) + " were expected: divide the matrix");
+  }
+
   void addVariants(const ScenarioLevel& level, const Combination& combination) {
     for (const Variant& variant : variants_) {
       ScenarioLevel next = level;
@@ -213,11 +84,8 @@ class Planner {
   }
 
   void addSeeds(const ScenarioLevel& level, const std::string& variant) {
-    const std::vector<std::string> as_given = {""};
-    for (const std::string& seed : matrix_.seeds.empty() ? as_given : matrix_.seeds) {
-      scenario::SessionRequest request = level.request;
-      request.seed = seed;
-      PlannedRun run = resolve(level.label, request);
+    for (const PlannedRun& seeded : resolve(level)) {
+      PlannedRun run = seeded;
       run.factors["variant"] = variant;
       for (std::int64_t repetition = 1; repetition <= matrix_.repetitions; ++repetition) {
         run.factors["repetition"] = std::to_string(repetition);
@@ -226,26 +94,41 @@ class Planner {
     }
   }
 
-  PlannedRun resolve(const std::string& label, const scenario::SessionRequest& request) const {
+  /// One run per seed. What else a scenario holds is resolved once.
+  std::vector<PlannedRun> resolve(const ScenarioLevel& level) const {
+    const std::vector<std::string>& seeds = matrix_.seeds;
     try {
-      const scenario::ScenarioOptions options = scenario::resolveRequest(request);
+      scenario::SessionRequest request = level.request;
+      if (!seeds.empty()) request.seed = seeds.front();
+      scenario::ScenarioOptions options = scenario::resolveRequest(request);
       checkEgoPlanner(options.ego_planner);
-      const std::string& profile = options.guidance_profile;
-      PlannedRun run;
-      run.factors = {{"scenario", label},
-                     {"ego_planner", options.ego_planner},
-                     {"cbv_planner", options.cbv_planner},
-                     {"mode", options.mode},
-                     {"guidance_profile", profile.empty() ? options.mode : profile},
-                     {"seed", std::to_string(options.seed)}};
-      run.scenario_text = core::dumpOptions(options);
-      run.scenario_sha256 = core::sha256(run.scenario_text);
-      return run;
+      std::vector<PlannedRun> runs = {runOf(level.label, options)};
+      // An override of the seed ranks above the matrix's seeds.
+      const bool overridden = !seeds.empty() && std::stoll(seeds.front()) != options.seed;
+      for (std::size_t i = 1; i < seeds.size(); ++i) {
+        if (!overridden) core::overrideOption("seed=" + seeds[i], "argument 'seed'", options);
+        runs.push_back(runOf(level.label, options));
+      }
+      return runs;
     } catch (const InputError& error) {
       const std::string text = error.what();
-      throw InputError(text.rfind(source_, 0) == 0 ? text
-                                                   : source_ + ", scenario " + label + ": " + text);
+      const bool named = text.rfind(source_, 0) == 0;
+      throw InputError(named ? text : source_ + ", scenario " + level.label + ": " + text);
     }
+  }
+
+  static PlannedRun runOf(const std::string& label, const scenario::ScenarioOptions& options) {
+    const std::string& profile = options.guidance_profile;
+    PlannedRun run;
+    run.factors = {{"scenario", label},
+                   {"ego_planner", options.ego_planner},
+                   {"cbv_planner", options.cbv_planner},
+                   {"mode", options.mode},
+                   {"guidance_profile", profile.empty() ? options.mode : profile},
+                   {"seed", std::to_string(options.seed)}};
+    run.scenario_text = core::dumpOptions(options);
+    run.scenario_sha256 = core::sha256(run.scenario_text);
+    return run;
   }
 
   /// A run that is there twice would count twice.

@@ -26,9 +26,9 @@ constexpr std::int64_t kLastDiffusionStep = 10000;
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
 
 fs::path findProfile(const std::string& name_or_file) {
-  if (fs::is_regular_file(name_or_file)) return fs::absolute(name_or_file);
+  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
   const fs::path shipped = profileFolder() / (name_or_file + ".yaml");
-  if (fs::is_regular_file(shipped)) return shipped;
+  if (core::isFile(shipped)) return shipped;
   const std::vector<std::string> known = shippedProfiles();
   throw InputError("guidance profile '" + name_or_file +
                    "' is neither a file nor a shipped profile; the nearest shipped one is '" +

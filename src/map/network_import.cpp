@@ -25,7 +25,7 @@ bool endsWith(const std::string& text, const std::string& ending) {
 
 std::vector<std::string> shippedNames(const fs::path& folder) {
   std::vector<std::string> names;
-  if (!fs::is_directory(folder)) return names;
+  if (!core::isFolder(folder)) return names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (fs::exists(entry.path() / (name + ".net.xml"))) names.push_back(name);
@@ -38,16 +38,18 @@ std::vector<std::string> shippedNames(const fs::path& folder) {
 fs::path sourceFile(const std::string& source) {
   if (source.empty())
     throw core::InputError("no network was given; a file or a shipped name was expected");
-  if (fs::is_regular_file(source)) return source;
+  if (core::isFile(source)) return source;
   const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
                     endsWith(source, ".xodr");
-  if (path && fs::is_directory(source)) {
+  if (path && core::isFolder(source)) {
     throw core::InputError("network '" + source + "' is a folder; a file was expected");
   }
+  if (path && fs::exists(source))
+    throw core::InputError("network '" + source + "' is no regular file; a file was expected");
   if (path) throw core::InputError("network file '" + source + "' does not exist");
   const fs::path folder = core::shareFolder() / "networks";
   const fs::path file = folder / source / (source + ".net.xml");
-  if (fs::exists(file)) return file;
+  if (core::isFile(file)) return file;
   const std::string nearest = core::nearestName(source, shippedNames(folder));
   throw core::InputError(
       "network '" + source + "' is neither a file nor shipped in '" + folder.string() + "'" +

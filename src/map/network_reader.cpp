@@ -17,6 +17,8 @@ namespace {
 constexpr double kLowestRoutableSpeed = 2.0;  // [m/s]
 constexpr double kStubLength = 0.01;          // [m] drawn for a lane whose points all coincide
 constexpr double kDistinct = 1e-3;            // [m] points nearer than this are one
+constexpr double kLargestWidth = 100.0;       // [m] of a lane
+constexpr double kLargestExtent = 1e6;        // [m] between two points of a network
 
 bool names(const std::string& classes, const char* vehicle_class) {
   const std::vector<std::string> words = core::splitText(classes, ' ');
@@ -124,6 +126,19 @@ std::vector<Eigen::Vector3d> NetworkReader::points(const std::string& text,
   return shape;
 }
 
+/// What is farther away is a damaged number, and more than memory holds.
+void NetworkReader::requireExtent(const std::vector<Eigen::Vector3d>& shape,
+                                  const std::string& element) const {
+  const Eigen::Vector3d& origin = shapes_.empty() ? shape.front() : shapes_.front().front();
+  for (const Eigen::Vector3d& point : shape) {
+    const Eigen::Vector3d offset = point - origin;
+    if (offset.cwiseAbs().maxCoeff() <= kLargestExtent) continue;
+    fail(element + ": the point " + core::formatNumber(point.x()) + "," +
+         core::formatNumber(point.y()) + " lies more than " + core::formatNumber(kLargestExtent) +
+         " m from the first lane; check its numbers");
+  }
+}
+
 void NetworkReader::readLocation(const pugi::xml_node& net) {
   const std::string text = net.child("location").attribute("netOffset").value();
   if (text.empty()) return;
@@ -149,7 +164,10 @@ void NetworkReader::readLane(const pugi::xml_node& node, const pugi::xml_node& e
   const std::string element = "lane '" + lane.id + "'";
   lane.index = static_cast<int>(number(node, "index", 0.0, element));
   lane.width = number(node, "width", lane.width, element);
-  if (lane.width < 0.0) fail(element + ": width must not be negative");
+  if (lane.width < 0.0 || lane.width > kLargestWidth) {
+    fail(element + ": width=\"" + node.attribute("width").value() + "\"; 0 to " +
+         core::formatNumber(kLargestWidth) + " m was expected");
+  }
   lane.speed_limit = number(node, "speed", lane.speed_limit, element);
   lane.internal = lane.edge_id.front() == ':';
   lane.allows_cars = allowsCars(node);
@@ -158,6 +176,7 @@ void NetworkReader::readLane(const pugi::xml_node& node, const pugi::xml_node& e
       lane.internal ? junctionOfInternalEdge(lane.edge_id) : edge.attribute("to").value();
   std::vector<Eigen::Vector3d> shape = points(node.attribute("shape").value(), element);
   if (shape.size() < 2) fail(element + " has no shape; at least two points were expected");
+  requireExtent(shape, element);
   const auto index = static_cast<LaneIndex>(network_.lanes_.size());
   if (!network_.lane_by_id_.emplace(lane.id, index).second) fail(element + " appears twice");
   shapes_.push_back(std::move(shape));
@@ -183,6 +202,8 @@ void NetworkReader::readJunction(const pugi::xml_node& node) {
   junction.position = {number(node, "x", 0.0, element), number(node, "y", 0.0, element),
                        number(node, "z", 0.0, element)};
   junction.shape = points(node.attribute("shape").value(), element);
+  requireExtent({junction.position}, element);
+  requireExtent(junction.shape, element);
   network_.junctions_.push_back(std::move(junction));
 }
 

@@ -29,6 +29,7 @@ class NetworkReader {
   LaneIndex laneOf(const pugi::xml_node& connection, const char* edge, const char* index,
                    const std::string& element) const;
 
+  void requireExtent(const std::vector<Eigen::Vector3d>& shape, const std::string& element) const;
   void readLocation(const pugi::xml_node& net);
   void readEdge(const pugi::xml_node& edge);
   void readLane(const pugi::xml_node& node, const pugi::xml_node& edge);

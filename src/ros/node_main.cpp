@@ -4,7 +4,7 @@
 
 #include <exception>
 
-#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/failure.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {
@@ -15,12 +15,10 @@ constexpr double kMasterPatience = 5.0;  // [s] of wall time for a master that d
 int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
   try {
     return body(stop);
-  } catch (const core::InputError& error) {
-    ROS_FATAL("%s", error.what());
-    return 3;
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
-    return 2;
+    const core::Failure failure = core::failureOf(error);
+    ROS_FATAL("%s", failure.text.c_str());
+    return failure.exit_code;
   }
 }
 

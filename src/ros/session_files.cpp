@@ -26,7 +26,7 @@ std::string timeText() {
 
 fs::path ownFolder(const scenario::ScenarioOptions& options) {
   const char* home = std::getenv("HOME");
-  const fs::path base = home != nullptr ? fs::path(home) : fs::temp_directory_path();
+  const fs::path base = home != nullptr ? fs::path(home) : core::temporaryFolder();
   return base / "e2e_cdiff_results" /
          (core::fileName(options.name) + "_seed" + std::to_string(options.seed) + "_" + timeText());
 }

@@ -15,6 +15,7 @@ namespace {
 using core::InputError;
 using nlohmann::json;
 
+constexpr std::size_t kMostSamples = 250000;  // a resolved scenario holds them all
 constexpr const char* kBlank = " \t\r\n";
 
 std::string trimmed(const std::string& text) {
@@ -82,6 +83,11 @@ std::vector<double> readSamples(const std::filesystem::path& file) {
   const std::vector<double> samples =
       is_json ? fromJson(text, file.string()) : fromLines(text, file.string());
   if (samples.empty()) throw InputError(file.string() + ": holds no sample");
+  if (samples.size() > kMostSamples) {
+    throw InputError(file.string() + ": holds " + std::to_string(samples.size()) +
+                     " samples; at most " + std::to_string(kMostSamples) +
+                     " were expected, every n-th will do");
+  }
   return samples;
 }
 

@@ -23,9 +23,9 @@ constexpr double kInfinite = 1e9;
 fs::path scenarioFolder() { return core::shareFolder() / "config" / "scenarios"; }
 
 fs::path findScenario(const std::string& name_or_file) {
-  if (fs::is_regular_file(name_or_file)) return fs::absolute(name_or_file);
+  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
   const fs::path shipped = scenarioFolder() / (name_or_file + ".yaml");
-  if (fs::exists(shipped)) return shipped;
+  if (core::isFile(shipped)) return shipped;
   const std::vector<std::string> known = shippedScenarios();
   throw InputError("scenario '" + name_or_file +
                    "' is neither a file nor a shipped scenario; the nearest shipped one is '" +
@@ -45,7 +45,7 @@ std::string resolveFile(const std::string& file, const fs::path& scenario_folder
                                  core::shareFolder() / "networks" / network / file,
                                  fs::path(network).parent_path() / file};
   for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate)) return fs::weakly_canonical(candidate).string();
+    if (core::isFile(candidate)) return fs::weakly_canonical(candidate).string();
   }
   return file;
 }
@@ -66,8 +66,7 @@ void checkStatuses(const std::vector<std::string>& statuses) {
   for (const std::string& status : statuses) {
     if (std::find(known.begin(), known.end(), status) != known.end()) continue;
     throw InputError("key 'verdict.statuses' holds '" + status + "'; expected some of {" +
-                     core::joinText(known, ", ") + "}; did you mean '" +
-                     core::nearestName(status, known) + "'?");
+                     core::joinText(known, ", ") + "}" + core::didYouMean(status, known));
   }
 }
 
@@ -93,8 +92,8 @@ void requirePlanner(const std::string& key, const std::string& name, bool or_ext
   std::vector<std::string> names = planning::plannerNames();
   if (or_external) names.emplace_back("external");
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  throw InputError("key '" + key + "' is '" + name + "', an unknown planner; did you mean '" +
-                   core::nearestName(name, names) + "'? Known: " + core::joinText(names, ", "));
+  throw InputError("key '" + key + "' is '" + name + "', an unknown planner" +
+                   core::didYouMean(name, names) + "; known: " + core::joinText(names, ", "));
 }
 
 }  // namespace
@@ -168,7 +167,7 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
 }
 
 void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
-  visitor.text({"mode", "", "How CBVs behave."}, mode, {"naturalistic", "safety_critical"});
+  visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."}, mode, {"naturalistic", "safety_critical"});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
@@ -225,7 +224,7 @@ void ScenarioOptions::validate() const {
         cbv_planner + "' drives naturalistically only; expected diffusion or two_stage_pid");
   }
   const bool file = demand != "generated" && demand != "none";
-  if (file && !fs::is_regular_file(demand)) {
+  if (file && !core::isFile(demand)) {
     throw InputError("key 'demand' is '" + demand +
                      "'; expected generated, none, or a route file that exists");
   }

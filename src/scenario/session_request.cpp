@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/scenario/sample_file.h"
 
@@ -52,7 +53,7 @@ ScenarioOptions baseScenario(const SessionRequest& request, const ScenarioOption
 ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOptions& base) {
   ScenarioOptions options = baseScenario(request, base);
   if (!request.network.empty()) {
-    options.network = fs::is_regular_file(request.network) ? fs::absolute(request.network).string()
+    options.network = core::isFile(request.network) ? fs::absolute(request.network).string()
                                                            : request.network;
   }
   const auto apply = [&](const std::string& key, const std::string& value) {

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 
 namespace cdiff::simulation {
@@ -26,7 +27,8 @@ constexpr int kPortAttempts = 5;
 constexpr std::chrono::milliseconds kListenPeriod{5};
 
 bool isProgram(const fs::path& file) {
-  return fs::is_regular_file(file) && ::access(file.c_str(), X_OK) == 0;
+  std::error_code unreadable;  // as folders of PATH may be
+  return fs::is_regular_file(file, unreadable) && ::access(file.c_str(), X_OK) == 0;
 }
 
 /// Our environment, with SUMO_HOME added where it is unset.
@@ -128,7 +130,7 @@ LogFolder::LogFolder(const fs::path& wanted) : path_(wanted), temporary_(wanted.
       throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
     return;
   }
-  std::string name = (fs::temp_directory_path() / "e2e_cdiff_sumo_XXXXXX").string();
+  std::string name = (core::temporaryFolder() / "e2e_cdiff_sumo_XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw core::InputError("no temporary folder could be made from '" + name + "' for SUMO's log");
   }

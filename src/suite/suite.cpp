@@ -22,10 +22,10 @@ constexpr const char* kManifest = "suite.yaml";
 fs::path suitesFolder() { return core::shareFolder() / "config" / "suites"; }
 
 fs::path findSuite(const std::string& name_or_folder) {
-  if (fs::exists(fs::path(name_or_folder) / kManifest)) return fs::absolute(name_or_folder);
-  if (fs::exists(suitesFolder() / name_or_folder / kManifest))
+  if (core::isFile(fs::path(name_or_folder) / kManifest)) return fs::absolute(name_or_folder);
+  if (core::isFile(suitesFolder() / name_or_folder / kManifest))
     return suitesFolder() / name_or_folder;
-  if (fs::is_directory(name_or_folder)) {
+  if (core::isFolder(name_or_folder)) {
     throw InputError("folder '" + name_or_folder + "' holds no " + kManifest +
                      "; expected a suite, as 'cdiff suite train --results DIR' makes it");
   }
@@ -111,7 +111,7 @@ SuiteRoute readRoute(const fs::path& file, const YAML::Node& node) {
 
 void requireFile(const fs::path& manifest, const SuiteRoute& route, const char* what,
                  const fs::path& file) {
-  if (fs::is_regular_file(file)) return;
+  if (core::isFile(file)) return;
   throw InputError("suite '" + manifest.string() + "', route '" + route.name + "': its " + what +
                    " '" + file.string() + "' is missing; restore it, or make the suite again");
 }

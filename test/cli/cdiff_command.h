@@ -21,7 +21,10 @@ class CdiffCommand : public testing::Test {
   std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
   /// Runs cdiff; its output is in expectOutput() afterwards.
   int cdiff(const std::vector<std::string>& arguments) const {
-    evaluation::ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
+    return run(CDIFF_PROGRAM, arguments);
+  }
+  int run(const std::string& program, const std::vector<std::string>& arguments) const {
+    evaluation::ChildProcess process(program, arguments, scratch_.path() / "output");
     std::optional<int> exit_code = process.poll();
     while (!exit_code) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -29,9 +32,9 @@ class CdiffCommand : public testing::Test {
     }
     return *exit_code;
   }
+  std::string output() const { return core::readFile(scratch_.path() / "output", "output"); }
   void expectOutput(const std::string& part) const {
-    const std::string output = core::readFile(scratch_.path() / "output", "output");
-    EXPECT_NE(output.find(part), std::string::npos) << part << "\nin\n" << output;
+    EXPECT_NE(output().find(part), std::string::npos) << part << "\nin\n" << output();
   }
   TemporaryFolder scratch_;
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "cdiff_command.h"
 
@@ -69,6 +71,24 @@ TEST_F(DataCommands, TheTrainersExitCodeAndMessageComeThrough) {
   std::ofstream(path("data/broken.shard")) << "no shard";
   EXPECT_EQ(cdiff({"train", "--data", path("data"), "--output", path("model")}), 3);
   expectOutput("broken.shard");
+}
+
+TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
+  EXPECT_EQ(cdiff({"train", "--help"}), 0);
+  expectOutput("--steps INT [20000]");
+  expectOutput("--learning-rate FLOAT [0.0002]");
+  expectOutput("--stage TEXT [all]");
+  std::istringstream lines(output());
+  std::size_t options = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("  --", 0) != 0) continue;
+    ++options;
+    // Two words at least behind name and default, in the same line.
+    EXPECT_NE(line.find(' ', std::max<std::size_t>(line.find_last_of(']') + 1, 42)),
+              std::string::npos)
+        << line;
+  }
+  EXPECT_EQ(options, 28U) << output();
 }
 
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {

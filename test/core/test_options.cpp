@@ -89,6 +89,23 @@ TEST(Options, BrokenYamlAndRepeatedKeysAreErrors) {
   EXPECT_TRUE(mentions(errorOf("- 1\n"), "map of keys"));
 }
 
+TEST(Options, AChoiceThatIsFarFromAllIsExplained) {
+  const std::string error = errorOf("inner: {ranking: agressive}\n");
+  EXPECT_FALSE(mentions(error, "did you mean")) << error;
+  EXPECT_TRUE(mentions(error, "expected one of {score, nearest}: ")) << error;
+}
+
+// 8 MiB are 8388608 bytes, 64 KiB 65536.
+TEST(Options, WhatIsTooLargeIsRefusedAtOnceAndNotQuoted) {
+  const std::string long_text(70000, 'x');
+  EXPECT_TRUE(mentions(errorOf("inner: {ranking: " + long_text + "}\n"),
+                       "key 'inner.ranking' is a text of 70000 bytes; at most 65536"));
+  EXPECT_TRUE(mentions(errorOf("? " + long_text + "\n: 1\n"), "longer than any known one"));
+  EXPECT_LT(errorOf("inner: {ranking: " + long_text.substr(0, 60000) + "}\n").size(), 500U);
+  EXPECT_TRUE(mentions(errorOf("#" + std::string(9000000, 'x')), "at most 8388608"));
+  EXPECT_TRUE(mentions(errorOf("seed: " + std::string(5000, '[')), "nested deeper"));
+}
+
 TEST(Options, OverrideTakesPathOrUniqueLeaf) {
   OuterOptions options;
   overrideOption("inner.radius=3", "--set", options);

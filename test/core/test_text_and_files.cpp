@@ -4,12 +4,17 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <new>
+#include <vector>
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/failure.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "support/real_data.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::core {
 namespace {
@@ -47,6 +52,73 @@ TEST(Text, FileNamesStayInTheirFolder) {
 // Edit distances to "pdm_lit": 1, 7, 6.
 TEST(Text, NearestName) {
   EXPECT_EQ(nearestName("pdm_lit", {"diffusion", "pdm_lite", "plant"}), "pdm_lite");
+}
+
+// Edit distances: "nine" to "none" 1 of 4 letters; "agressive" to "naturalistic" 9 of 12.
+TEST(Text, OnlyACloseNameIsSuggested) {
+  EXPECT_EQ(closeName("nine", {"all", "none"}), "none");
+  EXPECT_EQ(closeName("agressive", {"naturalistic", "safety_critical"}), "");
+  EXPECT_EQ(closeName("critical", {"naturalistic", "safety_critical"}), "safety_critical");
+  EXPECT_EQ(closeName("x", {}), "");
+  EXPECT_EQ(didYouMean("nine", {"none"}), "; did you mean 'none'?");
+  EXPECT_EQ(didYouMean("x", {"none"}), "");
+  EXPECT_EQ(shortened("abcdef", 3), "abc...");
+  EXPECT_EQ(shortened("abc", 3), "abc");
+}
+
+/// The text of the InputError that an action throws.
+std::string errorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(File, WhatTheSystemRefusesIsNamed) {
+  const test::TemporaryFolder folder;
+  const auto loop = folder.path() / "loop";
+  std::filesystem::create_symlink("loop", loop);
+  for (const auto& action : std::vector<std::function<void()>>{
+           [&] { isFile(loop); }, [&] { isFolder(loop / "x"); }, [&] { readFile(loop, "text"); }}) {
+    const std::string text = errorOf(action);
+    EXPECT_NE(text.find("'" + loop.string()), std::string::npos) << text;
+    EXPECT_NE(text.find("Too many levels of symbolic links"), std::string::npos) << text;
+  }
+  EXPECT_NE(errorOf([] { isFile(std::string(300, 'a')); }).find("File name too long"),
+            std::string::npos);
+  EXPECT_FALSE(isFile(folder.path() / "none"));
+  EXPECT_TRUE(isFolder(folder.path()));
+  writeFileAtomically(folder.path() / "sparse", "");
+  std::filesystem::resize_file(folder.path() / "sparse", std::uintmax_t{3} << 30);
+  EXPECT_NE(errorOf([&] { readFile(folder.path() / "sparse", "text"); }).find("3221225472 bytes"),
+            std::string::npos);
+}
+
+TEST(File, AMissingTemporaryFolderIsNamed) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string saved = before != nullptr ? before : "";
+  ::setenv("TMPDIR", "/no/such/folder", 1);
+  const std::string text = errorOf([] { temporaryFolder(); });
+  before != nullptr ? ::setenv("TMPDIR", saved.c_str(), 1) : ::unsetenv("TMPDIR");
+  EXPECT_NE(text.find("TMPDIR is '/no/such/folder'"), std::string::npos) << text;
+}
+
+TEST(Failure, SaysWhatAnExceptionMeansToTheUser) {
+  EXPECT_EQ(failureOf(InputError("a")).exit_code, 3);
+  EXPECT_EQ(failureOf(SimulatorError("a")).exit_code, 2);
+  EXPECT_EQ(failureOf(Interrupted("a")).exit_code, 130);
+  EXPECT_EQ(failureOf(SimulatorError("SUMO was lost")).text, "SUMO was lost");
+  const std::filesystem::filesystem_error path(
+      "status", "loop", std::make_error_code(std::errc::too_many_symbolic_link_levels));
+  EXPECT_EQ(failureOf(path).exit_code, 3);
+  EXPECT_EQ(failureOf(path).text.find("cannot use 'loop': Too many levels"), 0U);
+  EXPECT_EQ(failureOf(std::bad_alloc()).text.find("out of memory"), 0U);
+  EXPECT_EQ(failureOf(std::length_error("vector::_M_default_append")).text.find("out of memory"),
+            0U);
+  EXPECT_EQ(failureOf(std::out_of_range("map::at")).text.find("internal error (map::at)"), 0U);
+  EXPECT_EQ(failureOf(std::out_of_range("map::at")).exit_code, 2);
 }
 
 TEST(Angle, Wrap) {

@@ -49,6 +49,36 @@ TEST_P(ShippedMatrix, PlansRunsWithNamesOfTheirOwn) {
   EXPECT_EQ(scenarios.size(), plan.size());
 }
 
+// The same text as when the scenario is resolved for each seed on its own.
+TEST(Matrix, EachSeedIsResolvedAsIfAlone) {
+  MatrixOptions matrix = oneScenario();
+  matrix.seeds = {"3", "007", "12"};
+  const std::vector<PlannedRun> together = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(together.size(), 3U);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    MatrixOptions alone = oneScenario();
+    alone.seeds = {matrix.seeds[i]};
+    EXPECT_EQ(planRuns(alone, "matrix.yaml")[0].scenario_text, together[i].scenario_text);
+    EXPECT_EQ(planRuns(alone, "matrix.yaml")[0].factors, together[i].factors);
+  }
+  matrix.set = {"seed=5"};  // ranks above the seeds, so all three are the same run
+  EXPECT_NE(errorOf(matrix).find("a run is planned twice"), std::string::npos) << errorOf(matrix);
+}
+
+TEST(Matrix, TooManyRunsAreRefusedBeforeAnyIsResolved) {
+  MatrixOptions matrix;
+  matrix.scenarios = {"no_such_scenario"};
+  matrix.repetitions = 1000;
+  for (int seed = 0; seed < 101; ++seed) matrix.seeds.push_back(std::to_string(seed));
+  expectIn(
+      "101000 runs would be planned (1 scenarios x 1 combinations of planners, modes and "
+      "profiles x 1 variants x 101 seeds x 1000 repetitions); at most 100000",
+      errorOf(matrix));
+  matrix.ego_planners.assign(1000, "pdm_lite");
+  matrix.cbv_planners.assign(1000, "pdm_lite");
+  expectIn("give 1e+06 combinations; at most 100000 runs were expected", errorOf(matrix));
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ShippedMatrix, testing::ValuesIn(shippedMatrices()),
                          [](const auto& info) { return info.param; });
 

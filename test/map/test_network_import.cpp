@@ -111,6 +111,7 @@ TEST_F(NetworkImport, NamesWhatIsWrong) {
   };
   expectError("", "no network was given");
   expectError((folder_ / "none.net.xml").string(), "none.net.xml' does not exist");
+  expectError("/dev/null", "network '/dev/null' is no regular file");
   expectError("no_such_network", "network 'no_such_network' is neither a file nor shipped");
   expectError(write("text.net.xml", "hello"), "no <net> element");
   expectError(write("packed.net.xml", "\x1f\x8b\x08 <net"), "is compressed");

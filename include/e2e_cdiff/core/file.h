@@ -10,7 +10,13 @@
 
 namespace cdiff::core {
 
-/// The whole file. Throws InputError naming `what` and the path when it cannot be read.
+/// Whether a regular file, or a folder, is there. Throws InputError naming the path where the
+/// system cannot tell: a loop of symbolic links, a folder that cannot be searched, a name too long.
+bool isFile(const std::filesystem::path& path);
+bool isFolder(const std::filesystem::path& path);
+
+/// The whole file. Throws InputError naming `what` and the path when it cannot be read or is larger
+/// than 2 GiB.
 std::string readFile(const std::filesystem::path& path, const std::string& what);
 
 /// Writes to a temporary file beside `path`, flushes it to the disk and renames it: the file is
@@ -42,6 +48,14 @@ class Sha256 {
 /// installed share folder beside this library, else the source tree. Throws InputError when none
 /// holds config/.
 std::filesystem::path shareFolder();
+
+/// What SUMO's programs need as SUMO_HOME: the environment's folder where there is one, else the
+/// package's own, which holds type maps.
+std::filesystem::path sumoHome();
+
+/// TMPDIR (or TMP, TEMP, TEMPDIR), else /tmp. Throws InputError naming the variable when it is no
+/// folder.
+std::filesystem::path temporaryFolder();
 
 /// Cache folder: E2E_CDIFF_CACHE, else XDG_CACHE_HOME/e2e_cdiff, else HOME/.cache/e2e_cdiff, else
 /// the system's temporary folder; made when missing.

@@ -70,7 +70,7 @@ void describeAs(void* options, OptionsVisitor& visitor) {
 
 /// Reads a YAML map into `options`; keys not given keep their value. Throws InputError with file,
 /// line, key, what was expected and the nearest known key for: broken YAML, unknown or repeated
-/// key, wrong type, value out of range.
+/// key, wrong type, value out of range, more than 8 MiB, a key or value of more than 64 KiB.
 template <class Options>
 void loadOptions(const YamlSource& source, Options& options) {
   detail::load(source, &options, &detail::describeAs<Options>);

@@ -22,6 +22,16 @@ std::optional<double> parseNumber(std::string_view text);
 /// The known name with the smallest edit distance to `name`; empty when `known` is empty.
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
+/// Like nearestName, but empty unless at most a third of the letters differ or the known name
+/// contains `name`: fit for "did you mean".
+std::string closeName(const std::string& name, const std::vector<std::string>& known);
+
+/// "; did you mean 'NAME'?" of the close name, or nothing.
+std::string didYouMean(const std::string& name, const std::vector<std::string>& known);
+
+/// At most `length` bytes of `text`, "..." behind them where it is longer: for quoting in messages.
+std::string shortened(const std::string& text, std::size_t length = 80);
+
 /// `text` with every character that is not a letter, digit, '_', '-' or '.' replaced by '_', and no
 /// leading dots: safe as the name of a file.
 std::string fileName(std::string text);

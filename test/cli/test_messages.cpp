@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "cdiff_command.h"
+
+namespace cdiff::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the user reads where the command line, the environment or a file is wrong.
+class Messages : public test::CdiffCommand {
+ protected:
+  /// A variable of the environment for the life of a test.
+  class Variable {
+   public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+      if (const char* before = std::getenv(name)) before_ = before;
+      ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() {
+      if (before_) ::setenv(name_, before_->c_str(), 1);
+      if (!before_) ::unsetenv(name_);
+    }
+
+   private:
+    const char* name_;
+    std::optional<std::string> before_;
+  };
+};
+
+TEST_F(Messages, AnUnknownCommandIsNamed) {
+  EXPECT_EQ(cdiff({"evalute"}), 3);
+  expectOutput("unknown command 'evalute'; did you mean 'evaluate'?");
+  expectOutput("validate");
+  EXPECT_EQ(cdiff({"drive"}), 3);
+  expectOutput("unknown command 'drive'; known: run, ");
+}
+
+TEST_F(Messages, TheVersionNamesWhatResultsDependOn) {
+  EXPECT_EQ(cdiff({"--version"}), 0);
+  for (const char* part : {"cdiff 0.", "\nrevision ", "\nSUMO 1.", "\ninstruction set "})
+    expectOutput(part);
+}
+
+TEST_F(Messages, ASumoHomeThatIsNoneIsReplaced) {
+  const Variable variable("SUMO_HOME", path("none"));
+  EXPECT_EQ(cdiff({"doctor"}), 0);
+  expectOutput("SUMO_HOME: '" + path("none") + "' is no folder: SUMO's programs are started with ");
+}
+
+#ifdef CDIFF_SETUP
+TEST_F(Messages, SourcingPutsCdiffInPathAndSumoHomeOnAFolder) {
+  const Variable variable("SUMO_HOME", path("none"));
+  EXPECT_EQ(run("/bin/bash", {"-c", "set --; . '" CDIFF_SETUP
+                                    "'; cdiff --version && cat \"$SUMO_HOME\"/data/typemap/osm*"}),
+            0);
+  expectOutput("instruction set");
+  expectOutput("highway.residential");
+}
+#endif
+
+TEST_F(Messages, AModeThatIsNoneIsExplained) {
+  EXPECT_EQ(cdiff({"run", "roundabout_cross", "--mode", "agressive"}), 3);
+  expectOutput(
+      "key 'mode' is 'agressive'; expected one of {naturalistic, safety_critical}: How CBVs "
+      "behave: "
+      "as in everyday traffic, or seeking a collision.");
+}
+
+TEST_F(Messages, ALoopOfSymbolicLinksIsNamed) {
+  fs::create_symlink("loop", path("loop"));
+  const std::vector<std::vector<std::string>> commands = {
+      {"run", path("loop")},
+      {"run", "roundabout_cross", "--set", "network=" + path("loop")},
+      {"run", "roundabout_cross", "--set", "guidance_profile=" + path("loop")},
+      {"run", "roundabout_cross", "--results", path("loop")},
+      {"evaluate", path("loop"), "--results", path("results")},
+      {"import", path("loop")},
+      {"report", "--training", path("loop")},
+      {"metric", "ttc_2d", path("loop")},
+      {"suite", "test", "--results", path("loop")}};
+  for (const std::vector<std::string>& command : commands) {
+    EXPECT_EQ(cdiff(command), 3) << command.front();
+    expectOutput("'" + path("loop"));
+    expectOutput("Too many levels of symbolic links");
+    EXPECT_EQ(output().find("filesystem error"), std::string::npos) << output();
+  }
+}
+
+TEST_F(Messages, AMissingTemporaryFolderIsNamed) {
+  const Variable variable("TMPDIR", path("none"));
+  EXPECT_EQ(cdiff({"run", "roundabout_cross", "--quiet", "--results", path("results")}), 3);
+  expectOutput("environment variable TMPDIR is '" + path("none") + "'");
+}
+
+TEST_F(Messages, AShareFolderThatIsNoneIsNamed) {
+  const Variable variable("E2E_CDIFF_SHARE", path("none"));
+  EXPECT_EQ(cdiff({"validate", "roundabout_cross"}), 3);
+  expectOutput("environment variable E2E_CDIFF_SHARE is '" + path("none") + "'");
+}
+
+TEST_F(Messages, AFolderOfPathThatCannotBeReadIsPassedOver) {
+  fs::create_symlink("loop", path("loop"));
+  const Variable variable("PATH", path("loop") + ":" + std::getenv("PATH"));
+  EXPECT_EQ(cdiff({"run", "roundabout_cross", "--quiet", "--results", path("results"), "--set",
+                   "protocol.time_limit=0.5", "--set", "verdict.minimum_route_completion=0"}),
+            0)
+      << output();
+}
+
+TEST_F(Messages, AMatrixOfTooManyRunsIsRefusedAtOnce) {
+  std::ofstream matrix(path("many.yaml"));
+  matrix << "scenarios: [no_such_scenario]\nseeds: [0";
+  for (int seed = 1; seed < 1000; ++seed) matrix << ", " << seed;
+  matrix << "]\nrepetitions: 101\n";
+  matrix.close();
+  // 1 scenario x 1 combination x 1 variant x 1000 seeds x 101 repetitions; nothing was resolved,
+  // or the scenario would be named.
+  EXPECT_EQ(cdiff({"evaluate", path("many.yaml"), "--results", path("results")}), 3);
+  expectOutput("101000 runs would be planned");
+  expectOutput("at most 100000");
+  EXPECT_FALSE(fs::exists(path("results")));
+}
+
+}  // namespace
+}  // namespace cdiff::cli
