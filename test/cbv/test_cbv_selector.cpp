@@ -126,15 +126,15 @@ TEST(CbvSelector, NamesTheFirstGateThatFails) {
 }
 
 TEST(CbvSelector, NoConflictLiesBeyondATurnRound) {
-  // Against the ego along y = 6, then back along its exit: 28 m to the turn, 10 m round it, x - 112
-  // m on; the ego has x - 70 m to go, so the distances differ by 4 m.
+  // Against the ego along y = 6, then back along its exit: 26 m to the turn, 11.7 m round it, x -
+  // 110 m on; the ego has x - 80 m to go, so the distances differ by 7.7 m.
   for (const char direction : {'l', 't'}) {
     test::NetworkText text = crossingText();
-    text.edge("oncoming", {"160,6 112,6"}, "v", "j").edge(":j_3", {"112,6 108,3 112,0"});
+    text.edge("oncoming", {"160,6 112,6"}, "v", "j").edge(":j_3", {"112,6 106,3 110,0"});
     text.connection("oncoming_0", "east_0", ":j_3_0", direction);
     CrossingWorld world({}, 2, text);
     const auto selection = world.selector.update(
-        crossingSnapshot(kFirst, 70.0, {test::vehicle("a", {140.0, 6.0, 180.0, 9.0})}));
+        crossingSnapshot(kFirst, 80.0, {test::vehicle("a", {138.0, 6.0, 180.0, 9.0})}));
     EXPECT_EQ(selection.assignments.size(), direction == 'l' ? 1U : 0U);
     EXPECT_EQ(reasonOf(selection, "a"), direction == 'l' ? "" : kNoWay);
   }
