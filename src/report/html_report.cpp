@@ -81,6 +81,14 @@ std::string banner(const SessionResult& result) {
   return html + "</p></div></div>\n</header>\n";
 }
 
+/// Below the verdict: a session that late answers went into cannot be repeated.
+std::string lateBanner(const SessionResult& result) {
+  const std::string text = latenessText(result.late);
+  if (text.empty()) return "";
+  return "<div class=\"late\" role=\"note\"><strong>Answers came late: </strong>" +
+         escapeMarkup(text) + ". Another run will differ.</div>\n";
+}
+
 std::string figure(const std::string& name, const std::string& value, const std::string& unit,
                    const std::string& note) {
   return "<div class=\"figure\"><span class=\"name\">" + name + "</span><span class=\"value\">" +
@@ -144,7 +152,7 @@ std::string configuration(const SessionResult& result) {
 
 std::string htmlReport(const SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
-  return head(result) + "<body>\n<main>\n" + banner(result) + figures(result) +
+  return head(result) + "<body>\n<main>\n" + banner(result) + lateBanner(result) + figures(result) +
          section("What happened", stageHtml(result, canvas)) +
          section("Over time", sessionCharts(result)) +
          section("Distributions", drivingSection(result)) +
@@ -157,6 +165,7 @@ std::string htmlReport(const SessionResult& result) {
          section("Why others were no CBVs", rejectionTable(result.cbv)) +
          section("Contacts", contactTable(result)) +
          section("Planner latency", latencyTable(result.latencies)) +
+         section("Late answers", lateTable(result.late)) +
          section("Faults", faultTable(result.faults)) +
          section("Configuration and versions", configuration(result)) +
          "</main>\n<script type=\"application/json\" id=\"playback\">" +

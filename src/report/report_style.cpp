@@ -50,6 +50,8 @@ h2 { font-size: 1.15rem; margin: 34px 0 10px; }
 .figure .value { font-size: 1.45rem; font-weight: 600; font-variant-numeric: tabular-nums; }
 .figure small { font-size: .9rem; font-weight: 400; }
 .banner .story { margin-top: 6px; }
+.late { padding: 10px 18px; margin: 0 0 16px; border-radius: 8px; color: var(--text); background: var(--error-back);
+  border-left: 6px solid var(--error); overflow-wrap: anywhere; }
 .stage { display: grid; gap: 14px 20px; grid-template-columns: minmax(0, 1fr); }
 @media (min-width: 980px) { .stage { grid-template-columns: minmax(0, 1fr) 330px; } }
 .sights { min-width: 0; }

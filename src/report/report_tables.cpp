@@ -212,6 +212,21 @@ std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies)
   return table.html();
 }
 
+std::string lateTable(const std::map<std::string, LateFigures>& late) {
+  if (late.empty()) return "<p class=\"note\">The session waited for every answer.</p>\n";
+  Table table({"Planner", "#Asked", "#Late", "#Never came", "#Drove on by its plan",
+               "#Braked fully", "#Not taken over yet", "#Lateness: median [s]",
+               "#95th percentile [s]", "#Maximum [s]"});
+  for (const auto& [planner, figures] : late) {
+    table.row({planner, std::to_string(figures.asked), std::to_string(figures.late),
+               std::to_string(figures.missing), std::to_string(figures.by_plan),
+               std::to_string(figures.by_full_brake), std::to_string(figures.not_driven),
+               fixed(figures.median, 3), fixed(figures.percentile_95, 3),
+               fixed(figures.maximum, 3)});
+  }
+  return table.html();
+}
+
 std::string faultTable(const std::vector<traffic::Fault>& faults) {
   if (faults.empty()) return "<p class=\"note\">None.</p>\n";
   Table table({"#Tick", "Source", "What happened"});

@@ -63,6 +63,7 @@ class ResultWriter::Record {
     result_.status = snapshot.status;
     result_.faults.insert(result_.faults.end(), snapshot.faults.begin(), snapshot.faults.end());
     latencies_.observe(record.latencies);
+    late_.observe(record.timings);
     if (last_tick_ && snapshot.tick <= *last_tick_)
       return;  // the same tick again, ended from outside
     last_tick_ = snapshot.tick;
@@ -103,6 +104,7 @@ class ResultWriter::Record {
     result_.trace_sha256 = trace_.finish();
     result_.measures = metrics_.measures();
     result_.latencies = latencies_.figures();
+    result_.late = late_.figures();
     result_.verdict =
         judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
   }
@@ -118,6 +120,7 @@ class ResultWriter::Record {
   FrontViewLog front_views_;
   DrivingLog driving_;
   LatencyLog latencies_;
+  LateLog late_;
   SessionResult result_;
   std::optional<std::uint64_t> last_tick_;
   bool finished_ = false;

@@ -69,6 +69,8 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
   std::string text = headRows(result) + figureRows(result.measures) + latencyRows(result.latencies);
+  const std::string late = latenessText(result.late);
+  if (!late.empty()) text += row("late answers", late);
   if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));
   text += row("verdict", capitalsOf(result.verdict.outcome));
   for (const std::string& reason : result.verdict.reasons) text += row("", "- " + reason);

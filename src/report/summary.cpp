@@ -237,6 +237,22 @@ Json verdictObject(const Verdict& verdict) {
   return {{"outcome", toText(verdict.outcome)}, {"reasons", verdict.reasons}, {"rules", rules}};
 }
 
+Json lateObject(const std::map<std::string, LateFigures>& late) {
+  Json object = {{"count", lateAnswers(late)}, {"planners", Json::object()}};
+  for (const auto& [planner, figures] : late) {
+    object["planners"][planner] = {
+        {"asked", figures.asked},
+        {"late", figures.late},
+        {"missing", figures.missing},
+        {"by_plan", figures.by_plan},
+        {"by_full_brake", figures.by_full_brake},
+        {"not_driven", figures.not_driven},
+        {"lateness_s",
+         {{"p50", figures.median}, {"p95", figures.percentile_95}, {"max", figures.maximum}}}};
+  }
+  return object;
+}
+
 Json faultList(const std::vector<traffic::Fault>& faults) {
   Json list = Json::array();
   for (const traffic::Fault& fault : faults) {
@@ -291,6 +307,7 @@ std::string summaryJson(const SessionResult& result) {
   summary["metrics"] = Json::object();
   addFigures(summary["metrics"], "metrics", result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
+  summary["late_answers"] = lateObject(result.late);
   summary["faults"] = faultList(result.faults);
   summary["verdict"] = verdictObject(result.verdict);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -70,6 +70,7 @@ void BagFile::write(const TickMessages& tick) {
 void BagFile::writeTick(const TickMessages& tick) {
   const ::ros::Time stamp = bagStamp(tick.snapshot->header.stamp);
   put(kTrafficTopic, stamp, tick.snapshot);
+  put(kDecisionRecordTopic, stamp, tick.decision);  // before what it speaks of
   put(kSelectionTopic, stamp, tick.selection);
   for (const auto& [slot, control] : tick.controls) put(controlTopic(slot), stamp, control);
   for (const auto& [slot, rollout] : tick.rollouts) put(cbvRolloutTopic(slot), stamp, rollout);

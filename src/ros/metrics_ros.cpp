@@ -49,7 +49,7 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
 }
 
 bool MetricsRos::handle(const Snapshot& message, bool superseded) {
-  if (!superseded && !answered(*message)) return false;
+  if (!complete(*message, superseded)) return false;
   if (!begin_) begin_ = Clock::now();
   const TickRecordView tick(*message, answers(), setup_->network());
   writer_->observe(tick.record());

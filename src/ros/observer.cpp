@@ -11,15 +11,19 @@ namespace msgs = ::e2e_cdiff;
 void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
                                const ImageInterest& images) {
   const bool guided = graph().cbvsSee();
-  const ExpectedAnswers expected{guided, true, images.ego, images.cbvs};
+  const ExpectedAnswers expected{guided, true, images.ego, images.cbvs, graph().recordsDecisions()};
   answers_ = TickAnswers(options.simulation_step, expected, options.camera);
   listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) {
     const std::string wrong = unusable(*message, graph().max_cbv);
     if (wrong.empty()) answers_.add(message);
     return wrong;
   });
-  listen<msgs::ControlAction>(kEgoControlTopic,
-                              [this](const auto& message) { answers_.addEgo(message); });
+  if (graph().recordsDecisions()) {
+    listen<msgs::DecisionRecord>(kDecisionRecordTopic,
+                                 [this](const auto& message) { answers_.add(message); });
+  } else {
+    for (int slot = kEgoSlot; slot < graph().max_cbv; ++slot) listenToControls(slot);
+  }
   if (guided) {
     listen<msgs::GuidanceReport>(kGuidanceTopic,
                                  [this](const auto& message) { answers_.add(message); });
@@ -31,12 +35,19 @@ void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
   }
 }
 
-void Observer::listenToSlot(int slot) {
+void Observer::listenToControls(int slot) {
+  if (slot == kEgoSlot) {
+    return listen<msgs::ControlAction>(kEgoControlTopic,
+                                       [this](const auto& message) { answers_.addEgo(message); });
+  }
   listen<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
     if (message->slot != slot) return wrongSlot(message->slot);
     answers_.addCbv(slot, message);
     return std::string();
   });
+}
+
+void Observer::listenToSlot(int slot) {
   listen<msgs::Rollout>(cbvRolloutTopic(slot), [this, slot](const auto& message) {
     if (message->slot != slot) return wrongSlot(message->slot);
     answers_.addRollout(slot, message);
@@ -47,6 +58,21 @@ void Observer::listenToSlot(int slot) {
 void Observer::listenToImages(int slot) {
   listen<sensor_msgs::Image>(
       imageTopic(slot), [this, slot](const auto& message) { answers_.addImage(slot, message); });
+}
+
+bool Observer::complete(const msgs::TrafficSnapshot& snapshot, bool superseded) {
+  constexpr double kPatience = 0.5;  // [s] of wall time for messages that are on their way
+  const bool all = answers_.missing(snapshot).empty();
+  if (all || over() || (superseded && !graph().recordsDecisions())) {
+    waiting_since_ = {};
+    return true;
+  }
+  if (!superseded || !answers_.decision(snapshot.tick)) return false;
+  const ::ros::WallTime now = ::ros::WallTime::now();
+  if (waiting_since_.isZero()) waiting_since_ = now;
+  if ((now - waiting_since_).toSec() < kPatience) return false;
+  waiting_since_ = {};
+  return true;
 }
 
 }  // namespace cdiff::ros

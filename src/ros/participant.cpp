@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/participant.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -95,14 +96,31 @@ void Participant::queue(const Snapshot& snapshot) {
 
 /// Answers whether the last snapshot of the session has been handled.
 bool Participant::handleQueue() {
-  while (!snapshots_.empty() && handle(snapshots_.front(), snapshots_.size() > 1)) {
+  if (leavesOut()) leaveOutdatedOut();
+  while (!snapshots_.empty() && handle(snapshots_.front(), snapshots_.size() > 1 && !leavesOut())) {
     final_handled_ = snapshots_.front()->status != msgs::TrafficSnapshot::RUNNING;
     snapshots_.pop_front();
   }
   return final_handled_;
 }
 
+/// Answers to older decisions would drive nobody once the newest that can be answered is.
+void Participant::leaveOutdatedOut() {
+  constexpr std::size_t kMost = 40;  // snapshots that wait for what a decision needs
+  const auto newest = std::find_if(snapshots_.rbegin(), snapshots_.rend(), [this](const auto& one) {
+    return one->decision_tick && ready(*one);
+  });
+  if (newest != snapshots_.rend()) snapshots_.erase(snapshots_.begin(), newest.base() - 1);
+  const bool last =
+      !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
+  if (last) snapshots_.erase(snapshots_.begin(), snapshots_.end() - 1);
+  while (snapshots_.size() > kMost) snapshots_.pop_front();
+}
+
 int Participant::leave(Ending ending) {
+  over_ = true;
+  while (isObserver(name_) && !snapshots_.empty() && handle(snapshots_.front(), true))
+    snapshots_.pop_front();
   const int exit_code = conclude(ending);
   if (!isObserver(name_) || !::ros::ok()) return exit_code;
   tell(msgs::TickAck::FINISHED, lastTick());

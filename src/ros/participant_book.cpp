@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/participant_book.h"
 
+#include <algorithm>
+
 #include "e2e_cdiff/ros/topics.h"
 
 namespace cdiff::ros {
@@ -41,6 +43,16 @@ std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) co
       nodes.push_back(node);
   }
   return nodes;
+}
+
+std::uint64_t ParticipantBook::acknowledgedByAll() const {
+  std::optional<std::uint64_t> least;
+  for (const auto& [node, entry] : entries_) {
+    if (!isObserver(node)) continue;
+    const std::uint64_t tick = entry.acknowledged.value_or(0);
+    least = std::min(least.value_or(tick), tick);
+  }
+  return least.value_or(0);
 }
 
 std::vector<std::string> ParticipantBook::notFinished() const {

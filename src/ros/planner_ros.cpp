@@ -48,9 +48,13 @@ std::string EgoPlannerRos::waitingFor() const {
   return route_.empty() ? "no ego route has come yet" : "";
 }
 
+bool EgoPlannerRos::ready(const msgs::TrafficSnapshot& snapshot) const {
+  return !graph().ego_sees || images_.find(kEgoSlot, snapshot.tick);
+}
+
 bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
   if (!message->decision_tick) return true;
-  const bool blind = graph().ego_sees && !images_.find(kEgoSlot, message->tick);
+  const bool blind = !ready(*message);
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
   const auto tasks = scenario::egoTasks(snapshot, route_, setup_->options().target_speed);
   if (tasks.empty()) return true;
@@ -89,6 +93,11 @@ void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
     if (wrong.empty()) selections_.emplace(selection->tick, selection);
     return wrong;
   });
+}
+
+bool CbvPlannerRos::ready(const msgs::TrafficSnapshot& snapshot) const {
+  const auto found = selections_.find(snapshot.tick);
+  return found != selections_.end() && complete(snapshot, *found->second);
 }
 
 bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {

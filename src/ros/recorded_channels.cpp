@@ -4,6 +4,7 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
+#include "e2e_cdiff/DecisionRecord.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
@@ -66,6 +67,8 @@ Channel channelOf(const BagConnection& connection, const std::string& topic,
     return {ChannelKind::kSession, kEgoSlot, wrongType<msgs::SessionInfo>(connection)};
   if (topic == kTrafficTopic)
     return {ChannelKind::kTraffic, kEgoSlot, wrongType<msgs::TrafficSnapshot>(connection)};
+  if (topic == kDecisionRecordTopic)
+    return {ChannelKind::kDecision, kEgoSlot, wrongType<msgs::DecisionRecord>(connection)};
   if (topic == kSelectionTopic)
     return {ChannelKind::kSelection, kEgoSlot, wrongType<msgs::CbvSelection>(connection)};
   if (topic == kGuidanceTopic && graph.cbvsSee())

@@ -17,6 +17,7 @@ enum class ChannelKind {
   kOther,
   kSession,
   kTraffic,
+  kDecision,
   kSelection,
   kGuidance,
   kControl,

@@ -129,13 +129,17 @@ void RecordedSession::dispatch(const BagMessage& message) {
       return takeSession(message);
     case ChannelKind::kTraffic:
       return takeSnapshot(message);
+    case ChannelKind::kDecision:
+      return answers_.add(decode<msgs::DecisionRecord>(message));
     case ChannelKind::kSelection:
       return takeSelection(message);
     case ChannelKind::kGuidance:
       return answers_.add(decode<msgs::GuidanceReport>(message));
     case ChannelKind::kControl:
-      if (channel.slot == kEgoSlot) return answers_.addEgo(decode<msgs::ControlAction>(message));
-      return answers_.addCbv(channel.slot, decode<msgs::ControlAction>(message));
+      if (channel.slot != kEgoSlot)
+        return answers_.addCbv(channel.slot, decode<msgs::ControlAction>(message));
+      answers_.addEgo(decode<msgs::ControlAction>(message));
+      return;
     case ChannelKind::kRollout:
       return answers_.addRollout(channel.slot, decode<msgs::Rollout>(message));
     case ChannelKind::kImage:

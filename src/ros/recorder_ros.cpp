@@ -33,19 +33,20 @@ std::string RecorderRos::waitingFor() const {
   return has_route_ ? "" : "no ego route has come yet";
 }
 
-/// Whether everything that belongs to a tick is here.
-bool RecorderRos::complete(const msgs::TrafficSnapshot& snapshot) {
-  if (!answered(snapshot)) return false;
+/// Whether the metrics of a tick are here, too.
+bool RecorderRos::measured(const msgs::TrafficSnapshot& snapshot, bool superseded) {
+  if (over() || (superseded && !graph().recordsDecisions())) return true;
   const bool final = snapshot.status != msgs::TrafficSnapshot::RUNNING;
   if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
       reports_.count(snapshot.tick) > 0)
     return true;
   if (waiting_since_.isZero()) waiting_since_ = ::ros::WallTime::now();
-  return final && (::ros::WallTime::now() - waiting_since_).toSec() > kReportPatience;
+  return (final || superseded) &&
+         (::ros::WallTime::now() - waiting_since_).toSec() > kReportPatience;
 }
 
 bool RecorderRos::handle(const Snapshot& snapshot, bool superseded) {
-  if (!superseded && !complete(*snapshot)) return false;
+  if (!complete(*snapshot, superseded) || !measured(*snapshot, superseded)) return false;
   bag_->write(messagesOf(snapshot));
   acknowledge(snapshot->tick);
   forgetUntil(snapshot->tick);
@@ -65,6 +66,7 @@ TickMessages RecorderRos::messagesOf(const Snapshot& snapshot) const {
     if (const auto image = answers().image(slot, tick)) messages.images[slot] = image;
   }
   messages.guidance = answers().guidance(tick);
+  messages.decision = answers().decision(tick);
   const auto report = reports_.find(tick);
   if (report != reports_.end()) messages.report = report->second;
   return messages;

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/decision_book.h"
 #include "e2e_cdiff/ros/image_conversions.h"
 #include "e2e_cdiff/ros/markers.h"
 #include "e2e_cdiff/ros/replay.h"
@@ -100,6 +101,7 @@ void ReplayRos::advertise() {
   offer<msgs::SessionInfo>(kSessionTopic, true);
   offer<msgs::TrafficSnapshot>(kTrafficTopic, true);
   offer<nav_msgs::Path>(kEgoRouteTopic, true);
+  if (graph_.recordsDecisions()) offer<msgs::DecisionRecord>(kDecisionRecordTopic);
   offer<msgs::CbvSelection>(kSelectionTopic);
   offer<visualization_msgs::MarkerArray>(kRolloutMarkersTopic);
   if (graph_.cbvsSee()) offer<msgs::GuidanceReport>(kGuidanceTopic);
@@ -138,6 +140,13 @@ void ReplayRos::publishTick(const msgs::TrafficSnapshot::ConstPtr& snapshot) {
 
 void ReplayRos::publishAnswers(const msgs::TrafficSnapshot& snapshot) {
   const TickAnswers& answers = session_.answers();
+  if (graph_.recordsDecisions()) {
+    const auto record = answers.decision(snapshot.tick);  // earlier versions recorded none
+    topics_.at(kDecisionRecordTopic)
+        .publish(record ? record
+                        : boost::make_shared<const msgs::DecisionRecord>(
+                              punctualRecord(snapshot, answers)));
+  }
   if (const auto guidance = answers.guidance(snapshot.tick))
     topics_.at(kGuidanceTopic).publish(guidance);
   for (int slot = kEgoSlot; slot < graph_.max_cbv; ++slot) publishSlot(slot, snapshot.tick);

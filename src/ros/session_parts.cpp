@@ -34,6 +34,7 @@ SessionGraph graphOf(const scenario::ScenarioOptions& options, const GraphReques
   graph.external_ego = options.ego_planner == "external";
   graph.ego_sees = planning::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
+  graph.paced = options.real_time_factor > 0.0;
   for (const std::string& node :
        participants.empty() ? neededNodes(options, request) : participants) {
     if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
@@ -51,7 +52,9 @@ void putGraph(const SessionGraph& graph, msgs::SessionInfo& info) {
 SessionGraph graphOf(const msgs::SessionInfo& info) {
   SessionGraph graph;
   graph.participants = info.participants;
-  graph.max_cbv = static_cast<int>(optionsFromMsg(info).max_cbv);
+  const scenario::ScenarioOptions options = optionsFromMsg(info);
+  graph.max_cbv = static_cast<int>(options.max_cbv);
+  graph.paced = options.real_time_factor > 0.0;
   graph.external_ego = info.external_ego != 0;
   graph.ego_sees = info.ego_sees != 0;
   graph.show_cameras = info.show_cameras != 0;

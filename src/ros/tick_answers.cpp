@@ -3,6 +3,8 @@
 #include "e2e_cdiff/ros/tick_answers.h"
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
+#include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/ros/conversions.h"
@@ -43,13 +45,16 @@ Message findIn(const std::map<std::uint64_t, std::map<int, Message>>& messages, 
 
 std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answers) {
   std::vector<planning::PlannedAction> actions;
-  for (const Answer& answer : answers) actions.push_back(answer.action);
+  for (const Answer& answer : answers) {
+    if (answer.drove) actions.push_back(answer.action);
+  }
   return actions;
 }
 
 std::vector<scenario::PlannerLatency> latenciesOf(const std::vector<Answer>& answers) {
   std::vector<scenario::PlannerLatency> latencies;
   for (const Answer& answer : answers) {
+    if (!std::isfinite(answer.latency_ms) || answer.latency_ms <= 0.0) continue;
     const bool same_call = !latencies.empty() && latencies.back().planner == answer.planner;
     if (!same_call) latencies.push_back({answer.planner, answer.latency_ms});
   }
@@ -74,12 +79,23 @@ void TickAnswers::add(const Selection& selection) {
 
 void TickAnswers::add(const Guidance& guidance) { guidance_.emplace(guidance->tick, guidance); }
 
-void TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
-  controls_[tickOf(*control, otherwise)].emplace(kEgoSlot, control);
+std::uint64_t TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
+  const std::uint64_t tick = tickOf(*control, otherwise);
+  controls_[tick].emplace(kEgoSlot, control);
+  return tick;
 }
 
 void TickAnswers::addCbv(int slot, const Control& control) {
   controls_[control->tick].emplace(slot, control);
+}
+
+void TickAnswers::add(const Decision& record) {
+  decisions_.emplace(record->tick, record);
+  for (const msgs::DecidedVehicle& vehicle : record->vehicles) {
+    if (!vehicle.answered) continue;
+    controls_[record->tick].emplace(vehicle.slot,
+                                    boost::make_shared<const msgs::ControlAction>(vehicle.answer));
+  }
 }
 
 void TickAnswers::addRollout(int slot, const Rollout& rollout) {
@@ -97,9 +113,32 @@ std::vector<std::string> TickAnswers::missingOf(int slot, std::uint64_t tick) co
   return topics;
 }
 
+/// What the record names and has not come on its own topic; its controls it carries itself.
+std::vector<std::string> TickAnswers::missingOf(const msgs::DecisionRecord& record) const {
+  std::vector<std::string> topics;
+  const std::uint64_t tick = record.tick;
+  if (record.selection_came && !selection(tick)) topics.emplace_back(kSelectionTopic);
+  bool any_cbv = false;
+  for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
+    if (!vehicle.answered) continue;
+    const bool ego = vehicle.slot == kEgoSlot;
+    any_cbv = any_cbv || !ego;
+    if (expected_.rollouts && !ego && !rollout(vehicle.slot, tick))
+      topics.push_back(cbvRolloutTopic(vehicle.slot));
+    // A planner that says what was wrong may have had no image.
+    const bool saw =
+        (ego ? expected_.ego_image : expected_.cbv_images) && vehicle.answer.fault.empty();
+    if (saw && !image(vehicle.slot, tick)) topics.push_back(imageTopic(vehicle.slot));
+  }
+  if (expected_.guidance && any_cbv && !guidance(tick)) topics.emplace_back(kGuidanceTopic);
+  return topics;
+}
+
 std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
   std::vector<std::string> topics;
   if (!snapshot.decision_tick) return topics;
+  if (const Decision record = decision(snapshot.tick)) return missingOf(*record);
+  if (expected_.record) return {kDecisionRecordTopic};
   if (findEgo(snapshot) != nullptr) topics = missingOf(kEgoSlot, snapshot.tick);
   const Selection chosen = selection(snapshot.tick);
   if (!chosen) {
@@ -118,7 +157,14 @@ std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snaps
   return topics;
 }
 
+TickAnswers::Decision TickAnswers::decision(std::uint64_t tick) const {
+  const auto found = decisions_.find(tick);
+  return found == decisions_.end() ? nullptr : found->second;
+}
+
 TickAnswers::Selection TickAnswers::selection(std::uint64_t tick) const {
+  const Decision record = decision(tick);
+  if (record && !record->selection_came) return nullptr;
   const auto found = selections_.find(tick);
   return found == selections_.end() ? nullptr : found->second;
 }
@@ -146,6 +192,16 @@ void TickAnswers::addGuidance(Answer& answer, std::uint64_t tick) const {
   }
 }
 
+/// Marks an answer that came too late to drive.
+void TickAnswers::addTiming(Answer& answer, std::uint64_t tick) const {
+  const Decision record = decision(tick);
+  if (!record) return;
+  for (const msgs::DecidedVehicle& vehicle : record->vehicles) {
+    if (vehicle.slot == answer.action.slot && vehicle.vehicle_id == answer.action.vehicle_id)
+      answer.drove = vehicle.answer_drove != 0;
+  }
+}
+
 TickAnswers::Control TickAnswers::ego(std::uint64_t tick) const { return cbv(kEgoSlot, tick); }
 
 std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) const {
@@ -164,6 +220,7 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
     if (const Rollout plan = rollout(assignment.slot, snapshot.tick))
       answers.back().action.rollout = fromMsg(*plan);
   }
+  for (Answer& answer : answers) addTiming(answer, snapshot.tick);
   return answers;
 }
 
@@ -191,6 +248,28 @@ TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehic
   return {};
 }
 
+TickAnswers::TimedControl TickAnswers::within(int slot, std::uint64_t begin,
+                                              std::uint64_t end) const {
+  for (auto at_tick = controls_.lower_bound(begin);
+       at_tick != controls_.end() && at_tick->first < end; ++at_tick) {
+    const auto found = at_tick->second.find(slot);
+    if (found != at_tick->second.end()) return {at_tick->first, found->second};
+  }
+  return {};
+}
+
+bool TickAnswers::answeredFrom(int slot, std::uint64_t begin) const {
+  const bool ego = slot == kEgoSlot;
+  return std::any_of(controls_.lower_bound(begin), controls_.end(), [&](const auto& at_tick) {
+    const auto& slots = at_tick.second;
+    return ego ? slots.count(kEgoSlot) > 0 : slots.upper_bound(kEgoSlot) != slots.end();
+  });
+}
+
+TickAnswers::Selection TickAnswers::firstSelection() const {
+  return selections_.empty() ? nullptr : selections_.begin()->second;
+}
+
 TickAnswers::Selection TickAnswers::selectionAfter(std::uint64_t tick) const {
   const auto found = selections_.upper_bound(tick);
   return found == selections_.end() ? nullptr : found->second;
@@ -199,6 +278,7 @@ TickAnswers::Selection TickAnswers::selectionAfter(std::uint64_t tick) const {
 void TickAnswers::forgetBefore(std::uint64_t tick) {
   selections_.erase(selections_.begin(), selections_.lower_bound(tick));
   controls_.erase(controls_.begin(), controls_.lower_bound(tick));
+  decisions_.erase(decisions_.begin(), decisions_.lower_bound(tick));
   guidance_.erase(guidance_.begin(), guidance_.lower_bound(tick));
   rollouts_.erase(rollouts_.begin(), rollouts_.lower_bound(tick));
   images_.forgetBefore(tick);

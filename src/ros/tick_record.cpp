@@ -3,8 +3,38 @@
 #include "e2e_cdiff/ros/tick_record.h"
 
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/topics.h"
 
 namespace cdiff::ros {
+namespace {
+
+scenario::AnswerTiming::Instead insteadOf(const msgs::DecidedVehicle& vehicle) {
+  using Instead = scenario::AnswerTiming::Instead;
+  switch (vehicle.driven_by) {
+    case msgs::DecidedVehicle::PLAN:
+      return Instead::kPlan;
+    case msgs::DecidedVehicle::FULL_BRAKE:
+      return Instead::kFullBrake;
+    case msgs::DecidedVehicle::SIMULATOR:
+      return Instead::kNotDriven;
+    default:
+      return Instead::kNothing;
+  }
+}
+
+std::vector<scenario::AnswerTiming> timingsOf(const msgs::DecisionRecord& record) {
+  std::vector<scenario::AnswerTiming> timings;
+  timings.push_back({kCbvIdentificationNode, record.selection_came != 0, record.selection_lateness,
+                     scenario::AnswerTiming::Instead::kNothing});
+  for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
+    if (!vehicle.asked) continue;
+    timings.push_back(
+        {vehicle.answer.planner, vehicle.answered != 0, vehicle.lateness, insteadOf(vehicle)});
+  }
+  return timings;
+}
+
+}  // namespace
 
 TickRecordView::TickRecordView(const msgs::TrafficSnapshot& message, const TickAnswers& answers,
                                const map::RoadNetwork& network)
@@ -19,6 +49,7 @@ TickRecordView::TickRecordView(const msgs::TrafficSnapshot& message, const TickA
   record_.actions = &actions_;
   record_.images = &images_;
   record_.latencies = latenciesOf(given);
+  if (const auto decision = answers.decision(message.tick)) record_.timings = timingsOf(*decision);
 }
 
 traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double simulation_step,

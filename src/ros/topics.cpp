@@ -9,10 +9,18 @@ namespace {
 
 using Nodes = std::vector<std::string>;
 
+Nodes listenersOfControl(const SessionGraph& graph) {
+  if (graph.recordsDecisions()) return {kTrafficSimulatorNode};
+  return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
+}
+
 /// Who may listen to a topic of a slot, whether it takes part or not.
 Nodes possibleListenersOfSlot(const std::string& topic, int slot, const SessionGraph& graph) {
-  if (topic == cbvControlTopic(slot)) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
-  if (topic == cbvRolloutTopic(slot)) return {kMetricsNode, kRecorderNode};
+  if (topic == cbvControlTopic(slot)) return listenersOfControl(graph);
+  if (topic == cbvRolloutTopic(slot)) {
+    return graph.paced ? Nodes{kTrafficSimulatorNode, kMetricsNode, kRecorderNode}
+                       : Nodes{kMetricsNode, kRecorderNode};
+  }
   if (topic != imageTopic(slot) || !graph.imagesOfCbvs()) return {};
   if (!graph.cbvsPlanFromImages()) return {kRecorderNode};
   return {kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
@@ -29,7 +37,8 @@ Nodes possibleListeners(const std::string& topic, const SessionGraph& graph) {
     return {kTrafficSimulatorNode, kCameraNode,  kCbvPlannerNode,
             kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
   }
-  if (topic == kEgoControlTopic) return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
+  if (topic == kEgoControlTopic) return listenersOfControl(graph);
+  if (topic == kDecisionRecordTopic) return {kMetricsNode, kRecorderNode};
   if (topic == imageTopic(kEgoSlot) && graph.imagesOfEgo()) {
     return graph.egoPlansFromImages() ? Nodes{kEgoPlannerNode, kMetricsNode, kRecorderNode}
                                       : Nodes{kRecorderNode};
@@ -76,7 +85,8 @@ std::string answererOf(const std::string& topic, const SessionGraph& graph) {
 
 std::vector<std::string> publishersOf(const std::string& topic, const SessionGraph& graph) {
   if (topic == kEgoControlTopic && graph.external_ego) return {};
-  if (topic == kSessionTopic || topic == kTrafficTopic || topic == kEgoRouteTopic)
+  if (topic == kSessionTopic || topic == kTrafficTopic || topic == kEgoRouteTopic ||
+      topic == kDecisionRecordTopic)
     return {kTrafficSimulatorNode};
   if (topic == kMetricsTopic) return {kMetricsNode};
   if (topic == kTickAckTopic) return graph.participants;

@@ -33,7 +33,7 @@ void enterFolder(const std::string& folder) {
 }  // namespace
 
 TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSignal& stop)
-    : stop_(stop), book_({}), paced_answers_(0.05), display_(node_) {
+    : stop_(stop), book_({}), paced_answers_(0.05), decisions_({}), display_(node_) {
   parameters.requireKnown(knownParameters());
   limits_ = {parameters.positive("start_timeout", 30.0),
              parameters.positive("answer_timeout", 30.0)};
@@ -46,7 +46,8 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
   book_ = ParticipantBook(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
-  paced_answers_ = PacedAnswers(options.simulation_step);
+  paced_answers_ = PacedAnswers(options.simulation_step, setup_->ticksPerDecision());
+  decisions_ = DecisionBook(options);
 }
 
 int TrafficSimulatorRos::run() {
@@ -87,6 +88,9 @@ void TrafficSimulatorRos::advertise() {
                                                            listeners(kTrafficTopic, graph_), true);
   route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
                                                   listeners(kEgoRouteTopic, graph_), true);
+  if (!graph_.recordsDecisions()) return;
+  records_ = connections_.advertise<msgs::DecisionRecord>(node_, kDecisionRecordTopic,
+                                                          listeners(kDecisionRecordTopic, graph_));
 }
 
 void TrafficSimulatorRos::listen() {
@@ -101,20 +105,35 @@ void TrafficSimulatorRos::listen() {
   listenTo<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) {
     std::string wrong = unusable(*message, graph_.max_cbv);
     if (wrong.empty()) wrong = unusable(*message, setup_->network());
-    if (wrong.empty()) answers_.add(message);
+    if (!wrong.empty()) return wrong;
+    answers_.add(message);
+    noteArrival(DecisionBook::kSelection, message->tick);
     return wrong;
   });
   listenTo<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) {
-    answers_.addEgo(message, paced() ? world_->snapshot().tick : 0);
+    noteArrival(kEgoSlot, answers_.addEgo(message, paced() ? world_->snapshot().tick : 0));
   });
   ego_control_ = inputs_.back();
-  for (int slot = 0; slot < graph_.max_cbv; ++slot) {
-    listenTo<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
-      if (message->slot != slot) return wrongSlot(message->slot);
-      answers_.addCbv(slot, message);
-      return std::string();
-    });
-  }
+  for (int slot = 0; slot < graph_.max_cbv; ++slot) listenToSlot(slot);
+}
+
+void TrafficSimulatorRos::listenToSlot(int slot) {
+  listenTo<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
+    if (message->slot != slot) return wrongSlot(message->slot);
+    answers_.addCbv(slot, message);
+    noteArrival(slot, message->tick);
+    return std::string();
+  });
+  if (!paced()) return;
+  listenTo<msgs::Rollout>(cbvRolloutTopic(slot), [this, slot](const auto& message) {
+    if (message->slot != slot) return wrongSlot(message->slot);
+    answers_.addRollout(slot, message);
+    return std::string();
+  });
+}
+
+void TrafficSimulatorRos::noteArrival(int slot, std::uint64_t tick) {
+  if (paced()) decisions_.arrived(slot, tick, secondsSince(begin_));
 }
 
 /// A fault that a node reports is recorded once, whoever else reports it too.

@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/tick_record.h"
 #include "e2e_cdiff/ros/traffic_simulator_ros.h"
 #include "rosgraph_msgs/Clock.h"
 #include "spinning.h"
@@ -46,8 +47,9 @@ void TrafficSimulatorRos::runTicks() {
 
 void TrafficSimulatorRos::publishTick() {
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  if (snapshot.status != SessionStatus::kRunning) closeDecisions();
   msgs::TrafficSnapshot message = toMsg(snapshot);
-  message.late_answers = paced_answers_.late();
+  message.late_answers = decisions_.late();
   if (snapshot.status != SessionStatus::kRunning) addTotals(message);
   rosgraph_msgs::Clock clock;
   clock.clock = message.header.stamp;
@@ -57,6 +59,9 @@ void TrafficSimulatorRos::publishTick() {
   traffic_.publish(published_);
   published_at_ = Clock::now();
   display_.publish(snapshot);
+  recorded_ = !published_->decision_tick;
+  if (paced() && published_->decision_tick) decisions_.open(published_);
+  if (paced()) unsettled_.push_back(published_);
 }
 
 /// How much was ignored, in the last snapshot.
@@ -69,13 +74,18 @@ void TrafficSimulatorRos::addTotals(msgs::TrafficSnapshot& message) const {
   }
 }
 
-std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() const {
+std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAnswers() const {
   std::vector<Missing> missing;
   for (const std::string& topic : answers_.missing(*published_)) {
     const std::string node = answererOf(topic, graph_);
     missing.push_back(
         {node, topic + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
   }
+  return missing;
+}
+
+std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() const {
+  std::vector<Missing> missing = missingAnswers();
   for (const std::string& node : book_.notAcknowledged(published_->tick)) {
     missing.push_back(
         {node, node + "'s acknowledgement of tick " + std::to_string(published_->tick)});
@@ -84,6 +94,10 @@ std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAtTick() c
 }
 
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitForTick() {
+  if (graph_.external_ego && !recorded_) {  // observers wait for the record
+    if (auto cause = waitFor([this] { return missingAnswers(); }, limits_.answer)) return cause;
+    closeDecisions();
+  }
   if (auto cause = waitFor([this] { return missingAtTick(); }, limits_.answer)) return cause;
   const double at_most = setup_->options().at_most;
   return at_most > 0.0 ? sleepUntil(published_->time / at_most) : std::nullopt;
@@ -106,7 +120,10 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
   const double due = (published_->time + options.simulation_step) / options.real_time_factor;
   if (auto cause = sleepUntil(due)) return cause;
   const std::vector<std::string> behind = book_.notAcknowledged(published_->tick);
-  if (behind.empty() || published_->tick == 0) acknowledged_at_ = Clock::now();
+  const std::uint64_t acknowledged = book_.acknowledgedByAll();  // they lag where answers do
+  if (behind.empty() || published_->tick == 0 || acknowledged > acknowledged_)
+    acknowledged_at_ = Clock::now();
+  acknowledged_ = acknowledged;
   if (secondsSince(acknowledged_at_) > limits_.answer) {
     return ending(SessionStatus::kError, behind.front(),
                   "no acknowledgement of a tick for " + core::formatNumber(limits_.answer) + " s");
@@ -149,28 +166,64 @@ void TrafficSimulatorRos::keepInReserve(const cbv::CbvSelection* selection,
   reserve_->observe(record);
 }
 
+void TrafficSimulatorRos::publishRecord(const msgs::DecisionRecord::ConstPtr& record) {
+  records_.publish(record);
+  answers_.add(record);
+}
+
+/// The session goes on, or ends, with what has come.
+void TrafficSimulatorRos::closeDecisions() {
+  if (paced()) return settleDecisions(true);
+  if (graph_.external_ego && !recorded_) {
+    publishRecord(
+        boost::make_shared<const msgs::DecisionRecord>(punctualRecord(*published_, answers_)));
+  }
+  recorded_ = true;
+}
+
+void TrafficSimulatorRos::settleDecisions(bool all) {
+  if (!published_) return;
+  for (const auto& record : decisions_.settle(answers_, published_->tick, all)) {
+    publishRecord(record);
+    for (const auto& [planner, text] : latenessTexts(*record)) {
+      if (late_planners_.insert(planner).second) world_->recordFault(planner, text);
+    }
+  }
+  keepSettledInReserve();
+}
+
+void TrafficSimulatorRos::keepSettledInReserve() {
+  while (!unsettled_.empty()) {
+    const msgs::TrafficSnapshot& snapshot = *unsettled_.front();
+    if (snapshot.decision_tick && !answers_.decision(snapshot.tick)) return;
+    recordFaults(answers_.answers(snapshot));
+    reserve_->observe(TickRecordView(snapshot, answers_, setup_->network()).record());
+    unsettled_.pop_front();
+  }
+}
+
 void TrafficSimulatorRos::advancePaced() {
-  if (published_->decision_tick) {
-    const std::string text =
-        paced_answers_.countLate(published_->tick, answers_.missing(*published_));
-    if (!text.empty()) world_->recordFault(kTrafficSimulatorNode, text);
-  }
-  const std::vector<Answer> answers = answers_.answers(*published_);
-  recordFaults(answers);
-  const TickAnswers::Selection message = paced_answers_.nextSelection(answers_);
-  const std::vector<planning::PlannedAction> actions =
-      paced_answers_.actions(*published_, answers_);
-  if (message) {
-    const cbv::CbvSelection selection = fromMsg(*message, setup_->network());
-    keepInReserve(&selection, actions, answers);
-    world_->advance(&selection, actions);
+  const auto taken = paced_answers_.selection(*published_, answers_);
+  const auto applied = paced_answers_.actions(*published_, taken, answers_);
+  decisions_.ended(published_->tick, applied, secondsSince(begin_));
+  settleDecisions(false);
+  if (taken) {
+    const cbv::CbvSelection selection = fromMsg(*taken, setup_->network());
+    world_->advance(&selection, actionsOf(applied));
   } else {
-    keepInReserve(nullptr, actions, answers);
-    world_->advance(nullptr, actions);
+    world_->advance(nullptr, actionsOf(applied));
   }
+  forgetSettled();
+}
+
+/// Plans drive for a while; answers to open decisions are still wanted for their records.
+void TrafficSimulatorRos::forgetSettled() {
   const auto kept =
       static_cast<std::uint64_t>(std::llround(2.0 / setup_->options().simulation_step));
-  if (published_->tick > kept) answers_.forgetBefore(published_->tick - kept);
+  const std::uint64_t oldest =
+      std::min(decisions_.oldestOpen().value_or(published_->tick),
+               unsettled_.empty() ? published_->tick : unsettled_.front()->tick);
+  answers_.forgetBefore(std::min(oldest, published_->tick - std::min(kept, published_->tick)));
 }
 
 }  // namespace cdiff::ros

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/report/late_log.h"
 #include "e2e_cdiff/report/latency_log.h"
 
 namespace cdiff::report {
@@ -20,6 +21,32 @@ TEST(LatencyLog, GivesNearestRanksPerPlanner) {
   EXPECT_EQ(figures.at("ego:a").n, 20u);
   EXPECT_EQ(figures.at("cbv:b").median, 4.0);
   EXPECT_EQ(figures.at("cbv:b").percentile_95, 4.0);
+}
+
+TEST(LateLog, CountsWhatCameLateOrNeverAndWhatDroveInstead) {
+  using Timing = scenario::AnswerTiming;
+  LateLog log;
+  log.observe({{"cbv:a", true, 0.0, Timing::Instead::kPlan},  // in time: nothing was replaced
+               {"cbv:a", true, 0.2, Timing::Instead::kPlan},
+               {"cbv:a", true, 0.1, Timing::Instead::kFullBrake},
+               {"cbv:a", false, 0.0, Timing::Instead::kNotDriven},
+               {"ego:b", true, 0.0, Timing::Instead::kNothing}});
+  const auto figures = log.figures();
+  const LateFigures& late = figures.at("cbv:a");
+  EXPECT_EQ(late.asked, 4u);
+  EXPECT_EQ(late.late, 2u);
+  EXPECT_EQ(late.missing, 1u);
+  EXPECT_EQ(late.by_plan, 1u);
+  EXPECT_EQ(late.by_full_brake, 1u);
+  EXPECT_EQ(late.not_driven, 1u);
+  EXPECT_EQ(late.median, 0.1);  // rank ceil(0.5 * 2) = 1
+  EXPECT_EQ(late.maximum, 0.2);
+  EXPECT_EQ(figures.at("ego:b").asked, 1u);
+  EXPECT_EQ(lateAnswers(figures), 3u);
+  EXPECT_EQ(latenessText(figures),  // 3 of 5
+            "3 of 5 (60.0 %); instead drove the last plan's next action 1 times, full braking 1 "
+            "times");
+  EXPECT_EQ(latenessText({}), "");
 }
 
 TEST(LatencyLog, NearestRankReachesBothEnds) {

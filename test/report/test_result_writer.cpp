@@ -49,11 +49,26 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
   const Json summary = summaryOf(scratch);
   using Keys = std::vector<std::string>;
-  EXPECT_EQ(keysOf(summary),
-            Keys({"schema_version", "scenario", "seed", "mode", "ego_planner", "cbv_planner",
-                  "status", "simulated_seconds", "wall_seconds", "real_time_factor", "trace_sha256",
-                  "ego", "cbv", "guidance", "guidance_trust_region_share", "metrics",
-                  "planner_latency_ms", "faults", "verdict"}));
+  EXPECT_EQ(keysOf(summary), Keys({"schema_version",
+                                   "scenario",
+                                   "seed",
+                                   "mode",
+                                   "ego_planner",
+                                   "cbv_planner",
+                                   "status",
+                                   "simulated_seconds",
+                                   "wall_seconds",
+                                   "real_time_factor",
+                                   "trace_sha256",
+                                   "ego",
+                                   "cbv",
+                                   "guidance",
+                                   "guidance_trust_region_share",
+                                   "metrics",
+                                   "planner_latency_ms",
+                                   "late_answers",
+                                   "faults",
+                                   "verdict"}));
   EXPECT_EQ(keysOf(summary["ego"]),
             Keys({"route_completion_percent", "driving_score", "protocol", "penalty", "infractions",
                   "infractions_n", "blocked", "collisions", "contacts_at_fault", "contacts",

@@ -7,7 +7,6 @@
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/participant_book.h"
 #include "e2e_cdiff/ros/session_parts.h"
 #include "e2e_cdiff/ros/tick_answers.h"
@@ -168,39 +167,6 @@ TEST(TickAnswers, ForgetsOlderTicksOnly) {
   answers.forgetBefore(4);
   EXPECT_EQ(answers.ego(2), nullptr);
   EXPECT_NE(answers.ego(4), nullptr);
-}
-
-TEST(PacedAnswers, HoldsTheNewestActionForHalfASecondThenBrakes) {
-  TickAnswers answers;
-  answers.addEgo(controlFor(4, -1, "ego"));
-  const PacedAnswers paced(0.05);
-  const auto at = [&](std::uint64_t tick) {
-    return paced.actions(toMsg(test::sampleSnapshot(tick)), answers);
-  };
-  ASSERT_EQ(at(14).size(), 1U);  // (14 - 4) x 0.05 s = 0.5 s old: still held
-  EXPECT_EQ(at(14)[0].action.throttle, 0.25);
-  ASSERT_EQ(at(15).size(), 1U);  // 0.55 s old
-  EXPECT_EQ(at(15)[0].action, traffic::ControlAction::failSafe());
-}
-
-TEST(PacedAnswers, GivesEverySelectionOutOnceInOrder) {
-  TickAnswers answers;
-  PacedAnswers paced(0.05);
-  EXPECT_EQ(paced.nextSelection(answers), nullptr);
-  answers.add(selectionFor(0, 0, "a"));
-  answers.add(selectionFor(2, 0, "b"));
-  EXPECT_EQ(paced.nextSelection(answers)->tick, 0U);
-  EXPECT_EQ(paced.nextSelection(answers)->tick, 2U);
-  EXPECT_EQ(paced.nextSelection(answers), nullptr);
-}
-
-TEST(PacedAnswers, CountsEveryLateAnswerAndTellsWhenLatenessBegins) {
-  PacedAnswers paced(0.05);
-  EXPECT_EQ(paced.countLate(0, {}), "");
-  EXPECT_NE(paced.countLate(2, {"ego/control", "cbv/selection"}).find("ego/control"),
-            std::string::npos);
-  EXPECT_EQ(paced.countLate(4, {"ego/control"}), "");
-  EXPECT_EQ(paced.late(), 3U);
 }
 
 msgs::TickAck ackOf(const std::string& node, std::uint8_t kind, std::uint64_t tick = 0,

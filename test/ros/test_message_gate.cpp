@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/message_gate.h"
-
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/ros/message_checks.h"
+#include "e2e_cdiff/ros/message_gate.h"
 
 namespace cdiff::ros {
 namespace {

@@ -20,6 +20,7 @@ std::string guidanceTable(const GuidanceLog& log);
 std::string rejectionTable(const CbvLog& cbv);
 /// Of all vehicles; those of the ego with who is at fault and why.
 std::string contactTable(const SessionResult& result);
+std::string lateTable(const std::map<std::string, LateFigures>& late);
 std::string latencyTable(const std::map<std::string, LatencyFigures>& latencies);
 std::string faultTable(const std::vector<traffic::Fault>& faults);
 std::string originTable(const SessionResult& result);

@@ -14,6 +14,7 @@
 #include "e2e_cdiff/report/driving_log.h"
 #include "e2e_cdiff/report/front_view_log.h"
 #include "e2e_cdiff/report/guidance_log.h"
+#include "e2e_cdiff/report/late_log.h"
 #include "e2e_cdiff/report/latency_log.h"
 #include "e2e_cdiff/report/plan_log.h"
 #include "e2e_cdiff/report/timeline.h"
@@ -48,6 +49,7 @@ struct SessionResult {
   std::string trace_sha256 = {};
   metrics::SessionMeasures measures = {};
   std::map<std::string, LatencyFigures> latencies = {};
+  std::map<std::string, LateFigures> late = {};  ///< empty where every answer is waited for
   std::vector<traffic::Fault> faults = {};
   Verdict verdict = {};
 };

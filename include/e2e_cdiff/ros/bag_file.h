@@ -12,6 +12,7 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
+#include "e2e_cdiff/DecisionRecord.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/MetricReport.h"
 #include "e2e_cdiff/Rollout.h"
@@ -27,6 +28,7 @@ namespace cdiff::ros {
 /// Everything that belongs to a tick; only the snapshot must be there.
 struct TickMessages {
   ::e2e_cdiff::TrafficSnapshot::ConstPtr snapshot;
+  ::e2e_cdiff::DecisionRecord::ConstPtr decision;
   ::e2e_cdiff::CbvSelection::ConstPtr selection;
   std::map<int, ::e2e_cdiff::ControlAction::ConstPtr> controls;  ///< by slot, the ego's as kEgoSlot
   std::map<int, ::e2e_cdiff::Rollout::ConstPtr> rollouts;        ///< by slot

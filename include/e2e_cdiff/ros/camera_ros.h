@@ -23,6 +23,10 @@ class CameraRos : public Participant {
  protected:
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
+  bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override {
+    return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;
+  }
+  bool leavesOut() const override { return graph().paced; }
   int conclude(Ending) override { return 0; }
 
  private:

@@ -24,19 +24,20 @@ class Observer : public Participant {
   /// Listens to selection, controls and rollouts, to guidance where planners guide, and to images;
   /// from now on a decision is complete with all of them.
   void listenToAnswers(const scenario::ScenarioOptions& options, const ImageInterest& images);
-  /// Whether all answers to a tick are here.
-  bool answered(const ::e2e_cdiff::TrafficSnapshot& snapshot) const {
-    return answers_.missing(snapshot).empty();
-  }
+  /// Whether all answers to a tick are here, or nothing more of it will come: in lockstep when it
+  /// is `superseded` by a later one.
+  bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
   const TickAnswers& answers() const { return answers_; }
   /// Drops the answers to a tick and to those before it.
   void forgetUntil(std::uint64_t tick) { answers_.forgetBefore(tick + 1); }
 
  private:
+  void listenToControls(int slot);
   void listenToSlot(int slot);
   void listenToImages(int slot);
 
   TickAnswers answers_;
+  ::ros::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
 };
 
 }  // namespace cdiff::ros

@@ -44,6 +44,10 @@ class Participant {
   /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
   /// is there, nothing more will come.
   virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
+  /// Whether all that this decision needs is here; asked where decisions may be left out.
+  virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
+  /// Whether the node leaves decisions out when it falls behind the wall clock.
+  virtual bool leavesOut() const { return false; }
   /// The session is over; answers the exit code.
   virtual int conclude(Ending ending) = 0;
 
@@ -60,6 +64,8 @@ class Participant {
   /// Tells the traffic simulator that a tick is dealt with.
   void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
   const SessionGraph& graph() const { return graph_; }
+  /// Whether no message will come any more.
+  bool over() const { return over_; }
   /// For publishers that advertise() does not make.
   Connections& connections() { return connections_; }
   ::ros::NodeHandle& node() { return node_; }
@@ -71,6 +77,7 @@ class Participant {
   int fail(const std::string& text);
   void queue(const Snapshot& snapshot);
   bool handleQueue();
+  void leaveOutdatedOut();
   void reportReady();
   std::string missing() const;
   bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
@@ -93,6 +100,7 @@ class Participant {
   double simulation_step_ = 0.05;  ///< [s]
   std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
   bool final_handled_ = false;
+  bool over_ = false;
 };
 
 }  // namespace cdiff::ros

@@ -27,6 +27,8 @@ class ParticipantBook {
   std::vector<std::string> notReady() const;
   /// Observers that have not acknowledged this tick.
   std::vector<std::string> notAcknowledged(std::uint64_t tick) const;
+  /// The latest tick that every observer has acknowledged; 0 before the first.
+  std::uint64_t acknowledgedByAll() const;
   /// Observers that have not said that they are finished.
   std::vector<std::string> notFinished() const;
   bool finished(const std::string& node) const;

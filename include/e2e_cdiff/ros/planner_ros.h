@@ -27,6 +27,8 @@ class EgoPlannerRos : public Participant {
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
+  bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
+  bool leavesOut() const override { return graph().paced; }
   int conclude(Ending) override { return 0; }
 
  private:
@@ -49,6 +51,8 @@ class CbvPlannerRos : public Participant {
  protected:
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
+  bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
+  bool leavesOut() const override { return graph().paced; }
   int conclude(Ending) override { return 0; }
 
   /// Whether all that the planner needs for this decision besides the selection has come.

@@ -23,7 +23,7 @@ class RecorderRos : public Observer {
   int conclude(Ending ending) override;
 
  private:
-  bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+  bool measured(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
   TickMessages messagesOf(const Snapshot& snapshot) const;
 
   std::unique_ptr<BagFile> bag_;

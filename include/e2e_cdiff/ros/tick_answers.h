@@ -12,6 +12,7 @@
 
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
+#include "e2e_cdiff/DecisionRecord.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
@@ -27,11 +28,12 @@ struct Answer {
   std::string planner;  ///< "ego:NAME" or "cbv:NAME"
   double latency_ms = 0.0;
   std::string fault;  ///< empty when none
+  bool drove = true;  ///< false where it came too late to drive
 };
 
-/// The actions alone.
+/// The actions of answers that drove.
 std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answers);
-/// One latency per planning call: all CBVs share theirs.
+/// One latency per planning call: all CBVs share theirs. Planners that report none have none.
 std::vector<scenario::PlannerLatency> latenciesOf(const std::vector<Answer>& answers);
 
 /// What a decision needs besides selection and controls.
@@ -40,6 +42,7 @@ struct ExpectedAnswers {
   bool rollouts = false;    ///< of every CBV
   bool ego_image = false;   ///< of the ego
   bool cbv_images = false;  ///< of every CBV
+  bool record = false;      ///< the traffic simulator's record of it, which says what came
 };
 
 class TickAnswers {
@@ -49,6 +52,7 @@ class TickAnswers {
   using Guidance = ::e2e_cdiff::GuidanceReport::ConstPtr;
   using Rollout = ::e2e_cdiff::Rollout::ConstPtr;
   using Image = sensor_msgs::Image::ConstPtr;
+  using Decision = ::e2e_cdiff::DecisionRecord::ConstPtr;
 
   /// `simulation_step` [s] turns a stamp without tick into a tick; `camera` says what images must
   /// be like.
@@ -62,17 +66,21 @@ class TickAnswers {
   /// `slot`: kEgoSlot for the ego.
   void addImage(int slot, const Image& image) { images_.add(slot, image); }
   /// A control that carries a stamp but no tick counts for the tick of its stamp; one with neither
-  /// for `otherwise`.
-  void addEgo(const Control& control, std::uint64_t otherwise = 0);
+  /// for `otherwise`. Answers the tick that it counts for.
+  std::uint64_t addEgo(const Control& control, std::uint64_t otherwise = 0);
   void addCbv(int slot, const Control& control);
+  /// From now on the answers to this decision are those that the record names.
+  void add(const Decision& record);
 
-  /// What `snapshot` still needs: topic names. Empty at ticks without decision.
+  /// What `snapshot` still needs: topic names. Once its decision's record is here, what that names.
+  /// Empty at ticks without decision.
   std::vector<std::string> missing(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
   /// The answers to a tick; nullptr where there is none.
   Selection selection(std::uint64_t tick) const;
   Control ego(std::uint64_t tick) const;
   Control cbv(int slot, std::uint64_t tick) const;
   Guidance guidance(std::uint64_t tick) const;
+  Decision decision(std::uint64_t tick) const;
   Rollout rollout(int slot, std::uint64_t tick) const;
   Image image(int slot, std::uint64_t tick) const { return images_.find(slot, tick); }
   /// What the vehicles that were answered for saw, in the order of their answers; an image that is
@@ -90,18 +98,26 @@ class TickAnswers {
   /// The newest control of a slot (-1: ego) for that vehicle, up to `tick`; without control when
   /// there is none.
   TimedControl newest(int slot, const std::string& vehicle_id, std::uint64_t tick) const;
-  /// The oldest selection after a tick; nullptr when there is none.
+  /// The first control of a slot for ticks from `begin` to before `end`.
+  TimedControl within(int slot, std::uint64_t begin, std::uint64_t end) const;
+  /// Whether the planner of a slot has answered for a tick from `begin` on; all CBVs share one.
+  bool answeredFrom(int slot, std::uint64_t begin) const;
+  /// The oldest selection of all, or after a tick; nullptr when there is none.
+  Selection firstSelection() const;
   Selection selectionAfter(std::uint64_t tick) const;
   /// Drops everything older than a tick.
   void forgetBefore(std::uint64_t tick);
 
  private:
   void addGuidance(Answer& answer, std::uint64_t tick) const;
+  void addTiming(Answer& answer, std::uint64_t tick) const;
   std::vector<std::string> missingOf(int slot, std::uint64_t tick) const;
+  std::vector<std::string> missingOf(const ::e2e_cdiff::DecisionRecord& record) const;
   std::uint64_t tickOf(const ::e2e_cdiff::ControlAction& control, std::uint64_t otherwise) const;
   double simulation_step_;
   ExpectedAnswers expected_;
   ImageInbox images_;
+  std::map<std::uint64_t, Decision> decisions_;
   std::map<std::uint64_t, Guidance> guidance_;
   std::map<std::uint64_t, Selection> selections_;
   std::map<std::uint64_t, std::map<int, Control>> controls_;  ///< by tick, then slot

@@ -28,6 +28,7 @@ inline constexpr const char* kSelectionTopic = "cbv/selection";   ///< CbvSelect
 inline constexpr const char* kMetricsTopic = "metrics";           ///< MetricReport
 inline constexpr const char* kTickAckTopic = "tick_ack";          ///< TickAck
 inline constexpr const char* kGuidanceTopic = "cbv/guidance";     ///< GuidanceReport
+inline constexpr const char* kDecisionRecordTopic = "decision_record";  ///< DecisionRecord
 inline constexpr const char* kMarkersTopic = "markers";         ///< visualization_msgs/MarkerArray
 inline constexpr const char* kMapMarkersTopic = "markers/map";  ///< the same, latched
 inline constexpr const char* kRolloutMarkersTopic = "markers/rollouts";  ///< the same
@@ -49,8 +50,12 @@ struct SessionGraph {
   bool external_ego = false;              ///< the user's own node drives the ego
   bool ego_sees = false;                  ///< the ego's planner needs images
   bool show_cameras = false;              ///< images of ego and CBVs even where no planner sees
+  bool paced = false;                     ///< the wall clock rules: late answers are replaced
 
   bool has(const std::string& node) const;
+  /// Whether the traffic simulator publishes which answers counted at each decision; observers take
+  /// the controls from there.
+  bool recordsDecisions() const { return paced || external_ego; }
   /// Whether the planner of the CBVs needs images.
   bool cbvsSee() const { return has(kDiffusionPlannerNode); }
   /// Whether camera_node publishes images of the slots, or of the ego.

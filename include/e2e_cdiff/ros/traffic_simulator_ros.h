@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/decision_book.h"
 #include "e2e_cdiff/ros/display.h"
 #include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/paced_answers.h"
@@ -59,6 +61,7 @@ class TrafficSimulatorRos {
   bool startWorld();
   void advertise();
   void listen();
+  void listenToSlot(int slot);
   template <class Message, class Callback>
   void listenTo(const std::string& topic, Callback callback) {
     inputs_.push_back(gate_.subscribe<Message>(
@@ -81,6 +84,12 @@ class TrafficSimulatorRos {
   void advance();
   void advancePaced();
   void recordFaults(const std::vector<Answer>& answers);
+  void publishRecord(const ::e2e_cdiff::DecisionRecord::ConstPtr& record);
+  void closeDecisions();
+  void settleDecisions(bool all);
+  void keepSettledInReserve();
+  void forgetSettled();
+  void noteArrival(int slot, std::uint64_t tick);
   void waitForObservers();
   void writeResultAlone(const traffic::TrafficSnapshot& snapshot);
   std::unique_ptr<ReserveResult> makeReserve(const std::string& version) const;
@@ -89,6 +98,7 @@ class TrafficSimulatorRos {
                      const std::vector<Answer>& answers);
   int exitCode() const;
   std::vector<Missing> missingParticipants() const;
+  std::vector<Missing> missingAnswers() const;
   std::vector<Missing> missingAtTick() const;
   void sendAgainForLateListener();
   bool paced() const { return setup_->options().real_time_factor > 0.0; }
@@ -101,6 +111,10 @@ class TrafficSimulatorRos {
   ParticipantBook book_;
   TickAnswers answers_;
   PacedAnswers paced_answers_;
+  DecisionBook decisions_;               ///< of a session that the wall clock rules
+  bool recorded_ = true;                 ///< whether the record of the present decision is out
+  std::set<std::string> late_planners_;  ///< whose first late answer is recorded as a fault
+  std::deque<::e2e_cdiff::TrafficSnapshot::ConstPtr> unsettled_;  ///< from an open decision on
   MessageGate gate_;
   std::set<std::string> noted_faults_;  ///< texts
   Connections connections_;
@@ -109,6 +123,7 @@ class TrafficSimulatorRos {
   ::ros::Publisher session_;
   ::ros::Publisher traffic_;
   ::ros::Publisher route_;
+  ::ros::Publisher records_;
   Display display_;
   std::vector<::ros::Subscriber> inputs_;
   ::ros::Subscriber ego_control_;
@@ -117,7 +132,8 @@ class TrafficSimulatorRos {
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;
   Clock::time_point begin_;
   Clock::time_point published_at_;
-  Clock::time_point acknowledged_at_;  ///< last time that every observer was up to date
+  Clock::time_point acknowledged_at_;  ///< last time that the observers came on
+  std::uint64_t acknowledged_ = 0;     ///< tick that all of them had acknowledged then
 };
 
 /// Runs the session that the node's parameters ask for; bad input is told in one line, and in the
