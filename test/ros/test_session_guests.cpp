@@ -13,6 +13,7 @@ TEST_F(Session, ToolsFindItsFramesAndNothingToComplainAbout) {
   const std::string log =
       launch(E2E_CDIFF_TEST_FOLDER "/looked_at.launch", "found:=" + found.string(),
              "bash " E2E_CDIFF_TEST_FOLDER "/look_at_session " + found.string());
+  ASSERT_TRUE(fs::exists(found / "frames")) << log;
   const std::string wtf = core::readFile(found / "roswtf", "roswtf's output");
   const std::size_t online = wtf.find("Online checks summary");
   ASSERT_NE(online, std::string::npos) << wtf << log;  // what comes before is the machine's
