@@ -6,7 +6,8 @@
 #include "e2e_cdiff/ros/topics.h"
 
 int main(int argc, char** argv) {
-  using cdiff::ros::StopSignal;
-  return cdiff::ros::runNode(argc, argv, cdiff::ros::kMetricsNode,
-                             [](StopSignal& stop) { return cdiff::ros::MetricsRos(stop).run(); });
+  using namespace cdiff::ros;
+  return runNode(
+      argc, argv, kMetricsNode, [](StopSignal& stop) { return MetricsRos(stop).run(); },
+      MetricsRos::runWithoutMaster);
 }

@@ -13,11 +13,15 @@ void Connections::expect(const std::string& topic, const std::vector<std::string
 }
 
 void Connections::connected(const std::string& topic, const std::string& node) {
+  ++links_[node];
+  once_.insert(node);
   const auto entry = counts_.find({topic, baseName(node)});
   if (entry != counts_.end()) ++entry->second;
 }
 
 void Connections::disconnected(const std::string& topic, const std::string& node) {
+  if (const auto links = links_.find(node); links != links_.end() && --links->second == 0)
+    links_.erase(links);
   const auto entry = counts_.find({topic, baseName(node)});
   if (entry == counts_.end() || entry->second == 0) return;
   if (--entry->second == 0 && !hasLeft(baseName(node))) left_.push_back(baseName(node));

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/metric_diagnostics.h"
+#include "e2e_cdiff/ros/parameters.h"
 #include "e2e_cdiff/ros/replay.h"
 #include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/session_parts.h"
@@ -17,14 +18,14 @@ namespace cdiff::ros {
 namespace {
 
 /// The end of a session whose last snapshot never came.
-traffic::TrafficSnapshot untoldEnd(const traffic::TrafficSnapshot& last, double step,
-                                   Ending ending) {
+traffic::TrafficSnapshot untoldEnd(const traffic::TrafficSnapshot& last, double step, Ending ending,
+                                   double timeout) {
   if (ending == Ending::kStopped) {
     return endedAfter(last, step, traffic::SessionStatus::kInterrupted,
                       {0, kTrafficSimulatorNode, "interrupted; no last snapshot came"});
   }
   return endedAfter(last, step, traffic::SessionStatus::kError,
-                    {0, kTrafficSimulatorNode, "the node left the session"});
+                    {0, kTrafficSimulatorNode, simulatorFault(ending, timeout)});
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ double MetricsRos::wallSeconds() const {
 int MetricsRos::conclude(Ending ending) {
   if (ending != Ending::kFinalSnapshot) {
     const traffic::TrafficSnapshot snapshot =
-        untoldEnd(last_, setup_->options().simulation_step, ending);
+        untoldEnd(last_, setup_->options().simulation_step, ending, heartbeatTimeout());
     scenario::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);
@@ -115,6 +116,23 @@ int MetricsRos::conclude(Ending ending) {
             << std::flush;
   writeExitCode(results_, exit_code);
   return exit_code;
+}
+
+int MetricsRos::concludeUnstarted(Ending ending) {
+  Parameters parameters = Parameters::ofNode(kTrafficSimulatorNode);
+  if (parameters.empty()) parameters = launchParameters();
+  if (parameters.empty()) return 2;
+  return writeUnstartedResult(
+      parameters, traffic::SessionStatus::kError,
+      {0, kTrafficSimulatorNode,
+       simulatorFault(ending, heartbeatTimeout()) + " before the session began"});
+}
+
+int MetricsRos::runWithoutMaster() {
+  const Parameters parameters = launchParameters();
+  if (parameters.empty()) return 2;
+  return writeUnstartedResult(parameters, traffic::SessionStatus::kError,
+                              {0, "rosmaster", "the ROS master does not answer any more"});
 }
 
 int MetricsRos::finishVideo(int exit_code) {

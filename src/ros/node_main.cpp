@@ -2,7 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/node_main.h"
 
+#include <chrono>
 #include <exception>
+#include <future>
+#include <memory>
+#include <thread>
 
 #include "e2e_cdiff/core/failure.h"
 #include "ros/ros.h"
@@ -24,13 +28,21 @@ int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
 
 }  // namespace
 
-int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body) {
+bool masterAnswers() {
+  auto promise = std::make_shared<std::promise<bool>>();
+  std::future<bool> answer = promise->get_future();
+  std::thread([promise] { promise->set_value(::ros::master::check()); }).detach();
+  return answer.wait_for(std::chrono::seconds(2)) == std::future_status::ready && answer.get();
+}
+
+int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
+            const std::function<int()>& without_master) {
   StopSignal stop;
   ::ros::init(argc, argv, name, ::ros::init_options::NoSigintHandler);
   if (!::ros::master::check()) {
     ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
               ::ros::master::getURI().c_str());
-    return 2;
+    return without_master ? without_master() : 2;
   }
   ::ros::master::setRetryTimeout(::ros::WallDuration(kMasterPatience));
   ::ros::start();  // else ROS would end with the last node handle, and an error after that would

@@ -3,9 +3,11 @@
 #include "e2e_cdiff/ros/parameters.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/ros/launched_nodes.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {
@@ -29,9 +31,19 @@ std::string textOf(const std::string& key, XmlRpc::XmlRpcValue value) {
 }  // namespace
 
 Parameters Parameters::ofThisNode() {
+  const Parameters parameters = of(::ros::this_node::getName());
+  if (parameters.empty() && !::ros::master::check())
+    throw std::runtime_error("the ROS master at " + ::ros::master::getURI() +
+                             " does not answer any more");
+  return parameters;
+}
+
+Parameters Parameters::ofNode(const std::string& node) { return of(::ros::names::resolve(node)); }
+
+Parameters Parameters::of(const std::string& full_name) {
   std::map<std::string, std::string> values;
   XmlRpc::XmlRpcValue all;
-  if (!::ros::param::get(::ros::this_node::getName(), all)) return Parameters(values);
+  if (!::ros::param::get(full_name, all)) return Parameters(values);
   if (all.getType() != XmlRpc::XmlRpcValue::TypeStruct) return Parameters(values);
   for (auto& [key, value] : all) values[key] = textOf(key, value);
   return Parameters(values);
@@ -67,6 +79,13 @@ bool Parameters::flag(const std::string& key, bool otherwise) const {
     throw core::InputError("parameter ~" + key + " is '" + value + "'; expected true or false");
   }
   return value == "true";
+}
+
+Parameters launchParameters() {
+  std::optional<LaunchCommand> command = launchCommand();
+  if (!command) return Parameters({});
+  command->arguments.emplace("folder", command->folder.string());
+  return Parameters(command->arguments);
 }
 
 scenario::SessionRequest sessionRequest(const Parameters& parameters) {

@@ -8,6 +8,7 @@
 
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/launched_nodes.h"
 #include "e2e_cdiff/ros/session_parts.h"
 #include "ros/callback_queue.h"
 
@@ -16,15 +17,27 @@ namespace {
 
 constexpr double kPeriod =
     0.1;  // [s] of wall time between looks at the signals, and between ready messages
+constexpr double kAlivePeriod = 1.0;  // [s] between messages of a node that waits for others
 constexpr double kStopPatience =
     6.0;  // [s] after a stop signal until a node leaves without a last snapshot
 constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
 constexpr double kLead =
     1.0;  // [s] beyond the next decision that answers may come before their snapshot
+constexpr double kFirstHeartbeat = 30.0;  // [s] for a simulator of the same launch to begin
 
 void spin() { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(kPeriod)); }
 
+double secondsSince(const ::ros::WallTime& begin) {
+  return (::ros::WallTime::now() - begin).toSec();
+}
+
 }  // namespace
+
+std::string simulatorFault(Ending ending, double timeout) {
+  if (ending != Ending::kSimulatorSilent) return "the node left the session";
+  if (timeout == 0.0) return "the node gave no sign of life since it was started";
+  return "the node gave no sign of life for " + core::formatNumber(timeout) + " s";
+}
 
 Participant::Participant(StopSignal& stop)
     : stop_(stop), name_(baseName(::ros::this_node::getName())) {
@@ -33,6 +46,9 @@ Participant::Participant(StopSignal& stop)
     ROS_WARN("%s: %s", name_.c_str(), text.c_str());
     tell(msgs::TickAck::FAULT, lastTick(), text);
   });
+  heartbeat_input_ = gate_.subscribe<msgs::Heartbeat>(
+      node_, kHeartbeatTopic, siblingNodes({kTrafficSimulatorNode}),
+      [this](const auto& message) { heartbeat_.heard(message->timeout); });
   session_input_ = gate_.subscribe<msgs::SessionInfo>(
       node_, kSessionTopic, siblingNodes({kTrafficSimulatorNode}),
       [this](const auto& message) { session_ = message; });
@@ -40,24 +56,48 @@ Participant::Participant(StopSignal& stop)
 
 int Participant::run() {
   try {
-    return waitForSession() ? runSession() : 0;
+    if (const auto ending = waitForSession()) {
+      if (*ending == Ending::kStopped) return 0;
+      const int exit_code = concludeUnstarted(*ending);
+      if (*ending == Ending::kSimulatorSilent) endSilentSimulator();
+      return exit_code;
+    }
+    if (graph_.has(name_)) return runSession();
+    return standBy();
   } catch (const std::exception& error) {
     return fail(error.what());
   }
 }
 
-bool Participant::waitForSession() {
-  while (!session_) {
-    if (!::ros::ok() || stop_.raised()) return false;
+/// The session does not need this node. If it left, it would be one that "has died" to roswtf.
+int Participant::standBy() {
+  ROS_DEBUG("%s: the session does not need this node", name_.c_str());
+  session_input_.shutdown();
+  while (::ros::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) spin();
+  return 0;
+}
+
+/// Answers how it ended where no session has begun.
+std::optional<Ending> Participant::waitForSession() {
+  while (!session_ || !stopped_at_.isZero()) {
+    if (const auto ending = unstartedEnding()) return ending;
     spin();
   }
   graph_ = graphOf(*session_);
-  if (graph_.has(name_)) return true;
-  ROS_DEBUG("%s: the session does not need this node", name_.c_str());
-  session_input_.shutdown();
-  // A node that left would be one that "has died" to roswtf.
-  while (::ros::ok() && !stop_.raised() && !simulatorGone()) spin();
-  return false;
+  return std::nullopt;
+}
+
+std::optional<Ending> Participant::unstartedEnding() {
+  if (!::ros::ok()) return Ending::kStopped;
+  if (simulatorSilent()) return Ending::kSimulatorSilent;
+  const bool overdue = !heartbeat_.everHeard() && secondsSince(began_) > kFirstHeartbeat;
+  if (overdue && launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorSilent;
+  if (!stop_.raised()) return std::nullopt;
+  if (stopped_at_.isZero()) stopped_at_ = ::ros::WallTime::now();
+  // The simulator was stopped too and writes a result, or its death is why roslaunch stops us.
+  if (!launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorGone;
+  if (secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
+  return std::nullopt;
 }
 
 int Participant::runSession() {
@@ -69,23 +109,24 @@ int Participant::runSession() {
   traffic_input_ = gate_.subscribe<msgs::TrafficSnapshot>(
       node_, kTrafficTopic, siblingNodes({kTrafficSimulatorNode}),
       [this](const auto& message) { queue(message); });
-  ::ros::WallTime stopped_at;
-  ::ros::WallTime reported_at;
   while (!handleQueue()) {
-    if (!::ros::ok()) return leave(Ending::kStopped);
-    if (simulatorGone()) return leave(Ending::kSimulatorGone);
-    const ::ros::WallTime now = ::ros::WallTime::now();
-    if (stop_.raised() && stopped_at.isZero()) stopped_at = now;
-    if (!stopped_at.isZero() && (now - stopped_at).toSec() > kStopPatience)
-      return leave(Ending::kStopped);
-    if (next_tick_ == 0 && (now - reported_at).toSec() >= kPeriod) {
-      reportReady();
-      reported_at = now;
-    }
+    if (const auto ending = unexpectedEnding()) return leave(*ending);
+    report();
     spin();
   }
   return leave(Ending::kFinalSnapshot);
 }
+
+std::optional<Ending> Participant::unexpectedEnding() {
+  if (!::ros::ok()) return Ending::kStopped;
+  if (simulatorGone()) return Ending::kSimulatorGone;
+  if (simulatorSilent()) return Ending::kSimulatorSilent;
+  if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ::ros::WallTime::now();
+  if (!stopped_at_.isZero() && secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
+  return std::nullopt;
+}
+
+bool Participant::simulatorSilent() { return heartbeat_.silent(::ros::SteadyTime::now().toSec()); }
 
 void Participant::queue(const Snapshot& snapshot) {
   if (snapshot->tick < next_tick_) return;  // sent again for a late listener
@@ -122,12 +163,24 @@ int Participant::leave(Ending ending) {
   while (isObserver(name_) && !snapshots_.empty() && handle(snapshots_.front(), true))
     snapshots_.pop_front();
   const int exit_code = conclude(ending);
+  if (ending == Ending::kSimulatorSilent) endSilentSimulator();
   if (!isObserver(name_) || !::ros::ok()) return exit_code;
   tell(msgs::TickAck::FINISHED, lastTick());
   // The simulator leaves once it knows; until then the message may still be on its way.
   const ::ros::WallTime limit = ::ros::WallTime::now() + ::ros::WallDuration(kFarewell);
   while (!simulatorGone() && ::ros::WallTime::now() < limit) spin();
   return exit_code;
+}
+
+/// So that it does not go on one day, and so that roslaunch ends. The metrics node ends it, once it
+/// has written the result; the others only where the metrics node does not.
+void Participant::endSilentSimulator() {
+  const ::ros::WallTime begin = ::ros::WallTime::now();
+  while (name_ != kMetricsNode && ::ros::ok() && !simulatorGone() &&
+         secondsSince(begin) < kFarewell)
+    spin();
+  if (!simulatorGone() && killLaunchedProcess(kTrafficSimulatorNode))
+    ROS_ERROR("%s, silent for %g s, was ended", kTrafficSimulatorNode, heartbeat_.timeout());
 }
 
 int Participant::fail(const std::string& text) {
@@ -152,7 +205,11 @@ void Participant::tell(std::uint8_t kind, std::uint64_t tick, const std::string&
   acks_.publish(message);
 }
 
-void Participant::reportReady() {
+void Participant::report() {
+  const bool begun = next_tick_ > 0;
+  if (secondsSince(reported_at_) < (begun ? kAlivePeriod : kPeriod)) return;
+  reported_at_ = ::ros::WallTime::now();
+  if (begun) return tell(msgs::TickAck::ALIVE, lastTick());
   const std::string text = missing();
   tell(text.empty() ? msgs::TickAck::READY : msgs::TickAck::WAITING, 0, text);
 }

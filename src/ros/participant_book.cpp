@@ -12,10 +12,11 @@ ParticipantBook::ParticipantBook(const std::vector<std::string>& nodes) {
   for (const std::string& node : nodes) entries_[node];
 }
 
-void ParticipantBook::note(const ::e2e_cdiff::TickAck& message) {
+void ParticipantBook::note(const ::e2e_cdiff::TickAck& message, Clock::time_point now) {
   const auto found = entries_.find(message.node);
   if (found == entries_.end()) return;
   Entry& entry = found->second;
+  entry.heard_at = now;
   using Ack = ::e2e_cdiff::TickAck;
   if (message.kind == Ack::WAITING) entry.waiting_for = message.text;
   if (message.kind == Ack::READY) entry.ready = true;
@@ -66,6 +67,21 @@ std::vector<std::string> ParticipantBook::notFinished() const {
 bool ParticipantBook::finished(const std::string& node) const {
   const auto found = entries_.find(node);
   return found != entries_.end() && found->second.finished;
+}
+
+bool ParticipantBook::heard(const std::string& node) const {
+  const auto found = entries_.find(node);
+  return found != entries_.end() && found->second.heard_at;
+}
+
+std::vector<std::string> ParticipantBook::silent(double seconds, Clock::time_point now) const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (entry.finished || !entry.heard_at) continue;
+    if (std::chrono::duration<double>(now - *entry.heard_at).count() > seconds)
+      nodes.push_back(node);
+  }
+  return nodes;
 }
 
 }  // namespace cdiff::ros

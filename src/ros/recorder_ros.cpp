@@ -74,7 +74,7 @@ TickMessages RecorderRos::messagesOf(const Snapshot& snapshot) const {
 
 int RecorderRos::conclude(Ending ending) {
   bag_->finish();
-  return ending == Ending::kSimulatorGone ? 2 : 0;
+  return ending == Ending::kSimulatorGone || ending == Ending::kSimulatorSilent ? 2 : 0;
 }
 
 }  // namespace cdiff::ros

@@ -10,6 +10,7 @@
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/decision_book.h"
 #include "e2e_cdiff/ros/image_conversions.h"
+#include "e2e_cdiff/ros/launched_nodes.h"
 #include "e2e_cdiff/ros/markers.h"
 #include "e2e_cdiff/ros/replay.h"
 #include "e2e_cdiff/ros/session_files.h"
@@ -25,7 +26,8 @@ namespace fs = std::filesystem;
 
 constexpr double kPatience = 30.0;  // [s] of wall time for the metrics node to do its next thing
 constexpr double kFarewell = 5.0;   // [s] for its files when the replay is interrupted
-constexpr double kStraggle = 0.1;   // [s] for the answers to a tick that lacks some
+constexpr double kHeartbeatTimeout = 10.0;  // [s] until the metrics node takes us for lost
+constexpr double kStraggle = 0.1;           // [s] for the answers to a tick that lacks some
 constexpr const char* kClockTopic = "/clock";
 
 /// Rate from the parameter: a number from 0.
@@ -81,6 +83,7 @@ ReplayRos::ReplayRos(const Parameters& parameters, StopSignal& stop)
       session_(bag_),
       graph_(replayGraph(session_.graph())),
       book_(std::vector<std::string>{kMetricsNode}),
+      heartbeat_(node_, kHeartbeatTimeout),
       display_(node_) {
   results_ = resultFolder(parameters, session_.setup().options());
   if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().options().camera);
@@ -269,6 +272,7 @@ int ReplayRos::finish() {
 int runReplay(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
+    requireKnownLaunchArguments();
     return ReplayRos(parameters, stop).run();
   } catch (const core::InputError&) {
     constexpr int kBadInput = 3;

@@ -5,6 +5,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/conversions.h"
+#include "e2e_cdiff/ros/launched_nodes.h"
 #include "e2e_cdiff/ros/message_checks.h"
 #include "e2e_cdiff/ros/session_files.h"
 #include "e2e_cdiff/ros/session_parts.h"
@@ -20,20 +21,18 @@ using traffic::SessionStatus;
 std::vector<std::string> knownParameters() {
   return {"scenario",      "bench2drive",    "route",   "network", "mode",   "ego_planner",
           "cbv_planner",   "seed",           "set",     "record",  "folder", "participants",
-          "start_timeout", "answer_timeout", "results", "camera",  "video"};
-}
-
-/// Relative paths in parameters are meant from where the user started the session.
-void enterFolder(const std::string& folder) {
-  std::error_code error;
-  if (!folder.empty()) fs::current_path(folder, error);
-  if (error) throw core::InputError("parameter ~folder is '" + folder + "': " + error.message());
+          "start_timeout", "answer_timeout", "results", "camera",  "video",  "heartbeat_timeout"};
 }
 
 }  // namespace
 
 TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSignal& stop)
-    : stop_(stop), book_({}), paced_answers_(0.05), decisions_({}), display_(node_) {
+    : stop_(stop),
+      heartbeat_(node_, parameters.positive("heartbeat_timeout", 10.0)),
+      book_({}),
+      paced_answers_(0.05),
+      decisions_({}),
+      display_(node_) {
   parameters.requireKnown(knownParameters());
   limits_ = {parameters.positive("start_timeout", 30.0),
              parameters.positive("answer_timeout", 30.0)};
@@ -81,7 +80,7 @@ bool TrafficSimulatorRos::startWorld() {
 }
 
 void TrafficSimulatorRos::advertise() {
-  clock_ = node_.advertise<rosgraph_msgs::Clock>("/clock", 100);
+  clock_ = connections_.advertise<rosgraph_msgs::Clock>(node_, "/clock", {});
   session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
                                                        listeners(kSessionTopic, graph_), true);
   traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
@@ -111,6 +110,7 @@ void TrafficSimulatorRos::listen() {
     return wrong;
   });
   listenTo<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) {
+    ego_heard_at_ = Clock::now();
     noteArrival(kEgoSlot, answers_.addEgo(message, paced() ? world_->snapshot().tick : 0));
   });
   ego_control_ = inputs_.back();
@@ -185,65 +185,6 @@ void TrafficSimulatorRos::endSession(const Ending& ending) {
   world_->end(ending.status, ending.fault);
 }
 
-/// What ends a session at once.
-std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
-  if (stop_.raised()) return ending(SessionStatus::kInterrupted, "user", "interrupted");
-  if (book_.error()) return ending(SessionStatus::kError, book_.error()->node, book_.error()->text);
-  if (!connections_.left().empty()) {
-    return ending(SessionStatus::kError, connections_.left().front(), "the node left the session");
-  }
-  const bool ego_gone = graph_.external_ego && published_ && ego_control_.getNumPublishers() == 0;
-  if (ego_gone) {
-    return ending(SessionStatus::kError, "the external ego planner",
-                  "no node publishes on ego/control any more");
-  }
-  if (!::ros::ok())
-    return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");
-  return std::nullopt;
-}
-
-std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitFor(
-    const MissingNow& missing_now, double seconds) {
-  const Clock::time_point begin = Clock::now();
-  while (true) {
-    if (const auto cause = disturbance()) return cause;
-    const std::vector<Missing> missing = missing_now();
-    if (missing.empty()) return std::nullopt;
-    if (secondsSince(begin) > seconds) {
-      std::vector<std::string> texts;
-      for (const Missing& item : missing) texts.push_back(item.what);
-      return ending(
-          SessionStatus::kError, missing.front().node,
-          "nothing came for " + core::formatNumber(seconds) + " s: " + core::joinText(texts, "; "));
-    }
-    sendAgainForLateListener();
-    spin(kSpinPeriod);
-  }
-}
-
-void TrafficSimulatorRos::waitForObservers() {
-  const bool interrupted = world_->snapshot().status == SessionStatus::kInterrupted;
-  const double limit = interrupted ? 5.0 : limits_.answer;
-  const Clock::time_point begin = Clock::now();
-  const auto pending = [this] {
-    for (const std::string& node : book_.notFinished()) {
-      if (!connections_.hasLeft(node)) return true;
-    }
-    return false;
-  };
-  while (pending() && ::ros::ok() && secondsSince(begin) < limit) spin(kSpinPeriod);
-  if (!book_.finished(kMetricsNode)) writeResultAlone(world_->snapshot());
-}
-
-void TrafficSimulatorRos::writeResultAlone(const traffic::TrafficSnapshot& snapshot) {
-  scenario::TickRecord record;
-  record.snapshot = &snapshot;
-  reserve_->observe(record);
-  reserve_->adopt(secondsSince(begin_));
-  ROS_WARN("The metrics node did not finish; the result is the simulator's own, in %s",
-           results_.c_str());
-}
-
 std::unique_ptr<ReserveResult> TrafficSimulatorRos::makeReserve(const std::string& version) const {
   return std::make_unique<ReserveResult>(*setup_, report::RunFacts{kDeployment, version, !paced()},
                                          results_);
@@ -252,6 +193,7 @@ std::unique_ptr<ReserveResult> TrafficSimulatorRos::makeReserve(const std::strin
 int runTrafficSimulator(StopSignal& stop) {
   const Parameters parameters = Parameters::ofThisNode();
   try {
+    requireKnownLaunchArguments();
     return TrafficSimulatorRos(parameters, stop).run();
   } catch (const core::InputError&) {
     constexpr int kBadInput = 3;

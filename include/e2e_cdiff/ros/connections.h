@@ -6,6 +6,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,14 @@ class Connections {
   /// Nodes that were counted on, came and left, in the order they left.
   const std::vector<std::string>& left() const { return left_; }
   bool hasLeft(const std::string& node) const;
+  /// Whether a node (full name) listens to any of the topics, counted on or not.
+  bool listens(const std::string& node) const { return links_.count(node) > 0; }
+  /// Whether it did and does not any more: its process has ended, or it has left. roscpp counts a
+  /// publisher that was killed among `getNumPublishers()` for ever; the end of its connections as a
+  /// listener is what shows.
+  bool stoppedListening(const std::string& node) const {
+    return once_.count(node) > 0 && !listens(node);
+  }
 
   /// Advertises a topic and counts on `nodes` to listen. This object must outlive the publisher.
   template <class Message>
@@ -51,6 +60,8 @@ class Connections {
   std::map<std::pair<std::string, std::string>, int>
       counts_;  ///< connections per topic and node counted on
   std::vector<std::string> left_;
+  std::map<std::string, int> links_;  ///< connections by full node name, where there are any
+  std::set<std::string> once_;        ///< full names of all nodes that ever had one
 };
 
 /// Name of a node without its namespace.

@@ -45,6 +45,13 @@ class MessageGate {
   /// "N messages of SENDER on TOPIC were ignored", one for each that was refused more than once.
   std::vector<std::string> totals() const;
 
+  /// Full name of the node that `topic` is listened to, where any may send; empty before the first
+  /// message.
+  std::string firstSender(const std::string& topic) const {
+    const auto found = first_.find(topic);
+    return found == first_.end() ? std::string() : found->second;
+  }
+
   /// Subscribes without delaying small messages (TCP_NODELAY). `callback` takes a shared pointer to
   /// a constant message that was admitted, and may answer why it cannot be used (a text, empty when
   /// it can). This object must outlive the subscriber.

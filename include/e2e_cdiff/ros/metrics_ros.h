@@ -22,10 +22,15 @@ class MetricsRos : public Observer {
  public:
   using Observer::Observer;
 
+  /// The ROS master was gone before this node began: writes the result of the session that
+  /// roslaunch was asked for, as far as its command line says, and answers the exit code.
+  static int runWithoutMaster();
+
  protected:
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending ending) override;
+  int concludeUnstarted(Ending ending) override;
 
  private:
   using Clock = std::chrono::steady_clock;

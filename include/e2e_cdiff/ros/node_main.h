@@ -10,7 +10,12 @@
 
 namespace cdiff::ros {
 
-/// Starts ROS under a default node name and runs `body`.
-int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body);
+/// Starts ROS under a default node name and runs `body`; `without_master`, where given, gives the
+/// exit code when no ROS master answers.
+int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
+            const std::function<int()>& without_master = {});
+
+/// Whether the ROS master answers within two seconds.
+bool masterAnswers();
 
 }  // namespace cdiff::ros

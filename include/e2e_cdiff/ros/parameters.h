@@ -18,6 +18,10 @@ class Parameters {
   /// The private parameters of this node. Throws InputError for a parameter that is neither text,
   /// number nor flag.
   static Parameters ofThisNode();
+  /// Those of another node (name without namespace); none when it has none or the ROS master does
+  /// not answer.
+  static Parameters ofNode(const std::string& node);
+  bool empty() const { return values_.empty(); }
 
   /// Throws InputError naming the unknown parameter and the nearest known one.
   void requireKnown(const std::vector<std::string>& known) const;
@@ -29,8 +33,14 @@ class Parameters {
   bool flag(const std::string& key, bool otherwise) const;
 
  private:
+  static Parameters of(const std::string& full_name);
+
   std::map<std::string, std::string> values_;
 };
+
+/// The arguments of the roslaunch that started this process, which are the simulator's parameters;
+/// none where it was started otherwise or by a launch file of the user.
+Parameters launchParameters();
 
 /// The session that the parameters scenario, bench2drive, route, network, mode, ego_planner,
 /// cbv_planner, seed and set ask for; crossing_left_turn when they name none.

@@ -7,13 +7,16 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TickAck.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/heartbeat.h"
 #include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/stop_signal.h"
 #include "e2e_cdiff/ros/topics.h"
@@ -22,7 +25,10 @@
 namespace cdiff::ros {
 
 /// How a node's session came to its end.
-enum class Ending { kFinalSnapshot, kSimulatorGone, kStopped };
+enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped };
+
+/// What a result says of the traffic simulator that left, or fell silent for `timeout` [s].
+std::string simulatorFault(Ending ending, double timeout);
 
 class Participant {
  public:
@@ -50,6 +56,9 @@ class Participant {
   virtual bool leavesOut() const { return false; }
   /// The session is over; answers the exit code.
   virtual int conclude(Ending ending) = 0;
+  /// The traffic simulator has ended, or hangs, before it published a session; answers the exit
+  /// code.
+  virtual int concludeUnstarted(Ending) { return 0; }
 
   template <class Message>
   ::ros::Publisher advertise(const std::string& topic, bool latch = false) {
@@ -69,17 +78,24 @@ class Participant {
   /// For publishers that advertise() does not make.
   Connections& connections() { return connections_; }
   ::ros::NodeHandle& node() { return node_; }
+  /// [s] of silence that the traffic simulator has promised not to exceed.
+  double heartbeatTimeout() const { return heartbeat_.timeout(); }
 
  private:
-  bool waitForSession();
+  std::optional<Ending> waitForSession();
+  std::optional<Ending> unstartedEnding();
+  int standBy();
   int runSession();
+  std::optional<Ending> unexpectedEnding();
+  void endSilentSimulator();
   int leave(Ending ending);
   int fail(const std::string& text);
   void queue(const Snapshot& snapshot);
   bool handleQueue();
   void leaveOutdatedOut();
-  void reportReady();
+  void report();
   std::string missing() const;
+  bool simulatorSilent();
   bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
   void tell(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
   std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
@@ -91,6 +107,8 @@ class Participant {
   std::string name_;
   SessionGraph graph_;
   ::ros::Publisher acks_;
+  SilenceWatch heartbeat_;
+  ::ros::Subscriber heartbeat_input_;
   ::ros::Subscriber session_input_;
   ::ros::Subscriber traffic_input_;
   std::vector<::ros::Subscriber> inputs_;
@@ -99,6 +117,9 @@ class Participant {
   std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
   double simulation_step_ = 0.05;  ///< [s]
   std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
+  ::ros::WallTime began_ = ::ros::WallTime::now();
+  ::ros::WallTime stopped_at_;   ///< when the stop signal was seen
+  ::ros::WallTime reported_at_;  ///< when this node last said how it stands
   bool final_handled_ = false;
   bool over_ = false;
 };

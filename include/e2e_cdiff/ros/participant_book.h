@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
-/// tick acknowledged, finished, in error.
+/// tick acknowledged, finished, in error, when last heard.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -19,8 +20,9 @@ class ParticipantBook {
   /// Nodes that the session counts on, without namespace.
   explicit ParticipantBook(const std::vector<std::string>& nodes);
 
+  using Clock = std::chrono::steady_clock;
   /// Messages of nodes that the session does not count on are ignored.
-  void note(const ::e2e_cdiff::TickAck& message);
+  void note(const ::e2e_cdiff::TickAck& message, Clock::time_point now = Clock::now());
 
   /// A text for each node that is not ready, beginning with its name; those that were never heard
   /// first.
@@ -32,6 +34,11 @@ class ParticipantBook {
   /// Observers that have not said that they are finished.
   std::vector<std::string> notFinished() const;
   bool finished(const std::string& node) const;
+  /// Whether any message of the node has come.
+  bool heard(const std::string& node) const;
+  /// Nodes, in order of their names, that were heard but not for `seconds` before `now`. Who waits
+  /// for others says so every second; who says nothing computes, hangs or is stopped.
+  std::vector<std::string> silent(double seconds, Clock::time_point now = Clock::now()) const;
   /// The first node that reported an error, and what it said.
   struct Error {
     std::string node;
@@ -45,6 +52,7 @@ class ParticipantBook {
     bool finished = false;
     std::string waiting_for;  ///< empty until the node has been heard
     std::optional<std::uint64_t> acknowledged;
+    std::optional<Clock::time_point> heard_at;
   };
   std::map<std::string, Entry> entries_;
   std::optional<Error> error_;

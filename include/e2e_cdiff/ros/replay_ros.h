@@ -14,6 +14,7 @@
 
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/heartbeat.h"
 #include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/parameters.h"
 #include "e2e_cdiff/ros/participant_book.h"
@@ -65,6 +66,7 @@ class ReplayRos {
   MessageGate gate_;
   Connections connections_;
   ::ros::NodeHandle node_;
+  HeartbeatPublisher heartbeat_;
   std::map<std::string, ::ros::Publisher> topics_;
   ::ros::Subscriber acks_;
   Display display_;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "e2e_cdiff/report/result_writer.h"
+#include "e2e_cdiff/ros/parameters.h"
 
 namespace cdiff::ros {
 
@@ -26,6 +27,16 @@ std::filesystem::path makeResultFolder(const std::string& given,
 /// exits with 0 whatever happened.
 void writeExitCode(const std::filesystem::path& folder, int exit_code);
 
+/// Relative paths in parameters are meant from where the user started the session; empty: from
+/// here. Throws InputError when there is no such folder.
+void enterFolder(const std::string& folder);
+
+/// Writes the result of a session that ended before its first snapshot, which its simulator was to
+/// run with these parameters, and answers the exit code. A result (file exit_code) that this launch
+/// has left already stays. Bad input is told in one line, and is the exit code then.
+int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
+                         const traffic::Fault& fault);
+
 /// The session's result as the simulator itself saw it, kept aside (RESULTS/.reserve) while the
 /// metrics node writes the real one; put in place when that node cannot finish.
 class ReserveResult {
@@ -39,7 +50,8 @@ class ReserveResult {
   ReserveResult& operator=(const ReserveResult&) = delete;
 
   void observe(const scenario::TickRecord& record) { writer_->observe(record); }
-  /// Finishes the result, moves its files into the result folder and writes the exit code.
+  /// Finishes the result, moves its files into the result folder and writes the exit code; nothing
+  /// where the metrics node has written its own meanwhile (file exit_code).
   void adopt(double wall_seconds);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// SIGINT and SIGTERM without a handler: both are blocked from here on, in every thread made later,
-/// and asked for when it suits. So a session can end in order, whatever it is doing.
+/// SIGINT, SIGTERM and SIGHUP without a handler: all are blocked from here on, in every thread made
+/// later, and asked for when it suits. So a session can end in order, whatever it is doing.
 #pragma once
 
 namespace cdiff::ros {
@@ -10,7 +10,7 @@ class StopSignal {
  public:
   /// Make it before any other thread exists, hence before ros::init.
   StopSignal();
-  /// Whether one of the two has come, now or before.
+  /// Whether one of them has come, now or before.
   bool raised();
 
  private:

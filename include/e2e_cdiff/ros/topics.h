@@ -27,6 +27,7 @@ inline constexpr const char* kEgoControlTopic = "ego/control";    ///< ControlAc
 inline constexpr const char* kSelectionTopic = "cbv/selection";   ///< CbvSelection
 inline constexpr const char* kMetricsTopic = "metrics";           ///< MetricReport
 inline constexpr const char* kTickAckTopic = "tick_ack";          ///< TickAck
+inline constexpr const char* kHeartbeatTopic = "heartbeat";       ///< Heartbeat, latched
 inline constexpr const char* kGuidanceTopic = "cbv/guidance";     ///< GuidanceReport
 inline constexpr const char* kDecisionRecordTopic = "decision_record";  ///< DecisionRecord
 inline constexpr const char* kMarkersTopic = "markers";         ///< visualization_msgs/MarkerArray

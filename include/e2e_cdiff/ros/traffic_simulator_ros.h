@@ -17,6 +17,7 @@
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/decision_book.h"
 #include "e2e_cdiff/ros/display.h"
+#include "e2e_cdiff/ros/heartbeat.h"
 #include "e2e_cdiff/ros/message_gate.h"
 #include "e2e_cdiff/ros/paced_answers.h"
 #include "e2e_cdiff/ros/parameters.h"
@@ -78,6 +79,8 @@ class TrafficSimulatorRos {
   std::optional<Ending> sleepUntil(double due);
   std::optional<Ending> waitFor(const MissingNow& missing_now, double seconds);
   std::optional<Ending> disturbance();
+  bool egoGone() const;
+  Ending endOfPatience(const std::vector<Missing>& missing, double seconds);
   void endSession(const Ending& ending);
   Ending ending(traffic::SessionStatus status, const std::string& source,
                 const std::string& text) const;
@@ -100,10 +103,13 @@ class TrafficSimulatorRos {
   std::vector<Missing> missingParticipants() const;
   std::vector<Missing> missingAnswers() const;
   std::vector<Missing> missingAtTick() const;
+  std::vector<Missing> missingForLong();
   void sendAgainForLateListener();
   bool paced() const { return setup_->options().real_time_factor > 0.0; }
 
   StopSignal& stop_;
+  ::ros::NodeHandle node_;
+  HeartbeatPublisher heartbeat_;
   SimulatorLimits limits_;
   std::filesystem::path results_;
   std::unique_ptr<scenario::SessionSetup> setup_;
@@ -118,7 +124,6 @@ class TrafficSimulatorRos {
   MessageGate gate_;
   std::set<std::string> noted_faults_;  ///< texts
   Connections connections_;
-  ::ros::NodeHandle node_;
   ::ros::Publisher clock_;
   ::ros::Publisher session_;
   ::ros::Publisher traffic_;
@@ -127,6 +132,8 @@ class TrafficSimulatorRos {
   Display display_;
   std::vector<::ros::Subscriber> inputs_;
   ::ros::Subscriber ego_control_;
+  Clock::time_point ego_heard_at_;  ///< last command of the external ego
+  std::set<std::string> blamed_;    ///< nodes that are not waited for any more
   std::unique_ptr<scenario::World> world_;
   std::unique_ptr<ReserveResult> reserve_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr published_;

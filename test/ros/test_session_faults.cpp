@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// Sessions some of whose processes are killed or stopped: each ends in time, names who is to blame,
+// leaves a result and no process. "Campaign" runs under
+// `scripts/test --nightly`.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <random>
+#include <thread>
+
+#include "e2e_cdiff/ros/connections.h"
+#include "e2e_cdiff/ros/heartbeat.h"
+#include "e2e_cdiff/ros/participant_book.h"
+#include "e2e_cdiff/ros/topics.h"
+#include "launched_session.h"
+#include "rosbag/bag.h"
+#include "rosbag/view.h"
+
+namespace cdiff {
+namespace {
+
+namespace fs = std::filesystem;
+namespace msgs = ::e2e_cdiff;
+
+// A session that goes on for as long as the fault needs, at the pace of the wall clock.
+const char* const kLong =
+    "scenario:=crossing_straight cbv_planner:=pdm_lite set:=\"real_time_factor=1 "
+    "protocol.time_limit=60\"";
+
+class SessionFaults : public ::testing::Test {
+ protected:
+  void expectError(const std::string& culprit) {
+    EXPECT_EQ(session_.exitCode(), "2\n") << session_.log();
+    EXPECT_EQ(session_.summary()["status"], "error");
+    EXPECT_EQ(session_.fault().find(culprit + ": "), 0U) << session_.fault() << session_.log();
+    EXPECT_EQ(session_.leftovers(), "");
+  }
+  /// Ticks in the bag of the session.
+  std::uint64_t recordedTicks() const {
+    const rosbag::Bag bag((session_.results() / "session.bag").string(), rosbag::bagmode::Read);
+    return rosbag::View(bag, rosbag::TopicQuery("/traffic")).size();
+  }
+  void pause(int milliseconds) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+  }
+
+  test::LaunchedSession session_;
+};
+
+TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
+  session_.launch(std::string("record:=true heartbeat_timeout:=3 ") + kLong);
+  ASSERT_TRUE(session_.hasFile("session.bag.active")) << session_.log();
+  pause(500);
+  ASSERT_TRUE(session_.signal("traffic_simulator_node", SIGSTOP));
+  // 3 s of silence and what nodes and roslaunch need to leave; before, nobody gave up.
+  EXPECT_LT(session_.endAfter(20.0), 12.0) << session_.log();
+  expectError("traffic_simulator_node");
+  EXPECT_GT(recordedTicks(), 0U);
+}
+
+TEST_F(SessionFaults, KilledExternalEgoIsNoticedByItsConnection) {
+  session_.start(
+      "roslaunch -p " + std::to_string(session_.port()) +
+      " e2e_cdiff session.launch ego_planner:=external results:=" + session_.results().string() +
+      " " + kLong + " & sleep 1; rosrun e2e_cdiff external_ego_node __name:=my_ego & wait");
+  ASSERT_TRUE(session_.hasFile("session.yaml")) << session_.log();
+  pause(1500);
+  ASSERT_TRUE(session_.signal("my_ego", SIGKILL));
+  EXPECT_LT(session_.endAfter(20.0), 5.0) << session_.log();  // 2 s, and roslaunch's end
+  expectError("the external ego planner");
+}
+
+TEST_F(SessionFaults, SimulatorKilledBeforeTheSessionLeavesAResult) {
+  session_.launch("seed:=7 scenario:=crossing_straight");
+  ASSERT_GT(session_.process("metrics_node"), 0) << session_.log();
+  pause(100);
+  ASSERT_TRUE(session_.signal("traffic_simulator_node", SIGKILL));
+  EXPECT_LT(session_.endAfter(20.0), 10.0);
+  expectError("traffic_simulator_node");
+  EXPECT_EQ(session_.summary()["seed"], 7);
+}
+
+TEST_F(SessionFaults, KilledMasterIsNotTheUser) {
+  session_.launch(kLong);
+  ASSERT_TRUE(session_.hasFile("session.yaml")) << session_.log();
+  ASSERT_GT(session_.process("sumo"), 0);
+  pause(500);
+  ASSERT_TRUE(session_.signal("rosmaster", SIGKILL));
+  EXPECT_LT(session_.endAfter(25.0), 15.0) << session_.log();
+  expectError("rosmaster");
+}
+
+TEST_F(SessionFaults, StoppedNodeIsBlamedOnceAndEnded) {
+  session_.launch(std::string("answer_timeout:=4 ") + kLong);
+  ASSERT_TRUE(session_.hasFile("session.yaml")) << session_.log();
+  pause(1000);
+  ASSERT_TRUE(session_.signal("cbv_identification_node", SIGSTOP));
+  EXPECT_LT(session_.endAfter(40.0), 11.0) << session_.log();
+  expectError("cbv_identification_node");
+}
+
+TEST_F(SessionFaults, ScriptStoppedInItsFirstSecondGives130AndAResult) {
+  session_.start("BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
+                 "/session scenario:=crossing_straight results:=" +
+                 session_.results().string());
+  pause(300);
+  session_.signalLaunch(SIGINT);
+  EXPECT_LT(session_.endAfter(30.0), 30.0);
+  EXPECT_EQ(session_.exitStatus(), 130) << session_.log();
+  EXPECT_EQ(session_.exitCode(), "130\n");
+  EXPECT_EQ(session_.summary()["status"], "interrupted");
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
+TEST_F(SessionFaults, ScriptNamesAMasterThatDoesNotAnswer) {
+  session_.start("E2E_CDIFF_MASTER=http://127.0.0.1:" + std::to_string(session_.port()) +
+                 " BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
+                 "/session scenario:=crossing_straight");
+  EXPECT_LT(session_.endAfter(30.0), 30.0);
+  EXPECT_EQ(session_.exitStatus(), 3) << session_.log();
+  EXPECT_EQ(session_.log().find("session: E2E_CDIFF_MASTER is "), 0U) << session_.log();
+  EXPECT_EQ(session_.log().find('\n'), session_.log().size() - 1) << session_.log();  // one line
+}
+
+TEST_F(SessionFaults, UnknownLaunchArgumentIsNamedWithTheNearest) {
+  session_.launch("senario:=crossing_straight");
+  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_EQ(session_.exitCode(), "3\n") << session_.log();
+  EXPECT_NE(session_.log().find("'senario:=crossing_straight'"), std::string::npos)
+      << session_.log();
+  EXPECT_NE(session_.log().find("'scenario'"), std::string::npos) << session_.log();
+}
+
+struct Fault {
+  const char* process;
+  int signal;
+};
+
+std::string nameOf(const ::testing::TestParamInfo<Fault>& info) {
+  return std::string(info.param.signal == SIGKILL ? "Killed_" : "Stopped_") + info.param.process;
+}
+
+class SessionFaultsCampaign : public SessionFaults, public ::testing::WithParamInterface<Fault> {};
+
+// At the default limits, whenever it comes: during the start of the nodes or on the way.
+TEST_P(SessionFaultsCampaign, EndsWithin45SecondsAndNamesTheCulprit) {
+  const Fault fault = GetParam();
+  std::mt19937 random(15);
+  for (const char* pace : {"real_time_factor=1", "real_time_factor=0"}) {
+    const int delay = static_cast<int>(random() % 3000);  // [ms]
+    SCOPED_TRACE(std::string(pace) + ", " + std::to_string(delay) + " ms");
+    test::LaunchedSession session;
+    session.launch(
+        "record:=true camera:=true scenario:=roundabout_cross cbv_planner:=pdm_lite "
+        "set:=\"" +
+        std::string(pace) + " protocol.time_limit=60\"");
+    ASSERT_GT(session.process("metrics_node"), 0);
+    pause(delay);
+    const bool ended = fs::exists(session.results() / "exit_code");
+    if (ended || !session.signal(fault.process, fault.signal)) continue;  // as fast as possible
+    EXPECT_LT(session.endAfter(60.0), 45.0) << session.log();
+    EXPECT_EQ(session.exitCode(), "2\n") << session.log();
+    EXPECT_EQ(session.summary()["status"], "error");
+    EXPECT_EQ(session.fault().find(fault.process), 0U) << session.fault();
+    EXPECT_EQ(session.leftovers(), "");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    SessionFaultsCampaign, SessionFaultsCampaign,
+    ::testing::Values(Fault{"traffic_simulator_node", SIGKILL},
+                      Fault{"traffic_simulator_node", SIGSTOP},
+                      Fault{"cbv_identification_node", SIGKILL},
+                      Fault{"cbv_identification_node", SIGSTOP}, Fault{"ego_planner_node", SIGKILL},
+                      Fault{"ego_planner_node", SIGSTOP}, Fault{"cbv_planner_node", SIGKILL},
+                      Fault{"cbv_planner_node", SIGSTOP}, Fault{"camera_node", SIGKILL},
+                      Fault{"camera_node", SIGSTOP}, Fault{"metrics_node", SIGKILL},
+                      Fault{"metrics_node", SIGSTOP}, Fault{"recorder_node", SIGKILL},
+                      Fault{"recorder_node", SIGSTOP}, Fault{"rosmaster", SIGKILL}),
+    nameOf);
+
+TEST(SilenceWatch, CountsOnlyTheTimeOfItsOwnLooks) {
+  ros::SilenceWatch watch;
+  EXPECT_FALSE(watch.silent(100.0));  // nobody was ever heard
+  watch.heard(1.0);
+  EXPECT_FALSE(watch.silent(130.0));  // one look adds 0.5 s, however long we did not look
+  EXPECT_FALSE(watch.silent(130.5));  // 1.0 s is not longer than 1.0 s
+  EXPECT_TRUE(watch.silent(130.6));
+  watch.heard(1.0);
+  EXPECT_FALSE(watch.silent(130.7));
+}
+
+msgs::TickAck ackOf(const std::string& node, std::uint8_t kind) {
+  msgs::TickAck message;
+  message.node = node;
+  message.kind = kind;
+  return message;
+}
+
+TEST(ParticipantBook, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
+  using namespace std::chrono_literals;
+  const ros::ParticipantBook::Clock::time_point begin;
+  ros::ParticipantBook book({ros::kCameraNode, ros::kCbvPlannerNode, ros::kMetricsNode});
+  book.note(ackOf(ros::kCameraNode, msgs::TickAck::READY), begin);
+  book.note(ackOf(ros::kCbvPlannerNode, msgs::TickAck::READY), begin);
+  book.note(ackOf(ros::kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);
+  EXPECT_EQ(book.silent(5.0, begin + 5s), std::vector<std::string>());
+  EXPECT_EQ(book.silent(5.0, begin + 6s), std::vector<std::string>{ros::kCameraNode});
+  EXPECT_TRUE(book.heard(ros::kCameraNode));
+  EXPECT_FALSE(book.heard(ros::kMetricsNode));
+}
+
+TEST(Connections, KnowsWhoListenedAndDoesNotAnyMore) {
+  ros::Connections connections;
+  EXPECT_FALSE(connections.stoppedListening("/my_ego"));  // it never did
+  connections.connected("traffic", "/my_ego");
+  connections.connected("/clock", "/my_ego");
+  connections.disconnected("traffic", "/my_ego");
+  EXPECT_FALSE(connections.stoppedListening("/my_ego"));
+  connections.disconnected("/clock", "/my_ego");
+  EXPECT_TRUE(connections.stoppedListening("/my_ego"));
+  EXPECT_TRUE(connections.left().empty());  // nobody had counted on it
+}
+
+}  // namespace
+}  // namespace cdiff
