@@ -20,6 +20,9 @@ using traffic::SessionStatus;
 constexpr double kSendAgainAfter =
     1.0;  // [s] of wall time without an answer of an external ego planner
 
+constexpr double kPacedSilence =
+    10.0;  // [s] of wall time: with a pace to keep, a node that says nothing for so long is lost
+
 }  // namespace
 
 /// A node of the user may connect while the first snapshot is sent; it gets the same snapshot
@@ -119,26 +122,26 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
   spin(0.0);  // what has come counts, however late this tick began
   const double due = (published_->time + options.simulation_step) / options.real_time_factor;
   if (auto cause = sleepUntil(due)) return cause;
-  const std::vector<Missing> missing = missingForLong();
-  if (missing.empty()) return std::nullopt;
-  return endOfPatience(missing, limits_.answer);
-}
-
-/// A late answer is replaced; a node that is not heard at all, or does not keep the record, ends
-/// the session.
-std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingForLong() {
-  std::vector<Missing> missing;
-  for (const std::string& node : book_.silent(limits_.answer))
-    missing.push_back({node, "a message of " + node});
-  if (graph_.external_ego && secondsSince(std::max(ego_heard_at_, begin_)) > limits_.answer)
-    missing.push_back({answererOf(kEgoControlTopic, graph_), "a command on ego/control"});
+  const double patience = std::min(limits_.answer, kPacedSilence);
+  if (const auto missing = silentFor(patience); !missing.empty())
+    return endOfPatience(missing, patience);
   const std::vector<std::string> behind = book_.notAcknowledged(published_->tick);
   const std::uint64_t acknowledged = book_.acknowledgedByAll();  // they lag where answers do
   if (behind.empty() || published_->tick == 0 || acknowledged > acknowledged_)
     acknowledged_at_ = Clock::now();
   acknowledged_ = acknowledged;
-  if (secondsSince(acknowledged_at_) > limits_.answer)
-    missing.push_back({behind.front(), "an acknowledgement of " + behind.front()});
+  if (secondsSince(acknowledged_at_) <= limits_.answer) return std::nullopt;
+  return endOfPatience({{behind.front(), behind.front() + "'s acknowledgement of a tick"}},
+                       limits_.answer);
+}
+
+/// A late answer is replaced; a node that is not heard at all ends the session.
+std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::silentFor(double seconds) const {
+  std::vector<Missing> missing;
+  for (const std::string& node : book_.silent(seconds))
+    missing.push_back({node, "a sign of life of " + node});
+  if (graph_.external_ego && secondsSince(std::max(ego_heard_at_, begin_)) > seconds)
+    missing.push_back({answererOf(kEgoControlTopic, graph_), "a command on ego/control"});
   return missing;
 }
 

@@ -52,8 +52,11 @@ TrafficSimulatorRos::Ending TrafficSimulatorRos::endOfPatience(const std::vector
   std::vector<std::string> texts;
   for (const Missing& item : missing) texts.push_back(item.what);
   const std::vector<std::string> silent = book_.silent(std::min(kSilence, 0.8 * seconds));
-  for (const std::string& node : silent) killLaunchedProcess(node);
   blamed_.insert(silent.begin(), silent.end());
+  for (const Missing& item : missing) {
+    if (!book_.heard(item.node)) blamed_.insert(item.node);
+  }
+  for (const std::string& node : blamed_) killLaunchedProcess(node);
   const std::string culprit = silent.empty() ? missing.front().node : silent.front();
   blamed_.insert(culprit);
   return ending(
@@ -89,6 +92,7 @@ void TrafficSimulatorRos::waitForObservers() {
   };
   while (pending() && ::ros::ok() && secondsSince(begin) < limit) spin(kSpinPeriod);
   for (const std::string& node : book_.notFinished()) killLaunchedProcess(node);
+  for (const std::string& node : book_.silent(kSilence)) killLaunchedProcess(node);
   if (!book_.finished(kMetricsNode)) writeResultAlone(world_->snapshot());
 }
 

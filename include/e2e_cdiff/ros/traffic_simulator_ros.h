@@ -103,7 +103,7 @@ class TrafficSimulatorRos {
   std::vector<Missing> missingParticipants() const;
   std::vector<Missing> missingAnswers() const;
   std::vector<Missing> missingAtTick() const;
-  std::vector<Missing> missingForLong();
+  std::vector<Missing> silentFor(double seconds) const;
   void sendAgainForLateListener();
   bool paced() const { return setup_->options().real_time_factor > 0.0; }
 
