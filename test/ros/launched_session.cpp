@@ -143,6 +143,18 @@ bool LaunchedSession::hasFile(const std::string& name) const {
   return false;
 }
 
+bool LaunchedSession::hasTicks() const {
+  constexpr std::uintmax_t kSize = 4096;
+  std::error_code ignored;
+  for (const double begin = now(); now() - begin < kPatience; pause()) {
+    for (const auto& entry : fs::directory_iterator(results(), ignored)) {
+      const bool trace = entry.path().filename().string().rfind("trace.csv", 0) == 0;
+      if (trace && fs::file_size(entry.path(), ignored) >= kSize) return true;
+    }
+  }
+  return false;
+}
+
 double LaunchedSession::endAfter(double limit) {
   for (; now() - signalled_at_ < limit; pause()) {
     int status = 0;

@@ -35,6 +35,8 @@ class LaunchedSession {
   void signalLaunch(int number);
   /// Waits until a file of the result folder is there (20 s).
   bool hasFile(const std::string& name) const;
+  /// Waits until the session has had some ticks: 4 KiB of the trace are written (20 s).
+  bool hasTicks() const;
   /// Waits for the end of what was started, at most `limit` seconds after the last signal; answers
   /// how many it took, or `limit`.
   double endAfter(double limit);
