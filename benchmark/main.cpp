@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -10,6 +9,7 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 
 namespace cdiff::benchmark {
@@ -70,7 +70,7 @@ int run(const std::string& name, const std::string& json) {
 }  // namespace cdiff::benchmark
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);
+  cdiff::core::prepareProgram();
   CLI::App program{"Benchmarks; prints `figure value unit goal`"};
   std::string name;
   std::string json;

@@ -100,7 +100,7 @@ MetricsTime metricsTime(const fs::path& bag) {
 }
 
 void requireWhole(const fs::path& bag, const fs::path& results) {
-  const auto findings = ros::replayBag(bag, results).findings;
+  const auto findings = ros::replayBag(bag, results, true).findings;
   if (!findings.empty()) throw core::Error("the recorded bag is damaged: " + findings.front());
 }
 

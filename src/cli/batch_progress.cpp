@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "e2e_cdiff/core/text.h"
@@ -14,6 +15,15 @@ using Clock = std::chrono::steady_clock;
 
 BatchProgress::BatchProgress(std::size_t total)
     : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
+
+void BatchProgress::repeated(const std::string& cause, const std::vector<std::string>& ids) const {
+  constexpr std::size_t kShown = 5;
+  const std::vector<std::string> shown(ids.begin(), ids.begin() + std::min(kShown, ids.size()));
+  std::cerr << ids.size() << (ids.size() == 1 ? " run" : " runs") << " to do: " << cause << ": "
+            << core::joinText(shown, ", ");
+  if (ids.size() > kShown) std::cerr << " and " << ids.size() - kShown << " more";
+  std::cerr << "\n";
+}
 
 void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   ++done_;

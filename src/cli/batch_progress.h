@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "e2e_cdiff/evaluation/run_record.h"
 
@@ -14,6 +16,8 @@ namespace cdiff::cli {
 class BatchProgress {
  public:
   explicit BatchProgress(std::size_t total);
+  /// Runs that a resumed batch runs again, or for the first time, for one cause: one line.
+  void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
   /// A run ended; `resumed`: it had before.
   void ended(const evaluation::RunRecord& record, bool resumed);
   /// Leaves the terminal on a line of its own.

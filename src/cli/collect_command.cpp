@@ -11,10 +11,11 @@
 #include "dataset_page.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/output_folder.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/process_pool.h"
 #include "e2e_cdiff/suite/suite.h"
-#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSessionCommand = "collect_session";
+constexpr const char* kLockedBy = "cdiff collect";
 
 struct CollectArguments {
   CollectRequest request;
@@ -107,7 +109,19 @@ int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
   return code;
 }
 
+/// What an earlier collection that was killed left half written.
+void removeHalves(const fs::path& results) {
+  for (const char* name : {"bags", "shards", "sessions"}) core::removeTemporaries(results / name);
+  std::error_code ignored;
+  std::vector<fs::path> halves;
+  for (const auto& entry : fs::directory_iterator(results / "bags", ignored)) {
+    if (entry.path().extension() == ".active") halves.push_back(entry.path());
+  }
+  for (const fs::path& half : halves) fs::remove(half, ignored);
+}
+
 int convertBags(const CollectArguments& arguments) {
+  const core::FolderLock lock(arguments.request.results, kLockedBy);
   BagRequest request = arguments.bags;
   request.results = arguments.request.results;
   describeDataset(request.results, collectBags(request));
@@ -117,6 +131,8 @@ int convertBags(const CollectArguments& arguments) {
 int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
+  const core::FolderLock lock(arguments.request.results, kLockedBy);
+  removeHalves(arguments.request.results);
   std::vector<evaluation::ProcessJob> jobs;
   for (const CollectRequest& request : sessions) {
     const std::string name = sessionName(resolveCollection(request));
@@ -124,11 +140,10 @@ int collect(const CollectArguments& arguments) {
         fs::exists(shardFile(request, name)) && fs::exists(statisticsFile(request, name));
     if (!done) jobs.push_back({name, wordsOf(request)});
   }
-  fs::create_directories(arguments.request.results);
   std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
             << " of them already there\n";
   std::size_t done = 0;
-  const std::atomic<bool>& stop = catchStopSignals();
+  const std::atomic<bool>& stop = core::catchStopSignals();
   const auto ended = [&](const evaluation::ProcessJob& job) {
     ++done;
     std::cerr << done << "/" << jobs.size() << " " << job.name << " exit code " << job.exit_code

@@ -9,11 +9,11 @@
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/ros/session_bag.h"
 #include "e2e_cdiff/scenario/collection_loop.h"
 #include "e2e_cdiff/training/shard.h"
-#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -92,7 +92,7 @@ fs::path statisticsFile(const CollectRequest& request, const std::string& name) 
 }
 
 int collectSession(const CollectRequest& request) {
-  const std::atomic<bool>& stop = catchStopSignals();
+  const std::atomic<bool>& stop = core::catchStopSignals();
   const CollectSettings settings = resolveCollection(request);
   const std::string name = sessionName(settings);
   const fs::path bag = request.results / "bags" / (name + ".bag");

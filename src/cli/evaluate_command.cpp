@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <atomic>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,13 +9,14 @@
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/output_folder.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/evaluation/batch_files.h"
 #include "e2e_cdiff/evaluation/batch_report.h"
 #include "e2e_cdiff/evaluation/executor.h"
 #include "e2e_cdiff/evaluation/matrix.h"
 #include "e2e_cdiff/evaluation/run_plan.h"
 #include "route_table.h"
-#include "stop_signals.h"
 
 namespace cdiff::cli {
 namespace {
@@ -36,7 +36,10 @@ struct EvaluateArguments {
   std::vector<std::string> set;
   int jobs = 1;
   bool resume = false;
+  bool overwrite = false;
 };
+
+constexpr const char* kMatrixFile = "matrix.yaml";
 
 /// The matrix file, or the one that the Bench2Drive arguments stand for.
 MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
@@ -64,17 +67,35 @@ MatrixOptions matrixOf(const EvaluateArguments& arguments) {
   return matrix;
 }
 
-/// Makes the folder and keeps the matrix in it; that of a session or another matrix is refused.
-void claimFolder(const fs::path& folder, const MatrixOptions& matrix) {
+/// Refuses the folder of a session, and that of a batch which is neither resumed nor replaced.
+void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
   std::error_code error;
   if (fs::exists(folder / "session.yaml", error)) {
     throw InputError("'" + folder.string() +
                      "' holds the result of a session (session.yaml); give another --results");
   }
-  fs::create_directories(folder / "runs", error);
-  if (error)
-    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
-  const fs::path file = folder / "matrix.yaml";
+  if (arguments.resume || arguments.overwrite || !fs::exists(folder / kMatrixFile, error)) return;
+  throw InputError("'" + folder.string() + "' holds the results of a batch (" + kMatrixFile +
+                   "); go on with it (--resume), replace it (--overwrite), or give another "
+                   "--results");
+}
+
+/// All that a batch writes.
+void removeBatch(const fs::path& folder) {
+  for (const char* name : {"runs", "tables", "figures", "runs.csv", "summary.json", "summary.md",
+                           "junit.xml", "index.html", "table.md", "compare.csv", kMatrixFile}) {
+    std::error_code error;
+    fs::remove_all(folder / name, error);
+    if (error)
+      throw InputError("cannot replace '" + (folder / name).string() + "': " + error.message());
+  }
+}
+
+/// Makes what a batch needs in a folder that is ours, and keeps the matrix in it; on resumption
+/// that of another matrix is refused.
+void prepareFolder(const fs::path& folder, const MatrixOptions& matrix, bool overwrite) {
+  if (overwrite) removeBatch(folder);
+  const fs::path file = folder / kMatrixFile;
   if (fs::exists(file)) {
     MatrixOptions earlier;
     core::loadOptions({file.string(), core::readFile(file, "evaluation")}, earlier);
@@ -83,27 +104,29 @@ void claimFolder(const fs::path& folder, const MatrixOptions& matrix) {
                        earlier.name + "', see " + file.string() + "); give another --results");
     }
   }
+  std::error_code error;
+  fs::create_directories(folder / "runs", error);
+  if (error)
+    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
   core::removeTemporaries(folder);
   core::writeFileAtomically(file, core::dumpOptions(matrix));
 }
 
-int exitCodeOf(const std::vector<RunRecord>& records, const std::atomic<bool>& stop) {
-  if (stop) return kInterrupted;
+int exitCodeOf(const std::vector<RunRecord>& records) {
+  if (core::stopRequested()) return kInterrupted;
   int exit_code = kPassed;
   for (const RunRecord& record : records) {
-    if (!record.complete()) return kRunTimeError;
-    if (record.has(report::Outcome::kFailed)) exit_code = kVerdictFailed;
+    const bool bad_input = record.failed() && record.exit_code == kBadInput;
+    if (!record.complete() && !bad_input) return kRunTimeError;
+    if (bad_input) exit_code = kBadInput;
+    if (record.has(report::Outcome::kFailed) && exit_code == kPassed) exit_code = kVerdictFailed;
   }
   return exit_code;
 }
 
-int evaluate(const EvaluateArguments& arguments) {
-  const MatrixOptions matrix = matrixOf(arguments);
-  const auto plan = evaluation::planRuns(
-      matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
-  const fs::path results = fs::absolute(arguments.results);
-  claimFolder(results, matrix);
-  const std::atomic<bool>& stop = catchStopSignals();
+std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
+                               const MatrixOptions& matrix, const fs::path& results,
+                               const EvaluateArguments& arguments) {
   BatchProgress progress(plan.size());
   evaluation::ExecutorOptions options;
   options.results = results;
@@ -111,9 +134,23 @@ int evaluate(const EvaluateArguments& arguments) {
   options.timeout = matrix.timeout;
   options.retries = static_cast<int>(matrix.retries);
   options.resume = arguments.resume;
+  options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
   options.ended = [&](const RunRecord& record, bool resumed) { progress.ended(record, resumed); };
-  const auto records = evaluation::executeRuns(plan, options, stop);
+  auto records = evaluation::executeRuns(plan, options, core::catchStopSignals());
   progress.finish();
+  return records;
+}
+
+int evaluate(const EvaluateArguments& arguments) {
+  const MatrixOptions matrix = matrixOf(arguments);
+  const fs::path results = fs::absolute(arguments.results);
+  requireFolder(results, arguments);
+  const auto plan = evaluation::planRuns(
+      matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
+  const core::FolderLock lock(results, "cdiff evaluate");
+  requireFolder(results, arguments);
+  prepareFolder(results, matrix, arguments.overwrite);
+  const auto records = execute(plan, matrix, results, arguments);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records);
@@ -122,7 +159,7 @@ int evaluate(const EvaluateArguments& arguments) {
     core::writeFileAtomically(results / "table.md", text);
   }
   std::cout << text;
-  return exitCodeOf(records, stop);
+  return exitCodeOf(records);
 }
 
 }  // namespace
@@ -147,7 +184,13 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
       ->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
-  command->add_flag("--resume", arguments->resume, "Run only what is not complete yet");
+  CLI::Option* resume = command->add_flag(
+      "--resume", arguments->resume,
+      "Run only what is not complete yet, or was run with other files or another program");
+  command
+      ->add_flag("--overwrite", arguments->overwrite,
+                 "Replace the results of an earlier batch in the folder")
+      ->excludes(resume);
   command->callback([arguments, &exit_code] { exit_code = evaluate(*arguments); });
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/failure.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 #include "version.h"
 
@@ -46,7 +46,7 @@ void requireKnownCommand(const CLI::App& program, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);
+  cdiff::core::prepareProgram();
   CLI::App program{"cdiff: closed-loop traffic scenarios without a ROS master"};
   program.require_subcommand(1);
   program.set_version_flag("--version", cdiff::cli::versionText,

@@ -13,16 +13,19 @@ struct ReplayArguments {
   std::string bag;
   std::string results;
   bool quiet = false;
+  bool overwrite = false;
 };
 
 int replay(const ReplayArguments& arguments) {
-  const ros::ReplayResult result = ros::replayBag(arguments.bag, arguments.results);
+  const ros::ReplayResult result =
+      ros::replayBag(arguments.bag, arguments.results, arguments.overwrite);
   for (const std::string& finding : result.findings)
     std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
   if (!result.findings.empty())
     std::cerr << "cdiff: the recording is damaged; the result is made of what there is\n";
   if (!result.video_error.empty())
     std::cerr << "cdiff: " << result.video_error << "; the other results are not affected\n";
+  if (!result.failure.empty()) std::cerr << "cdiff: " << result.failure << "\n";
   if (!arguments.quiet) std::cout << result.table << std::flush;
   return result.exit_code;
 }
@@ -36,6 +39,8 @@ void addReplayCommand(CLI::App& program, int& exit_code) {
   command->add_option("bag", arguments->bag, "session.bag, also one whose recording was cut off")
       ->required();
   command->add_option("--results", arguments->results, "Result folder")->required();
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "Replace what an earlier session left in the result folder");
   command->add_flag("--quiet", arguments->quiet, "No table");
   command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }

@@ -19,6 +19,7 @@ struct RunArguments {
   std::string results;
   bool quiet = false;
   bool record = false;
+  bool overwrite = false;
 };
 
 std::string timeStamp() {
@@ -35,7 +36,7 @@ int run(const RunArguments& arguments) {
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
                                    std::to_string(options.seed) + "_" + timeStamp())
           : fs::path(arguments.results);
-  return runSession(options, {folder, arguments.quiet, arguments.record});
+  return runSession(options, {folder, arguments.quiet, arguments.record, arguments.overwrite});
 }
 
 }  // namespace
@@ -57,6 +58,8 @@ void addRunCommand(CLI::App& program, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--results", arguments->results,
                       "Result folder (default: results/SCENARIO_SEED_TIME)");
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "Replace what an earlier session left in the result folder");
   command->add_flag("--record", arguments->record, "Also write session.bag, for replay and rviz");
   command->add_flag("--video", request.video, "Also write session.mp4: front view beside top view");
   command->add_flag("--quiet", arguments->quiet, "No progress line, no table");

@@ -10,13 +10,13 @@
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/program.h"
+#include "e2e_cdiff/report/result_folder.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/scenario/closed_loop.h"
 #include "progress.h"
-#include "stop_signals.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "e2e_cdiff/ros/session_bag.h"
 #endif
@@ -27,18 +27,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 bool isJudged(int exit_code) { return exit_code == kPassed || exit_code == kVerdictFailed; }
-
-/// What an earlier session left in the folder that this one may not write anew; the user is told of
-/// recordings.
-void removeEarlierSession(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile}) {
-    if (std::filesystem::remove(folder / name, ignored) && std::string(name) != "exit_code")
-      std::cerr << "cdiff: " << name << " of an earlier session is removed from '"
-                << folder.string() << "', which this one writes into\n";
-  }
-  core::removeTemporaries(folder);
-}
 
 /// The record of a session that never began.
 void recordFailedStart(report::ResultWriter& writer, const std::string& text) {
@@ -55,7 +43,7 @@ double secondsSince(Clock::time_point begin) {
 }
 
 /// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
-/// be written is told once, and the session goes on.
+/// be written is removed, and the session goes on.
 class BagRecord : public scenario::SessionObserver {
  public:
   BagRecord(const scenario::SessionSetup& setup, const RunOutput& output,
@@ -79,12 +67,19 @@ class BagRecord : public scenario::SessionObserver {
 #else
   void observe(const scenario::TickRecord&) override {}
 #endif
-  /// Whether the bag that was asked for is there.
-  bool finish() {
+  /// Why the bag that was asked for is not there; empty when it is.
+  const std::string& finish() {
 #ifdef E2E_CDIFF_WITH_ROS
     if (bag_) attempt([&] { bag_->finish(); });
 #endif
-    return !failed_;
+    return error_;
+  }
+  /// Removes what was recorded.
+  void discard() {
+#ifdef E2E_CDIFF_WITH_ROS
+    if (bag_) bag_->discard();
+    bag_.reset();
+#endif
   }
 
  private:
@@ -94,13 +89,13 @@ class BagRecord : public scenario::SessionObserver {
       writing();
     } catch (const std::exception& error) {
       std::cerr << "cdiff: " << error.what() << "; the other results are not affected\n";
+      error_ = error.what();
       bag_.reset();
-      failed_ = true;
     }
   }
   std::unique_ptr<ros::SessionBag> bag_;
 #endif
-  bool failed_ = false;
+  std::string error_;
 };
 
 /// session.mp4 of a session that asks for it.
@@ -113,6 +108,8 @@ class VideoRecord {
     loop.addObserver(*video_);
     tell();
   }
+  /// Removes what there is of it.
+  void discard() { video_.reset(); }
   /// `exit_code` of the session, or that of an error at run time when its video is missing.
   int finish(const report::ResultWriter& writer, int exit_code) {
     if (!video_) return exit_code;
@@ -138,6 +135,15 @@ void printTable(const report::ResultWriter& writer, const RunOutput& output) {
             << report::fileRow("video", output.folder / report::kVideoFile) << std::flush;
 }
 
+void finishResult(report::ResultWriter& writer, double wall_seconds) {
+  try {
+    writer.finish(wall_seconds);
+  } catch (const core::InputError& error) {
+    throw core::Error(error.what());  // no fault of the input: the folder could be written before
+  }
+  if (!writer.failure().empty()) std::cerr << "cdiff: " << writer.failure() << "\n";
+}
+
 /// Runs the session and records it; an exit code.
 int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario::ClosedLoop& loop,
           const std::atomic<bool>& stop, Clock::time_point begin) {
@@ -147,34 +153,38 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
   Progress progress(scenario::longestTime(options.protocol, setup.egoRoute()));
   loop.addObserver(writer);
   if (!output.quiet) loop.addObserver(progress);
+  BagRecord bag(setup, output, loop);
+  VideoRecord video(setup, output.folder, loop);
   try {
-    BagRecord bag(setup, output, loop);
-    VideoRecord video(setup, output.folder, loop);
     loop.run(stop);
-    const bool recorded = bag.finish();
-    writer.finish(secondsSince(begin));
-    const int exit_code = video.finish(writer, writer.exitCode());
-    printTable(writer, output);
-    return recorded || !isJudged(exit_code) ? exit_code : static_cast<int>(kRunTimeError);
-  } catch (const std::exception& error) {
-    // The result folder itself cannot be written (disk full, folder gone): a fault at run time,
-    // whatever its type.
-    std::cerr << "cdiff: " << error.what() << "\n";
-    return kRunTimeError;
+  } catch (const std::exception&) {
+    if (writer.failure().empty()) throw;
+    bag.discard();
+    video.discard();
   }
+  const std::string& bag_error = bag.finish();
+  if (!bag_error.empty()) writer.recordFault({0, "recorder", bag_error});
+  finishResult(writer, secondsSince(begin));
+  const int exit_code = video.finish(writer, writer.exitCode());
+  printTable(writer, output);
+  return !bag_error.empty() && isJudged(exit_code) ? static_cast<int>(kRunTimeError) : exit_code;
 }
 
 }  // namespace
 
 int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
-  const std::atomic<bool>& stop = catchStopSignals();
+  const std::atomic<bool>& stop = core::catchStopSignals();
+  report::requireFreeFolder(output.folder, output.overwrite);
   const scenario::SessionSetup setup(options);
   const Clock::time_point begin = Clock::now();
+  const auto claim = [&] {
+    return report::ResultFolder(output.folder, "cdiff run", output.overwrite);
+  };
   std::unique_ptr<scenario::ClosedLoop> loop;
   try {
     loop = std::make_unique<scenario::ClosedLoop>(setup);
   } catch (const core::SimulatorError& error) {
-    removeEarlierSession(output.folder);
+    const report::ResultFolder folder = claim();
     report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
@@ -182,7 +192,7 @@ int runSession(const scenario::ScenarioOptions& options, const RunOutput& output
     printTable(writer, output);
     return writer.exitCode();
   }
-  removeEarlierSession(output.folder);
+  const report::ResultFolder folder = claim();
   return drive(setup, output, *loop, stop, begin);
 }
 

@@ -13,13 +13,15 @@ namespace cdiff::cli {
 /// Where the results go, and how much is told.
 struct RunOutput {
   std::filesystem::path folder;
-  bool quiet = false;   ///< no progress line, no table
-  bool record = false;  ///< also write session.bag; InputError where built without ROS
+  bool quiet = false;      ///< no progress line, no table
+  bool record = false;     ///< also write session.bag; InputError where built without ROS
+  bool overwrite = false;  ///< what an earlier session left in the folder is removed
 };
 
-/// Runs to the end and answers the exit code. SIGINT and SIGTERM end the session as interrupted.
-/// Throws InputError for a scenario that cannot be set up; a simulator that cannot start or is lost
-/// gives a result folder with status error.
+/// Runs to the end and answers the exit code. SIGINT, SIGTERM and SIGHUP end the session as
+/// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
+/// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
+/// simulator that cannot start or is lost gives a result folder with status error.
 int runSession(const scenario::ScenarioOptions& options, const RunOutput& output);
 
 }  // namespace cdiff::cli

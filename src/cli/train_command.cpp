@@ -12,8 +12,8 @@
 
 #include "commands.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/evaluation/child_process.h"
-#include "stop_signals.h"
 #include "training_page.h"
 
 namespace cdiff::cli {
@@ -36,7 +36,7 @@ fs::path findTrainer() {
 /// Runs to its end; a stop signal to us is one to it, which then leaves a checkpoint.
 int runTrainer(const std::vector<std::string>& arguments) {
   constexpr auto kPeriod = std::chrono::milliseconds(50);
-  const std::atomic<bool>& stop = catchStopSignals();
+  const std::atomic<bool>& stop = core::catchStopSignals();
   evaluation::ChildProcess trainer(findTrainer(), arguments, {});
   bool told = false;
   while (true) {

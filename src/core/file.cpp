@@ -5,17 +5,22 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <openssl/evp.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 
 namespace cdiff::core {
@@ -35,8 +40,12 @@ fs::path libraryFolder() {
 }
 
 [[noreturn]] void failWriting(const fs::path& path, int reason) {
-  throw InputError("cannot write '" + path.string() + "': " + std::strerror(reason) +
+  throw InputError("cannot write '" + path.string() + "': " + writeErrorText(reason) +
                    "; check that the folder exists, is writable and has room");
+}
+
+fs::path temporaryFor(const fs::path& path) {
+  return path.string() + ".tmp." + std::to_string(::getpid());
 }
 
 /// Whether all of it was written and reached the disk; errno says why not.
@@ -48,6 +57,21 @@ bool writeAll(int descriptor, std::string_view content) {
     content.remove_prefix(static_cast<std::size_t>(written));
   }
   return ::fsync(descriptor) == 0 || errno == EINVAL;
+}
+
+constexpr const char* kTemporaryMark = ".tmp.";
+
+template <class Wanted>
+void removeTemporariesIf(const fs::path& folder, const Wanted& wanted) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t mark = name.rfind(kTemporaryMark);
+    if (mark != std::string::npos && wanted(name.substr(mark + std::strlen(kTemporaryMark))))
+      files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) fs::remove(file, ignored);
 }
 
 fs::file_type statusOf(const fs::path& path) {
@@ -104,7 +128,7 @@ std::string readFile(const fs::path& path, const std::string& what) {
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view content) {
-  const fs::path temporary = path.string() + ".tmp." + std::to_string(::getpid());
+  const fs::path temporary = temporaryFor(path);
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor < 0) failWriting(path, errno);
   const bool written = writeAll(descriptor, content);
@@ -116,14 +140,50 @@ void writeFileAtomically(const fs::path& path, std::string_view content) {
   failWriting(path, reason);
 }
 
+ReservedFile::ReservedFile(fs::path path, std::size_t size)
+    : path_(std::move(path)), temporary_(temporaryFor(path_)) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  const auto room = static_cast<off_t>(std::min<rlim_t>(size, limit.rlim_cur));
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) failWriting(path_, errno);
+  const bool taken = room == 0 || ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, room) == 0 ||
+                     errno == EOPNOTSUPP || errno == ENOSYS;
+  if (taken) return;
+  const int reason = errno;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+  failWriting(path_, reason);
+}
+
+ReservedFile::~ReservedFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void ReservedFile::write(std::string_view content) {
+  const bool written = writeAll(descriptor_, content);
+  int reason = written ? 0 : errno;
+  // The room that was not needed is given back.
+  if (written && ::ftruncate(descriptor_, static_cast<off_t>(content.size())) != 0) reason = errno;
+  if (::close(std::exchange(descriptor_, -1)) != 0 && written) reason = errno;
+  if (reason == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) reason = errno;
+  if (reason == 0) return;
+  ::unlink(temporary_.c_str());
+  failWriting(path_, reason);
+}
+
 void removeTemporaries(const fs::path& folder) {
-  std::error_code ignored;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().filename().string().find(".tmp.") != std::string::npos)
-      files.push_back(entry.path());
-  }
-  for (const fs::path& file : files) fs::remove(file, ignored);
+  removeTemporariesIf(folder, [](const std::string&) { return true; });
+}
+
+void removeDeadTemporaries(const fs::path& folder) {
+  removeTemporariesIf(folder, [](const std::string& process) {
+    const bool number = !process.empty() && process.size() < 10 &&
+                        process.find_first_not_of("0123456789") == std::string::npos;
+    return number && ::kill(std::stoi(process), 0) != 0 && errno == ESRCH;
+  });
 }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {

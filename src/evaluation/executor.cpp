@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <deque>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -76,22 +77,31 @@ class Executor {
 
   void enqueue(std::size_t index) {
     records_.push_back(recordOf(plan_[index]));
-    if (options_.resume) {
-      const auto earlier = readRecord(folderOf(index) / "record.json");
-      const bool same = earlier && earlier->scenario_sha256 == plan_[index].scenario_sha256 &&
-                        earlier->complete() &&
-                        fs::is_regular_file(folderOf(index) / "summary.json");
-      if (same) {
-        records_.back() = *earlier;
-        resumed_.push_back(index);
-        return;
-      }
-    }
+    if (options_.resume && staysOrIsCounted(index)) return;
     queue_.push_back(index);
+  }
+
+  /// Whether the result of an earlier batch stands; else the cause to run it again is counted.
+  bool staysOrIsCounted(std::size_t index) {
+    const auto earlier = readRecord(folderOf(index) / "record.json");
+    if (!earlier) return false;
+    std::string cause = causeToRepeat(*earlier, plan_[index]);
+    if (cause.empty() && !fs::is_regular_file(folderOf(index) / "summary.json"))
+      cause = "summary.json missing";
+    if (!cause.empty()) {
+      repeated_[cause].push_back(plan_[index].id);
+      return false;
+    }
+    records_.back() = *earlier;
+    resumed_.push_back(index);
+    return true;
   }
 
   /// Each run that is still to come gets a record that says so, whatever stops the batch later.
   void announceRuns() {
+    for (const auto& [cause, ids] : repeated_) {
+      if (options_.repeated) options_.repeated(cause, ids);
+    }
     for (const std::size_t index : resumed_) {
       if (options_.ended) options_.ended(records_[index], true);
     }
@@ -120,8 +130,9 @@ class Executor {
     fs::remove(folder / "summary.json", ignored);
     core::removeTemporaries(folder);
     core::writeFileAtomically(folder / "scenario.yaml", plan_[index].scenario_text);
-    const std::vector<std::string> words = {"run", (folder / "scenario.yaml").string(), "--quiet",
-                                            "--results", folder.string()};
+    const std::vector<std::string> words = {"run",           (folder / "scenario.yaml").string(),
+                                            "--quiet",       "--results",
+                                            folder.string(), "--overwrite"};
     ++records_[index].attempts;
     Attempt attempt;
     attempt.index = index;
@@ -220,7 +231,8 @@ class Executor {
   const ExecutorOptions& options_;
   const std::atomic<bool>& stop_;
   std::vector<RunRecord> records_;
-  std::vector<std::size_t> resumed_;  ///< runs that were complete already
+  std::vector<std::size_t> resumed_;                          ///< runs that were complete already
+  std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
   std::deque<std::size_t> queue_;
   std::vector<Attempt> active_;
   std::optional<Clock::time_point> interrupted_at_;

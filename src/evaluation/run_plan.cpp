@@ -95,7 +95,7 @@ class Planner {
   }
 
   /// One run per seed. What else a scenario holds is resolved once.
-  std::vector<PlannedRun> resolve(const ScenarioLevel& level) const {
+  std::vector<PlannedRun> resolve(const ScenarioLevel& level) {
     const std::vector<std::string>& seeds = matrix_.seeds;
     try {
       scenario::SessionRequest request = level.request;
@@ -117,7 +117,7 @@ class Planner {
     }
   }
 
-  static PlannedRun runOf(const std::string& label, const scenario::ScenarioOptions& options) {
+  PlannedRun runOf(const std::string& label, const scenario::ScenarioOptions& options) {
     const std::string& profile = options.guidance_profile;
     PlannedRun run;
     run.factors = {{"scenario", label},
@@ -128,6 +128,7 @@ class Planner {
                    {"seed", std::to_string(options.seed)}};
     run.scenario_text = core::dumpOptions(options);
     run.scenario_sha256 = core::sha256(run.scenario_text);
+    run.inputs = hasher_.hashes(options);
     return run;
   }
 
@@ -170,6 +171,7 @@ class Planner {
 
   const MatrixOptions& matrix_;
   std::string source_;
+  InputHasher hasher_;
   std::vector<Combination> combinations_;
   std::vector<Variant> variants_;
   std::vector<PlannedRun> runs_;

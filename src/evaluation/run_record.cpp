@@ -22,6 +22,7 @@ RunRecord fromJson(const Json& json) {
     if (record.factors.count(factor) == 0) record.factors[factor] = "";
   }
   record.scenario_sha256 = json.at("scenario_sha256");
+  if (json.contains("inputs")) record.inputs = json.at("inputs").get<InputHashes>();
   record.status = json.at("status");
   record.cause = json.at("cause");
   record.exit_code = json.at("exit_code");
@@ -40,11 +41,22 @@ bool RunRecord::complete() const {
   return status != "error" && status != "interrupted" && status != "not_run";
 }
 
+std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned) {
+  if (earlier.status == "not_run") return "not run yet";
+  if (!earlier.complete()) return "status " + earlier.status;
+  if (earlier.scenario_sha256 != planned.scenario_sha256) return "scenario changed";
+  if (earlier.inputs.empty() && !planned.inputs.empty())
+    return "recorded by a version that kept no hashes of its inputs";
+  const std::string changed = changedInputs(earlier.inputs, planned.inputs);
+  return changed.empty() ? "" : changed + " changed";
+}
+
 RunRecord recordOf(const PlannedRun& run) {
   RunRecord record;
   record.id = run.id;
   record.factors = run.factors;
   record.scenario_sha256 = run.scenario_sha256;
+  record.inputs = run.inputs;
   return record;
 }
 
@@ -57,6 +69,7 @@ std::string recordJson(const RunRecord& record) {
                      {"id", record.id},
                      {"factors", factors},
                      {"scenario_sha256", record.scenario_sha256},
+                     {"inputs", record.inputs},
                      {"status", record.status},
                      {"cause", record.cause},
                      {"exit_code", record.exit_code},

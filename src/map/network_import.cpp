@@ -34,28 +34,6 @@ std::vector<std::string> shippedNames(const fs::path& folder) {
   return names;
 }
 
-/// The file that the user means: a path, or the name of a shipped network.
-fs::path sourceFile(const std::string& source) {
-  if (source.empty())
-    throw core::InputError("no network was given; a file or a shipped name was expected");
-  if (core::isFile(source)) return source;
-  const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
-                    endsWith(source, ".xodr");
-  if (path && core::isFolder(source)) {
-    throw core::InputError("network '" + source + "' is a folder; a file was expected");
-  }
-  if (path && fs::exists(source))
-    throw core::InputError("network '" + source + "' is no regular file; a file was expected");
-  if (path) throw core::InputError("network file '" + source + "' does not exist");
-  const fs::path folder = core::shareFolder() / "networks";
-  const fs::path file = folder / source / (source + ".net.xml");
-  if (core::isFile(file)) return file;
-  const std::string nearest = core::nearestName(source, shippedNames(folder));
-  throw core::InputError(
-      "network '" + source + "' is neither a file nor shipped in '" + folder.string() + "'" +
-      (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
-}
-
 fs::path cachedFile(const std::string& content) {
   const fs::path folder = core::cacheFolder() / "networks";
   std::error_code error;
@@ -64,6 +42,7 @@ fs::path cachedFile(const std::string& content) {
     throw core::InputError("cannot make the cache folder '" + folder.string() +
                            "': " + error.message());
   }
+  core::removeDeadTemporaries(folder);
   const std::string key = core::sha256(content + "\n" + kImporterVersion);
   return folder / (key + ".net.xml");
 }
@@ -86,7 +65,7 @@ void importOpenDrive(const std::string& content, ImportedNetwork& network) {
   if (fs::exists(network.file)) {
     network.text = core::readFile(network.file, "cached network");
   } else {
-    network.text = convertOpenDrive(network.source, network.file);
+    network.text = convertOpenDrive(network.source);
     core::writeFileAtomically(network.file, network.text);
   }
   network.changes.emplace_back("converted from OpenDRIVE with netconvert");
@@ -115,9 +94,30 @@ void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
 
 }  // namespace
 
+fs::path networkFile(const std::string& source) {
+  if (source.empty())
+    throw core::InputError("no network was given; a file or a shipped name was expected");
+  if (core::isFile(source)) return source;
+  const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
+                    endsWith(source, ".xodr");
+  if (path && core::isFolder(source)) {
+    throw core::InputError("network '" + source + "' is a folder; a file was expected");
+  }
+  if (path && fs::exists(source))
+    throw core::InputError("network '" + source + "' is no regular file; a file was expected");
+  if (path) throw core::InputError("network file '" + source + "' does not exist");
+  const fs::path folder = core::shareFolder() / "networks";
+  const fs::path file = folder / source / (source + ".net.xml");
+  if (core::isFile(file)) return file;
+  const std::string nearest = core::nearestName(source, shippedNames(folder));
+  throw core::InputError(
+      "network '" + source + "' is neither a file nor shipped in '" + folder.string() + "'" +
+      (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
+}
+
 ImportedNetwork importNetwork(const std::string& source) {
   ImportedNetwork network;
-  network.source = sourceFile(source);
+  network.source = networkFile(source);
   const std::string content = core::readFile(network.source, "network");
   network.source_sha256 = core::sha256(content);
   if (isOpenDrive(network.source.string(), content)) {

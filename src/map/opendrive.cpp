@@ -2,10 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "opendrive.h"
 
-#include <unistd.h>
-
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/output_folder.h"
 #include "e2e_cdiff/map/process.h"
 
 namespace cdiff::map {
@@ -35,23 +34,6 @@ std::string laneTypes() {
   return text + "</types>\n";
 }
 
-/// A file that goes away with the object.
-class ScratchFile {
- public:
-  ScratchFile(const fs::path& scratch, const std::string& ending)
-      : path_(scratch.string() + "." + std::to_string(::getpid()) + ending) {}
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  ~ScratchFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 /// netconvert's opening comment holds the date and paths.
 std::string withoutGeneratedComment(std::string text) {
   const std::size_t begin = text.find("<!-- generated on");
@@ -63,20 +45,19 @@ std::string withoutGeneratedComment(std::string text) {
 
 }  // namespace
 
-std::string convertOpenDrive(const fs::path& source, const fs::path& scratch) {
-  const ScratchFile types(scratch, ".typ.xml");
-  const ScratchFile converted(scratch, ".converting.net.xml");
-  core::writeFileAtomically(types.path(), laneTypes());
-  const ProcessResult result =
-      runProcess({"netconvert", "--opendrive-files", source.string(), "--type-files",
-                  types.path().string(), "--output-file", converted.path().string(),
-                  "--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
-                  "--no-turnarounds.except-deadend", "true", "--xml-validation", "never"});
-  if (result.exit_code != 0 || !fs::exists(converted.path())) {
-    throw core::InputError("netconvert could not convert '" + source.string() + "' (exit code " +
-                           std::to_string(result.exit_code) + "): " + result.output);
-  }
-  return withoutGeneratedComment(core::readFile(converted.path(), "converted network"));
+std::string convertOpenDrive(const fs::path& source) {
+  const core::ScratchFolder scratch;
+  const fs::path types = scratch.path() / "types.typ.xml";
+  const fs::path converted = scratch.path() / "converted.net.xml";
+  core::writeFileAtomically(types, laneTypes());
+  const std::string subject = "network '" + source.string() + "'";
+  runNetconvert(
+      {"--opendrive-files", source.string(), "--type-files", types.string(), "--output-file",
+       converted.string(), "--opendrive.curve-resolution", "1", "--opendrive.min-width", "0",
+       "--no-turnarounds.except-deadend", "true", "--xml-validation", "never"},
+      subject);
+  if (!fs::exists(converted)) throw core::InputError(subject + ": netconvert wrote no network");
+  return withoutGeneratedComment(core::readFile(converted, "converted network"));
 }
 
 }  // namespace cdiff::map

@@ -9,9 +9,7 @@
 
 namespace cdiff::map {
 
-/// `scratch` is a path in a writable folder; files that begin with it are made and removed again.
-/// The text holds no date and no paths. Throws InputError that quotes netconvert.
-std::string convertOpenDrive(const std::filesystem::path& source,
-                             const std::filesystem::path& scratch);
+/// The text holds no date and no paths. Throws as runNetconvert does (map/process.h).
+std::string convertOpenDrive(const std::filesystem::path& source);
 
 }  // namespace cdiff::map

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/result_writer.h"
 
+#include <functional>
 #include <optional>
 #include <system_error>
 
@@ -20,6 +21,11 @@ namespace cdiff::report {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What summary and verdict take on the disk from the start [bytes]; some 12,000 and 1,000 are
+/// usual.
+constexpr std::size_t kSummaryRoom = 1 << 16;
+constexpr std::size_t kJunitRoom = 1 << 14;
 
 /// Makes the folder and takes away the files of an earlier session, so that none can be mistaken
 /// for this one's.
@@ -48,7 +54,9 @@ class ResultWriter::Record {
  public:
   Record(const scenario::SessionSetup& setup, const RunFacts& facts, const fs::path& folder)
       : folder_(preparedFolder(folder)),
-        trace_(folder_ / "trace.csv"),
+        summary_(folder_ / "summary.json", kSummaryRoom),
+        junit_(folder_ / "junit.xml", kJunitRoom),
+        trace_(std::make_unique<TraceWriter>(folder_ / "trace.csv")),
         metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
         timeline_(setup.options().simulation_step),
         plans_(setup.options().simulation_step),
@@ -68,7 +76,6 @@ class ResultWriter::Record {
       return;  // the same tick again, ended from outside
     last_tick_ = snapshot.tick;
     result_.simulated_seconds = snapshot.time;
-    trace_.write(snapshot);
     metrics_.observe(snapshot, record.selection);
     timeline_.observe(snapshot);
     if (record.selection != nullptr) cbv_.observe(snapshot, *record.selection);
@@ -77,40 +84,84 @@ class ResultWriter::Record {
     guidance_.observe(record);
     front_views_.observe(snapshot);
     driving_.observe(snapshot);
+    writeTrace(snapshot);
   }
 
   const Verdict& finish(double wall_seconds) {
     if (finished_) return result_.verdict;
     finished_ = true;
     result_.wall_seconds = wall_seconds;
+    attempt([&] {
+      if (trace_) result_.trace_sha256 = trace_->finish();
+    });
     completeResult();
-    core::writeFileAtomically(folder_ / "plans.csv", plansCsv(plans_));
-    core::writeFileAtomically(folder_ / "summary.json", summaryJson(result_));
-    core::writeFileAtomically(folder_ / "junit.xml", junitXml(result_));
-    core::writeFileAtomically(folder_ / "report.html", htmlReport(result_));
+    attempt([&] { core::writeFileAtomically(folder_ / "plans.csv", plansCsv(plans_)); });
+    attempt([&] { core::writeFileAtomically(folder_ / "report.html", htmlReport(result_)); });
+    attempt([&] { junit_.write(junitXml(result_)); });
+    summary_.write(summaryJson(result_));
     return result_.verdict;
+  }
+
+  /// The result lacks something from now on: it is one of a session that broke.
+  void fail(const std::string& text) {
+    if (failure_.empty()) failure_ = text;
+    result_.status = traffic::SessionStatus::kError;
+    result_.faults.push_back({last_tick_.value_or(0), "result folder", text});
+    if (finished_) decide();
+  }
+  const std::string& failure() const { return failure_; }
+
+  /// First, since the last one is why a session ended.
+  void recordFault(const traffic::Fault& fault) {
+    result_.faults.insert(result_.faults.begin(), fault);
   }
 
   const fs::path& folder() const { return folder_; }
   const SessionResult& result() const { return result_; }
 
  private:
+  /// Gives the trace's room back when it cannot be written.
+  void writeTrace(const traffic::TrafficSnapshot& snapshot) {
+    if (!trace_) return;
+    try {
+      trace_->write(snapshot);
+    } catch (const core::InputError& error) {
+      trace_.reset();
+      fail(error.what());
+      throw core::Error(error.what());
+    }
+  }
+
+  void attempt(const std::function<void()>& writing) {
+    try {
+      writing();
+    } catch (const core::InputError& error) {
+      fail(error.what());
+    }
+  }
+
   void completeResult() {
+    if (!failure_.empty()) result_.status = traffic::SessionStatus::kError;
     if (result_.status == traffic::SessionStatus::kRunning) {
       result_.status = traffic::SessionStatus::kError;
       result_.faults.push_back({last_tick_.value_or(0), "session",
                                 "the record ends while the session was still running"});
     }
-    result_.trace_sha256 = trace_.finish();
     result_.measures = metrics_.measures();
     result_.latencies = latencies_.figures();
     result_.late = late_.figures();
+    decide();
+  }
+
+  void decide() {
     result_.verdict =
         judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
   }
 
   fs::path folder_;
-  TraceWriter trace_;
+  core::ReservedFile summary_;
+  core::ReservedFile junit_;
+  std::unique_ptr<TraceWriter> trace_;  ///< null once it could not be written
   metrics::SessionMetrics metrics_;
   Timeline timeline_;
   CbvLog cbv_;
@@ -123,6 +174,7 @@ class ResultWriter::Record {
   LateLog late_;
   SessionResult result_;
   std::optional<std::uint64_t> last_tick_;
+  std::string failure_;
   bool finished_ = false;
 };
 
@@ -136,11 +188,21 @@ void ResultWriter::observe(const scenario::TickRecord& record) { record_->observ
 
 Verdict ResultWriter::finish(double wall_seconds) { return record_->finish(wall_seconds); }
 
+void ResultWriter::recordFault(const traffic::Fault& fault) { record_->recordFault(fault); }
+
+const std::string& ResultWriter::failure() const { return record_->failure(); }
+
 std::string ResultWriter::table() const {
   return sessionTable(record_->result(), record_->folder());
 }
 
-int ResultWriter::exitCode() const { return exitCodeOf(record_->result().verdict.outcome); }
+int ResultWriter::exitCode() const {
+  const SessionResult& result = record_->result();
+  const Outcome outcome = result.verdict.outcome;
+  const bool bad_input = outcome == Outcome::kError && !result.faults.empty() &&
+                         result.faults.back().source == traffic::kInputFault;
+  return bad_input ? 3 : exitCodeOf(outcome);
+}
 
 const SessionResult& ResultWriter::result() const { return record_->result(); }
 

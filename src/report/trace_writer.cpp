@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "e2e_cdiff/core/csv.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
 
 namespace cdiff::report {
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kBufferSize = 1 << 16;  // [bytes]
 
 [[noreturn]] void failWriting(const std::filesystem::path& path) {
-  throw core::InputError("cannot write '" + path.string() + "': " + std::strerror(errno) +
+  throw core::InputError("cannot write '" + path.string() + "': " + core::writeErrorText(errno) +
                          "; check that the folder exists, is writable and has room");
 }
 

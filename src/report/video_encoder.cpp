@@ -3,18 +3,14 @@
 #include "e2e_cdiff/report/video_encoder.h"
 
 #include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -25,11 +21,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "ffmpeg";
 constexpr timeval kLongestPause{30, 0};  // of the program between two bites
-constexpr std::chrono::seconds kLongestEnd{60};
+constexpr double kLongestEnd = 60.0;     // [s]
 
 std::vector<std::string> commandLine(const VideoFormat& format, const fs::path& file) {
   const std::string size = std::to_string(format.width) + "x" + std::to_string(format.height);
-  return {kProgram, "-hide_banner", "-nostdin", "-loglevel", "error", "-y",
+  return {"-hide_banner", "-nostdin", "-loglevel", "error", "-y",
           // What comes in.
           "-f", "rawvideo", "-pixel_format", "bgr24", "-video_size", size, "-framerate",
           std::to_string(format.rate), "-i", "pipe:0",
@@ -41,36 +37,15 @@ std::vector<std::string> commandLine(const VideoFormat& format, const fs::path& 
           file.string()};
 }
 
-/// What the child gets: our socket as its input, nothing of ours besides.
-class SpawnSetup {
- public:
-  SpawnSetup(int input, int messages) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_adddup2(&actions_, input, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions_, messages, STDERR_FILENO);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, 3);
-    posix_spawnattr_init(&attributes_);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    // A group of its own: Ctrl-C ends the session, and the session the video.
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+fs::path findEncoder() {
+  try {
+    return core::findProgram(kProgram, kProgram);
+  } catch (const core::InputError&) {
+    throw core::InputError(
+        "a video needs the program 'ffmpeg', which is not in PATH; install the Debian package "
+        "ffmpeg, or ask for no video");
   }
-  ~SpawnSetup() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnSetup(const SpawnSetup&) = delete;
-  SpawnSetup& operator=(const SpawnSetup&) = delete;
-  int spawn(pid_t& process, char* const* argv) {
-    return posix_spawnp(&process, kProgram, &actions_, &attributes_, argv, environ);
-  }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
+}
 
 /// The end of what was written to a descriptor, in one line.
 std::string lastWords(int descriptor) {
@@ -107,26 +82,23 @@ VideoEncoder::VideoEncoder(fs::path file, const VideoFormat& format)
 VideoEncoder::~VideoEncoder() { stop(); }
 
 void VideoEncoder::start(const VideoFormat& format) {
+  const fs::path program = findEncoder();
   int ends[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw core::SimulatorError("video '" + file_.string() + "': " + std::strerror(errno));
   }
   input_ = ends[0];
   ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
-  std::vector<std::string> words = commandLine(format, temporary_);
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const int error = SpawnSetup(ends[1], messages_).spawn(process_, argv.data());
-  ::close(ends[1]);
-  if (error == 0) return;
-  process_ = 0;
-  if (error == ENOENT) {
-    throw core::InputError(
-        "a video needs the program 'ffmpeg', which is not in PATH; install the Debian package "
-        "ffmpeg, or ask for no video");
+  try {
+    process_ =
+        std::make_unique<core::GuardedProcess>(program, commandLine(format, temporary_),
+                                               core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
+                                               core::ProcessStreams{{}, ends[1], messages_});
+  } catch (...) {
+    ::close(ends[1]);
+    throw;
   }
-  throw core::SimulatorError("cannot start ffmpeg: " + std::string(std::strerror(error)));
+  ::close(ends[1]);
 }
 
 void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
@@ -162,23 +134,13 @@ void VideoEncoder::closeInput() {
 }
 
 int VideoEncoder::wait() {
-  const auto end = std::chrono::steady_clock::now() + kLongestEnd;
-  int status = 0;
-  while (::waitpid(process_, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > end) ::kill(process_, SIGKILL);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  process_ = 0;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (!process_->waitForEnd(kLongestEnd)) process_->kill();
+  return process_->exitCode();
 }
 
 void VideoEncoder::stop() {
   closeInput();
-  if (process_ > 0) {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    process_ = 0;
-  }
+  process_.reset();
   if (messages_ >= 0) ::close(messages_);
   messages_ = -1;
   std::error_code ignored;
@@ -187,7 +149,7 @@ void VideoEncoder::stop() {
 
 void VideoEncoder::fail(const std::string& text) {
   closeInput();
-  if (process_ > 0) wait();
+  if (process_) wait();
   const std::string words = messages_ >= 0 ? lastWords(messages_) : std::string();
   stop();
   throw core::SimulatorError("video '" + file_.string() + "' was not written: ffmpeg: " + text +

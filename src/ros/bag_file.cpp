@@ -3,8 +3,10 @@
 #include "e2e_cdiff/ros/bag_file.h"
 
 #include <algorithm>
+#include <cerrno>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/ros/conversions.h"
 #include "e2e_cdiff/ros/display.h"
 #include "e2e_cdiff/ros/image_conversions.h"
@@ -43,15 +45,22 @@ BagFile::~BagFile() {
     // On a full disk. Its destructor would try once more and end the program, so it gets none.
     static_cast<void>(bag_.release());
   }
+  std::error_code ignored;
+  if (failed_) fs::remove(file_.string() + ".active", ignored);
 }
 
+void BagFile::discard() { failed_ = true; }
+
 /// Errors of the bag name its file.
-void BagFile::guard(const std::function<void()>& writing) const {
+void BagFile::guard(const std::function<void()>& writing) {
+  errno = 0;
   try {
     writing();
   } catch (const std::exception& error) {
+    const std::string reason = errno == 0 ? "" : " (" + core::writeErrorText(errno) + ")";
+    failed_ = true;
     throw core::InputError("cannot write the bag '" + file_.string() + "': " + error.what() +
-                           "; check that the folder exists, is writable and has room");
+                           reason + "; check that the folder exists, is writable and has room");
   }
 }
 

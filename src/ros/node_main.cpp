@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "e2e_cdiff/core/failure.h"
+#include "e2e_cdiff/core/program.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {
@@ -37,6 +38,7 @@ bool masterAnswers() {
 
 int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
             const std::function<int()>& without_master) {
+  core::prepareProgram();
   StopSignal stop;
   ::ros::init(argc, argv, name, ::ros::init_options::NoSigintHandler);
   if (!::ros::master::check()) {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/report/result_folder.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/report/session_table.h"
 #include "e2e_cdiff/report/session_video.h"
@@ -34,13 +34,18 @@ void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot
   throw core::InputError(text);
 }
 
-/// Null where none is asked for; one of an earlier replay then goes.
-std::unique_ptr<report::SessionVideo> videoOf(const scenario::SessionSetup& setup,
-                                              const std::filesystem::path& results) {
-  if (setup.options().video) return std::make_unique<report::SessionVideo>(setup, results);
-  std::error_code ignored;
-  std::filesystem::remove(results / report::kVideoFile, ignored);
-  return nullptr;
+/// Shows every tick to the result and to the video, which goes when the disk is full.
+void writeReplay(RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& first,
+                 report::ResultWriter& writer, std::unique_ptr<report::SessionVideo>& video) {
+  std::vector<scenario::SessionObserver*> observers = {&writer};
+  if (video) observers.push_back(video.get());
+  try {
+    showTick(session, first, observers);
+    showTicks(session, observers);
+  } catch (const std::exception& error) {
+    if (writer.failure().empty()) throw core::Error(error.what());
+    video.reset();
+  }
 }
 
 }  // namespace
@@ -65,26 +70,20 @@ report::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministi
   return facts;
 }
 
-bool holdsRecording(const std::filesystem::path& results) {
-  const std::filesystem::path file = results / "session.yaml";
-  if (!std::filesystem::is_regular_file(file)) return false;
-  const std::string text = core::readFile(file, "session");
-  for (const char* by : {kReplayCommand, kReplayLaunch}) {
-    if (text.find(std::string("deployment: \"") + by + "\"") != std::string::npos) return false;
+void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem::path& results,
+                         bool overwrite) {
+  std::error_code none;
+  if (overwrite && std::filesystem::equivalent(bag.parent_path(), results, none)) {
+    throw core::InputError("'" + results.string() +
+                           "' holds the bag that is replayed; give another folder");
   }
-  return true;
+  report::requireFreeFolder(results, overwrite);
 }
 
-void requireNoRecording(const std::filesystem::path& results) {
-  if (!holdsRecording(results)) return;
-  throw core::InputError("'" + results.string() +
-                         "' holds the result of a session that was driven (session.yaml), which a "
-                         "replay would overwrite; give another --results");
-}
-
-ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results) {
+ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results,
+                       bool overwrite) {
   const Clock::time_point begin = Clock::now();
-  requireNoRecording(results);
+  requireReplayFolder(std::filesystem::absolute(bag), results, overwrite);
   RecordedSession session(bag);
   const auto first = session.next();
   if (!first) refuseEmpty(bag, session);
@@ -92,23 +91,23 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   info.deployment = replayDeployment(kReplayCommand, session.info());
   info.simulator_version = session.info().simulator_version;
   const bool deterministic = session.setup().options().real_time_factor == 0.0;
+  const report::ResultFolder folder(results, kReplayCommand, overwrite);
   report::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
-  const auto video = videoOf(session.setup(), results);
-  std::vector<scenario::SessionObserver*> observers = {&writer};
-  if (video) observers.push_back(video.get());
+  std::unique_ptr<report::SessionVideo> video;
+  if (session.setup().options().video)
+    video = std::make_unique<report::SessionVideo>(session.setup(), results);
+  writeReplay(session, *first, writer, video);
   try {
-    showTick(session, *first, observers);
-    showTicks(session, observers);
     writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
-    if (video) video->finish(writer.result());
-  } catch (const std::exception& error) {  // of the disk, whatever its type
-    throw core::Error(error.what());
+  } catch (const core::InputError& error) {
+    throw core::Error(error.what());  // of the disk
   }
+  if (video) video->finish(writer.result());
   const std::string video_error = video ? video->error() : "";
   const bool whole = session.findings().empty() && video_error.empty();
   return {whole ? writer.exitCode() : 2,
           writer.table() + report::fileRow("video", results / report::kVideoFile),
-          session.findings(), video_error};
+          session.findings(), video_error, writer.failure()};
 }
 
 }  // namespace cdiff::ros

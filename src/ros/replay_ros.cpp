@@ -42,28 +42,17 @@ double rateOf(const Parameters& parameters) {
 }
 
 fs::path bagOf(const Parameters& parameters) {
-  parameters.requireKnown({"bag", "results", "rate", "folder"});
+  parameters.requireKnown({"bag", "results", "rate", "folder", "overwrite"});
   if (parameters.text("bag").empty())
     throw core::InputError("parameter ~bag is missing: the bag to replay (bag:=FILE)");
   const fs::path folder = parameters.text("folder");
   return (folder / parameters.text("bag")).lexically_normal();
 }
 
-/// The folder given, made if need be; else one of its own. What lies in it stays, but for an
-/// earlier exit code.
-fs::path resultFolder(const Parameters& parameters, const scenario::ScenarioOptions& options) {
-  if (parameters.text("results").empty()) return makeResultFolder("", options);
-  const fs::path folder =
-      fs::absolute(fs::path(parameters.text("folder")) / parameters.text("results"))
-          .lexically_normal();
-  requireNoRecording(folder);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw core::InputError("cannot make the result folder '" + folder.string() +
-                           "': " + error.message());
-  fs::remove(folder / "exit_code", error);
-  return folder;
+/// The folder given, else one of its own.
+fs::path folderOf(const Parameters& parameters, const scenario::ScenarioOptions& options) {
+  const std::string given = parameters.text("results");
+  return resultFolder(given.empty() ? "" : fs::path(parameters.text("folder")) / given, options);
 }
 
 /// Who takes part in a replay: the metrics node works, and listens to what the others said.
@@ -85,7 +74,10 @@ ReplayRos::ReplayRos(const Parameters& parameters, StopSignal& stop)
       book_(std::vector<std::string>{kMetricsNode}),
       heartbeat_(node_, kHeartbeatTimeout),
       display_(node_) {
-  results_ = resultFolder(parameters, session_.setup().options());
+  results_ = folderOf(parameters, session_.setup().options());
+  const bool overwrite = parameters.flag("overwrite", false);
+  requireReplayFolder(bag_, results_, overwrite);
+  folder_ = std::make_unique<report::ResultFolder>(results_, kReplayLaunch, overwrite);
   if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().options().camera);
 }
 
@@ -275,12 +267,8 @@ int runReplay(StopSignal& stop) {
     requireKnownLaunchArguments();
     return ReplayRos(parameters, stop).run();
   } catch (const core::InputError&) {
-    constexpr int kBadInput = 3;
-    const fs::path folder = fs::path(parameters.text("folder")) / parameters.text("results");
-    if (parameters.text("results").empty() || holdsRecording(folder)) throw;
-    std::error_code ignored;
-    fs::create_directories(folder, ignored);
-    writeExitCode(folder, kBadInput);
+    const std::string given = parameters.text("results");
+    writeRefusal(given.empty() ? fs::path() : fs::path(parameters.text("folder")) / given);
     throw;
   }
 }

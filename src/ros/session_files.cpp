@@ -11,7 +11,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/session_video.h"
 #include "e2e_cdiff/ros/launched_nodes.h"
 
 namespace cdiff::ros {
@@ -35,10 +34,10 @@ fs::path ownFolder(const scenario::ScenarioOptions& options) {
          (core::fileName(options.name) + "_seed" + std::to_string(options.seed) + "_" + timeText());
 }
 
-/// Whether a file exit_code is there that is younger than the launch of this session.
-bool hasResult(const fs::path& folder) {
+/// Whether a file is there that is younger than the launch of this session.
+bool writtenByThisLaunch(const fs::path& path) {
   struct stat file {};
-  if (::stat((folder / "exit_code").c_str(), &file) != 0) return false;
+  if (::stat(path.c_str(), &file) != 0) return false;
   const double written =
       static_cast<double>(file.st_mtim.tv_sec) + 1e-9 * static_cast<double>(file.st_mtim.tv_nsec);
   return written >= launchTime().value_or(0.0);
@@ -68,6 +67,10 @@ int writeUnstarted(const scenario::ScenarioOptions& options, const fs::path& fol
 
 }  // namespace
 
+fs::path resultFolder(const std::string& given, const scenario::ScenarioOptions& options) {
+  return fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
+}
+
 void enterFolder(const std::string& folder) {
   std::error_code error;
   if (!folder.empty()) fs::current_path(folder, error);
@@ -77,36 +80,43 @@ void enterFolder(const std::string& folder) {
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault) {
   fs::path folder;
-  int exit_code = 3;
   try {
     enterFolder(parameters.text("folder"));
     folder = askedFolder(parameters);
-    if (!folder.empty() && hasResult(folder)) return 2;
+    if (!folder.empty() && writtenByThisLaunch(folder / "exit_code")) return 2;
     const auto options = scenario::resolveRequest(sessionRequest(parameters));
-    folder = makeResultFolder(parameters.text("results"), options);
-    exit_code = writeUnstarted(options, folder, status, fault);
+    folder = resultFolder(parameters.text("results"), options);
+    const bool overwrite =
+        parameters.flag("overwrite", false) || writtenByThisLaunch(folder / "session.yaml");
+    const report::ResultFolder claimed(folder, kDeployment, overwrite);
+    const int exit_code = writeUnstarted(options, folder, status, fault);
+    writeExitCode(folder, exit_code);
+    return exit_code;
   } catch (const core::InputError& error) {
     std::cerr << error.what() << std::endl;
+    writeRefusal(folder);
+    return 3;
   }
-  if (!folder.empty()) writeExitCode(folder, exit_code);
-  return exit_code;
-}
-
-fs::path makeResultFolder(const std::string& given, const scenario::ScenarioOptions& options) {
-  const fs::path folder =
-      fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw core::InputError("cannot make the result folder '" + folder.string() +
-                           "': " + error.message());
-  for (const char* name : {"session.bag", "session.bag.active", "exit_code", report::kVideoFile})
-    fs::remove(folder / name, error);
-  return folder;
 }
 
 void writeExitCode(const fs::path& folder, int exit_code) {
-  core::writeFileAtomically(folder / "exit_code", std::to_string(exit_code) + "\n");
+  const std::string text = std::to_string(exit_code) + "\n";
+  const char* also = std::getenv(kExitCodeVariable);
+  if (also != nullptr && *also != '\0') core::writeFileAtomically(also, text);
+  if (!folder.empty()) core::writeFileAtomically(folder / "exit_code", text);
+}
+
+void writeRefusal(const fs::path& folder) {
+  constexpr int kBadInput = 3;
+  writeExitCode({}, kBadInput);
+  if (folder.empty()) return;
+  try {
+    report::requireFreeFolder(folder, false);
+    const core::FolderLock lock(folder, kDeployment);
+    writeExitCode(folder, kBadInput);
+  } catch (const core::InputError&) {
+    // Another session's folder, or none can be made: what is wrong is printed in any case.
+  }
 }
 
 ReserveResult::ReserveResult(const scenario::SessionSetup& setup, const report::RunFacts& facts,
@@ -121,14 +131,18 @@ ReserveResult::~ReserveResult() {
   fs::remove_all(folder_, ignored);
 }
 
+void ReserveResult::observe(const scenario::TickRecord& record) {
+  try {
+    writer_->observe(record);
+  } catch (const core::Error&) {
+    // The writer has noted it, and the result will say so.
+  }
+}
+
 void ReserveResult::adopt(double wall_seconds) {
   if (fs::exists(results_ / "exit_code")) return;
   writer_->finish(wall_seconds);
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(results_, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.find(".tmp.") != std::string::npos) fs::remove(entry.path(), ignored);
-  }
+  core::removeTemporaries(results_);
   for (const auto& entry : fs::directory_iterator(folder_)) {
     fs::rename(entry.path(), results_ / entry.path().filename());
   }

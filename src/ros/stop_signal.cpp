@@ -6,15 +6,15 @@
 #include <signal.h>
 #include <time.h>
 
+#include "e2e_cdiff/core/program.h"
+
 namespace cdiff::ros {
 namespace {
 
 sigset_t stopSignals() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGHUP);
+  for (const int signal : core::stopSignals()) sigaddset(&signals, signal);
   return signals;
 }
 

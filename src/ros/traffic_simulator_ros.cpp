@@ -21,7 +21,8 @@ using traffic::SessionStatus;
 std::vector<std::string> knownParameters() {
   return {"scenario",      "bench2drive",    "route",   "network", "mode",   "ego_planner",
           "cbv_planner",   "seed",           "set",     "record",  "folder", "participants",
-          "start_timeout", "answer_timeout", "results", "camera",  "video",  "heartbeat_timeout"};
+          "start_timeout", "answer_timeout", "results", "camera",  "video",  "overwrite",
+          "heartbeat_timeout"};
 }
 
 }  // namespace
@@ -38,8 +39,11 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
              parameters.positive("answer_timeout", 30.0)};
   enterFolder(parameters.text("folder"));
   const scenario::ScenarioOptions options = scenario::resolveRequest(sessionRequest(parameters));
+  results_ = resultFolder(parameters.text("results"), options);
+  const bool overwrite = parameters.flag("overwrite", false);
+  report::requireFreeFolder(results_, overwrite);
   setup_ = std::make_unique<scenario::SessionSetup>(options);
-  results_ = makeResultFolder(parameters.text("results"), options);
+  folder_ = std::make_unique<report::ResultFolder>(results_, kDeployment, overwrite);
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
@@ -196,12 +200,7 @@ int runTrafficSimulator(StopSignal& stop) {
     requireKnownLaunchArguments();
     return TrafficSimulatorRos(parameters, stop).run();
   } catch (const core::InputError&) {
-    constexpr int kBadInput = 3;
-    const fs::path folder = parameters.text("results");
-    if (folder.empty()) throw;
-    std::error_code ignored;
-    fs::create_directories(folder, ignored);
-    writeExitCode(folder, kBadInput);
+    writeRefusal(parameters.text("results"));
     throw;
   }
 }

@@ -70,6 +70,21 @@ void checkStatuses(const std::vector<std::string>& statuses) {
   }
 }
 
+/// SUMO reads "nan" and "inf" as numbers and breaks down over them when the session runs.
+void requireFinite(const pugi::xml_node& element, const std::string& file) {
+  for (const pugi::xml_attribute& attribute : element.attributes()) {
+    std::string value = attribute.value();
+    std::transform(value.begin(), value.end(), value.begin(),
+                   [](unsigned char letter) { return std::tolower(letter); });
+    if (!value.empty() && (value.front() == '-' || value.front() == '+')) value.erase(0, 1);
+    if (value != "nan" && value != "inf" && value != "infinity") continue;
+    throw InputError("demand file '" + file + "': <" + element.name() + " id=\"" +
+                     element.attribute("id").value() + "\">: attribute '" + attribute.name() +
+                     "' is '" + attribute.value() + "'; expected a finite number");
+  }
+  for (const pugi::xml_node& child : element.children()) requireFinite(child, file);
+}
+
 /// What SUMO would refuse only when the session runs.
 void checkDemandFile(const std::string& file) {
   const std::string text = core::readFile(file, "demand file");
@@ -81,6 +96,7 @@ void checkDemandFile(const std::string& file) {
   }
   const pugi::xml_node routes = document.child("routes");
   if (!routes) throw InputError("demand file '" + file + "': no <routes> element");
+  requireFinite(routes, file);
   for (const pugi::xml_node& element : routes.children()) {
     if (std::string(element.attribute("id").value()) != kEgoId) continue;
     throw InputError("demand file '" + file + "': <" + element.name() +

@@ -42,6 +42,7 @@ simulation::SumoSession sumoSession(const SessionSetup& setup) {
   const ScenarioOptions& options = setup.options();
   simulation::SumoSession session;
   session.network_file = setup.import().file;
+  session.network_source = setup.import().source;
   if (options.demand != "generated" && options.demand != "none")
     session.demand_file = options.demand;
   session.begin_time = options.begin_time;
@@ -230,6 +231,8 @@ void World::advance(const cbv::CbvSelection* selection,
     if (snapshot_.tick % ticks_per_second == 0) keepDensity(false);
     stepSimulator();
     takeSnapshot();
+  } catch (const core::InputError& error) {
+    end(SessionStatus::kError, {snapshot_.tick, traffic::kInputFault, error.what()});
   } catch (const core::Error& error) {
     end(SessionStatus::kError, {snapshot_.tick, "simulator", error.what()});
   }

@@ -43,6 +43,7 @@ SumoLink::SumoLink(const SumoCommand& command, double call_timeout)
       label_("sumo_" + std::to_string(sumo_.process().id()) + "_" + std::to_string(sumo_.port())) {
   ignoreBrokenPipes();
   connect();
+  loaded_ = true;
   limit_ = call_timeout;
 }
 
@@ -77,13 +78,15 @@ bool SumoLink::attempt(const std::function<void()>& call) {
 }
 
 std::string SumoLink::lossText(const std::string& what, const std::string& reason) {
-  GuardedProcess& process = sumo_.process();
-  constexpr double kEndWait = 0.3;  // [s] the socket closes a moment before the process is gone
-  process.waitForEnd(kEndWait);
+  core::GuardedProcess& process = sumo_.process();
+  // The socket closes a moment before the process is gone, a longer one where it crashes.
+  process.waitForEnd(loaded_ ? 0.3 : 3.0);
   if (process.deadlineMissed()) {
     return "SUMO did not answer for " + core::formatNumber(limit_) + " s (" + what +
            ") and was ended";
   }
+  const std::string refusal = sumo_.refusal();
+  if (!refusal.empty() && (!loaded_ || process.endSignal() == 0)) throw SumoRefusal(refusal);
   const std::string end = process.endText();
   process.kill();
   return "SUMO was lost (" + what + "; " + end + "; " + reason + "): " + sumo_.lastWords();

@@ -4,6 +4,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -25,19 +26,6 @@ namespace {
 
 constexpr int kPortAttempts = 5;
 constexpr std::chrono::milliseconds kListenPeriod{5};
-
-bool isProgram(const fs::path& file) {
-  std::error_code unreadable;  // as folders of PATH may be
-  return fs::is_regular_file(file, unreadable) && ::access(file.c_str(), X_OK) == 0;
-}
-
-/// Our environment, with SUMO_HOME added where it is unset.
-std::vector<std::string> sumoEnvironment() {
-  std::vector<std::string> variables;
-  for (char** entry = environ; *entry != nullptr; ++entry) variables.emplace_back(*entry);
-  if (std::getenv("SUMO_HOME") == nullptr) variables.emplace_back("SUMO_HOME=/usr/share/sumo");
-  return variables;
-}
 
 /// Inode of the socket that listens on `port` according to one of the kernel's tables; empty when
 /// there is none.
@@ -66,6 +54,21 @@ bool holdsSocket(int process_id, const std::string& inode) {
   return false;
 }
 
+/// What follows `mark` on the first line that holds it, with the lines that continue it (indented,
+/// or after a semicolon); empty when no line does.
+std::string sentenceAfter(const std::string& mark, const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::size_t at = line.find(mark);
+    if (at == std::string::npos) continue;
+    std::string sentence = line.substr(at + mark.size());
+    while (std::getline(file, line) && !line.empty() && line.front() == ' ') sentence += line;
+    return sentence;
+  }
+  return "";
+}
+
 /// The last lines of a text file in one line; empty when there are none.
 std::string lastLines(const fs::path& path) {
   constexpr std::size_t kLines = 4;
@@ -79,18 +82,6 @@ std::string lastLines(const fs::path& path) {
 }
 
 }  // namespace
-
-fs::path findProgram(const std::string& name) {
-  if (name.find('/') != std::string::npos && isProgram(name)) return name;
-  if (name.find('/') == std::string::npos && !name.empty()) {
-    const char* path = std::getenv("PATH");
-    for (const std::string& folder : core::splitText(path != nullptr ? path : "", ':')) {
-      if (isProgram(fs::path(folder) / name)) return fs::path(folder) / name;
-    }
-  }
-  throw core::InputError("SUMO's program '" + name +
-                         "' was not found; install the package sumo or name the program's file");
-}
 
 int freePort() {
   const int handle = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -122,28 +113,20 @@ bool listensOn(int process_id, int port) {
   return false;
 }
 
-LogFolder::LogFolder(const fs::path& wanted) : path_(wanted), temporary_(wanted.empty()) {
-  if (!temporary_) {
-    std::error_code error;
-    fs::create_directories(path_, error);
-    if (error)
-      throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
+LogFolder::LogFolder(const fs::path& wanted) : path_(wanted) {
+  if (wanted.empty()) {
+    scratch_ = std::make_unique<core::ScratchFolder>();
+    path_ = scratch_->path();
     return;
   }
-  std::string name = (core::temporaryFolder() / "e2e_cdiff_sumo_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw core::InputError("no temporary folder could be made from '" + name + "' for SUMO's log");
-  }
-  path_ = name;
-}
-
-LogFolder::~LogFolder() {
-  std::error_code ignored;
-  if (temporary_) fs::remove_all(path_, ignored);
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error)
+    throw core::InputError("folder for SUMO's log '" + path_.string() + "': " + error.message());
 }
 
 SumoProcess::SumoProcess(const SumoCommand& command) : logs_(command.log_folder) {
-  const fs::path program = findProgram(command.binary);
+  const fs::path program = core::findProgram(command.binary, "sumo");
   for (int attempt = 0; attempt < kPortAttempts; ++attempt) {
     if (tryStart(command, program) == Start::kListening) return;
   }
@@ -162,15 +145,18 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
                                         "--num-clients", "1",
                                         "--error-log",   logs_.errorLog().string()};
   arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
-  process_ =
-      std::make_unique<GuardedProcess>(program, arguments, sumoEnvironment(), logs_.output());
+  process_ = std::make_unique<core::GuardedProcess>(
+      program, arguments, core::environmentWith("SUMO_HOME", "/usr/share/sumo"),
+      core::ProcessStreams{logs_.output()});
   const auto limit =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(command.start_timeout);
   while (!listensOn(process_->id(), port_)) {
     if (process_->ended()) {
       const std::string words = lastWords();
       if (words.find("already in use") != std::string::npos) return Start::kPortTaken;
-      throw core::SimulatorError("SUMO did not start (" + process_->endText() + "): " + words);
+      const std::string text = "SUMO did not start (" + process_->endText() + "): " + words;
+      if (!refusal().empty()) throw SumoRefusal(refusal());
+      throw core::SimulatorError(text);
     }
     if (std::chrono::steady_clock::now() > limit) {
       throw core::SimulatorError("SUMO did not listen within " +
@@ -186,6 +172,18 @@ std::string SumoProcess::lastWords() const {
   if (!errors.empty()) return errors;
   const std::string output = lastLines(logs_.output());
   return output.empty() ? "its log is empty" : output;
+}
+
+std::string SumoProcess::refusal() const {
+  if (!process_->ended()) return "";
+  const std::string error = sentenceAfter("Error: ", logs_.errorLog());
+  const int signal = process_->endSignal();
+  if (signal == 0) return error;
+  if (signal != SIGABRT && signal != SIGSEGV && signal != SIGFPE && signal != SIGBUS) return "";
+  const std::string assertion = sentenceAfter("Assertion ", logs_.output());
+  std::string text = "it crashed, " + process_->endText();
+  if (!error.empty()) text += ": " + error;
+  return text + (assertion.empty() ? "" : ": assertion " + assertion);
 }
 
 }  // namespace cdiff::simulation

@@ -13,58 +13,11 @@
 #include "e2e_cdiff/simulation/driven_fleet.h"
 #include "e2e_cdiff/simulation/right_of_way.h"
 #include "e2e_cdiff/simulation/traffic_observer.h"
+#include "sumo_input.h"
 
 namespace cdiff::simulation {
 
 namespace {
-
-void requireFile(const std::filesystem::path& file, const char* what) {
-  if (std::filesystem::is_regular_file(file)) return;
-  throw core::InputError(std::string(what) + " '" + file.string() + "' is not a file");
-}
-
-/// SUMO's seed is a 32-bit signed number.
-std::string sumoSeed(std::uint64_t seed) { return std::to_string(seed % 2147483647ULL); }
-
-SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
-  requireFile(session.network_file, "the network for SUMO");
-  if (!session.demand_file.empty()) requireFile(session.demand_file, "the demand for SUMO");
-  SumoCommand command;
-  command.binary = options.binary;
-  command.log_folder = session.log_folder;
-  command.start_timeout = options.start_timeout;
-  command.arguments = {"--net-file",
-                       session.network_file.string(),
-                       "--begin",
-                       core::formatNumber(session.begin_time),
-                       "--step-length",
-                       core::formatNumber(session.simulation_step),
-                       "--seed",
-                       sumoSeed(session.seed),
-                       "--xml-validation",
-                       "never",
-                       "--xml-validation.net",
-                       "never",
-                       "--xml-validation.routes",
-                       "never",
-                       "--no-step-log",
-                       "true",
-                       "--no-warnings",
-                       "true",
-                       "--duration-log.disable",
-                       "true",
-                       "--collision.action",
-                       "none",
-                       "--time-to-teleport",
-                       "-1",
-                       "--lanechange.duration",
-                       "3"};
-  if (!session.demand_file.empty()) {
-    command.arguments.insert(command.arguments.end(),
-                             {"--route-files", session.demand_file.string()});
-  }
-  return command;
-}
 
 // Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest
 // deceleration, 8 right of way, 16 red lights.
@@ -91,9 +44,11 @@ class SumoSimulator::Connection {
  public:
   Connection(const SumoOptions& options, const SumoSession& session,
              const map::RoadNetwork& network)
-      : step_(session.simulation_step),
+      : session_(session),
+        step_(session.simulation_step),
         graph_(network),
-        link_(commandFor(options, session), options.step_timeout),
+        started_(startSumo(options, session)),
+        link_(*started_),
         fleet_(link_, graph_, options.match_threshold, session.simulation_step) {
     link_.guarded("start", [&] { observer_.start(session.lights_green); });
     if (session.lights_green) right_of_way_.emplace(network, observer_.signals());
@@ -138,15 +93,13 @@ class SumoSimulator::Connection {
   }
 
   void step(const std::vector<DrivenVehicle>& driven) {
-    for (const DrivenVehicle& vehicle : driven) bringBack(vehicle);
-    link_.guarded("step", [&] {
-      for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle);
-      libtraci::Simulation::step();
-      observer_.read();
-      fleet_.report(observer_.correctable());
-      dropWaiting();
-      giveWay();
-    });
+    try {
+      for (const DrivenVehicle& vehicle : driven) bringBack(vehicle);
+      link_.guarded("step", [&] { guardedStep(driven); });
+    } catch (const SumoRefusal& refusal) {
+      if (namesDemand(refusal.what(), session_)) refuseDemand(session_, refusal.what());
+      throw;
+    }
     fresh_.clear();
   }
 
@@ -167,6 +120,15 @@ class SumoSimulator::Connection {
   }
 
  private:
+  void guardedStep(const std::vector<DrivenVehicle>& driven) {
+    for (const DrivenVehicle& vehicle : driven) fleet_.move(vehicle);
+    libtraci::Simulation::step();
+    observer_.read();
+    fleet_.report(observer_.correctable());
+    dropWaiting();
+    giveWay();
+  }
+
   /// SUMO takes a moved vehicle out when it believes that it has arrived; it
   /// goes on where we say.
   void bringBack(const DrivenVehicle& vehicle) {
@@ -229,9 +191,11 @@ class SumoSimulator::Connection {
     return id;
   }
 
+  SumoSession session_;
   double step_;
   EdgeGraph graph_;
-  SumoLink link_;
+  std::unique_ptr<SumoLink> started_;
+  SumoLink& link_;
   TrafficObserver observer_;
   DrivenFleet fleet_;
   std::optional<RightOfWay> right_of_way_;  ///< when all lights are green

@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/map/process.h"
 
@@ -39,16 +38,12 @@ std::string buildNetwork(const RoadPlan& plan, const fs::path& folder) {
   const std::string base = (folder / plan.name).string();
   const fs::path raw = base + ".raw.net.xml";
   std::vector<std::string> command = {
-      "netconvert", "-c", (core::shareFolder() / "networks" / "netconvert.netccfg").string()};
+      "-c", (core::shareFolder() / "networks" / "netconvert.netccfg").string()};
   addSource(base + ".nod.xml", "--node-files", nodesXml(plan), command);
   addSource(base + ".edg.xml", "--edge-files", edgesXml(plan), command);
   addSource(base + ".con.xml", "--connection-files", connectionsXml(plan), command);
   command.insert(command.end(), {"--output-file", raw.string()});
-  const map::ProcessResult result = map::runProcess(command);
-  if (result.exit_code != 0) {
-    throw core::InputError("network '" + plan.name + "': netconvert ended with exit code " +
-                           std::to_string(result.exit_code) + ": " + result.output);
-  }
+  map::runNetconvert(command, "network '" + plan.name + "'");
   const std::string text = withoutComment(core::readFile(raw, "network"));
   core::writeFileAtomically(base + ".net.xml", text);
   fs::remove(raw);

@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/suite/suite_generator.h"
 
+#include <memory>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/output_folder.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/suite/network_build.h"
 #include "suite_specs.h"
@@ -120,14 +122,25 @@ void requireEmpty(const fs::path& folder) {
                    "' is there already; give --results a folder that is new or empty");
 }
 
+/// What an earlier run that was killed left, but for our lock.
+void removeContent(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() != core::FolderLock::kFile) paths.push_back(entry.path());
+  }
+  for (const fs::path& path : paths) fs::remove_all(path);
+}
+
 }  // namespace
 
 Suite generateSuite(const std::string& kind, std::int64_t seed, const fs::path& folder) {
   const fs::path target = fs::absolute(folder).lexically_normal();
   requireEmpty(target);
   const fs::path work = target.string() + ".part";
-  fs::remove_all(work);
+  auto lock = std::make_unique<core::FolderLock>(work, "cdiff suite");
+  removeContent(work);
   Suite suite = Generator(kind, seed, work).generate();
+  lock.reset();
   fs::remove(target);
   fs::rename(work, target);
   suite.folder = target;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <iostream>
 
 #include "e2e_cdiff/core/failure.h"
+#include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/training/trainer.h"
 
 namespace {
@@ -13,11 +12,6 @@ namespace {
 enum ExitCode : int { kPassed = 0, kBadInput = 3 };
 
 constexpr std::size_t kNameColumn = 40;  // of --help, wide enough for names and defaults
-
-// A signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-void requestStop(int) { stop_requested = true; }
 
 using cdiff::training::TrainingOptions;
 
@@ -68,6 +62,7 @@ void addLearningOptions(CLI::App& program, TrainingOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  cdiff::core::prepareProgram();
   CLI::App program{"cdiff_train: train the diffusion planner on collected shards"};
   TrainingOptions options;
   program.option_defaults()->always_capture_default();
@@ -76,9 +71,7 @@ int main(int argc, char** argv) {
   addLearningOptions(program, options);
   try {
     program.parse(argc, argv);
-    std::signal(SIGINT, requestStop);
-    std::signal(SIGTERM, requestStop);
-    cdiff::training::train(options, stop_requested, std::cout);
+    cdiff::training::train(options, cdiff::core::catchStopSignals(), std::cout);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kPassed : kBadInput;
   } catch (const std::exception& error) {

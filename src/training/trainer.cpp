@@ -13,6 +13,8 @@
 #include <optional>
 #include <ostream>
 
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/output_folder.h"
 #include "e2e_cdiff/diffusion/model.h"
 #include "export.h"
 #include "feature_cache.h"
@@ -215,9 +217,8 @@ class Trainer {
 void train(const TrainingOptions& options, const std::atomic<bool>& stop, std::ostream& log) {
   options.validate();
   at::set_num_threads(static_cast<int>(options.threads));
-  std::error_code error;
-  fs::create_directories(options.output, error);
-  if (error) throw InputError("output folder '" + options.output + "': " + error.message());
+  const core::FolderLock lock(options.output, "cdiff train");
+  core::removeTemporaries(options.output);
   const Dataset dataset(options.data, options.validation_share);
   log << "data: " << dataset.training().size() << " training samples, "
       << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"

@@ -104,7 +104,7 @@ TEST_F(ReplayCommand, SaysWhatIsWrongAndLeavesNothingHalfWritten) {
   EXPECT_FALSE(fs::exists(replayed()));
   // A folder that cannot be: its parent is a file.
   EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", bag().string() + "/in"}), 3);
-  EXPECT_NE(output().find("cannot make the result folder"), std::string::npos) << output();
+  EXPECT_NE(output().find("cannot make the folder"), std::string::npos) << output();
 
   fs::resize_file(bag(), fs::file_size(bag()) - 100);
   EXPECT_EQ(replay(), 2) << output();
@@ -117,10 +117,18 @@ TEST_F(ReplayCommand, LeavesTheResultOfADrivenSessionAlone) {
           "protocol.time_limit=2", "--set", "verdict.judge=false"});
   const std::string session = core::readFile(live() / "session.yaml", "session");
   EXPECT_EQ(run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", live().string()}), 3);
-  EXPECT_NE(output().find("give another --results"), std::string::npos) << output();
+  EXPECT_NE(output().find("holds an earlier result (session.yaml)"), std::string::npos) << output();
+  EXPECT_EQ(
+      run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", live().string(), "--overwrite"}),
+      3);
+  EXPECT_NE(output().find("holds the bag that is replayed"), std::string::npos) << output();
   EXPECT_EQ(core::readFile(live() / "session.yaml", "session"), session);
   EXPECT_EQ(replay(), 0) << output();
-  EXPECT_EQ(replay(), 0) << "a replay may be repeated";
+  EXPECT_EQ(replay(), 3) << "an earlier replay is replaced only when asked";
+  EXPECT_EQ(run(CDIFF_PROGRAM,
+                {"replay", bag().string(), "--results", replayed().string(), "--overwrite"}),
+            0)
+      << output();
   // Nor does bad input take the recording away.
   for (const char* planner : {"--cbv-planner", "--ego-planner"}) {
     EXPECT_EQ(run(CDIFF_PROGRAM,
@@ -160,11 +168,13 @@ TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
     EXPECT_NE(output().find("cannot write"), std::string::npos) << limit << ": " << output();
     for (const auto& entry : fs::directory_iterator(replayed())) {
       const std::string name = entry.path().filename();
-      EXPECT_TRUE(name == "session.yaml" || name == "trace.csv" || name == "summary.json" ||
+      EXPECT_TRUE(name == "session.yaml" || name == "plans.csv" || name == "summary.json" ||
                   name == "junit.xml")
           << name;
     }
-    EXPECT_FALSE(fs::exists(replayed() / "report.html"));
+    if (std::string(limit) != "1") {  // which even session.yaml exceeds
+      EXPECT_EQ(summary()["status"], "error");
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/diffusion/model.h"
 #include "e2e_cdiff/evaluation/executor.h"
 #include "support/temporary_folder.h"
 
@@ -111,6 +112,63 @@ TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {
   EXPECT_EQ(records[1].status, "completed");
   EXPECT_EQ(records[1].attempts, 2);
   EXPECT_EQ(records[1].cause, "");
+}
+
+TEST_F(ExecutorTest, RunsAgainWhatHasOtherInputsAndSaysWhy) {
+  std::vector<PlannedRun> runs = plan({"good", "good", "good", "good", "refuses"});
+  for (PlannedRun& run : runs) run.inputs = {{"network", "n"}, {"weights", "w"}, {"program", "p"}};
+  execute(runs);
+  runs[0].inputs["weights"] = "other";
+  runs[1].inputs["weights"] = "other";
+  runs[2].inputs = {{"network", "n"}, {"weights", "w"}, {"program", "later"}, {"demand", "d"}};
+  std::map<std::string, std::vector<std::string>> repeated;
+  options_.resume = true;
+  options_.repeated = [&](const std::string& cause, const std::vector<std::string>& ids) {
+    repeated[cause] = ids;
+  };
+  const auto records = execute(runs);
+  const std::map<std::string, std::vector<std::string>> expected = {
+      {"weights changed", {"good0", "good1"}},
+      {"demand, program changed", {"good2"}},
+      {"status error", {"refuses4"}}};
+  EXPECT_EQ(repeated, expected);
+  EXPECT_EQ(attempts("good0"), 2U);
+  EXPECT_EQ(attempts("good2"), 2U);
+  EXPECT_EQ(attempts("good3"), 1U);
+  EXPECT_EQ(records[0].inputs.at("weights"), "other");
+  EXPECT_EQ(readRecord(file("good0", "record.json"))->inputs, records[0].inputs);
+}
+
+TEST_F(ExecutorTest, ARecordWithoutHashesIsRunAgain) {
+  std::vector<PlannedRun> runs = plan({"good"});
+  execute(runs);
+  runs[0].inputs = {{"program", "p"}};
+  options_.resume = true;
+  execute(runs);
+  EXPECT_EQ(attempts("good0"), 2U);
+}
+
+TEST(RunInputs, HashTheContentOfTheFilesThatAScenarioNames) {
+  const test::TemporaryFolder folder;
+  const fs::path demand = folder.path() / "demand.rou.xml";
+  std::ofstream(demand) << "<routes/>";
+  scenario::ScenarioOptions options = scenario::loadScenario("arterial_exit");
+  options.cbv_planner = "pdm_lite";
+  options.demand = "generated";
+  const InputHashes plain = InputHasher().hashes(options);
+  EXPECT_EQ(
+      plain.at("network"),
+      core::sha256(core::readFile(
+          core::shareFolder() / "networks/arterial_merge/arterial_merge.net.xml", "network")));
+  EXPECT_EQ(plain.at("program").size(), 64U);
+  EXPECT_EQ(plain.count("weights") + plain.count("demand"), 0U);
+  options.demand = demand.string();
+  options.cbv_planner = "diffusion";
+  const InputHashes more = InputHasher().hashes(options);
+  EXPECT_EQ(more.at("demand"), core::sha256("<routes/>"));
+  EXPECT_EQ(more.at("weights"), diffusion::modelFilesSha256(options.diffusion.model));
+  EXPECT_EQ(changedInputs(plain, more), "demand, weights");
+  EXPECT_EQ(changedInputs(more, more), "");
 }
 
 TEST_F(ExecutorTest, KillsALateRunWithAllThatItStarted) {

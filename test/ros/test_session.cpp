@@ -223,5 +223,36 @@ TEST_F(Session, BadInputGivesItsExitCodeAndASentence) {
   EXPECT_NE(log.find("crossing_left_turn"), std::string::npos) << log;
 }
 
+TEST_F(Session, AFolderWithAResultIsNotTouched) {
+  fs::create_directories(results());
+  core::writeFileAtomically(results() / "summary.json", "of an earlier session");
+  core::writeFileAtomically(results() / "exit_code", "0\n");
+  ::setenv("E2E_CDIFF_EXIT_CODE_FILE", (folder_ / "code").c_str(), 1);
+  const std::string log = launch("e2e_cdiff session.launch", "scenario:=crossing_left_turn");
+  ::unsetenv("E2E_CDIFF_EXIT_CODE_FILE");
+  EXPECT_NE(log.find("holds an earlier result (summary.json)"), std::string::npos) << log;
+  EXPECT_EQ(core::readFile(folder_ / "code", "exit code"), "3\n");
+  EXPECT_EQ(exitCode(), "0\n");
+  EXPECT_EQ(core::readFile(results() / "summary.json", "summary"), "of an earlier session");
+  EXPECT_EQ(std::distance(fs::directory_iterator(results()), fs::directory_iterator()), 2);
+}
+
+TEST_F(Session, ADemandThatSumoRefusesIsBadInput) {
+  const fs::path demand = folder_ / "bad.rou.xml";
+  core::writeFileAtomically(
+      demand, "<routes><trip id=\"t\" depart=\"900\" from=\"nowhere\" to=\"sb_b1\"/></routes>");
+  fs::create_directories(results());
+  core::writeFileAtomically(results() / "exit_code", "0\n");
+  core::writeFileAtomically(results() / "session.mp4", "of an earlier session");
+  const std::string log =
+      launch("e2e_cdiff session.launch",
+             "scenario:=crossing_straight overwrite:=true set:=demand=" + demand.string());
+  EXPECT_NE(log.find("SUMO refuses the demand '" + demand.string() + "': "), std::string::npos)
+      << log;
+  EXPECT_EQ(exitCode(), "3\n");
+  EXPECT_FALSE(fs::exists(results() / "session.mp4"));
+  EXPECT_FALSE(fs::exists(results() / ".lock"));
+}
+
 }  // namespace
 }  // namespace cdiff

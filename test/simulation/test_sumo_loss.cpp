@@ -161,20 +161,51 @@ TEST(SumoStart, NamesAMissingNetwork) {
   EXPECT_NE(error.find("none.net.xml"), std::string::npos) << error;
 }
 
-TEST(SumoStart, QuotesSumoOnABrokenNetworkAndDemand) {
+TEST(SumoStart, NamesTheNetworkOrDemandThatSumoRefusesAndQuotesIt) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeCrossing(folder, false);
   SumoSession session;
   session.network_file = folder.path() / "broken.net.xml";
-  std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"";
-  std::string error = startError<core::SimulatorError>({}, session, made.network);
-  EXPECT_NE(error.find("Error:"), std::string::npos) << error;
-  session.network_file = made.file;
   session.demand_file = folder.path() / "bad.rou.xml";
+  std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"";
+  std::ofstream(session.demand_file) << "<routes/>";
+  std::string error = startError<core::InputError>({}, session, made.network);
+  EXPECT_NE(error.find("SUMO refuses the network '" + session.network_file.string() + "': "),
+            std::string::npos)
+      << error;
+  session.network_source = "town.xodr";  // the file is in the cache
+  error = startError<core::InputError>({}, session, made.network);
+  EXPECT_NE(error.find("the network 'town.xodr': "), std::string::npos) << error;
+  session.network_file = made.file;
+  // Later than any session: SUMO reads all of it before the first step.
   std::ofstream(session.demand_file)
-      << "<routes><trip id=\"t\" depart=\"0\" from=\"west\" to=\"nowhere\"/></routes>";
-  error = startError<core::SimulatorError>({}, session, made.network);
+      << "<routes><trip id=\"t\" depart=\"9000\" from=\"west\" to=\"nowhere\"/></routes>";
+  error = startError<core::InputError>({}, session, made.network);
+  EXPECT_NE(error.find("SUMO refuses the demand '" + session.demand_file.string() + "': "),
+            std::string::npos)
+      << error;
   EXPECT_NE(error.find("nowhere"), std::string::npos) << error;
+}
+
+TEST(SumoStart, ADemandThatSumoRefusesWhileItRunsIsNamed) {
+  const test::TemporaryFolder folder;
+  const test::SumoNetwork made = test::makeCrossing(folder, false);
+  SumoSession session;
+  session.network_file = made.file;
+  session.demand_file = folder.path() / "late.rou.xml";
+  // A lane that its edge does not have is noticed at the departure.
+  std::ofstream(session.demand_file)
+      << "<routes><route id=\"r\" edges=\"west east\"/><vehicle id=\"late_one\" depart=\"1\" "
+         "route=\"r\" departLane=\"7\"/></routes>";
+  std::string text;
+  try {
+    SumoSimulator simulator({}, session, made.network);
+    for (int i = 0; i < 40; ++i) simulator.step({});
+  } catch (const core::InputError& error) {
+    text = error.what();
+  }
+  EXPECT_NE(text.find("late.rou.xml': "), std::string::npos) << text;
+  EXPECT_NE(text.find("'late_one'"), std::string::npos) << text;
 }
 
 TEST(SumoStart, ReadsDemandAndBeginTime) {

@@ -23,8 +23,30 @@ std::string readFile(const std::filesystem::path& path, const std::string& what)
 /// whole or as it was before, and nothing else is left behind. Throws InputError naming the path.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view content);
 
-/// Removes what writes that were cut off left in a folder (NAME.tmp.PROCESS).
+/// A file whose room on the disk is taken when it is opened, so that it can be written when the
+/// disk has filled up since: under a temporary name beside `path` until it is written.
+class ReservedFile {
+ public:
+  /// Takes `size` bytes. Throws InputError naming the path.
+  ReservedFile(std::filesystem::path path, std::size_t size);
+  /// Gives the room back.
+  ~ReservedFile();
+  ReservedFile(const ReservedFile&) = delete;
+  ReservedFile& operator=(const ReservedFile&) = delete;
+  /// Writes the content and gives the file its name. Call once. Throws InputError naming the path.
+  void write(std::string_view content);
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+};
+
+/// Removes what writes that were cut off left in a folder that nobody writes into
+/// (NAME.tmp.PROCESS).
 void removeTemporaries(const std::filesystem::path& folder);
+/// The same in a folder that others may write into: only that of processes that are gone.
+void removeDeadTemporaries(const std::filesystem::path& folder);
 
 /// SHA-256 of `content` as 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view content);

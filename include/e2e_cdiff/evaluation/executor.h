@@ -14,13 +14,16 @@
 namespace cdiff::evaluation {
 
 struct ExecutorOptions {
-  std::filesystem::path program = "/proc/self/exe";  ///< understands `run FILE --quiet --results`
-  std::filesystem::path results;                     ///< of the batch
-  int jobs = 1;                                      ///< processes at a time
-  double timeout = 600.0;                            ///< wall time of one attempt [s]
+  std::filesystem::path program =
+      "/proc/self/exe";           ///< understands `run FILE --quiet --results DIR --overwrite`
+  std::filesystem::path results;  ///< of the batch
+  int jobs = 1;                   ///< processes at a time
+  double timeout = 600.0;         ///< wall time of one attempt [s]
   int retries = 1;
   double grace = 20.0;  ///< to end in after an interrupt [s]
-  bool resume = false;  ///< complete records of the same resolved scenario stay
+  bool resume = false;  ///< complete records of the same scenario, inputs and program stay
+  /// Called before the first run for each cause to repeat runs that have a record, with their ids.
+  std::function<void(const std::string& cause, const std::vector<std::string>& ids)> repeated = {};
   /// Called after each record is written, and for each that stays.
   std::function<void(const RunRecord&, bool resumed)> ended = {};
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "e2e_cdiff/evaluation/matrix.h"
+#include "e2e_cdiff/evaluation/run_inputs.h"
 
 namespace cdiff::evaluation {
 
@@ -24,6 +25,7 @@ struct PlannedRun {
   Factors factors;
   std::string scenario_text;    ///< resolved, as YAML
   std::string scenario_sha256;  ///< of that text
+  InputHashes inputs;           ///< of what it depends on besides
 };
 
 /// Scenarios outermost, repetitions innermost. `source` names the matrix in errors. Throws

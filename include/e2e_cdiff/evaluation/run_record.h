@@ -18,6 +18,7 @@ struct RunRecord {
   std::string id;
   Factors factors;
   std::string scenario_sha256;
+  InputHashes inputs;              ///< empty in a record of an earlier version
   std::string status = "not_run";  ///< of the session; or "error", "interrupted", "not_run"
   std::string cause;               ///< of an error
   int exit_code = -1;
@@ -35,6 +36,10 @@ struct RunRecord {
   /// Whether it was started, and broke.
   bool failed() const { return status == "error"; }
 };
+
+/// Why a run that has this record must be run again ("weights changed", "error"); empty when its
+/// result stands.
+std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned);
 
 /// The record of a run that was not started yet.
 RunRecord recordOf(const PlannedRun& run);

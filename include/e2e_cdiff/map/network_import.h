@@ -20,6 +20,9 @@ struct ImportedNetwork {
   std::vector<std::string> changes;  ///< one sentence each; empty when nothing was changed
 };
 
+/// The file that `source` stands for: a path, or the name of a shipped network. Throws InputError.
+std::filesystem::path networkFile(const std::string& source);
+
 /// `source`: *.net.xml (also gzip-free older or newer), *.xodr, or the name of a network shipped in
 /// networks/. Throws InputError naming the file and what is wrong (missing, not a network,
 /// netconvert's own message).

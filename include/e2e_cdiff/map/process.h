@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Runs a program as a child process, without a shell.
+/// Runs netconvert, which neither outlives us nor runs for ever.
 #pragma once
 
 #include <string>
@@ -8,13 +8,15 @@
 
 namespace cdiff::map {
 
-struct ProcessResult {
-  int exit_code = 0;   ///< 128 + signal number when a signal ended it
-  std::string output;  ///< standard output and standard error together
-};
+/// Name of the environment variable that replaces the limit below [s].
+inline constexpr const char* kNetconvertLimitVariable = "E2E_CDIFF_NETCONVERT_LIMIT";
+/// Wall time that netconvert may take [s].
+inline constexpr double kNetconvertLimit = 120.0;
 
-/// `arguments[0]` is looked up in PATH. SUMO_HOME is set to /usr/share/sumo when the environment
-/// has none. Throws InputError when the program cannot be started.
-ProcessResult runProcess(const std::vector<std::string>& arguments);
+/// Runs netconvert with these arguments; SUMO_HOME is set to /usr/share/sumo when the environment
+/// has none. `subject` names in errors what is converted ("network 'a.xodr'"). Throws InputError
+/// that quotes netconvert, or says that it took longer than the limit or which signal ended it, and
+/// Interrupted when a stop is requested meanwhile (core/program.h).
+void runNetconvert(const std::vector<std::string>& arguments, const std::string& subject);
 
 }  // namespace cdiff::map

@@ -24,13 +24,22 @@ class ResultWriter : public scenario::SessionObserver {
                const std::filesystem::path& folder);
   ~ResultWriter() override;
 
+  /// Throws core::Error once when the trace cannot be written (disk full): its part is removed,
+  /// `failure` says why, and what follows is taken without a trace.
   void observe(const scenario::TickRecord& record) override;
   /// Writes everything that is still missing. Call once, whatever the session ended with; files are
-  /// whole or absent.
+  /// whole or absent. A file that cannot be written makes the status `error`, which the summary
+  /// says: its room is taken from the start. Throws InputError when even the summary cannot be
+  /// written.
   Verdict finish(double wall_seconds);
+  /// Something that the session survived, and that no snapshot tells. Before `finish`.
+  void recordFault(const traffic::Fault& fault);
+  /// Why the result is not whole; empty when it is.
+  const std::string& failure() const;
   /// The table that a terminal shows: the main figures, the verdict, the paths.
   std::string table() const;
-  /// Exit code of `cdiff` for this session (exitCodeOf its outcome).
+  /// Exit code of `cdiff` for this session: that of its outcome, but 3 when SUMO refused the
+  /// session's input meanwhile.
   int exitCode() const;
   /// What was found; complete after `finish`.
   const SessionResult& result() const;

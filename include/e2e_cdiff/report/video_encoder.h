@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Frames (8-bit blue, green, red; row-major from the top left) to an MP4 file: H.264, yuv420p,
-/// BT.709, by the program `ffmpeg`, which reads them from a socket and cannot pull us down.
+/// BT.709, by the program `ffmpeg`, which reads them from a socket, cannot pull us down and ends
+/// with us.
 #pragma once
-
-#include <sys/types.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "e2e_cdiff/core/guarded_process.h"
 
 namespace cdiff::report {
 
@@ -46,7 +48,7 @@ class VideoEncoder {
 
   std::filesystem::path file_;
   std::filesystem::path temporary_;
-  pid_t process_ = 0;  ///< 0: none
+  std::unique_ptr<core::GuardedProcess> process_;
   int input_ = -1;     ///< our end of the socket
   int messages_ = -1;  ///< what the program says of errors
 };

@@ -53,11 +53,14 @@ class BagFile {
   /// With camera_info beside each image and, at decisions, what rviz needs beside `rosbag play`: tf
   /// and the ego's odometry.
   void write(const TickMessages& tick);
-  /// Gives the file its name. Without this call it stays FILE.active.
+  /// Gives the file its name. Without this call it stays FILE.active; one that could not be written
+  /// (disk full) is removed instead, and its room is free again.
   void finish();
+  /// Nothing of it stays.
+  void discard();
 
  private:
-  void guard(const std::function<void()>& writing) const;
+  void guard(const std::function<void()>& writing);
   void writeTick(const TickMessages& tick);
   void writeDisplay(const TickMessages& tick, const ::ros::Time& stamp);
   template <class Message>
@@ -69,6 +72,7 @@ class BagFile {
   rendering::CameraOptions camera_;
   Naming naming_;
   std::unique_ptr<rosbag::Bag> bag_;
+  bool failed_ = false;
 };
 
 }  // namespace cdiff::ros

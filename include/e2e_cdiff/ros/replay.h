@@ -28,22 +28,25 @@ std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionIn
 /// What results say of a session, live or told again.
 report::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic);
 
-/// Whether the folder holds the result of a session that was driven, not told again.
-bool holdsRecording(const std::filesystem::path& results);
-/// Throws InputError for such a folder: a replay would take the place of what was recorded.
-void requireNoRecording(const std::filesystem::path& results);
+/// Throws InputError when a replay may not write into the folder: it holds an earlier result that
+/// is not to be overwritten, or the bag itself.
+void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem::path& results,
+                         bool overwrite = false);
 
 struct ReplayResult {
   int exit_code = 0;  ///< the session's; 2 when the recording is damaged or a video is missing
   std::string table;  ///< what a terminal shows
   std::vector<std::string> findings;  ///< what of the recording is damaged or missing
   std::string video_error;            ///< why the video that the scenario asks for is missing
+  std::string failure;                ///< why the result is not whole (disk full); else empty
 };
 
 /// Reads the bag and writes the result folder, with a video where the scenario asks for one.
 /// `wall_seconds` of the result is what this took. Throws InputError when the bag holds nothing to
-/// evaluate, or the folder cannot be made or holds a recording (nothing is written then),
+/// evaluate, or the folder cannot be made, is in use or refused (requireReplayFolder; nothing is
+/// written then),
 /// core::Error when the result cannot be written to its end.
-ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results);
+ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results,
+                       bool overwrite = false);
 
 }  // namespace cdiff::ros

@@ -9,9 +9,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/report/result_folder.h"
 #include "e2e_cdiff/ros/connections.h"
 #include "e2e_cdiff/ros/display.h"
 #include "e2e_cdiff/ros/heartbeat.h"
@@ -60,6 +62,7 @@ class ReplayRos {
   double rate_ = 1.0;
   std::filesystem::path bag_;
   std::filesystem::path results_;
+  std::unique_ptr<report::ResultFolder> folder_;  ///< holds it for us and the metrics node
   RecordedSession session_;
   SessionGraph graph_;  ///< of the replay: without recorder
   ParticipantBook book_;

@@ -38,6 +38,8 @@ class SessionBag : public scenario::SessionObserver {
   void observe(const scenario::TickRecord& record) override;
   /// Gives the file its name. Without this call it stays FILE.active.
   void finish();
+  /// Nothing of the bag stays.
+  void discard() { file_.discard(); }
 
  private:
   void addActions(const scenario::TickRecord& record, TickMessages& tick) const;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "e2e_cdiff/report/result_folder.h"
 #include "e2e_cdiff/report/result_writer.h"
 #include "e2e_cdiff/ros/parameters.h"
 
@@ -17,16 +18,20 @@ namespace cdiff::ros {
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";
 
-/// Absolute result folder: the one given, else HOME/e2e_cdiff_results/SCENARIO_seedN_TIME. Makes
-/// it, and takes away an earlier session's bag and exit code. Throws InputError when it cannot be
-/// made.
-std::filesystem::path makeResultFolder(const std::string& given,
-                                       const scenario::ScenarioOptions& options);
+/// Absolute result folder: the one given, else HOME/e2e_cdiff_results/SCENARIO_seedN_TIME.
+std::filesystem::path resultFolder(const std::string& given,
+                                   const scenario::ScenarioOptions& options);
+
+/// Names a file in the environment that gets the exit code too (scripts/session reads it).
+inline constexpr const char* kExitCodeVariable = "E2E_CDIFF_EXIT_CODE_FILE";
 
 /// Writes the session's exit code (as `cdiff`'s) to the file exit_code, because roslaunch itself
 /// exits with 0 whatever happened.
 void writeExitCode(const std::filesystem::path& folder, int exit_code);
 
+/// The exit code of a session that bad input kept from starting; a folder in use, or with an
+/// earlier result, is not touched. `folder` may be empty.
+void writeRefusal(const std::filesystem::path& folder);
 /// Relative paths in parameters are meant from where the user started the session; empty: from
 /// here. Throws InputError when there is no such folder.
 void enterFolder(const std::string& folder);
@@ -49,7 +54,8 @@ class ReserveResult {
   ReserveResult(const ReserveResult&) = delete;
   ReserveResult& operator=(const ReserveResult&) = delete;
 
-  void observe(const scenario::TickRecord& record) { writer_->observe(record); }
+  /// On a full disk it goes on without a trace.
+  void observe(const scenario::TickRecord& record);
   /// Finishes the result, moves its files into the result folder and writes the exit code; nothing
   /// where the metrics node has written its own meanwhile (file exit_code).
   void adopt(double wall_seconds);

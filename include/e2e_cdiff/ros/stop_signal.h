@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// SIGINT, SIGTERM and SIGHUP without a handler: all are blocked from here on, in every thread made
-/// later, and asked for when it suits. So a session can end in order, whatever it is doing.
+/// SIGINT, SIGTERM and SIGHUP without a handler: they are blocked from here on, in every thread
+/// made later, and asked for when it suits. So a session can end in order, whatever it is doing.
 #pragma once
 
 namespace cdiff::ros {

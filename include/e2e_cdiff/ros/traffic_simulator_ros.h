@@ -112,6 +112,7 @@ class TrafficSimulatorRos {
   HeartbeatPublisher heartbeat_;
   SimulatorLimits limits_;
   std::filesystem::path results_;
+  std::unique_ptr<report::ResultFolder> folder_;  ///< holds it for us and the metrics node
   std::unique_ptr<scenario::SessionSetup> setup_;
   SessionGraph graph_;
   ParticipantBook book_;

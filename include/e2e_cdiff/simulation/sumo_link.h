@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// One TraCI session with a SUMO process of our own: every call goes through `guarded`, which
 /// bounds it in wall time [s] and turns every way to fail into a SimulatorError that quotes SUMO's
-/// log.
+/// log; a SumoRefusal where SUMO ended by itself, or crashed while it loaded its input.
 #pragma once
 
 #include <signal.h>
@@ -67,6 +67,7 @@ class SumoLink {
   std::string label_;
   std::string version_;
   bool connected_ = false;
+  bool loaded_ = false;  ///< network and demand
 };
 
 }  // namespace cdiff::simulation

@@ -11,13 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/simulation/guarded_process.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/guarded_process.h"
+#include "e2e_cdiff/core/output_folder.h"
 
 namespace cdiff::simulation {
-
-/// The file that a program name stands for: itself when it holds a slash, else the first of that
-/// name in PATH. Throws InputError naming the program and the package to install.
-std::filesystem::path findProgram(const std::string& name);
 
 /// A TCP port that nobody listened on a moment ago.
 int freePort();
@@ -31,15 +29,19 @@ bool listensOn(int process_id, int port);
 class LogFolder {
  public:
   explicit LogFolder(const std::filesystem::path& wanted);
-  ~LogFolder();
-  LogFolder(const LogFolder&) = delete;
-  LogFolder& operator=(const LogFolder&) = delete;
   std::filesystem::path errorLog() const { return path_ / "sumo_errors.log"; }
   std::filesystem::path output() const { return path_ / "sumo_output.log"; }
 
  private:
+  std::unique_ptr<core::ScratchFolder> scratch_;  ///< where none is given
   std::filesystem::path path_;
-  bool temporary_ = false;
+};
+
+/// SUMO ended by itself and says why in its error log, or crashed over what it was given: its own
+/// words, without the files.
+class SumoRefusal : public core::SimulatorError {
+ public:
+  using core::SimulatorError::SimulatorError;
 };
 
 /// How SUMO is started.
@@ -54,16 +56,19 @@ struct SumoCommand {
 
 class SumoProcess {
  public:
-  /// Returns once SUMO listens. Throws InputError when the program is missing and SimulatorError,
-  /// quoting SUMO's log, when it ends instead or does not listen in time.
+  /// Returns once SUMO listens. Throws InputError when the program is missing, SumoRefusal when it
+  /// ends instead, and SimulatorError, quoting SUMO's log, when it does not listen in time.
   explicit SumoProcess(const SumoCommand& command);
   ~SumoProcess();
 
   int port() const { return port_; }
-  GuardedProcess& process() { return *process_; }
-  const GuardedProcess& process() const { return *process_; }
+  core::GuardedProcess& process() { return *process_; }
+  const core::GuardedProcess& process() const { return *process_; }
   /// The last lines of SUMO's error log (of its output when the log is empty), for an error text.
   std::string lastWords() const;
+  /// SUMO's reason for having ended: the first sentence of its error log, or the assertion that
+  /// failed; empty when it named none, runs, or was killed from outside.
+  std::string refusal() const;
 
  private:
   enum class Start { kListening, kPortTaken };
@@ -71,7 +76,7 @@ class SumoProcess {
 
   LogFolder logs_;
   int port_ = 0;
-  std::unique_ptr<GuardedProcess> process_;
+  std::unique_ptr<core::GuardedProcess> process_;
 };
 
 }  // namespace cdiff::simulation

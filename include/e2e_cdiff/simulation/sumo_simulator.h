@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
 /// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
-/// log.
+/// log; into an InputError where the network or the demand is at fault.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,11 @@ struct SumoOptions {
 
 /// What one session gives to SUMO.
 struct SumoSession {
-  std::filesystem::path network_file;  ///< as imported
-  std::filesystem::path demand_file;   ///< *.rou.xml; may be empty: no background traffic
-  double begin_time = 0.0;             ///< SUMO's clock at the start [s]
-  double simulation_step = 0.05;       ///< [s]
+  std::filesystem::path network_file;    ///< as imported
+  std::filesystem::path network_source;  ///< what the user gave, for errors; may be empty
+  std::filesystem::path demand_file;     ///< *.rou.xml; may be empty: no background traffic
+  double begin_time = 0.0;               ///< SUMO's clock at the start [s]
+  double simulation_step = 0.05;         ///< [s]
   std::uint64_t seed = 1;
   bool lights_green = true;          ///< every signal shows 'g' for the whole session
   std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
@@ -37,7 +38,8 @@ struct SumoSession {
 
 class SumoSimulator : public TrafficSimulator {
  public:
-  /// Starts SUMO and connects. `network` must outlive the simulator.
+  /// Starts SUMO and connects. `network` must outlive the simulator. Throws InputError that names
+  /// network or demand and quotes SUMO when it refuses one of them (also crashing over it).
   SumoSimulator(const SumoOptions& options, const SumoSession& session,
                 const map::RoadNetwork& network);
   /// Ends the SUMO process that it started, and only that one.

@@ -25,10 +25,14 @@ struct Contact {
   std::string second;
 };
 
+/// Source of a fault that the user's input is to blame for: a session that ends with it is bad
+/// input, no error at run time.
+inline constexpr const char* kInputFault = "input";
+
 /// Something that went wrong and was survived or ended the session.
 struct Fault {
   std::uint64_t tick = 0;
-  std::string source;  ///< node, planner or simulator
+  std::string source;  ///< node, planner, simulator or kInputFault
   std::string text;    ///< what happened, with the offending value
 };
 

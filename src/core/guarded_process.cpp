@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/guarded_process.h"
+#include "e2e_cdiff/core/guarded_process.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -10,11 +10,13 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/text.h"
 
-namespace cdiff::simulation {
+namespace cdiff::core {
 
 namespace {
 
@@ -33,7 +35,36 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
   return pointers;
 }
 
+bool isProgram(const std::filesystem::path& file) {
+  std::error_code unreadable;
+  return std::filesystem::is_regular_file(file, unreadable) && ::access(file.c_str(), X_OK) == 0;
+}
+
 }  // namespace
+
+std::filesystem::path findProgram(const std::string& name, const std::string& package) {
+  if (name.find('/') != std::string::npos && isProgram(name)) return name;
+  if (name.find('/') == std::string::npos && !name.empty()) {
+    const char* path = std::getenv("PATH");
+    for (const std::string& folder : splitText(path != nullptr ? path : "", ':')) {
+      const std::filesystem::path file = std::filesystem::path(folder) / name;
+      if (isProgram(file)) return file;
+    }
+  }
+  throw InputError("the program '" + name + "' was not found; install the package " + package +
+                   " or name the program's file");
+}
+
+std::vector<std::string> environmentWith(const std::string& name, const std::string& value) {
+  std::vector<std::string> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) variables.emplace_back(*entry);
+  if (std::getenv(name.c_str()) == nullptr) variables.push_back(name + "=" + value);
+  return variables;
+}
+
+std::string signalText(int signal) {
+  return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+}
 
 /// What the child runs, laid out before the fork: between fork and exec only async-signal-safe
 /// calls are allowed.
@@ -41,7 +72,9 @@ struct GuardedProcess::Image {
   std::string program;
   std::vector<std::string> arguments;
   std::vector<std::string> environment;
-  std::string output;
+  std::string log;
+  int input;
+  int output;
 
   /// Runs in the child and does not return.
   [[noreturn]] void execute(pid_t parent, char* const* argv, char* const* envp) const {
@@ -51,12 +84,12 @@ struct GuardedProcess::Image {
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    const int input = ::open("/dev/null", O_RDONLY);
-    const int log = ::open(output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
-    if (input >= 0) ::dup2(input, STDIN_FILENO);
-    if (log >= 0) {
-      ::dup2(log, STDOUT_FILENO);
-      ::dup2(log, STDERR_FILENO);
+    const int from = input >= 0 ? input : ::open("/dev/null", O_RDONLY);
+    const int to = output >= 0 ? output : ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    if (from >= 0) ::dup2(from, STDIN_FILENO);
+    if (to >= 0) {
+      ::dup2(to, STDOUT_FILENO);
+      ::dup2(to, STDERR_FILENO);
     }
     ::close_range(3, ~0U, 0);
     ::execve(program.c_str(), argv, envp);
@@ -67,8 +100,9 @@ struct GuardedProcess::Image {
 GuardedProcess::GuardedProcess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::vector<std::string>& environment,
-                               const std::filesystem::path& output) {
-  Image image{program.string(), arguments, environment, output.string()};
+                               const ProcessStreams& streams) {
+  Image image{program.string(),     arguments,     environment,
+              streams.log.string(), streams.input, streams.output};
   image.arguments.insert(image.arguments.begin(), program.string());
   guardian_ = std::thread([this, image] { guard(image); });
   std::unique_lock<std::mutex> lock(mutex_);
@@ -76,8 +110,8 @@ GuardedProcess::GuardedProcess(const std::filesystem::path& program,
   if (start_error_ == 0) return;
   lock.unlock();
   guardian_.join();
-  throw core::SimulatorError("a process for '" + program.string() +
-                             "' could not be made: " + std::strerror(start_error_));
+  throw SimulatorError("a process for '" + program.string() +
+                       "' could not be made: " + std::strerror(start_error_));
 }
 
 GuardedProcess::~GuardedProcess() {
@@ -153,11 +187,23 @@ void GuardedProcess::kill() {
   reap(true);
 }
 
+int GuardedProcess::exitCode() {
+  const int signal = endSignal();
+  if (signal != 0) return 128 + signal;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return reaped_ ? WEXITSTATUS(status_) : -1;
+}
+
+int GuardedProcess::endSignal() {
+  if (!ended()) return 0;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+}
+
 std::string GuardedProcess::endText() {
   if (!ended()) return "still running";
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (WIFSIGNALED(status_)) return "signal " + std::to_string(WTERMSIG(status_));
-  return "exit code " + std::to_string(WEXITSTATUS(status_));
+  const int signal = endSignal();
+  return signal != 0 ? signalText(signal) : "exit code " + std::to_string(exitCode());
 }
 
 void GuardedProcess::setDeadline(double seconds) {
@@ -166,4 +212,4 @@ void GuardedProcess::setDeadline(double seconds) {
 
 void GuardedProcess::clearDeadline() { deadline_.store(0); }
 
-}  // namespace cdiff::simulation
+}  // namespace cdiff::core

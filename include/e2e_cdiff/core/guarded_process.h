@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A child process that never outlives us, even when we are killed, and that is ended when a
 /// deadline [s of wall time] passes: the only way out of a blocking call to a child that has
-/// frozen.
+/// frozen. Also where programs are found, and what environment they get.
 #pragma once
 
 #include <sys/types.h>
@@ -16,16 +16,33 @@
 #include <thread>
 #include <vector>
 
-namespace cdiff::simulation {
+namespace cdiff::core {
+
+/// The file that a program name stands for: itself when it holds a slash, else the first of that
+/// name in PATH. Throws InputError naming the program and the Debian package to install.
+std::filesystem::path findProgram(const std::string& name, const std::string& package);
+
+/// Our environment as "NAME=value", with one variable added where it is unset.
+std::vector<std::string> environmentWith(const std::string& name, const std::string& value);
+
+/// "signal 11 (Segmentation fault)".
+std::string signalText(int signal);
+
+/// Where a child's standard streams lead. Descriptors are ours and stay open here.
+struct ProcessStreams {
+  std::filesystem::path log = {};  ///< output and errors are appended to it, unless `output` is set
+  int input = -1;                  ///< descriptor to read from; -1: /dev/null
+  int output = -1;                 ///< descriptor of output and errors
+};
 
 class GuardedProcess {
  public:
-  /// Starts `program` in a process group of its own, its output appended to `output`. A guardian
-  /// thread starts the child and lives as long as this object, because the kernel ends the child
-  /// together with the thread that started it. `environment` holds "NAME=value". Throws
-  /// SimulatorError when the process cannot be made.
+  /// Starts `program` in a process group of its own. A guardian thread starts the child and lives
+  /// as long as this object, because the kernel ends the child together with the thread that
+  /// started it. `environment` holds "NAME=value". Throws SimulatorError when the process cannot be
+  /// made.
   GuardedProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                 const std::vector<std::string>& environment, const std::filesystem::path& output);
+                 const std::vector<std::string>& environment, const ProcessStreams& streams);
   /// Ends and reaps the child.
   ~GuardedProcess();
   GuardedProcess(const GuardedProcess&) = delete;
@@ -38,7 +55,11 @@ class GuardedProcess {
   bool waitForEnd(double seconds);
   /// Ends and reaps the child.
   void kill();
-  /// How it ended: "exit code 1", "signal 9", "still running".
+  /// Its exit code, or 128 + the signal that ended it; -1 while it runs.
+  int exitCode();
+  /// The signal that ended it; 0 when none did, or while it runs.
+  int endSignal();
+  /// How it ended: "exit code 1", "signal 9 (Killed)", "still running".
   std::string endText();
 
   /// From now on the child is killed once `seconds` have passed, unless the deadline is cleared
@@ -67,4 +88,4 @@ class GuardedProcess {
   std::thread guardian_;
 };
 
-}  // namespace cdiff::simulation
+}  // namespace cdiff::core

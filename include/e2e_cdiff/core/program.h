@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What the main functions of all programs share: standard streams that are open, signals that
+/// must not end the process in the middle of a write, and stop requests as a flag.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace cdiff::core {
+
+/// First statement of every main. Opens descriptors 0 to 2 on /dev/null where the caller closed
+/// them, so that no file of ours gets one of these numbers and receives what is printed. Ignores
+/// SIGPIPE and SIGXFSZ: a write to a closed pipe or beyond `ulimit -f` is an error with a message.
+void prepareProgram();
+
+/// The signals that ask a program to stop in order: SIGINT, SIGTERM, and SIGHUP unless it is
+/// ignored, as under nohup.
+std::vector<int> stopSignals();
+
+/// From now on the stop signals set the flag returned, instead of ending the process. Clears it.
+const std::atomic<bool>& catchStopSignals();
+
+/// Whether a stop signal was caught, or is blocked and waits to be taken.
+bool stopRequested();
+
+/// A system call's error as a text: its name, and for a file beyond `ulimit -f` the limit.
+std::string writeErrorText(int error);
+
+}  // namespace cdiff::core

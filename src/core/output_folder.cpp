@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/core/output_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/program.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::core {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// For a writer that was killed a moment ago to be gone.
+constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::milliseconds kPeriod{20};
+constexpr const char* kScratchPrefix = "e2e_cdiff_scratch_";
+/// A scratch folder is unlocked for a moment after it is made.
+constexpr std::chrono::minutes kOldEnough{1};
+
+std::string hostName() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+std::string timeText() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &local);
+  return text.data();
+}
+
+/// Lines "key: value" of a lock file.
+std::map<std::string, std::string> contentOf(int descriptor) {
+  std::array<char, 1024> buffer{};
+  const ssize_t count = ::pread(descriptor, buffer.data(), buffer.size(), 0);
+  std::map<std::string, std::string> content;
+  for (const std::string& line :
+       splitText({buffer.data(), static_cast<std::size_t>(count > 0 ? count : 0)}, '\n')) {
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) content[line.substr(0, colon)] = line.substr(colon + 2);
+  }
+  return content;
+}
+
+bool isSameFile(int descriptor, const fs::path& file) {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(descriptor, &held) == 0 && ::stat(file.c_str(), &named) == 0 &&
+         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+std::string holderText(int descriptor) {
+  auto content = contentOf(descriptor);
+  return "'" + content["program"] + "', process " + content["process"] + " on host " +
+         content["host"] + ", since " + content["since"];
+}
+
+[[noreturn]] void failOn(const fs::path& path, const std::string& what, int error) {
+  throw InputError("cannot " + what + " '" + path.string() + "': " + writeErrorText(error));
+}
+
+/// Folders whose process is gone hold no lock.
+void removeOrphans(const fs::path& parent) {
+  std::error_code error;
+  std::vector<fs::path> orphans;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().filename().string().rfind(kScratchPrefix, 0) != 0) continue;
+    struct stat status {};
+    if (::lstat(entry->path().c_str(), &status) != 0 || status.st_uid != ::geteuid()) continue;
+    const auto age = std::time(nullptr) - status.st_mtime;
+    if (age >= std::chrono::seconds(kOldEnough).count()) orphans.push_back(entry->path());
+  }
+  for (const fs::path& orphan : orphans) {
+    const int descriptor = ::open(orphan.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    std::error_code ignored;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(orphan, ignored);
+    ::close(descriptor);
+  }
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& folder, const std::string& program)
+    : folder_(folder), file_(folder / kFile) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error)
+    throw InputError("cannot make the folder '" + folder_.string() + "': " + error.message());
+  const Clock::time_point begin = Clock::now();
+  while (!tryLock()) {
+    if (Clock::now() - begin > kPatience) {
+      const std::string holder = holderText(descriptor_);
+      ::close(descriptor_);
+      throw InputError("'" + folder_.string() + "' is being written by " + holder +
+                       "; wait until it has ended, or give another folder");
+    }
+    ::close(descriptor_);
+    std::this_thread::sleep_for(kPeriod);
+  }
+  try {
+    requireOwnHost();
+    sign(program);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+FolderLock::~FolderLock() {
+  ::unlink(file_.c_str());
+  ::close(descriptor_);
+}
+
+/// Opens the file and locks it, unless another process has it locked or removes it just now.
+bool FolderLock::tryLock() {
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) failOn(file_, "write", errno);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return isSameFile(descriptor_, file_);
+  if (errno == EWOULDBLOCK || errno == EINTR) return false;
+  const int reason = errno;
+  ::close(descriptor_);
+  failOn(file_, "lock", reason);
+}
+
+/// The kernel of another host may not have told ours of its lock.
+void FolderLock::requireOwnHost() const {
+  const auto content = contentOf(descriptor_);
+  const auto host = content.find("host");
+  if (host == content.end() || host->second == hostName()) return;
+  throw InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
+                   "; if that process is gone, delete '" + file_.string() + "'");
+}
+
+void FolderLock::sign(const std::string& program) {
+  const std::string text = "host: " + hostName() + "\nprocess: " + std::to_string(::getpid()) +
+                           "\nprogram: " + program + "\nsince: " + timeText() + "\n";
+  const bool written =
+      ::ftruncate(descriptor_, 0) == 0 &&
+      ::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  if (!written) failOn(file_, "write", errno);
+}
+
+ScratchFolder::ScratchFolder() {
+  std::error_code error;
+  const fs::path parent = fs::temp_directory_path(error);
+  if (error) {
+    throw InputError("no temporary folder: " + error.message() +
+                     "; set TMPDIR to a folder that exists");
+  }
+  static std::once_flag once;
+  std::call_once(once, removeOrphans, parent);
+  std::string name = (parent / kScratchPrefix).string() + "XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr) failOn(parent, "make a temporary folder in", errno);
+  path_ = name;
+  descriptor_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ >= 0) ::flock(descriptor_, LOCK_EX | LOCK_NB);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+}  // namespace cdiff::core

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/core/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace cdiff::core {
+namespace {
+
+// A signal handler can reach nothing else.
+std::atomic<bool> stop_requested{false};
+
+void requestStop(int) { stop_requested = true; }
+
+bool isIgnored(int signal) {
+  struct sigaction action {};
+  ::sigaction(signal, nullptr, &action);
+  return (action.sa_flags & SA_SIGINFO) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// A signal that nobody handles yet.
+void ignore(int signal) {
+  struct sigaction action {};
+  ::sigaction(signal, nullptr, &action);
+  if ((action.sa_flags & SA_SIGINFO) != 0 || action.sa_handler != SIG_DFL) return;
+  action.sa_handler = SIG_IGN;
+  ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void prepareProgram() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) >= 0) continue;
+    // The lowest free number is the one that is missing.
+    const int opened = ::open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY);
+    if (opened >= 0 && opened != descriptor) {
+      ::dup2(opened, descriptor);
+      ::close(opened);
+    }
+  }
+  ignore(SIGPIPE);
+  ignore(SIGXFSZ);
+}
+
+std::vector<int> stopSignals() {
+  std::vector<int> signals = {SIGINT, SIGTERM};
+  if (!isIgnored(SIGHUP)) signals.push_back(SIGHUP);
+  return signals;
+}
+
+const std::atomic<bool>& catchStopSignals() {
+  stop_requested = false;
+  struct sigaction action {};
+  action.sa_handler = requestStop;
+  for (const int signal : stopSignals()) ::sigaction(signal, &action, nullptr);
+  return stop_requested;
+}
+
+bool stopRequested() {
+  if (stop_requested) return true;
+  sigset_t pending;
+  if (::sigpending(&pending) != 0) return false;
+  for (const int signal : stopSignals()) {
+    if (::sigismember(&pending, signal) == 1) return true;
+  }
+  return false;
+}
+
+std::string writeErrorText(int error) {
+  const std::string text = std::strerror(error);
+  rlimit limit{};
+  if (error != EFBIG || ::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return text;
+  return text + ": this process may write no file beyond " + std::to_string(limit.rlim_cur) +
+         " bytes; raise the limit with `ulimit -f`";
+}
+
+}  // namespace cdiff::core

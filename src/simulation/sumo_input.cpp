@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "sumo_input.h"
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
+
+namespace cdiff::simulation {
+namespace {
+
+void requireFile(const std::filesystem::path& file, const char* what) {
+  if (std::filesystem::is_regular_file(file)) return;
+  throw core::InputError(std::string(what) + " '" + file.string() + "' is not a file");
+}
+
+/// SUMO's seed is a 32-bit signed number.
+std::string sumoSeed(std::uint64_t seed) { return std::to_string(seed % 2147483647ULL); }
+
+SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
+  requireFile(session.network_file, "the network for SUMO");
+  if (!session.demand_file.empty()) requireFile(session.demand_file, "the demand for SUMO");
+  SumoCommand command;
+  command.binary = options.binary;
+  command.log_folder = session.log_folder;
+  command.start_timeout = options.start_timeout;
+  command.arguments = {"--net-file",
+                       session.network_file.string(),
+                       "--begin",
+                       core::formatNumber(session.begin_time),
+                       "--step-length",
+                       core::formatNumber(session.simulation_step),
+                       "--seed",
+                       sumoSeed(session.seed),
+                       "--xml-validation",
+                       "never",
+                       "--xml-validation.net",
+                       "never",
+                       "--xml-validation.routes",
+                       "never",
+                       "--no-step-log",
+                       "true",
+                       "--no-warnings",
+                       "true",
+                       "--duration-log.disable",
+                       "true",
+                       "--collision.action",
+                       "none",
+                       "--time-to-teleport",
+                       "-1",
+                       "--lanechange.duration",
+                       "3"};
+  if (!session.demand_file.empty()) {
+    // All at once, so that what is wrong with it shows before the first step.
+    command.arguments.insert(command.arguments.end(),
+                             {"--route-files", session.demand_file.string(), "--route-steps", "0"});
+  }
+  return command;
+}
+
+/// Whether SUMO refuses the network even without a demand.
+bool refusesNetwork(const SumoOptions& options, const SumoSession& session) {
+  SumoSession network_alone = session;
+  network_alone.demand_file.clear();
+  network_alone.log_folder.clear();
+  try {
+    const SumoLink link(commandFor(options, network_alone), options.step_timeout);
+    return false;
+  } catch (const SumoRefusal&) {
+    return true;
+  }
+}
+
+}  // namespace
+
+void refuseDemand(const SumoSession& session, const std::string& sentence) {
+  throw core::InputError("SUMO refuses the demand '" + session.demand_file.string() +
+                         "': " + sentence);
+}
+
+std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session) {
+  try {
+    return std::make_unique<SumoLink>(commandFor(options, session), options.step_timeout);
+  } catch (const SumoRefusal& refusal) {
+    if (!session.demand_file.empty() && !refusesNetwork(options, session))
+      refuseDemand(session, refusal.what());
+    const std::filesystem::path& source = session.network_source;
+    throw core::InputError("SUMO refuses the network '" +
+                           (source.empty() ? session.network_file : source).string() +
+                           "': " + refusal.what());
+  }
+}
+
+bool namesDemand(const std::string& sentence, const SumoSession& session) {
+  if (session.demand_file.empty()) return false;
+  const std::string demand = core::readFile(session.demand_file, "demand");
+  const std::vector<std::string> parts = core::splitText(" " + sentence, '\'');
+  for (std::size_t i = 1; i < parts.size(); i += 2) {
+    const std::string flow = parts[i].substr(0, parts[i].rfind('.'));
+    for (const std::string& id : {parts[i], flow}) {
+      if (demand.find("id=\"" + id + "\"") != std::string::npos) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace cdiff::simulation
