@@ -56,9 +56,10 @@ std::filesystem::path findProgram(const std::string& name, const std::string& pa
 }
 
 std::vector<std::string> environmentWith(const std::string& name, const std::string& value) {
-  std::vector<std::string> variables;
-  for (char** entry = environ; *entry != nullptr; ++entry) variables.emplace_back(*entry);
-  if (std::getenv(name.c_str()) == nullptr) variables.push_back(name + "=" + value);
+  std::vector<std::string> variables = {name + "=" + value};
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    if (std::string(*entry).rfind(name + "=", 0) != 0) variables.emplace_back(*entry);
+  }
   return variables;
 }
 

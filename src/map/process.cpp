@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/guarded_process.h"
 #include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
@@ -55,7 +56,7 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
   const double limit = netconvertLimit();
   const Output output;
   core::GuardedProcess process(core::findProgram("netconvert", "sumo"), arguments,
-                               core::environmentWith("SUMO_HOME", "/usr/share/sumo"),
+                               core::environmentWith("SUMO_HOME", core::sumoHome().string()),
                                core::ProcessStreams{{}, -1, output.descriptor()});
   process.setDeadline(limit);
   while (!process.waitForEnd(kStopPeriod)) {

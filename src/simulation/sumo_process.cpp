@@ -146,7 +146,7 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
                                         "--error-log",   logs_.errorLog().string()};
   arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
   process_ = std::make_unique<core::GuardedProcess>(
-      program, arguments, core::environmentWith("SUMO_HOME", "/usr/share/sumo"),
+      program, arguments, core::environmentWith("SUMO_HOME", core::sumoHome().string()),
       core::ProcessStreams{logs_.output()});
   const auto limit =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(command.start_timeout);

@@ -22,7 +22,7 @@ namespace cdiff::core {
 /// name in PATH. Throws InputError naming the program and the Debian package to install.
 std::filesystem::path findProgram(const std::string& name, const std::string& package);
 
-/// Our environment as "NAME=value", with one variable added where it is unset.
+/// Our environment as "NAME=value", with this value of one variable.
 std::vector<std::string> environmentWith(const std::string& name, const std::string& value);
 
 /// "signal 11 (Segmentation fault)".

@@ -13,10 +13,10 @@ inline constexpr const char* kNetconvertLimitVariable = "E2E_CDIFF_NETCONVERT_LI
 /// Wall time that netconvert may take [s].
 inline constexpr double kNetconvertLimit = 120.0;
 
-/// Runs netconvert with these arguments; SUMO_HOME is set to /usr/share/sumo when the environment
-/// has none. `subject` names in errors what is converted ("network 'a.xodr'"). Throws InputError
-/// that quotes netconvert, or says that it took longer than the limit or which signal ended it, and
-/// Interrupted when a stop is requested meanwhile (core/program.h).
+/// Runs netconvert with these arguments; SUMO_HOME is core::sumoHome(). `subject` names in errors
+/// what is converted ("network 'a.xodr'"). Throws InputError that quotes netconvert, or says that
+/// it took longer than the limit or which signal ended it, and Interrupted when a stop is requested
+/// meanwhile (core/program.h).
 void runNetconvert(const std::vector<std::string>& arguments, const std::string& subject);
 
 }  // namespace cdiff::map
