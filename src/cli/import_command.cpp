@@ -35,9 +35,11 @@ void importOne(const std::string& source, const std::string& output) {
 void addImportCommand(CLI::App& program, int& exit_code) {
   auto source = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand(
-      "import", "Make a SUMO network or an OpenDRIVE file usable, and say what was changed");
-  command->add_option("source", *source, "*.net.xml, *.xodr or a shipped network")->required();
+  CLI::App* command = program.add_subcommand("import",
+                                             "Make a SUMO network, an OpenDRIVE or an "
+                                             "OpenStreetMap file usable, and say what was changed");
+  command->add_option("source", *source, "*.net.xml, *.xodr, *.osm or a shipped network")
+      ->required();
   command->add_option("--output", *output, "Also write the network to this file");
   command->callback([source, output, &exit_code] {
     importOne(*source, *output);

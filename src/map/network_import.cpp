@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "converted_network.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
-#include "opendrive.h"
 #include "vehicle_classes.h"
 
 namespace cdiff::map {
@@ -56,19 +56,32 @@ bool isOpenDrive(const std::string& source, const std::string& content) {
   return endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
 }
 
-void importOpenDrive(const std::string& content, ImportedNetwork& network) {
-  if (content.find("<OpenDRIVE") == std::string::npos) {
-    throw core::InputError("network '" + network.source.string() +
-                           "': no <OpenDRIVE> element; an OpenDRIVE file was expected");
+bool isOpenStreetMap(const std::string& source, const std::string& content) {
+  constexpr std::size_t kHead = 4096;  // bytes before the first element of a file
+  return endsWith(source, ".osm") || endsWith(source, ".osm.xml") ||
+         std::string_view(content).substr(0, kHead).find("<osm") != std::string_view::npos;
+}
+
+/// A format that netconvert reads.
+struct Format {
+  const char* name;
+  const char* element;
+  std::string (*convert)(const fs::path& source);
+};
+
+void importConverted(const Format& format, const std::string& content, ImportedNetwork& network) {
+  if (content.find(format.element) == std::string::npos) {
+    throw core::InputError("network '" + network.source.string() + "': no " + format.element +
+                           "> element; an " + format.name + " file was expected");
   }
   network.file = cachedFile(content);
   if (fs::exists(network.file)) {
     network.text = core::readFile(network.file, "cached network");
   } else {
-    network.text = convertOpenDrive(network.source);
+    network.text = format.convert(network.source);
     core::writeFileAtomically(network.file, network.text);
   }
-  network.changes.emplace_back("converted from OpenDRIVE with netconvert");
+  network.changes.push_back(std::string("converted from ") + format.name + " with netconvert");
 }
 
 void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
@@ -78,8 +91,8 @@ void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
   }
   if (content.find("<net") == std::string::npos) {
     throw core::InputError("network '" + network.source.string() +
-                           "': no <net> element; a SUMO network (*.net.xml) or OpenDRIVE (*.xodr) "
-                           "was expected");
+                           "': no <net> element; a SUMO network (*.net.xml), OpenDRIVE (*.xodr) or "
+                           "OpenStreetMap (*.osm) was expected");
   }
   PermissionRewrite rewrite = dropUnknownClasses(content);
   network.text = std::move(rewrite.text);
@@ -99,7 +112,7 @@ fs::path networkFile(const std::string& source) {
     throw core::InputError("no network was given; a file or a shipped name was expected");
   if (core::isFile(source)) return source;
   const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
-                    endsWith(source, ".xodr");
+                    endsWith(source, ".xodr") || endsWith(source, ".osm");
   if (path && core::isFolder(source)) {
     throw core::InputError("network '" + source + "' is a folder; a file was expected");
   }
@@ -121,7 +134,9 @@ ImportedNetwork importNetwork(const std::string& source) {
   const std::string content = core::readFile(network.source, "network");
   network.source_sha256 = core::sha256(content);
   if (isOpenDrive(network.source.string(), content)) {
-    importOpenDrive(content, network);
+    importConverted({"OpenDRIVE", "<OpenDRIVE", convertOpenDrive}, content, network);
+  } else if (isOpenStreetMap(network.source.string(), content)) {
+    importConverted({"OpenStreetMap", "<osm", convertOpenStreetMap}, content, network);
   } else {
     importSumoNetwork(content, network);
   }

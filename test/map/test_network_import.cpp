@@ -143,6 +143,32 @@ TEST_F(NetworkImport, ConvertsOpenDrive) {
   EXPECT_EQ(fs::last_write_time(network.file), written);
 }
 
+// Three nodes 215 m apart on a road, and one from the middle.
+constexpr const char* kStreetMap = R"(<?xml version="1.0"?>
+<osm version="0.6"><bounds minlat="50.0" minlon="8.0" maxlat="50.01" maxlon="8.01"/>
+<node id="1" lat="50.0010" lon="8.0010"/><node id="2" lat="50.0010" lon="8.0040"/>
+<node id="3" lat="50.0010" lon="8.0070"/><node id="4" lat="50.0030" lon="8.0040"/>
+<way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><tag k="highway" v="secondary"/>
+<tag k="lanes" v="4"/></way>
+<way id="11"><nd ref="2"/><nd ref="4"/><tag k="highway" v="residential"/></way>
+<way id="12"><nd ref="1"/><nd ref="4"/><tag k="highway" v="footway"/></way>
+</osm>)";
+
+TEST_F(NetworkImport, ConvertsOpenStreetMapWithTheTypeMapOfThePackage) {
+  const ImportedNetwork network = importNetwork(write("town.osm", kStreetMap));
+  ASSERT_EQ(network.changes.size(), 1u);
+  EXPECT_EQ(network.changes[0], "converted from OpenStreetMap with netconvert");
+  const RoadNetwork read = RoadNetwork::fromText(network.text, "town");
+  // Two stretches of the road and one side street, both ways each; the footway is no road.
+  EXPECT_EQ(read.edgeIds().size(), 6U);
+  const auto lanesOf = [&](const std::string& edge) { return read.lanesOfEdge(edge); };
+  ASSERT_EQ(lanesOf("10#0").size(), 2U);  // four lanes, two each way
+  EXPECT_NEAR(read.lane(lanesOf("10#0")[0]).speed_limit, 13.89, 1e-9);
+  ASSERT_EQ(lanesOf("-11").size(), 1U);
+  EXPECT_NEAR(read.lane(lanesOf("-11")[0]).speed_limit, 8.33, 1e-9);
+  EXPECT_TRUE(read.lane(lanesOf("-11")[0]).routable);
+}
+
 TEST_F(NetworkImport, QuotesNetconvert) {
   const std::string message =
       errorOf([&] { importNetwork(write("bad.xodr", "<OpenDRIVE><road")); });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Makes any given network usable by SUMO 1.15: drops vehicle classes that it does not know,
-/// converts OpenDRIVE through netconvert, and caches the result by the hash of the input's content.
-/// The changes are named in the record.
+/// converts OpenDRIVE and OpenStreetMap through netconvert, and caches the result by the hash of
+/// the input's content. The changes are named in the record.
 #pragma once
 
 #include <filesystem>
@@ -23,9 +23,9 @@ struct ImportedNetwork {
 /// The file that `source` stands for: a path, or the name of a shipped network. Throws InputError.
 std::filesystem::path networkFile(const std::string& source);
 
-/// `source`: *.net.xml (also gzip-free older or newer), *.xodr, or the name of a network shipped in
-/// networks/. Throws InputError naming the file and what is wrong (missing, not a network,
-/// netconvert's own message).
+/// `source`: *.net.xml (also gzip-free older or newer), *.xodr, *.osm, or the name of a network
+/// shipped in networks/. Throws InputError naming the file and what is wrong (missing, not a
+/// network, netconvert's own message).
 ImportedNetwork importNetwork(const std::string& source);
 
 }  // namespace cdiff::map
