@@ -143,8 +143,7 @@ TEST_F(BatchRobustness, RepeatsARunWhoseSumoWasKilled) {
   const std::string matrix =
       write("matrix.yaml",
             "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nretries: 1\nset: "
-            "[protocol.time_limit=2, at_most=1, verdict.judge=false]
-");
+            "[protocol.time_limit=2, at_most=1, verdict.judge=false]\n");
   const std::string results = folder("results");
   ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results},
                        scratch_.path() / "output");
