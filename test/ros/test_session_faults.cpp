@@ -140,7 +140,8 @@ std::string nameOf(const ::testing::TestParamInfo<Fault>& info) {
 
 class SessionFaultsCampaign : public SessionFaults, public ::testing::WithParamInterface<Fault> {};
 
-// At the default limits, whenever it comes: during the start of the nodes or on the way.
+// At the default limits, whenever it comes: during the start of the nodes or on the way. An ego
+// that brakes for want of a planner would be blocked, by default, before the planner is missed.
 TEST_P(SessionFaultsCampaign, EndsWithin45SecondsAndNamesTheCulprit) {
   const Fault fault = GetParam();
   std::mt19937 random(15);
@@ -151,7 +152,7 @@ TEST_P(SessionFaultsCampaign, EndsWithin45SecondsAndNamesTheCulprit) {
     session.launch(
         "record:=true camera:=true scenario:=roundabout_cross cbv_planner:=pdm_lite "
         "set:=\"" +
-        std::string(pace) + " protocol.time_limit=60\"");
+        std::string(pace) + " protocol.time_limit=60 protocol.blocked_time=60\"");
     ASSERT_GT(session.process("metrics_node"), 0);
     pause(delay);
     const bool ended = fs::exists(session.results() / "exit_code");
