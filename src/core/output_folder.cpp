@@ -164,12 +164,7 @@ void FolderLock::sign(const std::string& program) {
 }
 
 ScratchFolder::ScratchFolder() {
-  std::error_code error;
-  const fs::path parent = fs::temp_directory_path(error);
-  if (error) {
-    throw InputError("no temporary folder: " + error.message() +
-                     "; set TMPDIR to a folder that exists");
-  }
+  const fs::path parent = temporaryFolder();
   static std::once_flag once;
   std::call_once(once, removeOrphans, parent);
   std::string name = (parent / kScratchPrefix).string() + "XXXXXX";

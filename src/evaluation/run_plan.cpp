@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/scenario/closed_loop.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "matrix_levels.h"
 
@@ -102,6 +103,7 @@ class Planner {
       if (!seeds.empty()) request.seed = seeds.front();
       scenario::ScenarioOptions options = scenario::resolveRequest(request);
       checkEgoPlanner(options.ego_planner);
+      scenario::requireLockstep(options);
       std::vector<PlannedRun> runs = {runOf(level.label, options)};
       // An override of the seed ranks above the matrix's seeds.
       const bool overridden = !seeds.empty() && std::stoll(seeds.front()) != options.seed;

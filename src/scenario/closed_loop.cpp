@@ -50,7 +50,8 @@ void pace(Clock::time_point begin, double simulated_seconds, double at_most,
   }
 }
 
-/// One process asks its planners one after the other: nobody can be late.
+}  // namespace
+
 void requireLockstep(const ScenarioOptions& options) {
   if (options.real_time_factor <= 0.0) return;
   throw core::InputError(
@@ -58,8 +59,6 @@ void requireLockstep(const ScenarioOptions& options) {
       ", which needs the node graph (roslaunch e2e_cdiff session.launch): in one process no answer "
       "can be late; expected 0 here, and 'at_most' to limit the pace");
 }
-
-}  // namespace
 
 std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
                                    const cbv::CbvSelection& selection, double target_speed) {

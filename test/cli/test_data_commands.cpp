@@ -75,18 +75,18 @@ TEST_F(DataCommands, TheTrainersExitCodeAndMessageComeThrough) {
 
 TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
   EXPECT_EQ(cdiff({"train", "--help"}), 0);
-  expectOutput("--steps INT [20000]");
-  expectOutput("--learning-rate FLOAT [0.0002]");
-  expectOutput("--stage TEXT [all]");
+  expectOutput("--steps INT=20000");
+  expectOutput("--learning-rate FLOAT=0.0002");
+  expectOutput("--stage TEXT=all");
   std::istringstream lines(output());
   std::size_t options = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("  --", 0) != 0) continue;
     ++options;
-    // Two words at least behind name and default, in the same line.
-    EXPECT_NE(line.find(' ', std::max<std::size_t>(line.find_last_of(']') + 1, 42)),
-              std::string::npos)
-        << line;
+    // The help begins in column 40 of the same line, behind a blank.
+    ASSERT_GT(line.size(), 41U) << line;
+    EXPECT_EQ(line[39], ' ') << line;
+    EXPECT_NE(line[40], ' ') << line;
   }
   EXPECT_EQ(options, 28U) << output();
 }

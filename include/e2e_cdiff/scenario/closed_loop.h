@@ -17,6 +17,10 @@
 
 namespace cdiff::scenario {
 
+/// One process asks its planners one after the other, so no answer can be late: throws InputError
+/// for options with a real-time factor.
+void requireLockstep(const ScenarioOptions& options);
+
 /// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot,
 /// in slot order.
 std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
