@@ -168,6 +168,10 @@ void NetworkReader::readLane(const pugi::xml_node& node, const pugi::xml_node& e
     fail(element + ": width=\"" + node.attribute("width").value() + "\"; 0 to " +
          core::formatNumber(kLargestWidth) + " m was expected");
   }
+  // Ours follows from the shape, but SUMO drives by this one, and ends with a signal where it is
+  // wrong.
+  if (number(node, "length", 0.0, element) < 0.0)
+    fail(element + ": length=\"" + node.attribute("length").value() + "\"; 0 m or more expected");
   lane.speed_limit = number(node, "speed", lane.speed_limit, element);
   lane.internal = lane.edge_id.front() == ':';
   lane.allows_cars = allowsCars(node);

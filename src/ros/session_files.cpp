@@ -84,6 +84,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     enterFolder(parameters.text("folder"));
     folder = askedFolder(parameters);
     if (!folder.empty() && writtenByThisLaunch(folder / "exit_code")) return 2;
+    requireKnownLaunchArguments();  // else it would be the result of another session than was meant
     const auto options = scenario::resolveRequest(sessionRequest(parameters));
     folder = resultFolder(parameters.text("results"), options);
     const bool overwrite =

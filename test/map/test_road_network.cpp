@@ -214,6 +214,10 @@ TEST(RoadNetwork, NamesWhatIsWrong) {
   expectError("120,0 200,0", "120,0 200", "lane 'out_0': shape point \"200\"");
   expectError("width=\"3.5\"", "width=\"inf\"", "lane 'in_0': width=\"inf\"");
   expectError("width=\"3.5\"", "width=\"1e9\"", "lane 'in_0': width=\"1e9\"; 0 to 100 m");
+  for (const char* length : {"nan", "inf", "-5"}) {
+    const std::string attribute = std::string("length=\"") + length + "\"";
+    expectError("width=\"3.5\"", "width=\"3.5\" " + attribute, "lane 'in_0': " + attribute);
+  }
   expectError("120,0 200,0", "120,0 1e15,0",
               "lane 'out_0': the point 1e+15,0 lies more than 1e+06 m from the first lane");
   expectError("via=\":j_0_0\"", "via=\":j_9_0\"", "unknown lane ':j_9_0'");
