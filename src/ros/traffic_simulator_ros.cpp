@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 using traffic::SessionStatus;
 
 std::vector<std::string> knownParameters() {
-  return {"scenario",      "bench2drive",    "route",   "network", "mode",   "ego_planner",
-          "cbv_planner",   "seed",           "set",     "record",  "folder", "participants",
-          "start_timeout", "answer_timeout", "results", "camera",  "video",  "overwrite",
+  return {"scenario",         "bench2drive",    "route",   "network", "mode",   "ego_planner",
+          "cbv_planner",      "seed",           "set",     "record",  "folder", "participants",
+          "start_timeout",    "answer_timeout", "results", "camera",  "video",  "overwrite",
           "heartbeat_timeout"};
 }
 

@@ -183,7 +183,8 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
 }
 
 void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
-  visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."}, mode, {"naturalistic", "safety_critical"});
+  visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."},
+               mode, {"naturalistic", "safety_critical"});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);

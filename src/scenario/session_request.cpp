@@ -53,8 +53,8 @@ ScenarioOptions baseScenario(const SessionRequest& request, const ScenarioOption
 ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOptions& base) {
   ScenarioOptions options = baseScenario(request, base);
   if (!request.network.empty()) {
-    options.network = core::isFile(request.network) ? fs::absolute(request.network).string()
-                                                           : request.network;
+    options.network =
+        core::isFile(request.network) ? fs::absolute(request.network).string() : request.network;
   }
   const auto apply = [&](const std::string& key, const std::string& value) {
     if (!value.empty()) core::overrideOption(key + "=" + value, "argument '" + key + "'", options);

@@ -151,8 +151,8 @@ class Trainer {
                      "model with init");
   }
 
-  /// Whether the model is whole: a fine-tuned encoder goes with the denoiser of an earlier run or of
-  /// the initial model.
+  /// Whether the model is whole: a fine-tuned encoder goes with the denoiser of an earlier run or
+  /// of the initial model.
   bool hasDenoiser() {
     if (options_.stage == "encoder") return false;
     if (options_.stage != "fine_tune") return true;

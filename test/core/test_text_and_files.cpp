@@ -30,7 +30,8 @@ TEST(Text, NumbersRoundTrip) {
   EXPECT_FALSE(parseNumber("inf"));
 }
 
-// ctest runs each test in a folder of its own, and the compiler may know the source by a relative path.
+// ctest runs each test in a folder of its own, and the compiler may know the source by a relative
+// path.
 TEST(RealData, IsFoundFromAnyFolder) {
   ::unsetenv("E2E_CDIFF_DATA");
   ::setenv("E2E_CDIFF_SHARE", "/somewhere/package", 1);

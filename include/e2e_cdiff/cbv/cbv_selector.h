@@ -25,8 +25,8 @@ namespace cdiff::cbv {
 /// `observe` at all others.
 class CbvSelector {
  public:
-  /// Keeps references: the graph's network and the route must outlive the selector. Throws InputError for bad options
-  /// or a negative count.
+  /// Keeps references: the graph's network and the route must outlive the selector. Throws
+  /// InputError for bad options or a negative count.
   CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
               const map::Route& ego_route);
   CbvSelector(const CbvSelector&) = delete;

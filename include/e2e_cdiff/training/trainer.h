@@ -60,9 +60,9 @@ class DivergedError : public core::Error {
 
 /// Runs the stage, or all of them, and writes the model (`encoder.safetensors`,
 /// `denoiser.safetensors`, `training.json`, `model_card.md`) after the last; `fine_tune`
-/// alone writes it with the denoiser of the output folder or the initial model, where one is. `stop`, set from
-/// another thread or a signal, ends it after the current step with a checkpoint and
-/// core::Interrupted. Throws InputError for wrong options or data.
+/// alone writes it with the denoiser of the output folder or the initial model, where one is.
+/// `stop`, set from another thread or a signal, ends it after the current step with a checkpoint
+/// and core::Interrupted. Throws InputError for wrong options or data.
 void train(const TrainingOptions& options, const std::atomic<bool>& stop, std::ostream& log);
 
 }  // namespace cdiff::training
