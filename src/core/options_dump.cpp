@@ -12,7 +12,6 @@ namespace {
 
 std::string quoted(const std::string& text) {
   YAML::Emitter emitter;
-  YAML::Node parsed;
   emitter << YAML::DoubleQuoted << text;
   return emitter.c_str();
 }

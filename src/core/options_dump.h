@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options as YAML text.
+/// How loading and dumping of options write a range of values.
 #pragma once
 
 #include <string>

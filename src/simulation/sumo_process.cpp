@@ -154,9 +154,8 @@ SumoProcess::Start SumoProcess::tryStart(const SumoCommand& command, const fs::p
     if (process_->ended()) {
       const std::string words = lastWords();
       if (words.find("already in use") != std::string::npos) return Start::kPortTaken;
-      const std::string text = "SUMO did not start (" + process_->endText() + "): " + words;
-      if (!refusal().empty()) throw SumoRefusal(refusal());
-      throw core::SimulatorError(text);
+      if (const std::string reason = refusal(); !reason.empty()) throw SumoRefusal(reason);
+      throw core::SimulatorError("SUMO did not start (" + process_->endText() + "): " + words);
     }
     if (std::chrono::steady_clock::now() > limit) {
       throw core::SimulatorError("SUMO did not listen within " +

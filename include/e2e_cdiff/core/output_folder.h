@@ -17,7 +17,7 @@ class FolderLock {
   /// Name of the file.
   static constexpr const char* kFile = ".lock";
 
-  /// Makes the folder and its parents. `program` is what a second writer is told ("cdiff run").
+  /// Makes the folder and its parents. `program` names this writer to a second one ("cdiff run").
   /// Throws InputError naming host and process of the writer that holds it, or why the folder or
   /// the file cannot be made.
   FolderLock(const std::filesystem::path& folder, const std::string& program);

@@ -18,8 +18,8 @@ void requireFreeFolder(const std::filesystem::path& folder, bool overwrite);
 class ResultFolder {
  public:
   /// Makes and locks the folder, checks it as requireFreeFolder does, and removes the files of an
-  /// earlier session and what writes that were cut off left. `program` is what a second writer is
-  /// told ("cdiff run"). Throws InputError; nothing is removed then.
+  /// earlier session and what writes that were cut off left. `program` names this writer to a
+  /// second one ("cdiff run"). Throws InputError; nothing is removed then.
   ResultFolder(std::filesystem::path folder, const std::string& program, bool overwrite);
   const std::filesystem::path& path() const { return path_; }
 

@@ -32,13 +32,14 @@ void writeExitCode(const std::filesystem::path& folder, int exit_code);
 /// The exit code of a session that bad input kept from starting; a folder in use, or with an
 /// earlier result, is not touched. `folder` may be empty.
 void writeRefusal(const std::filesystem::path& folder);
+
 /// Relative paths in parameters are meant from where the user started the session; empty: from
 /// here. Throws InputError when there is no such folder.
 void enterFolder(const std::string& folder);
 
 /// Writes the result of a session that ended before its first snapshot, which its simulator was to
-/// run with these parameters, and answers the exit code. A result (file exit_code) that this launch
-/// has left already stays. Bad input is told in one line, and is the exit code then.
+/// run with these parameters, and returns the exit code of `cdiff`. A result (file exit_code) that
+/// this launch has already written stays. Bad input is reported in one line, with exit code 3.
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault);
 
