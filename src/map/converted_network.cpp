@@ -5,7 +5,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/map/process.h"
+#include "e2e_cdiff/map/netconvert.h"
 
 namespace cdiff::map {
 namespace {

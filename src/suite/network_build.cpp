@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/map/process.h"
+#include "e2e_cdiff/map/netconvert.h"
 
 namespace cdiff::suite {
 namespace {

@@ -144,8 +144,8 @@ class TrafficSimulatorRos {
   std::uint64_t acknowledged_ = 0;     ///< tick that all of them had acknowledged then
 };
 
-/// Runs the session that the node's parameters ask for; bad input is told in one line, and in the
-/// exit code's file where the result folder was given.
+/// Runs the session that the node's parameters ask for; bad input is reported in one line, and in
+/// the exit code's file where the result folder was given.
 int runTrafficSimulator(StopSignal& stop);
 
 }  // namespace cdiff::ros
