@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <algorithm>
 #include <iterator>
 
 #include "figure_rows.h"
@@ -80,12 +79,7 @@ constexpr FigureDefinition kRows[] = {
      "Of the ego's contacts, those in which it strikes the other, by their motion at first touch; "
      "a "
      "standing ego is never at fault (docs/protocols.md).",
-     "",
-     [](const M& m) {
-       return countMeasure(static_cast<std::size_t>(
-           std::count_if(m.ego_contacts.begin(), m.ego_contacts.end(),
-                         [](const EgoContact& contact) { return contact.ego_at_fault; })));
-     }},
+     "", [](const M& m) { return countMeasure(m.contactsAtFault()); }},
     {"ego_off_road_percent", "/ego/off_road_percent", "Ego off the road", "%", kLower,
      "100 x ticks with the centre of the ego's box off the drivable area of its level / ticks with "
      "the ego.",

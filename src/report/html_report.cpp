@@ -115,10 +115,8 @@ std::string figures(const SessionResult& result) {
          figure("Driving score", core::formatFixed(measures.driving_score, 1), "",
                 "of 100, by " + measures.protocol) +
          figure("Ego collisions", std::to_string(measures.ego_collisions), "",
-                std::to_string(std::count_if(
-                    measures.ego_contacts.begin(), measures.ego_contacts.end(),
-                    [](const metrics::EgoContact& contact) { return contact.ego_at_fault; })) +
-                    " its fault, " + std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
+                std::to_string(measures.contactsAtFault()) + " its fault, " +
+                    std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
          figure("CBVs", std::to_string(measures.cbv_count), "",
                 std::to_string(measures.cbv_decisions) + " decisions, " +
                     core::formatFixed(measures.cbv_distance_m, 0) + " m") +

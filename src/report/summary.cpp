@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/report/summary.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -100,9 +99,7 @@ Json egoObject(const metrics::SessionMeasures& measures) {
   }
   object["blocked"] = measures.blocked;
   object["collisions"] = measures.ego_collisions;
-  object["contacts_at_fault"] =
-      std::count_if(measures.ego_contacts.begin(), measures.ego_contacts.end(),
-                    [](const metrics::EgoContact& contact) { return contact.ego_at_fault; });
+  object["contacts_at_fault"] = measures.contactsAtFault();
   object["contacts"] = contactList(measures.ego_contacts);
   addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
   return object;

@@ -3,6 +3,7 @@
 /// The figures of a session, each with its unit, count and, where it cannot be given, the reason.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -99,6 +100,13 @@ struct SessionMeasures {
   /// The same by RIFT's definitions: ttc_2d_s, speed_shapiro_wilk, acceleration_shapiro_wilk,
   /// speed_wasserstein_mps ... (RiftMeasures::measures).
   std::map<std::string, Measure> rift_compat;
+
+  /// How many of the ego's contacts are its fault.
+  std::size_t contactsAtFault() const {
+    return static_cast<std::size_t>(
+        std::count_if(ego_contacts.begin(), ego_contacts.end(),
+                      [](const EgoContact& contact) { return contact.ego_at_fault; }));
+  }
 };
 
 }  // namespace cdiff::metrics
