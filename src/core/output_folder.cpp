@@ -101,24 +101,26 @@ void removeOrphans(const fs::path& parent) {
   }
 }
 
+/// The folder and its parents that do not exist, the innermost first.
+std::vector<fs::path> missingFolders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  fs::path place = fs::absolute(folder, error).lexically_normal();
+  if (!place.has_filename()) place = place.parent_path();
+  for (; !fs::exists(place, error) && place != place.parent_path(); place = place.parent_path())
+    missing.push_back(place);
+  return missing;
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder, const std::string& program)
-    : folder_(folder), file_(folder / kFile) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error)
-    throw InputError("cannot make the folder '" + folder_.string() + "': " + error.message());
-  const Clock::time_point begin = Clock::now();
-  while (!tryLock()) {
-    if (Clock::now() - begin > kPatience) {
-      const std::string holder = holderText(descriptor_);
-      ::close(descriptor_);
-      throw InputError("'" + folder_.string() + "' is being written by " + holder +
-                       "; wait until it has ended, or give another folder");
-    }
-    ::close(descriptor_);
-    std::this_thread::sleep_for(kPeriod);
+    : folder_(folder), file_(folder / kFile), made_(missingFolders(folder)) {
+  try {
+    takeLock();
+  } catch (...) {
+    removeMade();
+    throw;
   }
   try {
     requireOwnHost();
@@ -132,10 +134,34 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& program)
 FolderLock::~FolderLock() {
   ::unlink(file_.c_str());
   ::close(descriptor_);
+  removeMade();
 }
 
-/// Opens the file and locks it, unless another process has it locked or removes it just now.
+void FolderLock::removeMade() const {
+  for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // refused where it holds anything
+}
+
+void FolderLock::takeLock() {
+  const Clock::time_point begin = Clock::now();
+  while (!tryLock()) {
+    if (Clock::now() - begin > kPatience) {
+      const std::string holder = holderText(descriptor_);
+      ::close(descriptor_);
+      throw InputError("'" + folder_.string() + "' is being written by " + holder +
+                       "; wait until it has ended, or give another folder");
+    }
+    ::close(descriptor_);
+    std::this_thread::sleep_for(kPeriod);
+  }
+}
+
+/// Makes the folder, opens the file and locks it, unless another process has it locked or removes
+/// it just now.
 bool FolderLock::tryLock() {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error)
+    throw InputError("cannot make the folder '" + folder_.string() + "': " + error.message());
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) failOn(file_, "write", errno);
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return isSameFile(descriptor_, file_);

@@ -70,8 +70,22 @@ TEST_F(OutputFolder, LockIsAFileThatGoesWithTheObject) {
     const FolderLock lock(folder(), "first");
     EXPECT_TRUE(fs::exists(lockFile()));
   }
-  EXPECT_TRUE(fs::is_empty(folder()));
+  EXPECT_FALSE(fs::exists(lockFile()));
   EXPECT_EQ(lockError(folder()), "");
+}
+
+TEST_F(OutputFolder, FoldersMadeForNothingGoWithTheLockAndOthersStay) {
+  { const FolderLock lock(folder(), "first"); }
+  EXPECT_FALSE(fs::exists(folder().parent_path()));
+  fs::create_directories(folder().parent_path());
+  { const FolderLock lock(folder() / "", "first"); }
+  EXPECT_FALSE(fs::exists(folder()));
+  EXPECT_TRUE(fs::exists(folder().parent_path())) << "it was there before";
+  {
+    const FolderLock lock(folder(), "first");
+    std::ofstream(folder() / "result") << "kept";
+  }
+  EXPECT_TRUE(fs::exists(folder() / "result"));
 }
 
 TEST_F(OutputFolder, ASecondWriterIsToldHostProcessAndProgramOfTheFirst) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace cdiff::core {
 
@@ -21,18 +22,21 @@ class FolderLock {
   /// Throws InputError naming host and process of the writer that holds it, or why the folder or
   /// the file cannot be made.
   FolderLock(const std::filesystem::path& folder, const std::string& program);
-  /// Removes the file.
+  /// Removes the file, and the folders that it made where they are still empty.
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
+  void takeLock();
   bool tryLock();
+  void removeMade() const;
   void requireOwnHost() const;
   void sign(const std::string& program);
 
   std::filesystem::path folder_;
   std::filesystem::path file_;
+  std::vector<std::filesystem::path> made_;  ///< innermost first
   int descriptor_ = -1;
 };
 
