@@ -12,6 +12,7 @@
 #include <string>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/diffusion/architecture.h"
 
 namespace cdiff::training {
@@ -25,9 +26,9 @@ struct TrainingOptions {
   std::int64_t batch = 0;      ///< samples per step; 0: 32 with images, 128 on features
   std::int64_t threads = 1;
   std::int64_t seed = 1;
-  double time_limit = 0.0;      ///< of the stage, over all resumptions [s]; 0: none
+  double time_limit = 0.0;      ///< of the stage's steps, over all resumptions [s]; 0: none
   bool anneal_by_time = false;  ///< learning rate falls with time instead of steps
-  bool resume = false;
+  bool resume = false;          ///< the stage goes on from its checkpoint if there is one
   std::string device = "auto";     ///< auto | cpu | cuda
   std::string precision = "auto";  ///< of the encoder's convolutions in training: auto | f32 | bf16
   double image_scale = 1.0;        ///< of stage `encoder`: 1 or 0.5
@@ -46,13 +47,14 @@ struct TrainingOptions {
   std::int64_t validation_every = 1000;  ///< steps
   double checkpoint_every = 300.0;       ///< [s]
   double report_every = 10.0;            ///< [s]
-  diffusion::Architecture architecture;  ///< sizes that the data do not fix
+  diffusion::Architecture architecture;  ///< sizes that the data do not fix; not described
 
-  /// Throws InputError naming the option.
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError naming the key.
   void validate() const;
 };
 
-/// A loss or a weight stopped being finite. `cdiff_train` exits with 2.
+/// A loss or a weight stopped being finite. `cdiff train` exits with 2.
 class DivergedError : public core::Error {
  public:
   using core::Error::Error;
