@@ -59,6 +59,7 @@ fs::path outputOf(const std::vector<std::string>& arguments) {
 
 int trainAndDraw(const std::vector<std::string>& arguments) {
   const int code = runTrainer(arguments);
+  if (code == kBadInput) return code;  // the folder may be another training's
   const fs::path output = outputOf(arguments);
   if (output.empty() || !fs::exists(output / "curves.csv")) return code;
   try {
@@ -74,7 +75,7 @@ int trainAndDraw(const std::vector<std::string>& arguments) {
 
 void addTrainCommand(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
-      "train", "Train the diffusion planner (cdiff_train; 'cdiff train --help' lists its options)");
+      "train", "Train the diffusion planner ('cdiff train --help' lists its options)");
   command->set_help_flag();
   command->prefix_command();
   command->callback([command, &exit_code] { exit_code = trainAndDraw(command->remaining()); });

@@ -72,7 +72,8 @@ class OptionAdder : public core::OptionsVisitor {
   void addChecked(const FieldInfo& info, const std::string& help, const char* type,
                   const std::string& value) {
     const std::string name = optionName(info.key);
-    const auto set = [&options = options_, name, key = std::string(info.key)](const std::string& text) {
+    const auto set = [&options = options_, name,
+                      key = std::string(info.key)](const std::string& text) {
       core::overrideOption(key + "=" + text, "option " + name, options);
     };
     program_.add_option_function<std::string>(name, set, help)->type_name(type)->default_str(value);

@@ -74,7 +74,7 @@ std::string figureRow(const std::string& label, const std::string& prefix, const
 
 std::string modelCard(const json& facts, const Figures& held_out) {
   std::ostringstream card;
-  card << "# Diffusion planner\n\nTrained by `cdiff_train` on " << facts["data"]["training_samples"]
+  card << "# Diffusion planner\n\nTrained by `cdiff train` on " << facts["data"]["training_samples"]
        << " samples of "
        << facts["data"]["sessions"].get<int>() - facts["data"]["validation_sessions"].get<int>()
        << " sessions; judged on " << facts["data"]["judged_samples"] << " samples of "

@@ -20,6 +20,7 @@
 #include "feature_cache.h"
 #include "stage_runner.h"
 #include "stored_normalizer.h"
+#include "training_folder.h"
 
 namespace cdiff::training {
 namespace {
@@ -100,6 +101,7 @@ class Trainer {
   }
 
   void run() {
+    removeEarlier(options_);
     const bool all = options_.stage == "all";
     if (all || options_.stage == "encoder") trainEncoder("encoder", options_.image_scale);
     if (options_.stage == "fine_tune" || (all && options_.image_scale != 1.0))
@@ -107,8 +109,8 @@ class Trainer {
     if (all || options_.stage == "denoiser") trainDenoiser();
     if (options_.stage == "joint") trainJoint();
     if (options_.stage == "export") {
-      loadEncoder({"joint", "fine_tune", "encoder"});
-      load({"joint", "denoiser"}, {"denoiser", &state_.denoiser.parameters()});
+      loadEncoder("export");
+      load(denoiserSources("export"), {"denoiser", &state_.denoiser.parameters()});
     }
     if (!hasDenoiser()) {
       log_ << "no model is written yet: train stage denoiser on this encoder next" << std::endl;
@@ -144,11 +146,8 @@ class Trainer {
     return false;
   }
 
-  void loadEncoder(const std::vector<std::string>& stages) {
-    if (load(stages, {"encoder", &state_.encoder.parameters()}) || !options_.init.empty()) return;
-    throw InputError("training: '" + options_.output +
-                     "' holds no checkpoint of an encoder; train stage 'encoder' first, or give a "
-                     "model with init");
+  void loadEncoder(const std::string& stage) {
+    load(encoderSources(stage), {"encoder", &state_.encoder.parameters()});
   }
 
   /// Whether the model is whole: a fine-tuned encoder goes with the denoiser of an earlier run or
@@ -169,7 +168,7 @@ class Trainer {
 
   void trainEncoder(const std::string& name, double scale) {
     if (name == "fine_tune") {
-      loadEncoder({"encoder"});
+      loadEncoder(name);
       load({"encoder"}, {"head", &state_.head.parameters()});
     }
     const std::unique_ptr<Stage> stage = makeEncoderStage(state_, name, scale);
@@ -177,14 +176,14 @@ class Trainer {
   }
 
   void trainDenoiser() {
-    loadEncoder({"fine_tune", "encoder"});
+    loadEncoder("denoiser");
     const FeatureCache cache = computeFeatures(state_, stop_, log_);
     const std::unique_ptr<Stage> stage = makeDiffusionStage(state_, "denoiser", &cache);
     runStage(*stage);
   }
 
   void trainJoint() {
-    loadEncoder({"fine_tune", "encoder"});
+    loadEncoder("joint");
     load({"denoiser"}, {"denoiser", &state_.denoiser.parameters()});
     const std::unique_ptr<Stage> stage = makeDiffusionStage(state_, "joint", nullptr);
     runStage(*stage);
@@ -218,6 +217,8 @@ void train(const TrainingOptions& options, const std::atomic<bool>& stop, std::o
   options.validate();
   at::set_num_threads(static_cast<int>(options.threads));
   const core::FolderLock lock(options.output, "cdiff train");
+  requireFreeOutput(options);
+  requireSources(options);
   core::removeTemporaries(options.output);
   const Dataset dataset(options.data, options.validation_share);
   log << "data: " << dataset.training().size() << " training samples, "

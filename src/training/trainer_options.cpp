@@ -26,16 +26,19 @@ void describeRun(TrainingOptions& options, OptionsVisitor& visitor) {
                   2147483647);
   visitor.flag({"resume", "", "Go on from the stage's checkpoint if there is one."},
                options.resume);
+  visitor.flag({"overwrite", "", "Replace an earlier training of the stage in the folder."},
+               options.overwrite);
   visitor.text({"device", "", "Where to compute."}, options.device, {"auto", "cpu", "cuda"});
   visitor.text({"precision", "", "Of the encoder in training."}, options.precision,
                {"auto", "f32", "bf16"});
 }
 
 void describeTimes(TrainingOptions& options, OptionsVisitor& visitor) {
-  visitor.number({"time_limit", "s",
-                  "Time for the steps of the stage, resumptions included; computing features and the "
-                  "last judgement come on top; 0: none."},
-                 options.time_limit, 0.0, kLongest);
+  visitor.number(
+      {"time_limit", "s",
+       "Time for the steps of the stage, resumptions included; computing features and the "
+       "last judgement come on top; 0: none."},
+      options.time_limit, 0.0, kLongest);
   visitor.flag({"anneal_by_time", "", "The learning rate falls to 0 at the time limit."},
                options.anneal_by_time);
   visitor.number({"checkpoint_every", "s", "Between two checkpoints."}, options.checkpoint_every,
@@ -95,6 +98,11 @@ void TrainingOptions::validate() const {
   core::loadOptions({"training options", core::dumpOptions(*this)}, checked);
   if (data.empty()) throw InputError("training: data, the folder of the shards, is not given");
   if (output.empty()) throw InputError("training: output, the folder to write to, is not given");
+  if (resume && overwrite) {
+    throw InputError(
+        "training: resume and overwrite are both set; expected one of them: go on with the "
+        "training in the folder, or replace it");
+  }
   if (anneal_by_time && time_limit <= 0.0)
     throw InputError("training: anneal_by_time needs a time_limit");
   if (image_scale != 1.0 && image_scale != 0.5) {

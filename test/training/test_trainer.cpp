@@ -38,6 +38,21 @@ class TrainerTest : public testing::Test {
     options_.steps = steps;
     train(options_, stop_, log_);
   }
+  /// What a run that is refused says.
+  std::string refusal(const std::string& stage) {
+    try {
+      run(stage, 1);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "trained";
+  }
+  std::filesystem::path output(const std::string& name) const {
+    return std::filesystem::path(options_.output) / name;
+  }
+  std::int64_t stepsOf(const std::string& stage) const {
+    return readCheckpoint(output(stage + ".checkpoint")).facts.at("steps");
+  }
 
   test::TemporaryFolder folder_;
   TrainingOptions options_;
@@ -89,9 +104,11 @@ TEST_F(TrainerTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
   StoppingBuffer buffer(stop_, "encoder step 2/4");
   std::ostream log(&buffer);
   options_.stage = "encoder";
+  options_.overwrite = true;
   EXPECT_THROW(train(options_, stop_, log), core::Interrupted);
   EXPECT_EQ(readCheckpoint(path).facts.at("steps"), 2);
   stop_ = false;
+  options_.overwrite = false;
   options_.resume = true;
   run("encoder", 4);
   const Checkpoint found = readCheckpoint(path);
@@ -111,6 +128,7 @@ TEST_F(TrainerTest, AnInitialModelBringsItsNormalizerAndMustFit) {
   EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.mean, expected.mean);
   EXPECT_EQ(diffusion::loadModel(options_.output).normalizer.scale, expected.scale);
   options_.architecture.state_hidden += 1;
+  options_.overwrite = true;
   try {
     run("denoiser", 1);
     FAIL() << "trained";
@@ -138,6 +156,67 @@ TEST_F(TrainerTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
   };
   EXPECT_TRUE(sameValues(tuned.denoiser, initial.denoiser));
   EXPECT_FALSE(sameValues(tuned.encoder, initial.encoder));
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(TrainerTest, AnEarlierTrainingIsReplacedOnlyWhenAsked) {
+  run("encoder", 2);
+  const std::string before = core::readFile(output("encoder.checkpoint"), "checkpoint");
+  for (const char* stage : {"encoder", "all"}) {
+    const std::string text = refusal(stage);
+    EXPECT_TRUE(holds(text, "holds a training of stage 'encoder' (encoder.checkpoint)")) << text;
+    EXPECT_TRUE(holds(text, "--resume") && holds(text, "--overwrite")) << text;
+  }
+  EXPECT_EQ(core::readFile(output("encoder.checkpoint"), "checkpoint"), before);
+  options_.resume = options_.overwrite = true;
+  EXPECT_TRUE(holds(refusal("encoder"), "resume and overwrite are both set"));
+  options_.resume = false;
+  run("encoder", 1);
+  EXPECT_EQ(stepsOf("encoder"), 1);
+}
+
+TEST_F(TrainerTest, AStageThatIsReplacedLeavesTheOthersAndAllReplacesEach) {
+  run("encoder", 1);
+  run("fine_tune", 2);
+  options_.overwrite = true;
+  run("encoder", 3);
+  EXPECT_EQ(stepsOf("encoder"), 3);
+  EXPECT_EQ(stepsOf("fine_tune"), 2);
+  run("all", 1);
+  EXPECT_EQ(stepsOf("encoder"), 1);
+  EXPECT_EQ(stepsOf("denoiser"), 1);
+  // Else the denoiser would have been trained on the encoder of the earlier training.
+  EXPECT_FALSE(std::filesystem::exists(output("fine_tune.checkpoint")));
+}
+
+TEST_F(TrainerTest, AModelWithoutCheckpointsIsNotReplacedUnasked) {
+  std::filesystem::create_directories(options_.output);
+  core::writeFileAtomically(output("encoder.safetensors"), "weights");
+  EXPECT_TRUE(holds(refusal("encoder"), "holds a model (encoder.safetensors) without"));
+  options_.overwrite = true;
+  EXPECT_EQ(refusal("encoder"), "trained");
+}
+
+TEST_F(TrainerTest, ARefusedRunLeavesNoFolder) {
+  EXPECT_TRUE(holds(refusal("denoiser"), "holds no checkpoint of an encoder; train stage"));
+  EXPECT_FALSE(std::filesystem::exists(options_.output));
+}
+
+TEST_F(TrainerTest, ExportNeedsADenoiser) {
+  run("encoder", 1);
+  EXPECT_TRUE(holds(refusal("export"), "holds no checkpoint of a denoiser; train stage"));
+  EXPECT_FALSE(std::filesystem::exists(output("denoiser.safetensors")));
+}
+
+TEST_F(TrainerTest, OptionsOutOfRangeAreNamed) {
+  options_.image_scale = 0.7;
+  EXPECT_TRUE(holds(refusal("encoder"), "image_scale is 0.7; expected 1 or 0.5"));
+  options_.image_scale = 1.0;
+  options_.threads = 0;
+  EXPECT_TRUE(holds(refusal("encoder"), "key 'threads' is '0'; expected a whole number in [1, "));
 }
 
 TEST_F(TrainerTest, SaysWhatIsMissing) {

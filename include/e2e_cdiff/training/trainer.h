@@ -26,9 +26,10 @@ struct TrainingOptions {
   std::int64_t batch = 0;      ///< samples per step; 0: 32 with images, 128 on features
   std::int64_t threads = 1;
   std::int64_t seed = 1;
-  double time_limit = 0.0;      ///< of the stage's steps, over all resumptions [s]; 0: none
-  bool anneal_by_time = false;  ///< learning rate falls with time instead of steps
-  bool resume = false;          ///< the stage goes on from its checkpoint if there is one
+  double time_limit = 0.0;         ///< of the stage's steps, over all resumptions [s]; 0: none
+  bool anneal_by_time = false;     ///< learning rate falls with time instead of steps
+  bool resume = false;             ///< the stage goes on from its checkpoint if there is one
+  bool overwrite = false;          ///< the stage replaces an earlier training
   std::string device = "auto";     ///< auto | cpu | cuda
   std::string precision = "auto";  ///< of the encoder's convolutions in training: auto | f32 | bf16
   double image_scale = 1.0;        ///< of stage `encoder`: 1 or 0.5
@@ -64,7 +65,8 @@ class DivergedError : public core::Error {
 /// `denoiser.safetensors`, `training.json`, `model_card.md`) after the last; `fine_tune`
 /// alone writes it with the denoiser of the output folder or the initial model, where one is.
 /// `stop`, set from another thread or a signal, ends it after the current step with a checkpoint
-/// and core::Interrupted. Throws InputError for wrong options or data.
+/// and core::Interrupted. Throws InputError for wrong options or data, and for an output folder
+/// that holds a training of the stage unless it is to be resumed or overwritten.
 void train(const TrainingOptions& options, const std::atomic<bool>& stop, std::ostream& log);
 
 }  // namespace cdiff::training
