@@ -103,6 +103,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
                                            sumoHome(),
                                            folder("package share", core::shareFolder),
                                            folder("cache folder", core::cacheFolder),
+                                           folder("temporary folder", core::temporaryFolder),
                                            shippedModel(),
                                            encoder(),
                                            rosIp()};

@@ -145,6 +145,7 @@ int evaluate(const EvaluateArguments& arguments) {
   const MatrixOptions matrix = matrixOf(arguments);
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
+  core::temporaryFolder();  // without one each run would fail
   const auto plan = evaluation::planRuns(
       matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
   const core::FolderLock lock(results, "cdiff evaluate");
@@ -183,7 +184,9 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   command
       ->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
+  command->add_option("--jobs", arguments->jobs, "Sessions at a time")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   CLI::Option* resume = command->add_flag(
       "--resume", arguments->resume,
       "Run only what is not complete yet, or was run with other files or another program");

@@ -98,14 +98,14 @@ bool isFolder(const fs::path& path) { return statusOf(path) == fs::file_type::di
 fs::path temporaryFolder() {
   std::error_code error;
   fs::path folder = fs::temp_directory_path(error);
-  if (!error) return folder;
+  if (!error && ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return folder;
   for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
     const char* given = std::getenv(name);
     if (given == nullptr) continue;
     throw InputError(std::string("environment variable ") + name + " is '" + given +
-                     "', which is no folder that can be used; set it to one, or unset it");
+                     "', which is no folder that can be written to; set it to one, or unset it");
   }
-  throw InputError("no temporary folder can be used; set TMPDIR to one");
+  throw InputError("no temporary folder can be written to; set TMPDIR to one");
 }
 
 std::string readFile(const fs::path& path, const std::string& what) {

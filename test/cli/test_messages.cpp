@@ -97,6 +97,31 @@ TEST_F(Messages, AMissingTemporaryFolderIsNamed) {
   expectOutput("environment variable TMPDIR is '" + path("none") + "'");
 }
 
+TEST_F(Messages, WithoutATemporaryFolderNoBatchBeginsAndTheDoctorSaysSo) {
+  const Variable variable("TMPDIR", path("none"));
+  std::ofstream(path("matrix.yaml")) << "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\n"
+                                        "set: [protocol.time_limit=1]\n";
+  EXPECT_EQ(cdiff({"evaluate", path("matrix.yaml"), "--results", path("results")}), 3);
+  expectOutput("environment variable TMPDIR is '" + path("none") +
+               "', which is no folder that can be written to; set it to one, or unset it");
+  EXPECT_FALSE(fs::exists(path("results")));
+  EXPECT_NE(cdiff({"doctor"}), 0);
+  expectOutput("wrong temporary folder: environment variable TMPDIR is '" + path("none") + "'");
+}
+
+TEST_F(Messages, AFileThatIsWrongIsNamedOnce) {
+  std::ofstream(path("large.yaml")) << "#" << std::string(9000000, 'x');
+  EXPECT_EQ(cdiff({"validate", path("large.yaml")}), 3);
+  EXPECT_EQ(output().rfind(path("large.yaml") + ": holds 9000001 bytes of YAML", 0), 0U)
+      << output();
+  EXPECT_EQ(output().rfind(path("large.yaml")), 0U) << "the path is there twice: " << output();
+}
+
+TEST_F(Messages, TheKeysExplanationNamesEveryKindOfNetwork) {
+  EXPECT_EQ(cdiff({"validate", "arterial_exit", "--print"}), 0);
+  expectOutput("OpenStreetMap (*.osm)");
+}
+
 TEST_F(Messages, AShareFolderThatIsNoneIsNamed) {
   const Variable variable("E2E_CDIFF_SHARE", path("none"));
   EXPECT_EQ(cdiff({"validate", "roundabout_cross"}), 3);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -162,6 +163,21 @@ TEST(File, AtomicWriteThatFailsLeavesNothingBehind) {
   EXPECT_FALSE(std::filesystem::exists(folder / "b.txt.tmp.17"));
   EXPECT_TRUE(std::filesystem::exists(folder / "a.txt"));
   std::filesystem::remove_all(folder);
+}
+
+TEST(File, ATemporaryFolderThatCannotBeWrittenToIsRefused) {
+  const test::TemporaryFolder folder;
+  std::filesystem::permissions(
+      folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  ::setenv("TMPDIR", folder.path().c_str(), 1);
+  const bool root = ::geteuid() == 0;  // whom permissions do not stop
+  constexpr uid_t kNobody = 65534;
+  EXPECT_EQ(::seteuid(root ? kNobody : ::geteuid()), 0);
+  EXPECT_THROW(temporaryFolder(), InputError);
+  EXPECT_EQ(::seteuid(root ? 0 : ::geteuid()), 0);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  EXPECT_EQ(temporaryFolder(), folder.path());
+  ::unsetenv("TMPDIR");
 }
 
 }  // namespace
