@@ -38,13 +38,13 @@ void requireDistinctNames(const std::vector<std::string>& bags) {
 
 }  // namespace
 
-ros::DatasetStatistics collectBags(const BagRequest& request) {
+std::map<std::string, ros::DatasetStatistics> collectBags(const BagRequest& request) {
   const ros::DrivingBagOptions topics = loadTopics(request.topics);
   requireDistinctNames(request.bags);
   const ros::DatasetOptions options;
-  ros::DatasetStatistics sum;
+  std::map<std::string, ros::DatasetStatistics> all;
   for (const fs::path bag : request.bags) {
-    ros::DatasetStatistics statistics;
+    ros::DatasetStatistics& statistics = all[bag.stem().string()];
     training::ShardWriter writer(ros::schemaOf(options.architecture));
     for (const training::Sample& sample :
          ros::samplesFromDrivingBag(bag, topics, options, statistics))
@@ -55,9 +55,8 @@ ros::DatasetStatistics collectBags(const BagRequest& request) {
                          {"bag", bag.filename().string()},
                          {"topics", core::dumpOptions(topics)}});
     std::cerr << bag.string() << ": " << statistics.samples << " samples\n";
-    sum.add(statistics);
   }
-  return sum;
+  return all;
 }
 
 }  // namespace cdiff::cli

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct BagRequest {
   std::filesystem::path results;  ///< folder of the data set
 };
 
-/// Writes shards/NAME.shard for each bag and returns what is in all of them. Throws InputError,
+/// Writes shards/NAME.shard for each bag and returns what is in each, by NAME. Throws InputError,
 /// also for two bags of one name; shards written before stay.
-ros::DatasetStatistics collectBags(const BagRequest& request);
+std::map<std::string, ros::DatasetStatistics> collectBags(const BagRequest& request);
 
 }  // namespace cdiff::cli

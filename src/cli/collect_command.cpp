@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "collect_bags.h"
@@ -90,13 +91,16 @@ std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
 }
 
 /// Sums up every session whose files are there.
-void conclude(const CollectArguments& arguments, const std::vector<CollectRequest>& sessions) {
-  ros::DatasetStatistics sum;
+std::map<std::string, ros::DatasetStatistics> conclude(
+    const CollectArguments& arguments, const std::vector<CollectRequest>& sessions) {
+  std::map<std::string, ros::DatasetStatistics> statistics;
   for (const CollectRequest& request : sessions) {
-    const fs::path file = statisticsFile(request, sessionName(resolveCollection(request)));
-    if (fs::exists(file)) sum.add(readStatistics(file));
+    const std::string name = sessionName(resolveCollection(request));
+    const fs::path file = statisticsFile(request, name);
+    if (fs::exists(file)) statistics[name] = readStatistics(file);
   }
-  describeDataset(arguments.request.results, sum);
+  describeDataset(arguments.request.results, sumOf(statistics));
+  return statistics;
 }
 
 int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
@@ -124,15 +128,13 @@ int convertBags(const CollectArguments& arguments) {
   const core::FolderLock lock(arguments.request.results, kLockedBy);
   BagRequest request = arguments.bags;
   request.results = arguments.request.results;
-  describeDataset(request.results, collectBags(request));
+  const auto statistics = collectBags(request);
+  describeDataset(request.results, sumOf(statistics));
+  requireSamples(statistics, "bag", "longer bags");
   return kPassed;
 }
 
-int collect(const CollectArguments& arguments) {
-  if (!arguments.bags.bags.empty()) return convertBags(arguments);
-  const std::vector<CollectRequest> sessions = planSessions(arguments);
-  const core::FolderLock lock(arguments.request.results, kLockedBy);
-  removeHalves(arguments.request.results);
+std::vector<evaluation::ProcessJob> jobsOf(const std::vector<CollectRequest>& sessions) {
   std::vector<evaluation::ProcessJob> jobs;
   for (const CollectRequest& request : sessions) {
     const std::string name = sessionName(resolveCollection(request));
@@ -142,6 +144,16 @@ int collect(const CollectArguments& arguments) {
   }
   std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
             << " of them already there\n";
+  return jobs;
+}
+
+int collect(const CollectArguments& arguments) {
+  if (!arguments.bags.bags.empty()) return convertBags(arguments);
+  const std::vector<CollectRequest> sessions = planSessions(arguments);
+  core::temporaryFolder();  // without one each session would fail
+  const core::FolderLock lock(arguments.request.results, kLockedBy);
+  removeHalves(arguments.request.results);
+  std::vector<evaluation::ProcessJob> jobs = jobsOf(sessions);
   std::size_t done = 0;
   const std::atomic<bool>& stop = core::catchStopSignals();
   const auto ended = [&](const evaluation::ProcessJob& job) {
@@ -150,13 +162,17 @@ int collect(const CollectArguments& arguments) {
               << "\n";
   };
   evaluation::runProcesses("/proc/self/exe", jobs, arguments.jobs, stop, ended);
-  if (arguments.request.images) conclude(arguments, sessions);
-  return stop ? kInterrupted : exitCode(jobs);
+  const int code = stop ? kInterrupted : exitCode(jobs);
+  if (!arguments.request.images) return code;
+  const auto statistics = conclude(arguments, sessions);
+  if (code == kPassed) requireSamples(statistics, "session", "longer sessions (--duration)");
+  return code;
 }
 
 void addCommonOptions(CLI::App& command, CollectRequest& request) {
   command.add_option("--results", request.results, "Folder of the data set")->required();
   command.add_option("--duration", request.duration, "Longest session [s]")
+      ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
   command.add_flag("--keep-bags", request.keep_bag, "Keep the bags that the shards are made of");
   command.add_flag("!--no-images", request.images, "Record bags without images, and no shards");
@@ -192,10 +208,14 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
       ->delimiter(',');
   command->add_option("--suite", arguments->suite, "Route suite, name or folder: its scenarios");
   command->add_option("--seeds", arguments->seeds, "Sessions a scenario")
+      ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command->add_option("--first-seed", arguments->first_seed, "Seed of the first of them")
+      ->capture_default_str()
       ->check(CLI::Range(0, 1000000000));
-  command->add_option("--jobs", arguments->jobs, "Sessions at a time")->check(CLI::Range(1, 64));
+  command->add_option("--jobs", arguments->jobs, "Sessions at a time")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   addCommonOptions(*command, arguments->request);
   addBagOptions(*command, arguments->bags);
   command->callback([arguments, &exit_code] { exit_code = collect(*arguments); });

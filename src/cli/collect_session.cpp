@@ -47,6 +47,11 @@ ros::DatasetStatistics writeShard(const CollectRequest& request, const CollectSe
   for (const training::Sample& sample : ros::samplesFromBag(bag, options, statistics))
     writer.append(sample);
   fs::create_directories(shard.parent_path());
+  // A session without samples leaves no shard, and is driven again when it is asked for again.
+  if (statistics.samples == 0) {
+    fs::remove(shard);
+    return statistics;
+  }
   writer.write(shard, {{"made_by", "cdiff collect"},
                        {"scenario", settings.scenario.name},
                        {"seed", std::to_string(request.seed)},

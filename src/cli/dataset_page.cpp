@@ -6,9 +6,11 @@
 #include <iostream>
 
 #include "collect_session.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/report/sample_sheet.h"
+#include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::cli {
 namespace {
@@ -51,7 +53,41 @@ std::vector<CountRow> rowsOf(const ros::DatasetStatistics& statistics) {
   return rows;
 }
 
+/// "12 images, left out: session_end 12", and what helps where most lie too near the end.
+std::string lossText(const ros::DatasetStatistics& statistics, const std::string& remedy) {
+  std::string text = std::to_string(statistics.images) + " images";
+  std::string main_reason;
+  std::uint64_t most = 0;
+  for (const auto& [reason, count] : statistics.dropped) {
+    text += (most == 0 ? ", left out: " : ", ") + reason + " " + std::to_string(count);
+    if (count > most) main_reason = reason;
+    most = std::max(most, count);
+  }
+  if (!main_reason.empty() && main_reason != "session_end") return text;
+  const double horizon =
+      traffic::kRolloutStep * static_cast<double>(diffusion::Architecture{}.horizon);
+  return text + "; a sample needs " + core::formatNumber(horizon) +
+         " s of driving after its image, so " + remedy + " are needed";
+}
+
 }  // namespace
+
+ros::DatasetStatistics sumOf(const StatisticsByName& statistics) {
+  ros::DatasetStatistics sum;
+  for (const auto& item : statistics) sum.add(item.second);
+  return sum;
+}
+
+void requireSamples(const StatisticsByName& statistics, const std::string& kind,
+                    const std::string& remedy) {
+  const ros::DatasetStatistics sum = sumOf(statistics);
+  if (sum.samples == 0)
+    throw core::InputError("no " + kind + " gave a sample: " + lossText(sum, remedy));
+  for (const auto& [name, of_one] : statistics) {
+    if (of_one.samples == 0)
+      std::cerr << kind << " " << name << " gave no sample: " << lossText(of_one, remedy) << "\n";
+  }
+}
 
 void describeDataset(const fs::path& folder, const ros::DatasetStatistics& statistics) {
   core::writeFileAtomically(folder / "statistics.json", toJson(statistics));

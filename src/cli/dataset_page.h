@@ -4,6 +4,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "e2e_cdiff/ros/dataset_from_bag.h"
 
@@ -12,5 +14,15 @@ namespace cdiff::cli {
 /// Writes statistics.json and, where there are shards, samples.html into the data set's folder, and
 /// the statistics as a table to the output.
 void describeDataset(const std::filesystem::path& folder, const ros::DatasetStatistics& statistics);
+
+/// Of several sessions or bags, by name.
+using StatisticsByName = std::map<std::string, ros::DatasetStatistics>;
+ros::DatasetStatistics sumOf(const StatisticsByName& statistics);
+
+/// Names on standard error each "session" or "bag" (`kind`) that gave no sample, with what became
+/// of its images and, where they lie too near its end, the `remedy` ("longer bags"). Throws
+/// InputError when none gave any.
+void requireSamples(const StatisticsByName& statistics, const std::string& kind,
+                    const std::string& remedy);
 
 }  // namespace cdiff::cli

@@ -69,6 +69,11 @@ void Dataset::readShards(const std::filesystem::path& folder) {
     for (std::size_t i = 0; i < shard.size(); ++i) places_.push_back({shards_.size() - 1, i});
   }
   sha256_ = digest.finish();
+  if (places_.empty()) {
+    throw InputError(
+        "data folder '" + folder.string() +
+        "': its shards hold no samples; collect longer sessions (cdiff collect --duration)");
+  }
 }
 
 void Dataset::split(double validation_share) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cdiff_command.h"
+#include "e2e_cdiff/training/trainer.h"
 
 namespace cdiff::cli {
 namespace {
@@ -71,13 +72,17 @@ TEST_F(DataCommands, TheTrainersExitCodeAndMessageComeThrough) {
   std::ofstream(path("data/broken.shard")) << "no shard";
   EXPECT_EQ(cdiff({"train", "--data", path("data"), "--output", path("model")}), 3);
   expectOutput("broken.shard");
+  EXPECT_FALSE(fs::exists(path("model")));
 }
 
 TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
   EXPECT_EQ(cdiff({"train", "--help"}), 0);
+  expectOutput("Usage: cdiff train [OPTIONS]");
   expectOutput("--steps INT=20000");
   expectOutput("--learning-rate FLOAT=0.0002");
   expectOutput("--stage TEXT=all");
+  expectOutput("Do not mirror every second sample");
+  EXPECT_EQ(output().find("{false}"), std::string::npos) << output();
   std::istringstream lines(output());
   std::size_t options = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -88,7 +93,50 @@ TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
     EXPECT_EQ(line[39], ' ') << line;
     EXPECT_NE(line[40], ' ') << line;
   }
-  EXPECT_EQ(options, 28U) << output();
+  // A field a line, and no line but those.
+  const std::string fields = core::dumpOptions(training::TrainingOptions{});
+  EXPECT_EQ(options, static_cast<std::size_t>(std::count(fields.begin(), fields.end(), '\n')))
+      << output();
+}
+
+TEST_F(DataCommands, AWrongOptionOfTheTrainerIsNamedWithItsRange) {
+  const auto train = [&](const std::string& option, const std::string& value) {
+    return cdiff({"train", "--data", path("data"), "--output", path("model"), option, value});
+  };
+  EXPECT_EQ(train("--checkpoint-every", "soon"), 3);
+  expectOutput("option --checkpoint-every: key 'checkpoint_every' is 'soon'; expected a number in");
+  EXPECT_EQ(train("--image-scale", "0.7"), 3);
+  expectOutput("image_scale is 0.7; expected 1 or 0.5");
+  EXPECT_EQ(train("--stage", "fine-tune"), 3);
+  expectOutput("did you mean 'fine_tune'?");
+  for (const char* flag : {"--no-mirror", "--no-light", "--anneal-by-time"}) {
+    EXPECT_EQ(train(flag, "--time-limit=1"), 3) << flag;
+    expectOutput("data folder '" + path("data") + "'");
+  }
+  EXPECT_FALSE(fs::exists(path("model")));
+}
+
+TEST_F(DataCommands, HelpOfCollectHasDefaults) {
+  EXPECT_EQ(cdiff({"collect", "--help"}), 0);
+  for (const char* part : {"--seeds INT:INT in [1 - 100000]=1", "--jobs INT:INT in [1 - 64]=1",
+                           "--first-seed INT:INT in [0 - 1000000000]=1", "=60"})
+    expectOutput(part);
+}
+
+TEST_F(DataCommands, SessionsTooShortForASampleAreNamedAndDrivenAgain) {
+  const auto collect = [&](const char* seconds) {
+    return cdiff({"collect", "--scenarios", "arterial_exit", "--results", path("data"),
+                  "--duration", seconds, "--set", "traffic.warm_up=5"});
+  };
+  // A sample needs 32 steps of 0.1 s after its image.
+  EXPECT_EQ(collect("3"), 3);
+  expectOutput("no session gave a sample: ");
+  expectOutput("session_end");
+  expectOutput("a sample needs 3.2 s of driving after its image, so longer sessions (--duration)");
+  EXPECT_FALSE(fs::exists(path("data/shards/arterial_exit_seed1.shard")));
+  EXPECT_EQ(collect("6"), 0);
+  expectOutput("1 sessions, 0 of them already there");
+  EXPECT_TRUE(fs::exists(path("data/shards/arterial_exit_seed1.shard")));
 }
 
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {

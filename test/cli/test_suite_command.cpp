@@ -49,7 +49,7 @@ TEST_F(SuiteCommand, UnknownSuitesAreNamedBeforeAnythingRuns) {
 #ifdef E2E_CDIFF_WITH_COLLECT
 /// The merge route's traffic is high: 16 vehicles.
 TEST_F(SuiteCommand, CollectDrivesTheRoutesWithTheirTraffic) {
-  ASSERT_EQ(cdiff({"collect", "--suite", "test", "--results", path("data"), "--duration", "2",
+  ASSERT_EQ(cdiff({"collect", "--suite", "test", "--results", path("data"), "--duration", "5",
                    "--jobs", "2", "--set", "traffic.warm_up=5"}),
             0);
   expectOutput("10 sessions, 0 of them already there");

@@ -115,5 +115,21 @@ TEST(Light, ChangesTheImageTheSameWayForTheSameKey) {
   EXPECT_NE(first.rgb, test::smallSample(0, 1).image.rgb);
 }
 
+TEST(Dataset, ShardsWithoutSamplesAreNamed) {
+  const test::TemporaryFolder folder;
+  test::writeShard(folder.path() / "a.shard", 0);
+  try {
+    const Dataset dataset(folder.path(), 0.0);
+    FAIL() << "read";
+  } catch (const core::InputError& error) {
+    EXPECT_EQ(std::string(error.what())
+                  .rfind("data folder '" + folder.path().string() +
+                             "': its shards hold no samples; collect",
+                         0),
+              0U)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace cdiff::training
