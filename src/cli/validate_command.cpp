@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -30,7 +31,9 @@ bool validateOne(const std::string& scenario_name, bool print) {
     if (print) std::cout << core::dumpOptions(options, true);
     return true;
   } catch (const core::InputError& error) {
-    std::cerr << scenario_name << ": " << error.what() << "\n";
+    const std::string text = error.what();
+    const bool named = text.rfind(std::filesystem::absolute(scenario_name).string() + ":", 0) == 0;
+    std::cerr << (named ? "" : scenario_name + ": ") << text << "\n";
     return false;
   }
 }

@@ -250,11 +250,26 @@ YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
   return node;
 }
 
+/// A NUL byte is part of no YAML but one in UTF-16 or UTF-32, which begins with its mark.
+void requireText(const YamlSource& source) {
+  const std::size_t place = source.text.find('\0');
+  if (place == std::string::npos) return;
+  for (const std::string& mark :
+       {std::string("\xFF\xFE"), std::string("\xFE\xFF"), std::string("\0\0\xFE\xFF", 4)}) {
+    if (source.text.compare(0, mark.size(), mark) == 0) return;
+  }
+  const auto end = source.text.begin() + static_cast<std::ptrdiff_t>(place);
+  const auto line = 1 + std::count(source.text.begin(), end, '\n');
+  throw InputError(source.name + ":" + std::to_string(line) +
+                   ": holds a NUL byte, which no text has; expected YAML in UTF-8");
+}
+
 YAML::Node parse(const YamlSource& source) {
   if (source.text.size() > kLargestYaml) {
     throw InputError(source.name + ": holds " + std::to_string(source.text.size()) +
                      " bytes of YAML; at most " + std::to_string(kLargestYaml) + " were expected");
   }
+  requireText(source);
   try {
     return YAML::Load(source.text);
   } catch (const YAML::DeepRecursion& error) {

@@ -89,6 +89,17 @@ TEST(Options, BrokenYamlAndRepeatedKeysAreErrors) {
   EXPECT_TRUE(mentions(errorOf("- 1\n"), "map of keys"));
 }
 
+TEST(Options, ANulByteIsNamedWithItsLine) {
+  EXPECT_EQ(errorOf(std::string("seed: 1\nrecord\0: true\n", 22)),
+            "file.yaml:2: holds a NUL byte, which no text has; expected YAML in UTF-8");
+  OuterOptions options;
+  // "seed: 7" in UTF-16 with its mark.
+  std::string wide = "\xFF\xFE";
+  for (const char letter : std::string("seed: 7\n")) wide += {letter, '\0'};
+  loadOptions({"wide.yaml", wide}, options);
+  EXPECT_EQ(options.seed, 7);
+}
+
 TEST(Options, AChoiceThatIsFarFromAllIsExplained) {
   const std::string error = errorOf("inner: {ranking: agressive}\n");
   EXPECT_FALSE(mentions(error, "did you mean")) << error;
