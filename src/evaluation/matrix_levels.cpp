@@ -81,7 +81,7 @@ std::vector<Combination> productOf(const MatrixOptions& matrix, const std::strin
        {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles})
     count *= static_cast<double>(std::max<std::size_t>(1, list->size()));
   if (count > static_cast<double>(kMostRuns)) {
-    throw InputError(source + ": planners, modes and profiles give " + core::formatNumber(count) +
+    throw InputError(source + ": planners, modes and profiles give " + core::formatFixed(count, 0) +
                      " combinations; at most " + std::to_string(kMostRuns) + " runs were expected");
   }
   const auto levels = [](const std::vector<std::string>& given) {

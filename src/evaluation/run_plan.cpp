@@ -57,7 +57,7 @@ class Planner {
                         as_double(std::max<std::size_t>(1, matrix_.seeds.size())) *
                         static_cast<double>(matrix_.repetitions);
     if (runs <= as_double(kMostRuns)) return;
-    throw InputError(source_ + ": " + core::formatNumber(runs) + " runs would be planned (" +
+    throw InputError(source_ + ": " + core::formatFixed(runs, 0) + " runs would be planned (" +
                      std::to_string(scenarios) + " scenarios x " +
                      std::to_string(combinations_.size()) +
                      " combinations of planners, modes and "

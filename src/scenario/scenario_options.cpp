@@ -171,8 +171,10 @@ void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
-  visitor.text({"network", "", "Shipped network, SUMO network file or OpenDRIVE file."}, network,
-               {});
+  visitor.text(
+      {"network", "",
+       "Shipped network, or file: SUMO (*.net.xml), OpenDRIVE (*.xodr) or OpenStreetMap (*.osm)."},
+      network, {});
   visitor.group({"route", "", "Route of the ego."}, route);
   visitor.text({"demand", "", "Background traffic: generated, none, or a route file."}, demand, {});
   visitor.group({"traffic", "", "Generated demand."}, traffic);
