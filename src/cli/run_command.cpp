@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <ctime>
 #include <filesystem>
 #include <memory>
 
 #include "commands.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/core/time_text.h"
 #include "e2e_cdiff/scenario/session_request.h"
 #include "run_session.h"
 
@@ -22,19 +22,12 @@ struct RunArguments {
   bool overwrite = false;
 };
 
-std::string timeStamp() {
-  const std::time_t now = std::time(nullptr);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", std::localtime(&now));
-  return text;
-}
-
 int run(const RunArguments& arguments) {
   const scenario::ScenarioOptions options = scenario::resolveRequest(arguments.request);
   const fs::path folder =
       arguments.results.empty()
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
-                                   std::to_string(options.seed) + "_" + timeStamp())
+                                   std::to_string(options.seed) + "_" + core::timeForFileName())
           : fs::path(arguments.results);
   return runSession(options, {folder, arguments.quiet, arguments.record, arguments.overwrite});
 }

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -21,6 +20,7 @@
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/program.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/core/time_text.h"
 
 namespace cdiff::core {
 namespace {
@@ -39,15 +39,6 @@ std::string hostName() {
   std::array<char, 256> name{};
   ::gethostname(name.data(), name.size() - 1);
   return name.data();
-}
-
-std::string timeText() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&now, &local);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &local);
-  return text.data();
 }
 
 /// Lines "key: value" of a lock file.

@@ -5,12 +5,12 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <iostream>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/core/time_text.h"
 #include "e2e_cdiff/ros/launched_nodes.h"
 
 namespace cdiff::ros {
@@ -18,20 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string timeText() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", &local);
-  return text;
-}
-
 fs::path ownFolder(const scenario::ScenarioOptions& options) {
   const char* home = std::getenv("HOME");
   const fs::path base = home != nullptr ? fs::path(home) : core::temporaryFolder();
   return base / "e2e_cdiff_results" /
-         (core::fileName(options.name) + "_seed" + std::to_string(options.seed) + "_" + timeText());
+         (core::fileName(options.name) + "_seed" + std::to_string(options.seed) + "_" +
+          core::timeForFileName());
 }
 
 /// Whether a file is there that is younger than the launch of this session.

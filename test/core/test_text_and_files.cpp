@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <new>
@@ -14,6 +15,7 @@
 #include "e2e_cdiff/core/failure.h"
 #include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/text.h"
+#include "e2e_cdiff/core/time_text.h"
 #include "support/real_data.h"
 #include "support/temporary_folder.h"
 
@@ -43,6 +45,25 @@ TEST(Text, SplitAndJoin) {
   EXPECT_EQ(splitText(" a  b ", ' '), (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(joinText({"a", "b"}, ", "), "a, b");
   EXPECT_TRUE(splitText("", ' ').empty());
+}
+
+// 1.5 h east of Greenwich, where the whole hours do not tell: POSIX counts westwards. Between the
+// two readings of the clock at most a few seconds pass.
+TEST(Text, TheTimeIsLocalForPeopleAndForFileNames) {
+  ::setenv("TZ", "TEST-1:30", 1);
+  ::tzset();
+  for (const bool people : {true, false}) {
+    const std::string text = people ? timeText() : timeForFileName();
+    std::tm local{};
+    const char* end =
+        ::strptime(text.c_str(), people ? "%Y-%m-%d %H:%M:%S" : "%Y%m%d_%H%M%S", &local);
+    ASSERT_TRUE(end != nullptr && *end == '\0') << text;
+    const double seconds = std::difftime(std::time(nullptr) + 5400, ::timegm(&local));
+    EXPECT_GE(seconds, 0.0) << text;
+    EXPECT_LT(seconds, 10.0) << text;
+  }
+  ::unsetenv("TZ");
+  ::tzset();
 }
 
 TEST(Text, FileNamesStayInTheirFolder) {
