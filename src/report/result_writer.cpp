@@ -192,8 +192,10 @@ void ResultWriter::recordFault(const traffic::Fault& fault) { record_->recordFau
 
 const std::string& ResultWriter::failure() const { return record_->failure(); }
 
-std::string ResultWriter::table() const {
-  return sessionTable(record_->result(), record_->folder());
+std::string ResultWriter::table() const { return table(record_->folder()); }
+
+std::string ResultWriter::table(const fs::path& folder) const {
+  return sessionTable(record_->result(), folder);
 }
 
 int ResultWriter::exitCode() const {

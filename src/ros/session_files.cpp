@@ -139,6 +139,7 @@ void ReserveResult::adopt(double wall_seconds) {
   for (const auto& entry : fs::directory_iterator(folder_)) {
     fs::rename(entry.path(), results_ / entry.path().filename());
   }
+  std::cout << writer_->table(results_) << std::flush;
   writeExitCode(results_, writer_->exitCode());
 }
 

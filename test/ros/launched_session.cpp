@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <thread>
 
 namespace cdiff::test {
@@ -26,6 +27,11 @@ int count = 0;                      // sessions of this program
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// As ROS stamps its messages on the terminal [s].
+double wallNow() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
@@ -89,13 +95,19 @@ void LaunchedSession::start(const std::string& command) {
   launch_ = ::fork();
   if (launch_ == 0) {
     ::setsid();
+    ::signal(SIGINT, SIG_DFL);  // a shell ignores it in what it starts in the background
     const int log = ::open((folder_ / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
     ::dup2(log, STDOUT_FILENO);
     ::dup2(log, STDERR_FILENO);
     ::execl("/bin/bash", "bash", "-c", whole.c_str(), nullptr);
     ::_exit(127);
   }
+  noteSignal();
+}
+
+void LaunchedSession::noteSignal() {
   signalled_at_ = now();
+  signalled_at_wall_ = wallNow();
 }
 
 std::vector<LaunchedSession::Process> LaunchedSession::processes() const {
@@ -127,12 +139,12 @@ pid_t LaunchedSession::process(const std::string& name) const {
 
 bool LaunchedSession::signal(const std::string& name, int number) {
   const pid_t id = process(name);
-  signalled_at_ = now();
+  noteSignal();
   return id > 0 && ::kill(id, number) == 0;
 }
 
 void LaunchedSession::signalLaunch(int number) {
-  signalled_at_ = now();
+  noteSignal();
   ::kill(launch_, number);
 }
 
@@ -186,6 +198,15 @@ std::string LaunchedSession::fault() const {
   if (!all.contains("faults") || all["faults"].empty()) return {};
   const nlohmann::json& last = all["faults"].back();
   return last["source"].get<std::string>() + ": " + last["text"].get<std::string>();
+}
+
+double LaunchedSession::errorAfter(const std::string& text) const {
+  const std::string begin = "[ERROR] [";  // of "[ERROR] [WALL, SIMULATED]: TEXT"
+  const std::string all = log();
+  const std::size_t at = all.find(text);
+  const std::size_t stamp = at == std::string::npos ? at : all.rfind(begin, at);
+  if (stamp == std::string::npos) return std::numeric_limits<double>::quiet_NaN();
+  return std::strtod(all.c_str() + stamp + begin.size(), nullptr) - signalled_at_wall_;
 }
 
 std::string LaunchedSession::exitCode() const { return contentOf(results() / "exit_code"); }

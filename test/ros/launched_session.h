@@ -51,6 +51,9 @@ class LaunchedSession {
   /// Content of results/exit_code; empty when there is none.
   std::string exitCode() const;
   std::string log() const;
+  /// Wall time from the last signal to the first error with this text, by the stamp that ROS
+  /// prints before it [s]; NaN where there is none.
+  double errorAfter(const std::string& text) const;
   const std::filesystem::path& folder() const { return folder_; }
   int port() const { return port_; }
 
@@ -60,12 +63,14 @@ class LaunchedSession {
     std::string command;
   };
   std::vector<Process> processes() const;
+  void noteSignal();
 
   std::filesystem::path folder_;
   int port_;
   pid_t launch_ = 0;
   int exit_status_ = -1;
-  double signalled_at_ = 0.0;
+  double signalled_at_ = 0.0;       ///< steady clock [s]
+  double signalled_at_wall_ = 0.0;  ///< system clock [s]
 };
 
 }  // namespace cdiff::test

@@ -37,10 +37,34 @@ class SessionFaults : public ::testing::Test {
     EXPECT_EQ(session_.fault().find(culprit + ": "), 0U) << session_.fault() << session_.log();
     EXPECT_EQ(session_.leftovers(), "");
   }
+  std::size_t timesInLog(const std::string& text) const {
+    const std::string log = session_.log();
+    std::size_t times = 0;
+    for (std::size_t at = log.find(text); at != std::string::npos; at = log.find(text, at + 1))
+      ++times;
+    return times;
+  }
+  /// The summary for the terminal, once, with the files where they lie.
+  void expectTable(const std::string& status, const std::string& verdict) const {
+    const auto row = [](std::string name, const std::string& value) {
+      name.resize(24, ' ');
+      return "\n  " + name + value + "\n";
+    };
+    EXPECT_EQ(timesInLog(row("status", status)), 1U) << session_.log();
+    EXPECT_EQ(timesInLog(row("verdict", verdict)), 1U) << session_.log();
+    EXPECT_EQ(timesInLog(row("results", session_.results().string())), 1U) << session_.log();
+  }
   /// Ticks in the bag of the session.
   std::uint64_t recordedTicks() const {
     const rosbag::Bag bag((session_.results() / "session.bag").string(), rosbag::bagmode::Read);
     return rosbag::View(bag, rosbag::TopicQuery("/traffic")).size();
+  }
+  void launchWithExternalEgo(const std::string& arguments) {
+    session_.start(
+        "roslaunch -p " + std::to_string(session_.port()) +
+        " e2e_cdiff session.launch ego_planner:=external results:=" + session_.results().string() +
+        " " + arguments + " & sleep 1; rosrun e2e_cdiff external_ego_node __name:=my_ego & wait");
+    ASSERT_TRUE(session_.hasTicks()) << session_.log();
   }
   void pause(int milliseconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
@@ -107,6 +131,21 @@ TEST_F(SessionFaults, ScriptStoppedInItsFirstSecondGives130AndAResult) {
   EXPECT_EQ(session_.exitStatus(), 130) << session_.log();
   EXPECT_EQ(session_.exitCode(), "130\n");
   EXPECT_EQ(session_.summary()["status"], "interrupted");
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
+// The metrics node has not begun, so the simulator writes the result; it printed no table.
+TEST_F(SessionFaults, ScriptStoppedBeforeTheFirstTickPrintsTheTable) {
+  session_.start("BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
+                 "/session scenario:=crossing_straight results:=" +
+                 session_.results().string());
+  ASSERT_TRUE(session_.signal("metrics_node", SIGSTOP));
+  ASSERT_TRUE(session_.hasFile(".reserve")) << session_.log();
+  session_.signalLaunch(SIGINT);
+  EXPECT_LT(session_.endAfter(40.0), 40.0);
+  EXPECT_EQ(session_.exitStatus(), 130) << session_.log();
+  EXPECT_EQ(session_.summary()["status"], "interrupted");
+  expectTable("interrupted", "INTERRUPTED");
   EXPECT_EQ(session_.leftovers(), "");
 }
 

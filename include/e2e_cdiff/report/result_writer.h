@@ -38,6 +38,8 @@ class ResultWriter : public scenario::SessionObserver {
   const std::string& failure() const;
   /// The table that a terminal shows: the main figures, the verdict, the paths.
   std::string table() const;
+  /// The same where the files lie in another folder by now.
+  std::string table(const std::filesystem::path& folder) const;
   /// Exit code of `cdiff` for this session: that of its outcome, but 3 when SUMO refused the
   /// session's input meanwhile.
   int exitCode() const;

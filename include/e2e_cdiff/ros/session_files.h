@@ -57,8 +57,8 @@ class ReserveResult {
 
   /// On a full disk it goes on without a trace.
   void observe(const scenario::TickRecord& record);
-  /// Finishes the result, moves its files into the result folder and writes the exit code; nothing
-  /// where the metrics node has written its own meanwhile (file exit_code).
+  /// Finishes the result, moves its files into the result folder, prints its table and writes the
+  /// exit code; nothing where the metrics node has written its own meanwhile (file exit_code).
   void adopt(double wall_seconds);
 
  private:
