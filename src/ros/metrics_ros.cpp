@@ -120,6 +120,7 @@ int MetricsRos::conclude(Ending ending) {
 
 int MetricsRos::concludeUnstarted(Ending ending) {
   Parameters parameters = Parameters::ofNode(kTrafficSimulatorNode);
+  if (!parameters.empty() && takeRefusal()) return 3;
   if (parameters.empty()) parameters = launchParameters();
   if (parameters.empty()) return 2;
   return writeUnstartedResult(

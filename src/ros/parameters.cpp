@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/ros/parameters.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,6 +14,9 @@
 
 namespace cdiff::ros {
 namespace {
+
+/// Holds the process of the roslaunch whose input was refused.
+constexpr const char* kRefusedLaunch = "e2e_cdiff_refused_launch";
 
 std::string textOf(const std::string& key, XmlRpc::XmlRpcValue value) {
   switch (value.getType()) {
@@ -79,6 +84,15 @@ bool Parameters::flag(const std::string& key, bool otherwise) const {
     throw core::InputError("parameter ~" + key + " is '" + value + "'; expected true or false");
   }
   return value == "true";
+}
+
+void noteRefusal() { ::ros::param::set(kRefusedLaunch, static_cast<int>(::getppid())); }
+
+bool takeRefusal() {
+  int launch = 0;
+  if (!::ros::param::get(kRefusedLaunch, launch) || launch != ::getppid()) return false;
+  ::ros::param::del(kRefusedLaunch);
+  return true;
 }
 
 Parameters launchParameters() {

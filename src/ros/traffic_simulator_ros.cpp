@@ -201,6 +201,7 @@ int runTrafficSimulator(StopSignal& stop) {
     return TrafficSimulatorRos(parameters, stop).run();
   } catch (const core::InputError&) {
     writeRefusal(parameters.text("results"));
+    noteRefusal();
     throw;
   }
 }

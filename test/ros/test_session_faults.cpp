@@ -168,6 +168,17 @@ TEST_F(SessionFaults, UnknownLaunchArgumentIsNamedWithTheNearest) {
   EXPECT_NE(session_.log().find("'scenario'"), std::string::npos) << session_.log();
 }
 
+TEST_F(SessionFaults, UnknownLaunchArgumentIsRefusedOnceAndLeavesNoResult) {
+  session_.start("HOME=" + session_.folder().string() + "/home exec roslaunch -p " +
+                 std::to_string(session_.port()) +
+                 " e2e_cdiff session.launch senario:=crossing_straight");
+  EXPECT_LT(session_.endAfter(20.0), 20.0);
+  EXPECT_EQ(timesInLog("has no argument 'senario'"), 1U) << session_.log();
+  EXPECT_FALSE(fs::exists(session_.folder() / "home" / "e2e_cdiff_results"));
+  EXPECT_FALSE(fs::exists(session_.results()));
+  EXPECT_EQ(session_.leftovers(), "");
+}
+
 struct Fault {
   const char* process;
   int signal;

@@ -38,6 +38,12 @@ class Parameters {
   std::map<std::string, std::string> values_;
 };
 
+/// Notes on the parameter server that this node has refused the input of its roslaunch, and said
+/// why.
+void noteRefusal();
+/// Whether a node of the same roslaunch has noted that; takes the note away.
+bool takeRefusal();
+
 /// The arguments of the roslaunch that started this process, which are the simulator's parameters;
 /// none where it was started otherwise or by a launch file of the user.
 Parameters launchParameters();
