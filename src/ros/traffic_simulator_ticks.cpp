@@ -145,6 +145,15 @@ std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::silentFor(double 
   return missing;
 }
 
+/// An ego that came to stand after a node was last heard may brake for want of that node: it is not
+/// blocked before the node is heard again, and the silence ends the session otherwise.
+bool TrafficSimulatorRos::standsPerhapsForSilence() const {
+  const std::optional<double> since = world_->egoStandsSince();
+  if (!since) return false;
+  const double stood = world_->snapshot().time - *since;
+  return !silentFor(stood / setup_->options().real_time_factor).empty();
+}
+
 void TrafficSimulatorRos::recordFaults(const std::vector<Answer>& answers) {
   std::set<std::pair<std::string, std::string>> recorded;  // all CBVs share one planning call
   for (const Answer& answer : answers) {
@@ -221,6 +230,7 @@ void TrafficSimulatorRos::advancePaced() {
   const auto applied = paced_answers_.actions(*published_, taken, answers_);
   decisions_.ended(published_->tick, applied, secondsSince(begin_));
   settleDecisions(false);
+  world_->withholdBlocked(standsPerhapsForSilence());
   if (taken) {
     const cbv::CbvSelection selection = fromMsg(*taken, setup_->network());
     world_->advance(&selection, actionsOf(applied));

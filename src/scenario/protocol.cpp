@@ -113,7 +113,7 @@ SessionStatus ProtocolMonitor::update(const traffic::TrafficSnapshot& snapshot) 
   if (options_.end_on_collision && contact) return SessionStatus::kCollided;
   if (progress_.percent() >= 100.0) return SessionStatus::kCompleted;
   if (deviated) return SessionStatus::kDeviated;
-  if (blocked) return SessionStatus::kBlocked;
+  if (blocked && !blocked_withheld_) return SessionStatus::kBlocked;
   if (snapshot.time >= time_limit_ - kRounding) return SessionStatus::kTimedOut;
   return SessionStatus::kRunning;
 }
@@ -127,10 +127,10 @@ bool ProtocolMonitor::deviates(double advance) {
 
 bool ProtocolMonitor::stands(double time, double speed) {
   if (speed >= options_.blocked_speed)
-    standing_since_ = -1.0;
-  else if (standing_since_ < 0.0)
+    standing_since_.reset();
+  else if (!standing_since_)
     standing_since_ = time;
-  return standing_since_ >= 0.0 && time - standing_since_ >= options_.blocked_time - kRounding;
+  return standing_since_ && time - *standing_since_ >= options_.blocked_time - kRounding;
 }
 
 }  // namespace cdiff::scenario

@@ -83,15 +83,33 @@ TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
   EXPECT_GT(recordedTicks(), 0U);
 }
 
+// The limit is 2 s; before, only the silence of 10 s or 30 s told.
 TEST_F(SessionFaults, KilledExternalEgoIsNoticedByItsConnection) {
-  session_.start(
-      "roslaunch -p " + std::to_string(session_.port()) +
-      " e2e_cdiff session.launch ego_planner:=external results:=" + session_.results().string() +
-      " " + kLong + " & sleep 1; rosrun e2e_cdiff external_ego_node __name:=my_ego & wait");
-  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  launchWithExternalEgo(kLong);
   ASSERT_TRUE(session_.signal("my_ego", SIGKILL));
-  EXPECT_LT(session_.endAfter(20.0), 5.0) << session_.log();  // 2 s, and roslaunch's end
+  EXPECT_LT(session_.endAfter(20.0), 20.0) << session_.log();
   expectError("the external ego planner");
+  EXPECT_LT(session_.errorAfter("the external ego planner: no node publishes"), 2.0);
+}
+
+TEST_F(SessionFaults, KilledExternalEgoIsNoticedInLockstep) {
+  launchWithExternalEgo(
+      "scenario:=crossing_straight cbv_planner:=pdm_lite set:=\"at_most=1 "
+      "protocol.time_limit=60\"");
+  ASSERT_TRUE(session_.signal("my_ego", SIGKILL));
+  EXPECT_LT(session_.endAfter(20.0), 20.0) << session_.log();
+  expectError("the external ego planner");
+  EXPECT_LT(session_.errorAfter("the external ego planner: no node publishes"), 2.0);
+}
+
+// The ego brakes for want of a planner and would be blocked after 5 s or so, half of the limit.
+TEST_F(SessionFaults, StoppedEgoPlannerIsNamedThoughTheEgoStands) {
+  session_.launch(kLong);
+  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  ASSERT_TRUE(session_.signal("ego_planner_node", SIGSTOP));
+  EXPECT_LT(session_.endAfter(30.0), 20.0) << session_.log();
+  expectError("ego_planner_node");
+  EXPECT_GE(session_.errorAfter("ego_planner_node: nothing came for 10 s"), 9.0);
 }
 
 TEST_F(SessionFaults, SimulatorKilledBeforeTheSessionLeavesAResult) {
@@ -190,8 +208,7 @@ std::string nameOf(const ::testing::TestParamInfo<Fault>& info) {
 
 class SessionFaultsCampaign : public SessionFaults, public ::testing::WithParamInterface<Fault> {};
 
-// At the default limits, whenever it comes: during the start of the nodes or on the way. An ego
-// that brakes for want of a planner would be blocked, by default, before the planner is missed.
+// At the default limits, whenever it comes: during the start of the nodes or on the way.
 TEST_P(SessionFaultsCampaign, EndsWithin45SecondsAndNamesTheCulprit) {
   const Fault fault = GetParam();
   std::mt19937 random(15);
@@ -202,7 +219,7 @@ TEST_P(SessionFaultsCampaign, EndsWithin45SecondsAndNamesTheCulprit) {
     session.launch(
         "record:=true camera:=true scenario:=roundabout_cross cbv_planner:=pdm_lite "
         "set:=\"" +
-        std::string(pace) + " protocol.time_limit=60 protocol.blocked_time=60\"");
+        std::string(pace) + " protocol.time_limit=60\"");
     ASSERT_GT(session.process("metrics_node"), 0);
     pause(delay);
     const bool ended = fs::exists(session.results() / "exit_code");

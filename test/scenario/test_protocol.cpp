@@ -60,6 +60,18 @@ TEST_F(Protocol, MovingResetsTheBlockedClock) {
   EXPECT_EQ(at(0.1, 0.0, 0.0), SessionStatus::kBlocked);
 }
 
+// Standing since tick 0: 3 s are over at tick 60, but only tick 65 may say so.
+TEST_F(Protocol, BlockedIsWithheldAndItsTimeCountsOn) {
+  EXPECT_FALSE(monitor_.standingSince());
+  monitor_.withholdBlocked(true);
+  for (int i = 0; i < 65; ++i) ASSERT_EQ(at(0.0, 0.0, 0.0), SessionStatus::kRunning) << i;
+  EXPECT_EQ(monitor_.standingSince(), 0.0);
+  monitor_.withholdBlocked(false);
+  EXPECT_EQ(at(0.0, 0.0, 0.0), SessionStatus::kBlocked);
+  EXPECT_EQ(at(0.1, 0.0, 0.2), SessionStatus::kRunning);
+  EXPECT_FALSE(monitor_.standingSince());
+}
+
 TEST_F(Protocol, DeviatedBeyondThirtyMetres) {
   EXPECT_EQ(at(1.0, 30.0, 5.0), SessionStatus::kRunning);
   EXPECT_EQ(at(1.0, 30.1, 5.0), SessionStatus::kDeviated);

@@ -104,6 +104,7 @@ class TrafficSimulatorRos {
   std::vector<Missing> missingAnswers() const;
   std::vector<Missing> missingAtTick() const;
   std::vector<Missing> silentFor(double seconds) const;
+  bool standsPerhapsForSilence() const;
   void sendAgainForLateListener();
   bool paced() const { return setup_->options().real_time_factor > 0.0; }
 

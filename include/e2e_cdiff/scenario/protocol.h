@@ -4,6 +4,7 @@
 /// collided.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,11 @@ class ProtocolMonitor {
   traffic::SessionStatus update(const traffic::TrafficSnapshot& snapshot);
   double routeCompletionPercent() const { return progress_.percent(); }
 
+  /// Time since which the ego has been standing [s]; nullopt while it drives.
+  std::optional<double> standingSince() const { return standing_since_; }
+  /// As long as it is withheld, standing does not end the session; its time counts on.
+  void withholdBlocked(bool withheld) { blocked_withheld_ = withheld; }
+
  private:
   /// After the ego has come `advance` farther along its route [m].
   bool deviates(double advance);
@@ -62,7 +68,8 @@ class ProtocolMonitor {
   map::RouteProgress progress_;
   double time_limit_;               ///< now [s]
   double deviated_distance_ = 0.0;  ///< progress made too far from the route [m]
-  double standing_since_ = -1.0;
+  std::optional<double> standing_since_;
+  bool blocked_withheld_ = false;
 };
 
 }  // namespace cdiff::scenario
