@@ -89,7 +89,9 @@ std::string caseXml(const std::string& name, const RunRecord& record) {
                               : record.complete() ? reasons
                                                   : record.status;
   text += ">\n      <" + tag;
-  if (tag != "skipped") text += attribute("type", record.status);
+  const bool by_rules = record.complete() && !record.decided_by.empty();
+  const std::string type = by_rules ? core::joinText(record.decided_by, ", ") : record.status;
+  if (tag != "skipped") text += attribute("type", type);
   return text + attribute("message", message) + "/>\n    </testcase>\n";
 }
 

@@ -223,6 +223,7 @@ class Executor {
     record.status = facts.status;
     record.verdict = facts.verdict;
     record.reasons = facts.reasons;
+    record.decided_by = facts.decided_by;
     record.simulated_seconds = facts.simulated_seconds;
     record.figures = facts.figures;
   }

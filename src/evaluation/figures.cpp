@@ -81,6 +81,7 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
     facts.fault = lastFault(summary);
     facts.verdict = report::outcomeOf(summary.at("verdict").at("outcome"));
     facts.reasons = summary.at("verdict").at("reasons").get<std::vector<std::string>>();
+    facts.decided_by = summary.at("verdict").value("decided_by", std::vector<std::string>());
     facts.simulated_seconds = summary.at("simulated_seconds");
     for (const auto& [name, place] : places()) {
       const json::json_pointer pointer(place);

@@ -31,6 +31,7 @@ RunRecord fromJson(const Json& json) {
   record.simulated_seconds = json.at("simulated_seconds");
   record.verdict = report::outcomeOf(json.at("verdict"));
   record.reasons = json.at("reasons").get<std::vector<std::string>>();
+  record.decided_by = json.value("decided_by", std::vector<std::string>());
   for (const auto& [name, value] : json.at("figures").items()) record.figures[name] = value;
   return record;
 }
@@ -78,6 +79,7 @@ std::string recordJson(const RunRecord& record) {
                      {"simulated_seconds", record.simulated_seconds},
                      {"verdict", report::toText(record.verdict)},
                      {"reasons", record.reasons},
+                     {"decided_by", record.decided_by},
                      {"figures", figures}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

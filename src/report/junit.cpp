@@ -18,7 +18,7 @@ std::string attribute(const std::string& name, const std::string& value) {
 std::string noteOf(const SessionResult& result, const Check& check) {
   if (check.outcome == CheckOutcome::kStruck) return "struck: " + check.text;
   const bool not_judged = result.verdict.outcome == Outcome::kNotJudged;
-  return not_judged ? "not judged: " + result.verdict.reasons.front() : "";
+  return not_judged ? "not judged: " + core::joinText(result.verdict.reasons, "; ") : "";
 }
 
 std::string caseXml(const SessionResult& result, const Check& check) {

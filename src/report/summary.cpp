@@ -231,7 +231,10 @@ Json verdictObject(const Verdict& verdict) {
     rules.push_back(
         {{"rule", check.name}, {"outcome", toText(check.outcome)}, {"found", check.text}});
   }
-  return {{"outcome", toText(verdict.outcome)}, {"reasons", verdict.reasons}, {"rules", rules}};
+  return {{"outcome", toText(verdict.outcome)},
+          {"reasons", verdict.reasons},
+          {"decided_by", verdict.decided_by},
+          {"rules", rules}};
 }
 
 Json lateObject(const std::map<std::string, LateFigures>& late) {

@@ -16,8 +16,10 @@ using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
 
-constexpr Outcome kOutcomes[] = {Outcome::kPassed,    Outcome::kStruck, Outcome::kFailed,
-                                 Outcome::kNotJudged, Outcome::kError,  Outcome::kInterrupted};
+constexpr std::pair<Outcome, const char*> kOutcomes[] = {
+    {Outcome::kPassed, "passed"}, {Outcome::kStruck, "struck"},
+    {Outcome::kFailed, "failed"}, {Outcome::kNotJudged, "not_judged"},
+    {Outcome::kError, "error"},   {Outcome::kInterrupted, "interrupted"}};
 
 Check judged(const std::string& name, bool met, const std::string& text) {
   return {name, met ? CheckOutcome::kPassed : CheckOutcome::kFailed, text};
@@ -45,6 +47,16 @@ std::vector<std::string> contactTexts(const metrics::SessionMeasures& measures, 
     if (contact.ego_at_fault == at_fault) texts.push_back(contactText(contact));
   }
   return texts;
+}
+
+std::string atFaultText(const std::vector<std::string>& contacts) {
+  return "the ego was at fault in " + countText(contacts.size(), "contact") + ": with " +
+         core::joinText(contacts, "; with ");
+}
+
+std::string struckText(const std::vector<std::string>& contacts) {
+  return "the ego was struck without fault in " + countText(contacts.size(), "contact") + ", by " +
+         core::joinText(contacts, "; by ");
 }
 
 /// Adds a check for each rule that the scenario sets.
@@ -112,9 +124,8 @@ class RuleBook {
     Check check{"contact_without_fault", CheckOutcome::kPassed, "nobody struck the ego"};
     if (!others.empty()) {
       check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
-      check.text = "the ego was struck without fault in " + countText(others.size(), "contact") +
-                   ", by " + core::joinText(others, "; by ") +
-                   (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
+      check.text =
+          struckText(others) + (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
     }
     checks_.push_back(check);
   }
@@ -190,37 +201,34 @@ Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
   return has(checks, CheckOutcome::kStruck) ? Outcome::kStruck : Outcome::kPassed;
 }
 
-/// The texts of the checks that made the outcome.
-std::vector<std::string> reasonsOf(const Verdict& verdict, bool judge) {
-  if (verdict.outcome == Outcome::kNotJudged) {
-    return {judge ? "the scenario has no rules (group 'verdict')"
-                  : "the scenario is not to be judged (verdict.judge is false)"};
-  }
-  std::vector<std::string> reasons;
+/// Why a session is not judged, and what is worth knowing of it all the same.
+std::vector<std::string> reasonsNotToJudge(bool judge, const metrics::SessionMeasures& measures) {
+  std::vector<std::string> reasons = {
+      judge ? "the scenario has no rules (group 'verdict')"
+            : "the scenario is not to be judged (verdict.judge is false)"};
+  const std::vector<std::string> own = contactTexts(measures, true);
+  const std::vector<std::string> others = contactTexts(measures, false);
+  if (!own.empty()) reasons.push_back(atFaultText(own));
+  if (!others.empty()) reasons.push_back(struckText(others));
+  return reasons;
+}
+
+/// Notes the checks that made the outcome.
+void addReasons(Verdict& verdict) {
   for (const Check& check : verdict.checks) {
     const bool decided =
         check.outcome != CheckOutcome::kPassed && check.outcome != CheckOutcome::kSkipped;
-    if (decided) reasons.push_back(check.text);
+    if (!decided) continue;
+    verdict.reasons.push_back(check.text);
+    verdict.decided_by.push_back(check.name);
   }
-  return reasons;
 }
 
 }  // namespace
 
 const char* toText(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kPassed:
-      return "passed";
-    case Outcome::kStruck:
-      return "struck";
-    case Outcome::kFailed:
-      return "failed";
-    case Outcome::kNotJudged:
-      return "not_judged";
-    case Outcome::kInterrupted:
-      return "interrupted";
-    case Outcome::kError:
-      break;
+  for (const auto& [each, text] : kOutcomes) {
+    if (each == outcome) return text;
   }
   return "error";
 }
@@ -236,8 +244,8 @@ std::string capitalsOf(Outcome outcome) {
 }
 
 Outcome outcomeOf(const std::string& text) {
-  for (const Outcome outcome : kOutcomes) {
-    if (text == toText(outcome)) return outcome;
+  for (const auto& [outcome, name] : kOutcomes) {
+    if (text == name) return outcome;
   }
   throw core::InputError("'" + text + "' is no outcome of a session");
 }
@@ -249,19 +257,8 @@ int exitCodeOf(Outcome outcome) {
 }
 
 const char* toText(CheckOutcome outcome) {
-  switch (outcome) {
-    case CheckOutcome::kPassed:
-      return "passed";
-    case CheckOutcome::kStruck:
-      return "struck";
-    case CheckOutcome::kFailed:
-      return "failed";
-    case CheckOutcome::kSkipped:
-      return "skipped";
-    case CheckOutcome::kError:
-      break;
-  }
-  return "error";
+  constexpr const char* kTexts[] = {"passed", "struck", "failed", "error", "skipped"};
+  return kTexts[static_cast<std::size_t>(outcome)];
 }
 
 bool endedByItself(SessionStatus status) {
@@ -281,7 +278,10 @@ Verdict judge(const scenario::ScenarioOptions& options, SessionStatus status,
     verdict.checks.push_back(std::move(check));
   }
   verdict.outcome = outcomeFrom(status, verdict.checks);
-  verdict.reasons = reasonsOf(verdict, options.verdict.judge);
+  if (verdict.outcome == Outcome::kNotJudged)
+    verdict.reasons = reasonsNotToJudge(options.verdict.judge, measures);
+  else
+    addReasons(verdict);
   return verdict;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/file.h"
+#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/evaluation/batch_files.h"
 #include "e2e_cdiff/evaluation/batch_report.h"
 #include "evaluation/run_records.h"
@@ -26,6 +27,7 @@ class BatchFiles : public testing::Test {
     RunRecord not_passed = recordWith({"s", "2"}, 20);
     not_passed.verdict = report::Outcome::kFailed;
     not_passed.reasons = {"score < 30"};
+    not_passed.decided_by = {"driving_score", "red_lights"};
     RunRecord struck = recordWith({"u", "1"}, 30);
     struck.verdict = report::Outcome::kStruck;
     struck.reasons = {"struck by cbv_1"};
@@ -77,7 +79,7 @@ TEST_F(BatchFiles, SummaryHasACellPerCombination) {
 TEST_F(BatchFiles, JunitTellsErrorsFailuresAndWhatWasNotRun) {
   const std::string xml = batchJunitXml("night", records_);
   expectIn("<testsuites tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
-  expectIn("<failure type=\"completed\" message=\"score &lt; 30\"/>", xml);
+  expectIn("<failure type=\"driving_score, red_lights\" message=\"score &lt; 30\"/>", xml);
   expectIn("<error type=\"error\" message=\"SUMO said &quot;no&quot;, twice\"/>", xml);
   expectIn("<system-out>struck: struck by cbv_1</system-out>", xml);
   expectIn("<system-out>not judged: no rules</system-out>", xml);
@@ -107,9 +109,21 @@ RunRecord recordOf(const test::VerdictCase& wanted, const std::filesystem::path&
   RunRecord record = recordWithout({wanted.name}, facts.status);
   record.verdict = facts.verdict;
   record.reasons = facts.reasons;
+  record.decided_by = facts.decided_by;
   record.exit_code = writer.exitCode();
   record.attempts = 1;
   return record;
+}
+
+/// Values of an attribute of every element of that name, with commas between them.
+std::string typesIn(const std::string& xml, const std::string& element) {
+  const std::string begin = "<" + element + " type=\"";
+  std::vector<std::string> types;
+  for (std::size_t at = xml.find(begin); at != std::string::npos; at = xml.find(begin, at)) {
+    at += begin.size();
+    types.push_back(xml.substr(at, xml.find('"', at) - at));
+  }
+  return core::joinText(types, ", ");
 }
 
 class BatchVerdict : public testing::TestWithParam<test::VerdictCase> {};
@@ -139,6 +153,8 @@ TEST_P(BatchVerdict, IsThatOfTheSession) {
   EXPECT_EQ(has(xml, "<skipped"), wanted.outcome == report::Outcome::kInterrupted);
   EXPECT_EQ(has(xml, "<system-out>struck: "), wanted.outcome == report::Outcome::kStruck);
   EXPECT_EQ(has(xml, "<system-out>not judged: "), wanted.outcome == report::Outcome::kNotJudged);
+  const std::string sessions_xml = core::readFile(folder.path() / "junit.xml", "junit");
+  EXPECT_EQ(typesIn(xml, "failure"), typesIn(sessions_xml, "failure")) << sessions_xml;
   const std::string shown = record.complete() ? word : "error";
   const std::string page = batchPage("night", {{record, folder.path(), {}}}, {}, {});
   EXPECT_TRUE(has(page, "class=\"banner " + shown + "\""));

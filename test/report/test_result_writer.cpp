@@ -192,6 +192,7 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   EXPECT_EQ(latency["n"], 61);
   EXPECT_EQ(summary["verdict"], Json::parse(R"json({"outcome": "not_judged",
                             "reasons": ["the scenario has no rules (group 'verdict')"],
+                            "decided_by": [],
                             "rules": [{"rule": "session", "outcome": "passed",
                                        "found": "the session ended with status 'timed_out'"}]
 })json"));

@@ -46,6 +46,23 @@ TEST(Verdict, WithoutAnyRuleEverythingThatEndedByItselfIsNotJudged) {
   }
 }
 
+TEST(Verdict, ContactsAreToldWhereNothingIsJudged) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts.push_back(
+      {118, 5.9, "cbv_2", false, "it did not", 5.0, 2.0, "rear", "front", 1, 2});
+  scenario::VerdictOptions rules = scenario::VerdictOptions::standard();
+  rules.judge = false;
+  const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
+  EXPECT_EQ(verdict.outcome, Outcome::kNotJudged);
+  EXPECT_EQ(verdict.reasons,
+            std::vector<std::string>(
+                {"the scenario is not to be judged (verdict.judge is false)",
+                 "the ego was at fault in 1 contact: with cbv_1 at 5.85 s (it did)",
+                 "the ego was struck without fault in 1 contact, by cbv_2 at 5.90 s (it did "
+                 "not)"}));
+  EXPECT_TRUE(verdict.decided_by.empty());
+}
+
 TEST(Verdict, LimitsCountAsMetAtTheLimit) {
   scenario::VerdictOptions rules;
   rules.minimum_route_completion = 80.0;
@@ -88,6 +105,10 @@ TEST(Verdict, NamesEveryRuleThatIsNotMet) {
            "stop signs that the ego did not obey: 2; at most 1 allowed",
            "share of its way that the ego drove outside the lanes: 1.25 %; at most 1 % allowed",
            "the CBVs were off the road 5.00 % of their time; at most 4 % allowed"}));
+  EXPECT_EQ(verdict.decided_by,
+            std::vector<std::string>({"status", "route_completion", "contacts_at_fault",
+                                      "driving_score", "ego_collisions", "red_lights", "stop_signs",
+                                      "outside_lanes_percent", "cbv_off_road"}));
 }
 
 TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
@@ -200,6 +221,8 @@ void EveryReader::expectJunit(const test::VerdictCase& wanted) const {
     notes += note.node().text().get();
   const bool noted = wanted.outcome == Outcome::kStruck || wanted.outcome == Outcome::kNotJudged;
   EXPECT_EQ(notes.rfind(wordOf(wanted.outcome) + ": ", 0) == 0, noted) << notes;
+  const bool touched = noted && wanted.touch != test::Touch::kNone;
+  EXPECT_EQ(notes.find("bg_9 at 5.00 s") != std::string::npos, touched) << notes;
   if (wanted.outcome == Outcome::kFailed || broke) {
     const char* path = broke ? "testcase/error" : "testcase/failure";
     const std::string message = suite.select_node(path).node().attribute("message").value();

@@ -22,7 +22,8 @@ struct SummaryFacts {
   std::string status;
   std::string fault;  ///< text of the last fault, or empty
   report::Outcome verdict = report::Outcome::kError;
-  std::vector<std::string> reasons;  ///< of the verdict
+  std::vector<std::string> reasons;     ///< of the verdict
+  std::vector<std::string> decided_by;  ///< rules that decided it
   double simulated_seconds = 0.0;
   Figures figures;
 };

@@ -27,6 +27,7 @@ struct RunRecord {
   double simulated_seconds = 0.0;
   report::Outcome verdict = report::Outcome::kError;  ///< of a session that ended by its own rules
   std::vector<std::string> reasons;                   ///< of the verdict
+  std::vector<std::string> decided_by;                ///< rules that decided it
   Figures figures;                                    ///< of a session that ended by its own rules
 
   /// Whether the session ended by its own rules.

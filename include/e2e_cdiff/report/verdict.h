@@ -49,8 +49,11 @@ struct Check {
 
 struct Verdict {
   Outcome outcome = Outcome::kError;
-  std::vector<std::string> reasons;  ///< a sentence for each check that decided; empty when passed
-  std::vector<Check> checks;         ///< the session first, then each rule that the scenario sets
+  /// A sentence for each check that decided; empty when passed. Of a session that is not judged:
+  /// why not, and its contacts.
+  std::vector<std::string> reasons;
+  std::vector<Check> checks;  ///< the session first, then each rule that the scenario sets
+  std::vector<std::string> decided_by;  ///< names of the checks that decided
 };
 
 /// Whether the session ended by its own rules, so that it can be judged.
