@@ -20,12 +20,6 @@ constexpr const char* kPageStyle = R"CSS(
 td .paper, td .rift { color: var(--soft); font-size: .86rem; display: block; }
 )CSS";
 
-std::string section(const std::string& title, const std::string& content,
-                    const std::string& style = "") {
-  return "<section" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<h2>" +
-         escapeMarkup(title) + "</h2>\n" + content + "</section>\n";
-}
-
 std::string headOf(const std::string& name) {
   return report::pageHead(name + " – evaluation",
                           std::string(report::kPanelSheetStyle) + kPageStyle);
@@ -71,26 +65,19 @@ const char* headlineOf(Outcome worst) {
   return "Not every run could be judged";
 }
 
-const char* signOf(Outcome worst) {
-  if (worst == Outcome::kPassed) return "✓";
-  if (worst == Outcome::kFailed) return "✗";
-  return worst == Outcome::kNotJudged ? "–" : "!";
-}
-
 std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs) {
   const Outcome worst = worstOf(runs);
   std::map<Outcome, std::size_t> counts;
   for (const BatchRun& run : runs) ++counts[outcomeOf(run.record)];
   const auto count = [&](Outcome outcome) { return std::to_string(counts[outcome]); };
+  const std::string counts_text = count(Outcome::kPassed) + " passed, " + count(Outcome::kStruck) +
+                                  " were struck, " + count(Outcome::kNotJudged) +
+                                  " were not judged, " + count(Outcome::kFailed) +
+                                  " ended with a failed verdict, " + count(Outcome::kError) +
+                                  " broke, were interrupted or did not run";
   return "<header>\n<h1>" + escapeMarkup(name) + "</h1>\n<p class=\"sub\">evaluation of " +
-         std::to_string(runs.size()) + " runs</p>\n<div class=\"banner " + report::toText(worst) +
-         "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + signOf(worst) +
-         "</span><div><strong>" + headlineOf(worst) + "</strong><p>" + count(Outcome::kPassed) +
-         " passed, " + count(Outcome::kStruck) + " were struck, " + count(Outcome::kNotJudged) +
-         " were not judged, " + count(Outcome::kFailed) + " ended with a failed verdict, " +
-         count(Outcome::kError) +
-         " broke, were interrupted or did not run</p></div></div>\n"
-         "</header>\n";
+         std::to_string(runs.size()) + " runs</p>\n" +
+         report::pageBanner(worst, headlineOf(worst), "<p>" + counts_text + "</p>") + "</header>\n";
 }
 
 std::string figureText(const BatchRun& run, const std::string& name, int decimals) {
@@ -165,12 +152,13 @@ std::string paperTable(const Table& table) {
 
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
                       const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  std::string html =
-      headOf(name) + "<body>\n<main>\n" + bannerOf(name, runs) + section("Runs", runTable(runs));
-  for (const Table& table : tables) html += section(table.definition.title, paperTable(table));
+  std::string html = headOf(name) + "<body>\n<main>\n" + bannerOf(name, runs) +
+                     report::pageSection("Runs", runTable(runs));
+  for (const Table& table : tables)
+    html += report::pageSection(table.definition.title, paperTable(table));
   for (const Figure& figure : figures) {
-    html += section(figure.sheet.title, report::sheetSvg(figure.sheet),
-                    figure.wall_clock ? "wall-clock" : "");
+    html += report::pageSection(figure.sheet.title, report::sheetSvg(figure.sheet),
+                                figure.wall_clock ? "wall-clock" : "");
   }
   return html + "</main>\n</body>\n</html>\n";
 }

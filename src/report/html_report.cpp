@@ -20,36 +20,27 @@
 namespace cdiff::report {
 namespace {
 
-std::string section(const std::string& title, const std::string& content) {
-  return "<section>\n<h2>" + title + "</h2>\n" + content + "</section>\n";
-}
-
 std::string head(const SessionResult& result) {
   return pageHead(result.setup.options().name + " – session report");
 }
 
 /// What the banner says first.
-struct Headline {
-  const char* sign;
-  const char* text;
-};
-
-Headline headlineOf(Outcome outcome) {
+const char* headlineOf(Outcome outcome) {
   switch (outcome) {
     case Outcome::kPassed:
-      return {"✓", "Passed"};
+      return "Passed";
     case Outcome::kStruck:
-      return {"!", "Struck: the ego met its rules, but was hit"};
+      return "Struck: the ego met its rules, but was hit";
     case Outcome::kFailed:
-      return {"✗", "Failed"};
+      return "Failed";
     case Outcome::kNotJudged:
-      return {"–", "Not judged"};
+      return "Not judged";
     case Outcome::kInterrupted:
-      return {"!", "Interrupted: the session was not judged"};
+      return "Interrupted: the session was not judged";
     case Outcome::kError:
       break;
   }
-  return {"!", "Error: the session could not be judged"};
+  return "Error: the session could not be judged";
 }
 
 /// Of a session that passed.
@@ -65,20 +56,17 @@ std::string metText(const SessionResult& result) {
 
 std::string banner(const SessionResult& result) {
   const scenario::ScenarioOptions& options = result.setup.options();
-  const Headline headline = headlineOf(result.verdict.outcome);
-  std::string html = "<header>\n<h1>" + escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
-                     escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) +
-                     " · ego " + escapeMarkup(options.ego_planner) + " · CBV " +
-                     escapeMarkup(options.cbv_planner) + "</p>\n<div class=\"banner " +
-                     toText(result.verdict.outcome) +
-                     "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" +
-                     headline.sign + "</span><div><strong>" + headline.text + "</strong>";
+  const Outcome outcome = result.verdict.outcome;
+  std::string content;
   for (const std::string& reason : result.verdict.reasons)
-    html += "<p>" + escapeMarkup(reason) + "</p>";
-  if (result.verdict.outcome == Outcome::kPassed) html += "<p>" + metText(result) + "</p>";
-  html += "<p class=\"story\">";
-  for (const std::string& sentence : sessionStory(result)) html += escapeMarkup(sentence) + " ";
-  return html + "</p></div></div>\n</header>\n";
+    content += "<p>" + escapeMarkup(reason) + "</p>";
+  if (outcome == Outcome::kPassed) content += "<p>" + metText(result) + "</p>";
+  content += "<p class=\"story\">";
+  for (const std::string& sentence : sessionStory(result)) content += escapeMarkup(sentence) + " ";
+  return "<header>\n<h1>" + escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
+         escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) + " · ego " +
+         escapeMarkup(options.ego_planner) + " · CBV " + escapeMarkup(options.cbv_planner) +
+         "</p>\n" + pageBanner(outcome, headlineOf(outcome), content + "</p>") + "</header>\n";
 }
 
 /// Below the verdict: a session that late answers went into cannot be repeated.
@@ -151,21 +139,22 @@ std::string configuration(const SessionResult& result) {
 std::string htmlReport(const SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
   return head(result) + "<body>\n<main>\n" + banner(result) + lateBanner(result) + figures(result) +
-         section("What happened", stageHtml(result, canvas)) +
-         section("Over time", sessionCharts(result)) +
-         section("Distributions", drivingSection(result)) +
-         section("Closest approach", approachSection(result)) +
-         section("Plans against what was driven", planSection(result.plans)) +
-         section("Guidance", guidanceSection(result)) + section("Rules", ruleTable(result)) +
-         section("Metrics", metricTable(result.measures)) +
-         section("Infractions of the ego", infractionTable(result.measures)) +
-         section("Critical background vehicles", selectionTable(result)) +
-         section("Why others were no CBVs", rejectionTable(result.cbv)) +
-         section("Contacts", contactTable(result)) +
-         section("Planner latency", latencyTable(result.latencies)) +
-         section("Late answers", lateTable(result.late)) +
-         section("Faults", faultTable(result.faults)) +
-         section("Configuration and versions", configuration(result)) +
+         pageSection("What happened", stageHtml(result, canvas)) +
+         pageSection("Over time", sessionCharts(result)) +
+         pageSection("Distributions", drivingSection(result)) +
+         pageSection("Closest approach", approachSection(result)) +
+         pageSection("Plans against what was driven", planSection(result.plans)) +
+         pageSection("Guidance", guidanceSection(result)) +
+         pageSection("Rules", ruleTable(result)) +
+         pageSection("Metrics", metricTable(result.measures)) +
+         pageSection("Infractions of the ego", infractionTable(result.measures)) +
+         pageSection("Critical background vehicles", selectionTable(result)) +
+         pageSection("Why others were no CBVs", rejectionTable(result.cbv)) +
+         pageSection("Contacts", contactTable(result)) +
+         pageSection("Planner latency", latencyTable(result.latencies)) +
+         pageSection("Late answers", lateTable(result.late)) +
+         pageSection("Faults", faultTable(result.faults)) +
+         pageSection("Configuration and versions", configuration(result)) +
          "</main>\n<script type=\"application/json\" id=\"playback\">" +
          playbackJson(result, canvas) + "</script>\n<script>" + kReportScript +
          "</script>\n</body>\n</html>\n";

@@ -6,6 +6,15 @@
 #include "e2e_cdiff/report/report_style.h"
 
 namespace cdiff::report {
+namespace {
+
+const char* signOf(Outcome outcome) {
+  if (outcome == Outcome::kPassed) return "✓";
+  if (outcome == Outcome::kFailed) return "✗";
+  return outcome == Outcome::kNotJudged ? "–" : "!";
+}
+
+}  // namespace
 
 std::string pageHead(const std::string& title, const std::string& style) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
@@ -13,6 +22,18 @@ std::string pageHead(const std::string& title, const std::string& style) {
          "name=\"color-scheme\" content=\"light dark\">\n<title>" +
          escapeMarkup(title) + "</title>\n<style>" + kReportStyleSheet + style +
          "</style>\n</head>\n";
+}
+
+std::string pageSection(const std::string& title, const std::string& content,
+                        const std::string& style) {
+  return "<section" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<h2>" +
+         escapeMarkup(title) + "</h2>\n" + content + "</section>\n";
+}
+
+std::string pageBanner(Outcome outcome, const std::string& headline, const std::string& content) {
+  return "<div class=\"banner " + std::string(toText(outcome)) +
+         "\" role=\"status\"><span class=\"sign\" aria-hidden=\"true\">" + signOf(outcome) +
+         "</span><div><strong>" + headline + "</strong>" + content + "</div></div>\n";
 }
 
 }  // namespace cdiff::report
