@@ -59,7 +59,7 @@ std::string momentTable() {
 }
 
 std::string paceChoice() {
-  std::string html = "<label>pace <select id=\"pace\">";
+  std::string html = "<label>Pace <select id=\"pace\">";
   for (const char* pace : {"0.25", "0.5", "1", "2", "4"}) {
     const bool usual = std::string(pace) == "1";
     html += std::string("<option value=\"") + pace + (usual ? "\" selected>" : "\">") + pace +
@@ -78,7 +78,7 @@ std::string controls() {
          "</button><button type=\"button\" id=\"farther\" aria-label=\"Zoom "
          "out\">−</button><button "
          "type=\"button\" id=\"whole\">Whole picture</button></span>\n<label><input "
-         "type=\"checkbox\" id=\"follow\"> follow the ego</label></div>\n<p class=\"note "
+         "type=\"checkbox\" id=\"follow\"> Follow the ego</label></div>\n<p class=\"note "
          "keys\">Keys: space plays and pauses, ← and → step, with shift by 1 s, Home and End. The "
          "address with #t=12.5 opens the page at 12.5 s.</p>\n</div>\n";
 }

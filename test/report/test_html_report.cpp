@@ -49,6 +49,12 @@ TEST(HtmlReport, EscapesNamesEverywhere) {
   EXPECT_EQ(countOf(page, "</script>"), 2u);
 }
 
+TEST(HtmlReport, LabelsOfThePlayerBeginWithACapital) {
+  const std::string row = between(pageOf("s"), "<label>", "keys");
+  EXPECT_EQ(row.rfind("Pace <select", 0), 0u) << row;
+  EXPECT_NE(row.find("id=\"follow\"> Follow the ego</label>"), std::string::npos) << row;
+}
+
 TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
