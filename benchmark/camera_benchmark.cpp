@@ -4,8 +4,8 @@
 
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/map/network_import.h"
-#include "e2e_cdiff/rendering/front_camera.h"
+#include "map/network_import.h"
+#include "rendering/front_camera.h"
 
 namespace cdiff::benchmark {
 namespace {

@@ -14,8 +14,8 @@ using diffusion::CpuDenoiser;
 diffusion::Model randomModel() {
   diffusion::Model model;
   const core::RandomStream random(1, "benchmark");
-  for (const diffusion::TensorShape& wanted : diffusion::denoiserTensors(model.architecture)) {
-    diffusion::Tensor& tensor = model.denoiser[wanted.name];
+  for (const inference::TensorShape& wanted : diffusion::denoiserTensors(model.architecture)) {
+    inference::Tensor& tensor = model.denoiser[wanted.name];
     tensor.shape = wanted.shape;
     std::int64_t count = 1;
     for (const std::int64_t size : wanted.shape) count *= size;

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "benchmark.h"
-#include "e2e_cdiff/diffusion/noise_schedule.h"
-#include "e2e_cdiff/diffusion/sampler.h"
+#include "diffusion/noise_schedule.h"
+#include "diffusion/sampler.h"
 #include "e2e_cdiff/traffic/rollout.h"
 #include "networks.h"
 

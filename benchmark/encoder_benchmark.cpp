@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "benchmark.h"
+#include "diffusion/image_encoder.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
 #include "fma_peak.h"
 #include "network_times.h"
 
@@ -24,7 +24,7 @@ diffusion::Model randomModel() {
     for (const std::int64_t side : shape) count *= side;
     const double reach =
         shape.size() > 1 ? std::sqrt(6.0 * static_cast<double>(shape[0]) / count) : 1.0;
-    diffusion::Tensor& tensor = model.encoder[name];
+    inference::Tensor& tensor = model.encoder[name];
     tensor.shape = shape;
     for (std::int64_t i = 0; i < count; ++i) {
       tensor.values.push_back(static_cast<float>(

@@ -9,20 +9,20 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark.h"
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
+#include "page/result_writer.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
 
 namespace cdiff::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-scenario::ScenarioOptions town05(std::int64_t seed) {
+session::ScenarioOptions town05(std::int64_t seed) {
   const fs::path data = dataFolder();
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.bench2drive = (data / "bench2drive" / "bench2drive220.xml").string();
   request.route = "25318";
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
@@ -30,13 +30,13 @@ scenario::ScenarioOptions town05(std::int64_t seed) {
   request.cbv_planner = "pdm_lite";  // the loop, not the denoising
   request.set = {"traffic.density=50", "traffic.forget_distance=160", "max_cbv=2",
                  "protocol.blocked_time=1000", "protocol.time_limit=60"};
-  return scenario::resolveRequest(request);
+  return session::resolveRequest(request);
 }
 
 /// Counts what a session was made of.
-class Census : public scenario::SessionObserver {
+class Census : public session::SessionObserver {
  public:
-  void observe(const scenario::TickRecord& record) override {
+  void observe(const session::TickRecord& record) override {
     ++ticks;
     vehicles += record.snapshot->vehicles.size();
     for (const traffic::Vehicle& vehicle : record.snapshot->vehicles)
@@ -52,11 +52,10 @@ struct LoopResult {
   Census census;
 };
 
-LoopResult runLoop(const scenario::SessionSetup& setup, bool write_results,
-                   const fs::path& folder) {
+LoopResult runLoop(const session::SessionSetup& setup, bool write_results, const fs::path& folder) {
   LoopResult result;
-  scenario::ClosedLoop loop(setup);
-  report::ResultWriter writer(setup, {"benchmark", loop.world().simulatorVersion(), true}, folder);
+  session::ClosedLoop loop(setup);
+  page::ResultWriter writer(setup, {"benchmark", loop.world().simulatorVersion(), true}, folder);
   loop.addObserver(result.census);
   if (write_results) loop.addObserver(writer);
   const std::atomic<bool> stop{false};
@@ -65,7 +64,7 @@ LoopResult runLoop(const scenario::SessionSetup& setup, bool write_results,
 }
 
 /// Nothing but libtraci: the same town, demand, subscriptions and number of moved vehicles.
-double bareLoop(const scenario::SessionSetup& setup, std::size_t ticks) {
+double bareLoop(const session::SessionSetup& setup, std::size_t ticks) {
   using libtraci::Simulation;
   using libtraci::Vehicle;
   simulation::DemandOptions demand_options = setup.options().traffic;
@@ -153,7 +152,7 @@ void benchmarkLoop(Figures& figures) {
       fs::temp_directory_path() / ("cdiff_benchmark_" + std::to_string(::getpid()));
   std::vector<double> full, without_results, bare, vehicles, cbvs;
   for (std::int64_t seed = 1; seed <= 5; ++seed) {
-    const scenario::SessionSetup setup(town05(seed));
+    const session::SessionSetup setup(town05(seed));
     const LoopResult with = runLoop(setup, true, folder);
     const LoopResult without = runLoop(setup, false, folder);
     const auto ticks = static_cast<double>(with.census.ticks);

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark.h"
+#include "core/file.h"
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::benchmark {
 

@@ -5,8 +5,8 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/map/drivable_area.h"
-#include "e2e_cdiff/map/network_import.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "map/network_import.h"
+#include "map/route_source.h"
 
 namespace cdiff::benchmark {
 namespace {

@@ -13,12 +13,12 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/metrics/session_metrics.h"
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
-#include "e2e_cdiff/metrics/ttc_2d.h"
-#include "e2e_cdiff/metrics/wasserstein.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "e2e_cdiff/scenario/session_setup.h"
+#include "metrics/session_metrics.h"
+#include "metrics/shapiro_wilk.h"
+#include "metrics/ttc_2d.h"
+#include "metrics/wasserstein.h"
+#include "session/session_request.h"
+#include "session/session_setup.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -186,9 +186,9 @@ traffic::TrafficSnapshot syntheticTick(const map::Route& route, std::uint64_t ti
 }
 
 void benchmarkSession(Figures& figures) {
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_straight";
-  const scenario::SessionSetup setup(scenario::resolveRequest(request));
+  const session::SessionSetup setup(session::resolveRequest(request));
   std::vector<traffic::TrafficSnapshot> ticks;
   for (std::uint64_t tick = 0; tick < 800; ++tick)
     ticks.push_back(syntheticTick(setup.egoRoute(), tick));

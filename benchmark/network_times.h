@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+#include "diffusion/cpu_denoiser.h"
 
 namespace cdiff::benchmark {
 

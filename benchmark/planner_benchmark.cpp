@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "benchmark.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/planning/diffusion_planner.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "e2e_cdiff/scenario/session_setup.h"
 #include "fma_peak.h"
 #include "network_times.h"
+#include "planners/diffusion/diffusion_planner.h"
+#include "session/session_request.h"
+#include "session/session_setup.h"
 #ifdef E2E_CDIFF_EAGER
 #include "eager_planner.h"
 #endif
@@ -25,7 +25,7 @@ constexpr int kRounds = 12;
 /// of its own.
 class Scene {
  public:
-  Scene() : setup_(scenario::resolveRequest(request())) {
+  Scene() : setup_(session::resolveRequest(request())) {
     for (int i = 0; i <= kVehicles; ++i) {
       traffic::Vehicle vehicle;
       const double s = 5.0 + 8.0 * i;
@@ -56,12 +56,12 @@ class Scene {
     }
     return tasks;
   }
-  const scenario::SessionSetup& setup() const { return setup_; }
+  const session::SessionSetup& setup() const { return setup_; }
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
  private:
-  static scenario::SessionRequest request() {
-    scenario::SessionRequest request;
+  static session::SessionRequest request() {
+    session::SessionRequest request;
     request.scenario = "crossing_straight";
     return request;
   }
@@ -78,7 +78,7 @@ class Scene {
     }
   }
 
-  scenario::SessionSetup setup_;
+  session::SessionSetup setup_;
   traffic::TrafficSnapshot snapshot_;
   std::vector<traffic::CameraImage> images_;
 };
@@ -93,11 +93,11 @@ struct Setting {
 constexpr const char* kThreeObjectives = "ablation_all";
 constexpr const char* kDefaultProfile = "naturalistic";
 
-std::unique_ptr<planning::DiffusionPlanner> makePlanner(const Scene& scene,
+std::unique_ptr<planners::DiffusionPlanner> makePlanner(const Scene& scene,
                                                         const Setting& setting) {
-  planning::DiffusionOptions options;
+  planners::DiffusionOptions options;
   options.sampler.mode = setting.mode;
-  return std::make_unique<planning::DiffusionPlanner>(
+  return std::make_unique<planners::DiffusionPlanner>(
       options, guidance::loadProfile(setting.profile), scene.setup().options().vehicle,
       scene.setup().planningContext());
 }

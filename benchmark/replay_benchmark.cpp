@@ -7,12 +7,12 @@
 
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/metrics/session_metrics.h"
-#include "e2e_cdiff/ros/bag_reader.h"
-#include "e2e_cdiff/ros/replay.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
+#include "metrics/session_metrics.h"
+#include "ros/bag_reader.h"
+#include "ros/replay.h"
+#include "ros/session_bag.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -22,31 +22,31 @@ namespace fs = std::filesystem;
 constexpr int kRepetitions = 9;
 
 /// A town, whose set-up costs more than its ticks.
-scenario::ScenarioOptions town05() {
+session::ScenarioOptions town05() {
   const fs::path data = dataFolder();
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.bench2drive = (data / "bench2drive" / "bench2drive220.xml").string();
   request.route = "25318";
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
   request.cbv_planner = "pdm_lite";
   request.set = {"traffic.density=50", "traffic.forget_distance=160", "max_cbv=2",
                  "protocol.blocked_time=1000", "protocol.time_limit=60"};
-  return scenario::resolveRequest(request);
+  return session::resolveRequest(request);
 }
 
 /// Two CBVs that see, plan by diffusion and are guided: images, plans and guidance in the bag.
-scenario::ScenarioOptions roundabout() {
-  scenario::SessionRequest request;
+session::ScenarioOptions roundabout() {
+  session::SessionRequest request;
   request.scenario = "roundabout_cross";
   request.mode = "safety_critical";
   request.seed = "1";
-  return scenario::resolveRequest(request);
+  return session::resolveRequest(request);
 }
 
 /// Simulated seconds.
-double record(const scenario::ScenarioOptions& options, const fs::path& bag_file) {
-  const scenario::SessionSetup setup(options);
-  scenario::ClosedLoop loop(setup);
+double record(const session::ScenarioOptions& options, const fs::path& bag_file) {
+  const session::SessionSetup setup(options);
+  session::ClosedLoop loop(setup);
   ros::SessionBag bag(setup, bag_file, {"benchmark", loop.world().simulatorVersion()});
   loop.addObserver(bag);
   const std::atomic<bool> stop{false};
@@ -56,11 +56,11 @@ double record(const scenario::ScenarioOptions& options, const fs::path& bag_file
 }
 
 /// The figures alone.
-class Metrics : public scenario::SessionObserver {
+class Metrics : public session::SessionObserver {
  public:
-  explicit Metrics(const scenario::SessionSetup& setup)
+  explicit Metrics(const session::SessionSetup& setup)
       : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()) {}
-  void observe(const scenario::TickRecord& record) override {
+  void observe(const session::TickRecord& record) override {
     metrics_.observe(*record.snapshot, record.selection);
   }
   void finish() const { metrics_.measures(); }
@@ -111,7 +111,7 @@ double medianSeconds(Call call) {
   return median(seconds);
 }
 
-void measure(const std::string& name, const scenario::ScenarioOptions& options,
+void measure(const std::string& name, const session::ScenarioOptions& options,
              const fs::path& folder, Figures& figures) {
   const fs::path bag = folder / (name + ".bag");
   const fs::path results = folder / name;

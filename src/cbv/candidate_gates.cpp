@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/cbv/candidate_gates.h"
+#include "cbv/candidate_gates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/cbv/rejection_reason.h"
+#include "cbv/rejection_reason.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::cbv {

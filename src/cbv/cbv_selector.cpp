@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/cbv/cbv_selector.h"
+#include "cbv/cbv_selector.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/cbv/candidate_gates.h"
+#include "cbv/candidate_gates.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::cbv {

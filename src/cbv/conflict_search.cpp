@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/cbv/conflict_search.h"
+#include "cbv/conflict_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/cbv/candidate_gates.h"
-#include "e2e_cdiff/cbv/interaction_score.h"
-#include "e2e_cdiff/cbv/rejection_reason.h"
+#include "cbv/candidate_gates.h"
+#include "cbv/interaction_score.h"
+#include "cbv/rejection_reason.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::cbv {

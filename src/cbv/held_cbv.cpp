@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/cbv/held_cbv.h"
+#include "cbv/held_cbv.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/cbv/interaction_score.h"
+#include "cbv/interaction_score.h"
 
 namespace cdiff::cbv {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/cbv/interaction_score.h"
+#include "cbv/interaction_score.h"
 
 #include <algorithm>
 #include <cmath>

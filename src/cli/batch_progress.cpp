@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "batch_progress.h"
+#include "cli/batch_progress.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::cli {
 
@@ -39,7 +39,7 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_
             << " failed, " << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1)
             << " x real time, " << core::formatFixed(left, 0) << " s left: " << record.id << " "
-            << record.status << (record.complete() ? ", " + report::wordOf(record.verdict) : "")
+            << record.status << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
             << (record.cause.empty() ? "" : " (" + record.cause + ")")
             << (terminal_ && !record.failed() ? "" : "\n");
   std::cerr.flush();

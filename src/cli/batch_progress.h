@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::cli {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collect_bags.h"
+#include "cli/collect_bags.h"
 
 #include <iostream>
 #include <set>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/ros/dataset_from_driving_bag.h"
-#include "e2e_cdiff/training/shard.h"
+#include "ros/dataset_from_driving_bag.h"
+#include "training/shard.h"
 
 namespace cdiff::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/ros/dataset_from_bag.h"
+#include "ros/dataset_from_bag.h"
 
 namespace cdiff::cli {
 

@@ -6,17 +6,17 @@
 #include <map>
 #include <memory>
 
-#include "collect_bags.h"
-#include "collect_session.h"
-#include "commands.h"
-#include "dataset_page.h"
+#include "cli/collect_bags.h"
+#include "cli/collect_session.h"
+#include "cli/commands.h"
+#include "cli/dataset_page.h"
+#include "core/file.h"
+#include "core/output_folder.h"
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/process_pool.h"
-#include "e2e_cdiff/suite/suite.h"
+#include "evaluation/process_pool.h"
+#include "suite/suite.h"
 
 namespace cdiff::cli {
 namespace {
@@ -71,7 +71,7 @@ std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
     }
   }
   if (!scenarios.empty()) return scenarios;
-  for (const std::string& name : scenario::shippedScenarios()) scenarios.push_back({name, {}});
+  for (const std::string& name : session::shippedScenarios()) scenarios.push_back({name, {}});
   return scenarios;
 }
 

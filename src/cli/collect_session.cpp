@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collect_session.h"
+#include "cli/collect_session.h"
 
 #include <atomic>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "collection/collection_loop.h"
+#include "core/file.h"
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/scenario/collection_loop.h"
-#include "e2e_cdiff/training/shard.h"
+#include "ros/session_bag.h"
+#include "training/shard.h"
 
 namespace cdiff::cli {
 namespace {
@@ -23,8 +23,8 @@ using nlohmann::json;
 
 void record(const CollectRequest& request, const CollectSettings& settings, const fs::path& file,
             const std::atomic<bool>& stop) {
-  const auto setup = scenario::collectionSetup(settings.scenario, settings.collection);
-  scenario::CollectionLoop loop(*setup, settings.collection, request.images);
+  const auto setup = collection::collectionSetup(settings.scenario, settings.collection);
+  collection::CollectionLoop loop(*setup, settings.collection, request.images);
   ros::SessionBag bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
   bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
   loop.addObserver(bag);
@@ -73,11 +73,11 @@ void CollectSettings::describe(core::OptionsVisitor& visitor) {
 
 CollectSettings resolveCollection(const CollectRequest& request) {
   CollectSettings settings;
-  settings.scenario = scenario::loadScenario(request.scenario);
+  settings.scenario = session::loadScenario(request.scenario);
   settings.scenario.seed = request.seed;
   settings.collection.duration = request.duration;
   override(settings, request.set);
-  settings.scenario = scenario::collectionScenario(settings.scenario, settings.collection);
+  settings.scenario = collection::collectionScenario(settings.scenario, settings.collection);
   override(settings, request.set);
   settings.scenario.validate();
   settings.collection.validate();

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/ros/dataset_from_bag.h"
-#include "e2e_cdiff/scenario/collection_options.h"
-#include "e2e_cdiff/scenario/scenario_options.h"
+#include "collection/collection_options.h"
+#include "ros/dataset_from_bag.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::cli {
 
@@ -26,8 +26,8 @@ struct CollectRequest {
 
 /// Options of a session, collection's own in the group "collection".
 struct CollectSettings {
-  scenario::ScenarioOptions scenario;
-  scenario::CollectionOptions collection;
+  session::ScenarioOptions scenario;
+  collection::CollectionOptions collection;
 
   void describe(core::OptionsVisitor& visitor);
 };

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "dataset_page.h"
+#include "cli/dataset_page.h"
 
 #include <algorithm>
 #include <iostream>
 
-#include "collect_session.h"
+#include "cli/collect_session.h"
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/sample_sheet.h"
 #include "e2e_cdiff/traffic/rollout.h"
+#include "page/sample_sheet.h"
 
 namespace cdiff::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using report::CountRow;
+using page::CountRow;
 
 constexpr std::size_t kSamplesAKind = 6;
 
@@ -100,7 +100,7 @@ void describeDataset(const fs::path& folder, const ros::DatasetStatistics& stati
   const fs::path page = folder / "samples.html";
   const std::string title = fs::weakly_canonical(folder).filename().string();
   const training::Dataset dataset(folder / "shards", 0.0);
-  core::writeFileAtomically(page, report::sampleSheet(title, rows, dataset, kSamplesAKind));
+  core::writeFileAtomically(page, page::sampleSheet(title, rows, dataset, kSamplesAKind));
   std::cerr << "pictures: " << page.string() << "\n";
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "e2e_cdiff/ros/dataset_from_bag.h"
+#include "ros/dataset_from_bag.h"
 
 namespace cdiff::cli {
 

@@ -8,11 +8,11 @@
 #include <iostream>
 #include <vector>
 
-#include "commands.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
-#include "e2e_cdiff/scenario/scenario_options.h"
+#include "cli/commands.h"
+#include "core/file.h"
+#include "diffusion/cpu_denoiser.h"
+#include "diffusion/image_encoder.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::cli {
 namespace {
@@ -112,7 +112,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
                 << "\n";
       if (!finding.good) exit_code = kRunTimeError;
     }
-    std::cout << "shipped scenarios: " << scenario::shippedScenarios().size() << "\n";
+    std::cout << "shipped scenarios: " << session::shippedScenarios().size() << "\n";
   });
 }
 

@@ -5,18 +5,18 @@
 #include <memory>
 #include <vector>
 
-#include "batch_progress.h"
-#include "commands.h"
+#include "cli/batch_progress.h"
+#include "cli/commands.h"
+#include "cli/route_table.h"
+#include "core/file.h"
+#include "core/output_folder.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/evaluation/batch_files.h"
-#include "e2e_cdiff/evaluation/batch_report.h"
-#include "e2e_cdiff/evaluation/executor.h"
-#include "e2e_cdiff/evaluation/matrix.h"
-#include "e2e_cdiff/evaluation/run_plan.h"
-#include "route_table.h"
+#include "evaluation/batch_files.h"
+#include "evaluation/batch_report.h"
+#include "evaluation/executor.h"
+#include "evaluation/matrix.h"
+#include "evaluation/run_plan.h"
 
 namespace cdiff::cli {
 namespace {
@@ -119,7 +119,7 @@ int exitCodeOf(const std::vector<RunRecord>& records) {
     const bool bad_input = record.failed() && record.exit_code == kBadInput;
     if (!record.complete() && !bad_input) return kRunTimeError;
     if (bad_input) exit_code = kBadInput;
-    if (record.has(report::Outcome::kFailed) && exit_code == kPassed) exit_code = kVerdictFailed;
+    if (record.has(record::Outcome::kFailed) && exit_code == kPassed) exit_code = kVerdictFailed;
   }
   return exit_code;
 }

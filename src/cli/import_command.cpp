@@ -4,11 +4,11 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.h"
-#include "e2e_cdiff/core/file.h"
+#include "cli/commands.h"
+#include "core/file.h"
 #include "e2e_cdiff/map/drivable_area.h"
-#include "e2e_cdiff/map/lane_graph.h"
-#include "e2e_cdiff/map/network_import.h"
+#include "map/lane_graph.h"
+#include "map/network_import.h"
 
 namespace cdiff::cli {
 namespace {

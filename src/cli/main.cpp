@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <iostream>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/version.h"
+#include "core/failure.h"
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/failure.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
-#include "version.h"
 
 namespace {
 

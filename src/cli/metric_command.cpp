@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.h"
+#include "cli/commands.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/report/figure_list.h"
-#include "e2e_cdiff/report/metric_file.h"
+#include "record/figure_list.h"
+#include "record/metric_file.h"
 
 namespace cdiff::cli {
 
@@ -24,14 +24,14 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   command->callback([metric, file, &exit_code] {
     exit_code = kPassed;
     if (*metric == "definitions") {
-      std::cout << report::figureList();
+      std::cout << record::figureList();
       return;
     }
     if (file->empty()) {
       throw core::InputError("metric " + *metric + " needs a file of cases: cdiff metric " +
                              *metric + " FILE");
     }
-    for (const std::string& line : report::evaluateMetricFile(*metric, *file))
+    for (const std::string& line : record::evaluateMetricFile(*metric, *file))
       std::cout << line << "\n";
   });
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "progress.h"
+#include "cli/progress.h"
 
 #include <unistd.h>
 
 #include <iostream>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::cli {
 namespace {
@@ -25,7 +25,7 @@ Progress::Progress(double time_limit)
       begin_(Clock::now()),
       last_(begin_) {}
 
-void Progress::observe(const scenario::TickRecord& record) {
+void Progress::observe(const session::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   const bool ended = snapshot.status != traffic::SessionStatus::kRunning;
   const Clock::time_point now = Clock::now();

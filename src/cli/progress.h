@@ -5,16 +5,16 @@
 
 #include <chrono>
 
-#include "e2e_cdiff/scenario/session_observer.h"
+#include "session/session_observer.h"
 
 namespace cdiff::cli {
 
 /// Rewrites one line on a terminal; prints a plain line every 10 s of wall time elsewhere.
-class Progress : public scenario::SessionObserver {
+class Progress : public session::SessionObserver {
  public:
   /// `time_limit` of the protocol [s].
   explicit Progress(double time_limit);
-  void observe(const scenario::TickRecord& record) override;
+  void observe(const session::TickRecord& record) override;
 
  private:
   double time_limit_;

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.h"
-#include "e2e_cdiff/ros/replay.h"
+#include "cli/commands.h"
+#include "ros/replay.h"
 
 namespace cdiff::cli {
 namespace {

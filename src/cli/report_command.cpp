@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/training_page.h"
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/evaluation/batch_report.h"
-#include "e2e_cdiff/evaluation/comparison.h"
-#include "e2e_cdiff/evaluation/matrix.h"
-#include "training_page.h"
+#include "evaluation/batch_report.h"
+#include "evaluation/comparison.h"
+#include "evaluation/matrix.h"
 
 namespace cdiff::cli {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "route_table.h"
+#include "cli/route_table.h"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/executor.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "evaluation/executor.h"
+#include "map/route_source.h"
 
 namespace cdiff::cli {
 namespace {

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "commands.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/core/time_text.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "run_session.h"
+#include "cli/commands.h"
+#include "cli/run_session.h"
+#include "core/text.h"
+#include "core/time_text.h"
+#include "session/session_request.h"
 
 namespace cdiff::cli {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   std::string results;
   bool quiet = false;
   bool record = false;
@@ -23,7 +23,7 @@ struct RunArguments {
 };
 
 int run(const RunArguments& arguments) {
-  const scenario::ScenarioOptions options = scenario::resolveRequest(arguments.request);
+  const session::ScenarioOptions options = session::resolveRequest(arguments.request);
   const fs::path folder =
       arguments.results.empty()
           ? fs::path("results") / (core::fileName(options.name) + "_seed" +
@@ -37,7 +37,7 @@ int run(const RunArguments& arguments) {
 void addRunCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = program.add_subcommand("run", "Run one session and write its result folder");
-  scenario::SessionRequest& request = arguments->request;
+  session::SessionRequest& request = arguments->request;
   command->add_option("scenario", request.scenario, "Shipped scenario or scenario file");
   command->add_option("--bench2drive", request.bench2drive,
                       "Bench2Drive route file, instead of a scenario");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "run_session.h"
+#include "cli/run_session.h"
 
 #include <atomic>
 #include <chrono>
@@ -8,17 +8,17 @@
 #include <iostream>
 #include <memory>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/report/result_folder.h"
-#include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/report/session_table.h"
-#include "e2e_cdiff/report/session_video.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "progress.h"
+#include "page/result_writer.h"
+#include "record/result_folder.h"
+#include "record/session_table.h"
+#include "session/closed_loop.h"
+#include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS
-#include "e2e_cdiff/ros/session_bag.h"
+#include "ros/session_bag.h"
 #endif
 
 namespace cdiff::cli {
@@ -29,11 +29,11 @@ using Clock = std::chrono::steady_clock;
 bool isJudged(int exit_code) { return exit_code == kPassed || exit_code == kVerdictFailed; }
 
 /// The record of a session that never began.
-void recordFailedStart(report::ResultWriter& writer, const std::string& text) {
+void recordFailedStart(page::ResultWriter& writer, const std::string& text) {
   traffic::TrafficSnapshot snapshot;
   snapshot.status = traffic::SessionStatus::kError;
   snapshot.faults.push_back({0, "simulator", text});
-  scenario::TickRecord record;
+  session::TickRecord record;
   record.snapshot = &snapshot;
   writer.observe(record);
 }
@@ -44,10 +44,10 @@ double secondsSince(Clock::time_point begin) {
 
 /// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
 /// be written is removed, and the session goes on.
-class BagRecord : public scenario::SessionObserver {
+class BagRecord : public session::SessionObserver {
  public:
-  BagRecord(const scenario::SessionSetup& setup, const RunOutput& output,
-            scenario::ClosedLoop& loop) {
+  BagRecord(const session::SessionSetup& setup, const RunOutput& output,
+            session::ClosedLoop& loop) {
     if (!output.record) return;
 #ifdef E2E_CDIFF_WITH_ROS
     const ros::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
@@ -61,11 +61,11 @@ class BagRecord : public scenario::SessionObserver {
 #endif
   }
 #ifdef E2E_CDIFF_WITH_ROS
-  void observe(const scenario::TickRecord& record) override {
+  void observe(const session::TickRecord& record) override {
     if (bag_) attempt([&] { bag_->observe(record); });
   }
 #else
-  void observe(const scenario::TickRecord&) override {}
+  void observe(const session::TickRecord&) override {}
 #endif
   /// Why the bag that was asked for is not there; empty when it is.
   const std::string& finish() {
@@ -101,17 +101,17 @@ class BagRecord : public scenario::SessionObserver {
 /// session.mp4 of a session that asks for it.
 class VideoRecord {
  public:
-  VideoRecord(const scenario::SessionSetup& setup, const std::filesystem::path& folder,
-              scenario::ClosedLoop& loop) {
+  VideoRecord(const session::SessionSetup& setup, const std::filesystem::path& folder,
+              session::ClosedLoop& loop) {
     if (!setup.options().video) return;
-    video_ = std::make_unique<report::SessionVideo>(setup, folder);
+    video_ = std::make_unique<video::SessionVideo>(setup, folder);
     loop.addObserver(*video_);
     tell();
   }
   /// Removes what there is of it.
   void discard() { video_.reset(); }
   /// `exit_code` of the session, or that of an error at run time when its video is missing.
-  int finish(const report::ResultWriter& writer, int exit_code) {
+  int finish(const page::ResultWriter& writer, int exit_code) {
     if (!video_) return exit_code;
     video_->finish(writer.result());
     tell();
@@ -124,18 +124,18 @@ class VideoRecord {
     std::cerr << "cdiff: " << video_->error() << "; the other results are not affected\n";
     told_ = true;
   }
-  std::unique_ptr<report::SessionVideo> video_;
+  std::unique_ptr<video::SessionVideo> video_;
   bool told_ = false;
 };
 
 /// The session's table, and what it was asked to record.
-void printTable(const report::ResultWriter& writer, const RunOutput& output) {
+void printTable(const page::ResultWriter& writer, const RunOutput& output) {
   if (output.quiet) return;
-  std::cout << writer.table() << report::fileRow("bag", output.folder / "session.bag")
-            << report::fileRow("video", output.folder / report::kVideoFile) << std::flush;
+  std::cout << writer.table() << record::fileRow("bag", output.folder / "session.bag")
+            << record::fileRow("video", output.folder / video::kVideoFile) << std::flush;
 }
 
-void finishResult(report::ResultWriter& writer, double wall_seconds) {
+void finishResult(page::ResultWriter& writer, double wall_seconds) {
   try {
     writer.finish(wall_seconds);
   } catch (const core::InputError& error) {
@@ -145,12 +145,12 @@ void finishResult(report::ResultWriter& writer, double wall_seconds) {
 }
 
 /// Runs the session and records it; an exit code.
-int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario::ClosedLoop& loop,
+int drive(const session::SessionSetup& setup, const RunOutput& output, session::ClosedLoop& loop,
           const std::atomic<bool>& stop, Clock::time_point begin) {
-  const scenario::ScenarioOptions& options = setup.options();
-  report::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
-                              output.folder);
-  Progress progress(scenario::longestTime(options.protocol, setup.egoRoute()));
+  const session::ScenarioOptions& options = setup.options();
+  page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
+                            output.folder);
+  Progress progress(session::longestTime(options.protocol, setup.egoRoute()));
   loop.addObserver(writer);
   if (!output.quiet) loop.addObserver(progress);
   BagRecord bag(setup, output, loop);
@@ -172,27 +172,27 @@ int drive(const scenario::SessionSetup& setup, const RunOutput& output, scenario
 
 }  // namespace
 
-int runSession(const scenario::ScenarioOptions& options, const RunOutput& output) {
+int runSession(const session::ScenarioOptions& options, const RunOutput& output) {
   const std::atomic<bool>& stop = core::catchStopSignals();
-  report::requireFreeFolder(output.folder, output.overwrite);
-  const scenario::SessionSetup setup(options);
+  record::requireFreeFolder(output.folder, output.overwrite);
+  const session::SessionSetup setup(options);
   const Clock::time_point begin = Clock::now();
   const auto claim = [&] {
-    return report::ResultFolder(output.folder, "cdiff run", output.overwrite);
+    return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
   };
-  std::unique_ptr<scenario::ClosedLoop> loop;
+  std::unique_ptr<session::ClosedLoop> loop;
   try {
-    loop = std::make_unique<scenario::ClosedLoop>(setup);
+    loop = std::make_unique<session::ClosedLoop>(setup);
   } catch (const core::SimulatorError& error) {
-    const report::ResultFolder folder = claim();
-    report::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
+    const record::ResultFolder folder = claim();
+    page::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
     recordFailedStart(writer, error.what());
     std::cerr << "cdiff: " << error.what() << "\n";
     writer.finish(secondsSince(begin));
     printTable(writer, output);
     return writer.exitCode();
   }
-  const report::ResultFolder folder = claim();
+  const record::ResultFolder folder = claim();
   return drive(setup, output, *loop, stop, begin);
 }
 

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "e2e_cdiff/scenario/scenario_options.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::cli {
 
@@ -22,6 +22,6 @@ struct RunOutput {
 /// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
 /// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
 /// simulator that cannot start or is lost gives a result folder with status error.
-int runSession(const scenario::ScenarioOptions& options, const RunOutput& output);
+int runSession(const session::ScenarioOptions& options, const RunOutput& output);
 
 }  // namespace cdiff::cli

@@ -5,8 +5,8 @@
 #include <memory>
 #include <set>
 
-#include "commands.h"
-#include "e2e_cdiff/suite/suite_generator.h"
+#include "cli/commands.h"
+#include "suite/suite_generator.h"
 
 namespace cdiff::cli {
 namespace {

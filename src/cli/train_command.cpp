@@ -10,11 +10,11 @@
 #include <thread>
 #include <vector>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/training_page.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/evaluation/child_process.h"
-#include "training_page.h"
+#include "evaluation/child_process.h"
 
 namespace cdiff::cli {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "training_page.h"
+#include "cli/training_page.h"
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/report/training_report.h"
+#include "page/training_report.h"
 
 namespace cdiff::cli {
 
@@ -18,12 +18,12 @@ fs::path writeTrainingPage(const fs::path& folder) {
   }
   const fs::path card = folder / "model_card.md";
   const auto stages =
-      report::readTrainingCurves(core::readFile(curves, "training curves"), curves.string());
+      page::readTrainingCurves(core::readFile(curves, "training curves"), curves.string());
   const fs::path page = folder / "training.html";
   const std::string title = fs::weakly_canonical(folder).filename().string();
   core::writeFileAtomically(
-      page, report::trainingReport(title, stages,
-                                   fs::exists(card) ? core::readFile(card, "model card") : ""));
+      page, page::trainingReport(title, stages,
+                                 fs::exists(card) ? core::readFile(card, "model card") : ""));
   return page;
 }
 

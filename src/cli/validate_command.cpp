@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "commands.h"
+#include "cli/commands.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "e2e_cdiff/scenario/session_setup.h"
+#include "session/session_request.h"
+#include "session/session_setup.h"
 
 namespace cdiff::cli {
 namespace {
@@ -16,10 +16,10 @@ namespace {
 /// Checks one scenario as far as it goes without starting SUMO; answers whether it is good.
 bool validateOne(const std::string& scenario_name, bool print) {
   try {
-    scenario::SessionRequest request;
+    session::SessionRequest request;
     request.scenario = scenario_name;
-    const scenario::ScenarioOptions options = scenario::resolveRequest(request);
-    const scenario::SessionSetup setup(options);
+    const session::ScenarioOptions options = session::resolveRequest(request);
+    const session::SessionSetup setup(options);
     if (options.ego_planner != "external") setup.makeEgoPlanner();
     setup.makeCbvPlanner();
     std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
@@ -48,7 +48,7 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
                       "Scenario files or names (default: all shipped ones)");
   command->add_flag("--print", *print, "Print all keys with their values, meaning and range");
   command->callback([scenarios, print, &exit_code] {
-    const auto names = scenarios->empty() ? scenario::shippedScenarios() : *scenarios;
+    const auto names = scenarios->empty() ? session::shippedScenarios() : *scenarios;
     for (const std::string& name : names) {
       if (!validateOne(name, *print)) exit_code = kBadInput;
     }

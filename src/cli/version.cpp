@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "version.h"
+#include "cli/version.h"
 
 #include <array>
 #include <cstdio>
 
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
-#include "e2e_cdiff/report/build_info.h"
+#include "diffusion/cpu_denoiser.h"
+#include "diffusion/image_encoder.h"
+#include "record/build_info.h"
 
 namespace cdiff::cli {
 namespace {
@@ -31,9 +31,9 @@ std::string sumoVersion() {
 std::string versionText() {
   using diffusion::CpuDenoiser;
   const std::string sumo = sumoVersion();
-  return "cdiff " + report::packageVersion() + "\nrevision " + report::packageRevision() +
+  return "cdiff " + record::packageVersion() + "\nrevision " + record::packageRevision() +
          "\nSUMO " + (sumo.empty() ? "not found: install the package sumo" : sumo) +
-         "\ninstruction set " + report::instructionSet() + "; encoder with " +
+         "\ninstruction set " + record::instructionSet() + "; encoder with " +
          diffusion::ImageEncoder::instructionSet() + ", denoiser with " +
          CpuDenoiser::toText(CpuDenoiser::bestInstructionSet());
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::core {
 namespace {

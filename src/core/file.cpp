@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -19,9 +19,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::core {
 namespace {

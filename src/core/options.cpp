@@ -9,9 +9,9 @@
 #include <optional>
 #include <set>
 
+#include "core/options_dump.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "options_dump.h"
 
 namespace cdiff::core::detail {
 namespace {

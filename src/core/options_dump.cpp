@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "options_dump.h"
+#include "core/options_dump.h"
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::core::detail {
 namespace {

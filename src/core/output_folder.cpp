@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/output_folder.h"
+#include "core/output_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -17,11 +17,11 @@
 #include <thread>
 #include <vector>
 
+#include "core/file.h"
+#include "core/program.h"
+#include "core/text.h"
+#include "core/time_text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/core/time_text.h"
 
 namespace cdiff::core {
 namespace {

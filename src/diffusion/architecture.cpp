@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/architecture.h"
+#include "diffusion/architecture.h"
 
 #include <cmath>
 #include <limits>
 #include <set>
 #include <tuple>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "strict_json.h"
+#include "inference/strict_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -60,18 +60,19 @@ void requireMultiple(const std::string& name, std::int64_t value, std::int64_t d
        std::to_string(divisor) + ") was expected");
 }
 
-std::int64_t integerOf(const Json& value, const std::string& where) {
+std::int64_t integerOf(const inference::Json& value, const std::string& where) {
   const bool too_large = value.is_number_unsigned() &&
                          value.get<std::uint64_t>() >
                              static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (!value.is_number_integer() || too_large) {
-    throw core::InputError(where + " is " + (too_large ? value.dump() : kindOf(value)) +
+    throw core::InputError(where + " is " + (too_large ? value.dump() : inference::kindOf(value)) +
                            "; an integer was expected");
   }
   return value.get<std::int64_t>();
 }
 
-const Json& valueOf(const Json& object, const std::string& key, const std::string& source) {
+const inference::Json& valueOf(const inference::Json& object, const std::string& key,
+                               const std::string& source) {
   const auto found = object.find(key);
   if (found == object.end()) {
     throw core::InputError(source + ": the architecture lacks the key '" + key + "'");
@@ -79,16 +80,18 @@ const Json& valueOf(const Json& object, const std::string& key, const std::strin
   return *found;
 }
 
-std::vector<std::int64_t> channelsOf(const Json& value, const std::string& where) {
+std::vector<std::int64_t> channelsOf(const inference::Json& value, const std::string& where) {
   if (!value.is_array()) {
-    throw core::InputError(where + " is " + kindOf(value) + "; an array of integers was expected");
+    throw core::InputError(where + " is " + inference::kindOf(value) +
+                           "; an array of integers was expected");
   }
   std::vector<std::int64_t> channels;
-  for (const Json& element : value) channels.push_back(integerOf(element, where + " (an element)"));
+  for (const inference::Json& element : value)
+    channels.push_back(integerOf(element, where + " (an element)"));
   return channels;
 }
 
-void requireKnownKeys(const Json& object, const std::string& source) {
+void requireKnownKeys(const inference::Json& object, const std::string& source) {
   std::vector<std::string> known = {"channels", "route_spacing"};
   for (const SizeField& field : kSizes) known.emplace_back(field.name);
   const std::set<std::string> set(known.begin(), known.end());
@@ -131,9 +134,9 @@ std::string Architecture::toJson() const {
 }
 
 Architecture Architecture::fromJson(const std::string& text, const std::string& source) {
-  const Json object = parseStrictJson(text, source + ": the architecture");
+  const inference::Json object = inference::parseStrictJson(text, source + ": the architecture");
   if (!object.is_object()) {
-    throw core::InputError(source + ": the architecture is " + kindOf(object) +
+    throw core::InputError(source + ": the architecture is " + inference::kindOf(object) +
                            "; an object was expected");
   }
   requireKnownKeys(object, source);
@@ -143,9 +146,9 @@ Architecture Architecture::fromJson(const std::string& text, const std::string& 
     result.*field.member = integerOf(valueOf(object, field.name, source), prefix + field.name);
   }
   result.channels = channelsOf(valueOf(object, "channels", source), prefix + "channels");
-  const Json& spacing = valueOf(object, "route_spacing", source);
+  const inference::Json& spacing = valueOf(object, "route_spacing", source);
   if (!spacing.is_number()) {
-    throw core::InputError(prefix + "route_spacing is " + kindOf(spacing) +
+    throw core::InputError(prefix + "route_spacing is " + inference::kindOf(spacing) +
                            "; a number was expected");
   }
   result.route_spacing = spacing.get<double>();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "conditioning.h"
+#include "diffusion/conditioning.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "linear.h"
+#include "inference/linear.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -16,8 +16,8 @@ constexpr double kLongestPeriod = 10000.0;
 constexpr double kSpeedScale = 10.0;  // [m/s]
 
 /// e_i = sin(k w_i), e_{h+i} = cos(k w_i), w_i = exp(-ln(10000) i / (h - 1)), h half the width.
-Activation sinusoids(std::int64_t steps, std::int64_t width) {
-  Activation result = matrix(width, steps + 1);
+inference::Activation sinusoids(std::int64_t steps, std::int64_t width) {
+  inference::Activation result = inference::matrix(width, steps + 1);
   const std::int64_t half = width / 2;
   for (std::int64_t k = 0; k <= steps; ++k) {
     float* row = result.row(k);
@@ -39,61 +39,68 @@ void requireSize(const char* what, std::size_t size, std::int64_t expected, std:
 
 }  // namespace
 
-Conditioning::Conditioning(const DenoiserKernels& kernels, const Architecture& architecture,
-                           const Tensors& tensors, const std::vector<Injection>& injections)
+Conditioning::Conditioning(const inference::DenoiserKernels& kernels,
+                           const Architecture& architecture, const inference::Tensors& tensors,
+                           const std::vector<Injection>& injections)
     : kernels_(&kernels),
       architecture_(architecture),
-      layers_{linearNamed(kernels, tensors, "route.0"), linearNamed(kernels, tensors, "route.2"),
-              linearNamed(kernels, tensors, "speed.0"), linearNamed(kernels, tensors, "context.0")},
-      no_route_(tensorNamed(tensors, "no_route").values) {
+      layers_{inference::linearNamed(kernels, tensors, "route.0"),
+              inference::linearNamed(kernels, tensors, "route.2"),
+              inference::linearNamed(kernels, tensors, "speed.0"),
+              inference::linearNamed(kernels, tensors, "context.0")},
+      no_route_(inference::tensorNamed(tensors, "no_route").values) {
   buildTimeEmbeddings(tensors);
   buildInjections(tensors, injections);
 }
 
-void Conditioning::buildTimeEmbeddings(const Tensors& tensors) {
+void Conditioning::buildTimeEmbeddings(const inference::Tensors& tensors) {
   const std::int64_t rows = architecture_.diffusion_steps + 1;
-  Activation hidden = matrix(tensorNamed(tensors, "time.0.bias").shape[0], rows);
-  linearNamed(*kernels_, tensors, "time.0")
+  inference::Activation hidden =
+      inference::matrix(inference::tensorNamed(tensors, "time.0.bias").shape[0], rows);
+  inference::linearNamed(*kernels_, tensors, "time.0")
       .applyToRows(sinusoids(architecture_.diffusion_steps, architecture_.time_width), hidden);
-  time_ = matrix(architecture_.time_width, rows);
-  linearNamed(*kernels_, tensors, "time.2").applyToRows(mished(hidden), time_);
+  time_ = inference::matrix(architecture_.time_width, rows);
+  inference::linearNamed(*kernels_, tensors, "time.2").applyToRows(mished(hidden), time_);
 }
 
-void Conditioning::buildInjections(const Tensors& tensors,
+void Conditioning::buildInjections(const inference::Tensors& tensors,
                                    const std::vector<Injection>& injections) {
   const std::int64_t width = injections.back().first + injections.back().layout.padded();
-  const Activation time = mished(time_);
-  time_part_ = matrix(width, time_.rows());
+  const inference::Activation time = mished(time_);
+  time_part_ = inference::matrix(width, time_.rows());
   for (const Injection& injection : injections) {
-    const Tensor& weight = tensorNamed(tensors, injection.name + ".weight");
-    const Filter time_columns = Filter::ofLinear(weight, 0, architecture_.time_width);
-    const Filter context_columns =
-        Filter::ofLinear(weight, architecture_.time_width, architecture_.context_width);
-    Convolution(*kernels_, time_columns, Spacing{}, &tensorNamed(tensors, injection.name + ".bias"))
+    const inference::Tensor& weight = inference::tensorNamed(tensors, injection.name + ".weight");
+    const inference::Filter time_columns =
+        inference::Filter::ofLinear(weight, 0, architecture_.time_width);
+    const inference::Filter context_columns =
+        inference::Filter::ofLinear(weight, architecture_.time_width, architecture_.context_width);
+    inference::Convolution(*kernels_, time_columns, inference::Spacing{},
+                           &inference::tensorNamed(tensors, injection.name + ".bias"))
         .apply(time.view(), time_part_.view(0, injection.first), time.rows());
     context_injections_.push_back(
-        {injection.first, Convolution(*kernels_, context_columns, Spacing{})});
+        {injection.first,
+         inference::Convolution(*kernels_, context_columns, inference::Spacing{})});
   }
 }
 
-Activation Conditioning::mished(const Activation& input) const {
-  Activation result = matrix(input.channels(), input.rows());
-  AlignedFloats slope(input.channels() * input.rows());
+inference::Activation Conditioning::mished(const inference::Activation& input) const {
+  inference::Activation result = inference::matrix(input.channels(), input.rows());
+  inference::AlignedFloats slope(input.channels() * input.rows());
   kernels_->mish(input.view().data, input.channels() * input.rows(), result.view().data,
                  slope.data());
   return result;
 }
 
-Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) const {
+inference::Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) const {
   const auto rows = static_cast<std::int64_t>(contexts.size());
-  Activation tokens = matrix(2 * architecture_.route_points, rows);
+  inference::Activation tokens = inference::matrix(2 * architecture_.route_points, rows);
   for (std::int64_t b = 0; b < rows; ++b) {
     const std::vector<float>& route = contexts[static_cast<std::size_t>(b)].route;
     std::copy(route.begin(), route.end(), tokens.row(b));
   }
-  Activation hidden = matrix(layers_.route0.outputs(), rows);
+  inference::Activation hidden = inference::matrix(layers_.route0.outputs(), rows);
   layers_.route0.applyToRows(tokens, hidden);
-  Activation result = matrix(architecture_.route_features, rows);
+  inference::Activation result = inference::matrix(architecture_.route_features, rows);
   layers_.route2.applyToRows(mished(hidden), result);
   for (std::int64_t b = 0; b < rows; ++b) {
     if (!contexts[static_cast<std::size_t>(b)].route.empty()) continue;
@@ -102,12 +109,12 @@ Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) con
   return result;
 }
 
-Activation Conditioning::speedFeatures(const std::vector<Context>& contexts) const {
-  Activation speed = matrix(1, static_cast<std::int64_t>(contexts.size()));
+inference::Activation Conditioning::speedFeatures(const std::vector<Context>& contexts) const {
+  inference::Activation speed = inference::matrix(1, static_cast<std::int64_t>(contexts.size()));
   for (std::size_t b = 0; b < contexts.size(); ++b) {
     *speed.row(static_cast<std::int64_t>(b)) = static_cast<float>(contexts[b].speed / kSpeedScale);
   }
-  Activation result = matrix(architecture_.speed_features, speed.rows());
+  inference::Activation result = inference::matrix(architecture_.speed_features, speed.rows());
   layers_.speed0.applyToRows(speed, result);
   return mished(result);
 }
@@ -122,9 +129,9 @@ void Conditioning::requireSizes(const Context& context, std::size_t sample) cons
 void Conditioning::setContexts(const std::vector<Context>& contexts) {
   for (std::size_t b = 0; b < contexts.size(); ++b) requireSizes(contexts[b], b);
   const auto rows = static_cast<std::int64_t>(contexts.size());
-  const Activation route = routeFeatures(contexts);
-  const Activation speed = speedFeatures(contexts);
-  Activation joined = matrix(
+  const inference::Activation route = routeFeatures(contexts);
+  const inference::Activation speed = speedFeatures(contexts);
+  inference::Activation joined = inference::matrix(
       architecture_.image_features + architecture_.route_features + architecture_.speed_features,
       rows);
   for (std::int64_t b = 0; b < rows; ++b) {
@@ -133,17 +140,17 @@ void Conditioning::setContexts(const std::vector<Context>& contexts) {
     to = std::copy_n(route.row(b), architecture_.route_features, to);
     std::copy_n(speed.row(b), architecture_.speed_features, to);
   }
-  Activation context = matrix(architecture_.context_width, rows);
+  inference::Activation context = inference::matrix(architecture_.context_width, rows);
   layers_.context0.applyToRows(joined, context);
-  const Activation injected = mished(mished(context));  // c, then the block's own Mish
-  context_part_ = matrix(time_part_.channels(), rows);
-  injection_ = matrix(time_part_.channels(), rows);
+  const inference::Activation injected = mished(mished(context));  // c, then the block's own Mish
+  context_part_ = inference::matrix(time_part_.channels(), rows);
+  injection_ = inference::matrix(time_part_.channels(), rows);
   for (const ContextInjection& part : context_injections_) {
     part.layer.apply(injected.view(), context_part_.view(0, part.first), rows);
   }
 }
 
-const Activation& Conditioning::injection(int k) {
+const inference::Activation& Conditioning::injection(int k) {
   const float* time = time_part_.row(k);
   for (std::int64_t b = 0; b < injection_.rows(); ++b) {
     const float* context = context_part_.row(b);

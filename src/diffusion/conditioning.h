@@ -7,50 +7,50 @@
 
 #include <vector>
 
-#include "activation.h"
-#include "e2e_cdiff/diffusion/denoiser.h"
-#include "unet.h"
+#include "diffusion/denoiser.h"
+#include "diffusion/unet.h"
+#include "inference/activation.h"
 
 namespace cdiff::diffusion {
 
 class Conditioning {
  public:
-  Conditioning(const DenoiserKernels& kernels, const Architecture& architecture,
-               const Tensors& tensors, const std::vector<Injection>& injections);
+  Conditioning(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+               const inference::Tensors& tensors, const std::vector<Injection>& injections);
 
   /// Throws std::invalid_argument for features or tokens of another size.
   void setContexts(const std::vector<Context>& contexts);
   /// A row for each sample at step k = 1..K; valid until the next call.
-  const Activation& injection(int k);
+  const inference::Activation& injection(int k);
   /// [K + 1, time_width].
-  const Activation& timeEmbeddings() const { return time_; }
+  const inference::Activation& timeEmbeddings() const { return time_; }
 
  private:
   struct Layers {
-    Convolution route0, route2, speed0, context0;
+    inference::Convolution route0, route2, speed0, context0;
   };
-  void buildTimeEmbeddings(const Tensors& tensors);
-  void buildInjections(const Tensors& tensors, const std::vector<Injection>& injections);
+  void buildTimeEmbeddings(const inference::Tensors& tensors);
+  void buildInjections(const inference::Tensors& tensors, const std::vector<Injection>& injections);
   void requireSizes(const Context& context, std::size_t sample) const;
   /// A matrix with Mish applied to each element.
-  Activation mished(const Activation& input) const;
+  inference::Activation mished(const inference::Activation& input) const;
   /// Rows of route features.
-  Activation routeFeatures(const std::vector<Context>& contexts) const;
-  Activation speedFeatures(const std::vector<Context>& contexts) const;
+  inference::Activation routeFeatures(const std::vector<Context>& contexts) const;
+  inference::Activation speedFeatures(const std::vector<Context>& contexts) const;
 
-  const DenoiserKernels* kernels_;
+  const inference::DenoiserKernels* kernels_;
   Architecture architecture_;
   Layers layers_;
   std::vector<float> no_route_;
-  Activation time_;
+  inference::Activation time_;
   struct ContextInjection {
     std::int64_t first;
-    Convolution layer;
+    inference::Convolution layer;
   };
   std::vector<ContextInjection> context_injections_;
-  Activation time_part_;     ///< [K + 1, injections], with the biases
-  Activation context_part_;  ///< [B, injections]
-  Activation injection_;     ///< [B, injections]
+  inference::Activation time_part_;     ///< [K + 1, injections], with the biases
+  inference::Activation context_part_;  ///< [B, injections]
+  inference::Activation injection_;     ///< [B, injections]
 };
 
 }  // namespace cdiff::diffusion

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
+#include "diffusion/cpu_denoiser.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
-#include "conditioning.h"
+#include "diffusion/conditioning.h"
+#include "diffusion/state_head.h"
+#include "diffusion/unet.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "state_head.h"
-#include "unet.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -20,21 +20,22 @@ constexpr InstructionSet kInstructionSets[] = {InstructionSet::kPlain, Instructi
                                                InstructionSet::kAvx512};
 
 /// nullptr where compiler or CPU lack it.
-const DenoiserKernels* kernelsOf(InstructionSet instruction_set) {
+const inference::DenoiserKernels* kernelsOf(InstructionSet instruction_set) {
 #if defined(__x86_64__)
   if (instruction_set == InstructionSet::kAvx512) {
-    return __builtin_cpu_supports("avx512f") ? avx512Kernels() : nullptr;
+    return __builtin_cpu_supports("avx512f") ? inference::avx512Kernels() : nullptr;
   }
   if (instruction_set == InstructionSet::kAvx2) {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? avx2Kernels()
-                                                                           : nullptr;
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+               ? inference::avx2Kernels()
+               : nullptr;
   }
 #endif
-  return instruction_set == InstructionSet::kPlain ? plainKernels() : nullptr;
+  return instruction_set == InstructionSet::kPlain ? inference::plainKernels() : nullptr;
 }
 
-const DenoiserKernels& requiredKernels(InstructionSet instruction_set) {
-  if (const DenoiserKernels* kernels = kernelsOf(instruction_set)) return *kernels;
+const inference::DenoiserKernels& requiredKernels(InstructionSet instruction_set) {
+  if (const inference::DenoiserKernels* kernels = kernelsOf(instruction_set)) return *kernels;
   throw core::InputError("this CPU lacks the instruction set " +
                          CpuDenoiser::toText(instruction_set));
 }
@@ -48,8 +49,8 @@ InstructionSet instructionSetNamed(const std::string& name) {
 
 void requireTensors(const Model& model) {
   model.architecture.validate();
-  for (const TensorShape& expected : denoiserTensors(model.architecture)) {
-    if (tensorNamed(model.denoiser, expected.name).shape == expected.shape) continue;
+  for (const inference::TensorShape& expected : denoiserTensors(model.architecture)) {
+    if (inference::tensorNamed(model.denoiser, expected.name).shape == expected.shape) continue;
     throw core::InputError("the denoiser's tensor '" + expected.name +
                            "' does not have the shape of its architecture");
   }
@@ -58,7 +59,7 @@ void requireTensors(const Model& model) {
 }  // namespace
 
 struct CpuDenoiser::Network {
-  Network(const Model& model, const DenoiserKernels& kernels)
+  Network(const Model& model, const inference::DenoiserKernels& kernels)
       : architecture(model.architecture),
         unet(kernels, architecture, model.denoiser),
         conditioning(kernels, architecture, model.denoiser, unet.injections()),
@@ -102,7 +103,7 @@ std::string CpuDenoiser::toText(InstructionSet instruction_set) {
 }
 
 CpuDenoiser::CpuDenoiser(const Model& model, InstructionSet instruction_set) {
-  const DenoiserKernels& kernels = requiredKernels(instruction_set);
+  const inference::DenoiserKernels& kernels = requiredKernels(instruction_set);
   requireTensors(model);
   network_ = std::make_unique<Network>(model, kernels);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "encoder_network.h"
+#include "diffusion/encoder_network.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,8 +21,8 @@ std::string toText(const std::vector<std::int64_t>& shape) {
   return "[" + text + "]";
 }
 
-const Tensor& requireTensor(const Model& model, const std::string& name,
-                            const std::vector<std::int64_t>& shape) {
+const inference::Tensor& requireTensor(const Model& model, const std::string& name,
+                                       const std::vector<std::int64_t>& shape) {
   const auto found = model.encoder.find(name);
   if (found == model.encoder.end())
     throw core::InputError("image encoder: model '" + model.name + "' lacks tensor '" + name + "'");
@@ -36,10 +36,10 @@ const Tensor& requireTensor(const Model& model, const std::string& name,
 EncoderNetwork::EncoderNetwork(const Model& model)
     : engine_(dnnl::engine::kind::cpu, 0),
       stream_(engine_),
-      layout_(preferredLayout(engine_)),
+      layout_(inference::preferredLayout(engine_)),
       image_{3, model.architecture.image_height, model.architecture.image_width},
       shape_(image_) {
-  const OneThread one_thread;
+  const inference::OneThread one_thread;
   for (std::size_t value = 0; value < pixel_values_.size(); ++value)
     pixel_values_[value] = static_cast<float>((static_cast<double>(value) / 255.0 - 0.5) / 0.25);
   makeStem(model);
@@ -53,20 +53,23 @@ EncoderNetwork::EncoderNetwork(const Model& model)
   bindLayers();
 }
 
-EncoderConvolution EncoderNetwork::convolution(const Model& model, const std::string& name,
-                                               std::int64_t channels, std::int64_t kernel,
-                                               std::int64_t stride) {
-  const Tensor& weight =
+inference::EncoderConvolution EncoderNetwork::convolution(const Model& model,
+                                                          const std::string& name,
+                                                          std::int64_t channels,
+                                                          std::int64_t kernel,
+                                                          std::int64_t stride) {
+  const inference::Tensor& weight =
       requireTensor(model, name + ".weight", {channels, shape_.channels, kernel, kernel});
-  EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2}, weight);
+  inference::EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2}, weight);
   shape_ = made.outputShape();
   return made;
 }
 
-EncoderNorm EncoderNetwork::norm(const Model& model, const std::string& name,
-                                 const MapShape& shape) const {
-  return EncoderNorm(shape, layout_, requireTensor(model, name + ".weight", {shape.channels}),
-                     requireTensor(model, name + ".bias", {shape.channels}));
+inference::EncoderNorm EncoderNetwork::norm(const Model& model, const std::string& name,
+                                            const inference::MapShape& shape) const {
+  return inference::EncoderNorm(shape, layout_,
+                                requireTensor(model, name + ".weight", {shape.channels}),
+                                requireTensor(model, name + ".bias", {shape.channels}));
 }
 
 void EncoderNetwork::makeStem(const Model& model) {
@@ -78,30 +81,31 @@ void EncoderNetwork::makeStem(const Model& model) {
 
 void EncoderNetwork::makeBlock(const Model& model, const std::string& name, std::int64_t channels,
                                std::int64_t stride) {
-  std::optional<EncoderConvolution> down;
-  std::optional<EncoderNorm> down_norm;
+  std::optional<inference::EncoderConvolution> down;
+  std::optional<inference::EncoderNorm> down_norm;
   if (stride != 1 || shape_.channels != channels) {
-    const MapShape input = shape_;
+    const inference::MapShape input = shape_;
     down = convolution(model, name + ".down.conv", channels, 1, stride);
     down_norm = norm(model, name + ".down.norm", shape_);
     shape_ = input;
   }
-  EncoderConvolution conv1 = convolution(model, name + ".conv1", channels, 3, stride);
-  EncoderNorm norm1 = norm(model, name + ".norm1", shape_);
-  EncoderConvolution conv2 = convolution(model, name + ".conv2", channels, 3, 1);
-  EncoderNorm norm2 = norm(model, name + ".norm2", shape_);
+  inference::EncoderConvolution conv1 = convolution(model, name + ".conv1", channels, 3, stride);
+  inference::EncoderNorm norm1 = norm(model, name + ".norm1", shape_);
+  inference::EncoderConvolution conv2 = convolution(model, name + ".conv2", channels, 3, 1);
+  inference::EncoderNorm norm2 = norm(model, name + ".norm2", shape_);
   blocks_.push_back({std::move(conv1), std::move(norm1), std::move(conv2), std::move(norm2),
                      std::move(down), std::move(down_norm)});
 }
 
 void EncoderNetwork::makeProjection(const Model& model) {
-  const Tensor& bias = requireTensor(model, "squeeze.bias", {kSqueezedChannels});
+  const inference::Tensor& bias = requireTensor(model, "squeeze.bias", {kSqueezedChannels});
   squeeze_.emplace(
-      engine_, shape_, layout_, ConvolutionOptions{},
+      engine_, shape_, layout_, inference::ConvolutionOptions{},
       requireTensor(model, "squeeze.weight", {kSqueezedChannels, shape_.channels, 1, 1}), &bias);
   shape_ = squeeze_->outputShape();
   const std::int64_t features = model.architecture.image_features;
-  const Tensor& weight = requireTensor(model, "project.weight", {features, shape_.size()});
+  const inference::Tensor& weight =
+      requireTensor(model, "project.weight", {features, shape_.size()});
   projection_.resize(weight.values.size());
   for (std::int64_t feature = 0; feature < features; ++feature) {
     for (std::int64_t i = 0; i < shape_.size(); ++i) {
@@ -151,7 +155,7 @@ void EncoderNetwork::bindLayers() {
 }
 
 void EncoderNetwork::readImage(const std::uint8_t* rgb) {
-  const bool channels_last = imageLayout(layout_) == dnnl::memory::format_tag::nhwc;
+  const bool channels_last = inference::imageLayout(layout_) == dnnl::memory::format_tag::nhwc;
   const std::int64_t channel_stride = channels_last ? 1 : image_.pixels();
   const std::int64_t pixel_stride = channels_last ? image_.channels : 1;
   for (std::int64_t pixel = 0; pixel < image_.pixels(); ++pixel) {
@@ -161,10 +165,10 @@ void EncoderNetwork::readImage(const std::uint8_t* rgb) {
 }
 
 std::vector<float> EncoderNetwork::encode(const std::uint8_t* rgb) {
-  const OneThread one_thread;
+  const inference::OneThread one_thread;
   readImage(rgb);
   stem_->run(stream_);
-  stem_norm_->run(stem_map_, nullptr, EncoderNorm::Activation::kRelu);
+  stem_norm_->run(stem_map_, nullptr, inference::EncoderNorm::Activation::kRelu);
   pooling_->run(stream_);
   for (const Block& block : blocks_) runBlock(block);
   squeeze_->run(stream_);
@@ -174,18 +178,18 @@ std::vector<float> EncoderNetwork::encode(const std::uint8_t* rgb) {
 
 void EncoderNetwork::runBlock(const Block& block) {
   block.conv1.run(stream_);
-  block.norm1.run(block.middle, nullptr, EncoderNorm::Activation::kRelu);
+  block.norm1.run(block.middle, nullptr, inference::EncoderNorm::Activation::kRelu);
   block.conv2.run(stream_);
   if (block.down) {
     block.down->run(stream_);
-    block.down_norm->run(block.shortcut, nullptr, EncoderNorm::Activation::kNone);
+    block.down_norm->run(block.shortcut, nullptr, inference::EncoderNorm::Activation::kNone);
   }
-  block.norm2.run(block.output, block.shortcut, EncoderNorm::Activation::kRelu);
+  block.norm2.run(block.output, block.shortcut, inference::EncoderNorm::Activation::kRelu);
 }
 
 std::vector<float> EncoderNetwork::project() const {
   std::vector<float> features = bias_;
-  const ChannelBlocks blocks(shape_, layout_);
+  const inference::ChannelBlocks blocks(shape_, layout_);
   const float* weights = projection_.data();
   for (std::int64_t channel = 0; channel < shape_.channels; ++channel) {
     const float* lane =

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/diffusion/model.h"
-#include "encoder_convolution.h"
-#include "encoder_norm.h"
+#include "diffusion/model.h"
+#include "inference/encoder_convolution.h"
+#include "inference/encoder_norm.h"
 
 namespace cdiff::diffusion {
 
@@ -21,19 +21,19 @@ class EncoderNetwork {
   /// Throws InputError naming a tensor that is missing or of another shape.
   explicit EncoderNetwork(const Model& model);
 
-  const MapShape& imageShape() const { return image_; }  ///< channels is 3
+  const inference::MapShape& imageShape() const { return image_; }  ///< channels is 3
   /// `rgb` is height x width x 3 bytes.
   std::vector<float> encode(const std::uint8_t* rgb);
 
  private:
   /// Two convolutions and a shortcut, and the buffers between them.
   struct Block {
-    EncoderConvolution conv1;
-    EncoderNorm norm1;
-    EncoderConvolution conv2;
-    EncoderNorm norm2;
-    std::optional<EncoderConvolution> down;  ///< where size or channels change
-    std::optional<EncoderNorm> down_norm;
+    inference::EncoderConvolution conv1;
+    inference::EncoderNorm norm1;
+    inference::EncoderConvolution conv2;
+    inference::EncoderNorm norm2;
+    std::optional<inference::EncoderConvolution> down;  ///< where size or channels change
+    std::optional<inference::EncoderNorm> down_norm;
     float* middle = nullptr;    ///< between the convolutions
     float* shortcut = nullptr;  ///< the input, or what `down` makes of it
     float* output = nullptr;
@@ -44,9 +44,11 @@ class EncoderNetwork {
                  std::int64_t stride);
   void makeProjection(const Model& model);
   /// Of the last layer's output, with padding kernel / 2.
-  EncoderConvolution convolution(const Model& model, const std::string& name, std::int64_t channels,
-                                 std::int64_t kernel, std::int64_t stride);
-  EncoderNorm norm(const Model& model, const std::string& name, const MapShape& shape) const;
+  inference::EncoderConvolution convolution(const Model& model, const std::string& name,
+                                            std::int64_t channels, std::int64_t kernel,
+                                            std::int64_t stride);
+  inference::EncoderNorm norm(const Model& model, const std::string& name,
+                              const inference::MapShape& shape) const;
   float* newBuffer(std::int64_t floats);
   void bindLayers();
   void readImage(const std::uint8_t* rgb);
@@ -56,14 +58,14 @@ class EncoderNetwork {
   dnnl::engine engine_;
   dnnl::stream stream_;
   dnnl::memory::format_tag layout_;
-  MapShape image_;
-  MapShape shape_;  ///< of the last layer that was made
+  inference::MapShape image_;
+  inference::MapShape shape_;  ///< of the last layer that was made
   std::array<float, 256> pixel_values_;
-  std::optional<EncoderConvolution> stem_;
-  std::optional<EncoderNorm> stem_norm_;
-  std::optional<EncoderPooling> pooling_;
+  std::optional<inference::EncoderConvolution> stem_;
+  std::optional<inference::EncoderNorm> stem_norm_;
+  std::optional<inference::EncoderPooling> pooling_;
   std::vector<Block> blocks_;
-  std::optional<EncoderConvolution> squeeze_;
+  std::optional<inference::EncoderConvolution> squeeze_;
   std::vector<float> projection_;  ///< [channel x row x column, image_features]
   std::vector<float> bias_;        ///< [image_features]
   std::vector<dnnl::memory> buffers_;

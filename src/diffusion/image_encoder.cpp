@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/image_encoder.h"
+#include "diffusion/image_encoder.h"
 
 #include <stdexcept>
 #include <string>
 
-#include "encoder_network.h"
+#include "diffusion/encoder_network.h"
 
 namespace cdiff::diffusion {
 
@@ -19,7 +19,7 @@ ImageEncoder& ImageEncoder::operator=(ImageEncoder&&) noexcept = default;
 ImageEncoder::~ImageEncoder() = default;
 
 std::vector<float> ImageEncoder::encode(const traffic::CameraImage& image) {
-  const MapShape& expected = network_->imageShape();
+  const inference::MapShape& expected = network_->imageShape();
   const std::size_t bytes = static_cast<std::size_t>(expected.size());
   if (image.width != expected.width || image.height != expected.height ||
       image.rgb.size() != bytes) {

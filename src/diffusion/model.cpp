@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/model.h"
+#include "diffusion/model.h"
 
 #include <algorithm>
 #include <system_error>
 #include <vector>
 
+#include "core/file.h"
+#include "core/text.h"
+#include "diffusion/model_metadata.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "model_metadata.h"
-#include "strict_json.h"
+#include "inference/strict_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 constexpr const char* kEncoderFile = "encoder.safetensors";
 constexpr const char* kDenoiserFile = "denoiser.safetensors";
 
-SafetensorsFile readDenoiser(const fs::path& file, Model& model) {
+inference::SafetensorsFile readDenoiser(const fs::path& file, Model& model) {
   const std::string source = "weight file '" + file.string() + "'";
-  return readSafetensors(file, [&](const Metadata& metadata) {
+  return inference::readSafetensors(file, [&](const Metadata& metadata) {
     model.architecture = readArchitecture(metadata, kDenoiserFormat, source);
     readScales(metadata, source, model);
     return denoiserTensors(model.architecture);
@@ -30,12 +30,13 @@ SafetensorsFile readDenoiser(const fs::path& file, Model& model) {
 }
 
 /// `denoiser` has been read already: what the two say is compared before any tensor is read.
-SafetensorsFile readEncoder(const fs::path& file, const Model& model, const Metadata& denoiser) {
+inference::SafetensorsFile readEncoder(const fs::path& file, const Model& model,
+                                       const Metadata& denoiser) {
   const std::string source = "weight file '" + file.string() + "'";
   const auto fail = [&](const std::string& what) {
     throw core::InputError(source + " does not belong to the denoiser beside it: " + what);
   };
-  return readSafetensors(file, [&](const Metadata& metadata) {
+  return inference::readSafetensors(file, [&](const Metadata& metadata) {
     const Architecture architecture = readArchitecture(metadata, kEncoderFormat, source);
     if (!(architecture == model.architecture)) {
       fail("its architecture is " + architecture.toJson() + ", that of the denoiser " +
@@ -44,7 +45,7 @@ SafetensorsFile readEncoder(const fs::path& file, const Model& model, const Meta
     const auto expected = denoiser.find(kEncoderKey);
     const auto found = metadata.find("sha256");
     if (expected != denoiser.end() && found != metadata.end() && expected->second != found->second)
-      fail("that was trained with an encoder of SHA-256 " + excerpt(expected->second) +
+      fail("that was trained with an encoder of SHA-256 " + inference::excerpt(expected->second) +
            ", this one has " + found->second);
     return encoderTensors(architecture);
   });
@@ -83,9 +84,9 @@ fs::path folderOf(const std::string& name_or_folder) {
                      : core::joinText(names, ", ") + "; the nearest is '" + nearest + "'"));
 }
 
-void requireTensors(const std::map<std::string, Tensor>& tensors,
-                    const std::vector<TensorShape>& expected, const std::string& what) {
-  for (const TensorShape& shape : expected) {
+void requireTensors(const std::map<std::string, inference::Tensor>& tensors,
+                    const std::vector<inference::TensorShape>& expected, const std::string& what) {
+  for (const inference::TensorShape& shape : expected) {
     const auto found = tensors.find(shape.name);
     if (found == tensors.end() || found->second.shape != shape.shape) {
       throw core::InputError("the model's " + what + " lacks tensor '" + shape.name +
@@ -103,8 +104,8 @@ void requireTensors(const std::map<std::string, Tensor>& tensors,
 Model loadModel(const std::string& name_or_folder) {
   const fs::path folder = folderOf(name_or_folder);
   Model model;
-  SafetensorsFile denoiser = readDenoiser(folder / kDenoiserFile, model);
-  SafetensorsFile encoder = readEncoder(folder / kEncoderFile, model, denoiser.metadata);
+  inference::SafetensorsFile denoiser = readDenoiser(folder / kDenoiserFile, model);
+  inference::SafetensorsFile encoder = readEncoder(folder / kEncoderFile, model, denoiser.metadata);
   model.name = folder.filename().string();
   model.sha256 = core::sha256(encoder.metadata.at("sha256") + denoiser.metadata.at("sha256"));
   model.encoder = std::move(encoder.tensors);
@@ -118,7 +119,7 @@ std::string modelFilesSha256(const std::string& name_or_folder) {
                       core::sha256(core::readFile(folder / kDenoiserFile, "weight file")));
 }
 
-void saveModel(const Model& model, const fs::path& folder, TensorType type,
+void saveModel(const Model& model, const fs::path& folder, inference::TensorType type,
                const std::map<std::string, std::string>& training_facts) {
   validateDescription(model);
   requireTensors(model.encoder, encoderTensors(model.architecture), "encoder");
@@ -134,9 +135,9 @@ void saveModel(const Model& model, const fs::path& folder, TensorType type,
   }
   Metadata metadata = describeDenoiser(model);
   metadata.insert(training_facts.begin(), training_facts.end());
-  metadata[kEncoderKey] =
-      writeSafetensors(folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
-  writeSafetensors(folder / kDenoiserFile, {metadata, model.denoiser}, type);
+  metadata[kEncoderKey] = inference::writeSafetensors(
+      folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
+  inference::writeSafetensors(folder / kDenoiserFile, {metadata, model.denoiser}, type);
 }
 
 }  // namespace cdiff::diffusion

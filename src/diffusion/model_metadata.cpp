@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "model_metadata.h"
+#include "diffusion/model_metadata.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
+#include "diffusion/rollout_json.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "rollout_json.h"
-#include "strict_json.h"
+#include "inference/strict_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -56,8 +56,8 @@ Architecture readArchitecture(const Metadata& metadata, const std::string& forma
                               const std::string& source) {
   const std::string& actual = textOf(metadata, "format", source);
   if (actual != format) {
-    throw core::InputError(source + ": the format is '" + excerpt(actual) + "'; '" + format +
-                           "' was expected");
+    throw core::InputError(source + ": the format is '" + inference::excerpt(actual) + "'; '" +
+                           format + "' was expected");
   }
   return Architecture::fromJson(textOf(metadata, "architecture", source), source);
 }
@@ -67,8 +67,8 @@ void readScales(const Metadata& metadata, const std::string& source, Model& mode
   const std::string spread = source + ": metadata 'spread'";
   model.normalizer = Normalizer::fromJson(textOf(metadata, "normalizer", source), rows,
                                           source + ": metadata 'normalizer'");
-  model.spread =
-      rolloutOf(parseStrictJson(textOf(metadata, "spread", source), spread), rows, spread);
+  model.spread = rolloutOf(inference::parseStrictJson(textOf(metadata, "spread", source), spread),
+                           rows, spread);
   try {
     validateDescription(model);
   } catch (const core::InputError& error) {

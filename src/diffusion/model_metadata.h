@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "e2e_cdiff/diffusion/model.h"
+#include "diffusion/model.h"
 
 namespace cdiff::diffusion {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Names and shapes of every tensor of the networks, as docs/network.md names them.
-#include "e2e_cdiff/diffusion/architecture.h"
+#include "diffusion/architecture.h"
 #include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::diffusion {
@@ -35,10 +35,10 @@ class TensorList {
     add(name + ".weight", {channels});
     add(name + ".bias", {channels});
   }
-  std::vector<TensorShape> take() { return std::move(tensors_); }
+  std::vector<inference::TensorShape> take() { return std::move(tensors_); }
 
  private:
-  std::vector<TensorShape> tensors_;
+  std::vector<inference::TensorShape> tensors_;
 };
 
 void addConditioning(TensorList& list, const Architecture& a) {
@@ -114,7 +114,7 @@ Size afterStrides(Size pixels) {
 
 }  // namespace
 
-std::vector<TensorShape> denoiserTensors(const Architecture& architecture) {
+std::vector<inference::TensorShape> denoiserTensors(const Architecture& architecture) {
   TensorList list;
   addConditioning(list, architecture);
   addUNet(list, architecture);
@@ -122,7 +122,7 @@ std::vector<TensorShape> denoiserTensors(const Architecture& architecture) {
   return list.take();
 }
 
-std::vector<TensorShape> encoderTensors(const Architecture& architecture) {
+std::vector<inference::TensorShape> encoderTensors(const Architecture& architecture) {
   constexpr Size kStemChannels = 64;
   constexpr Size kSqueezeChannels = 64;
   constexpr int kBlocks[] = {3, 4, 6, 3};

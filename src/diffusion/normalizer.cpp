@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/normalizer.h"
+#include "diffusion/normalizer.h"
 
 #include <cmath>
 #include <string>
 
+#include "core/text.h"
+#include "diffusion/rollout_json.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "rollout_json.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -63,10 +63,10 @@ std::string Normalizer::toJson() const {
 
 Normalizer Normalizer::fromJson(const std::string& text, std::int64_t horizon,
                                 const std::string& where) {
-  const Json value = parseStrictJson(text, where);
+  const inference::Json value = inference::parseStrictJson(text, where);
   if (!value.is_object() || value.size() != 2 || !value.contains("mean") ||
       !value.contains("scale")) {
-    throw core::InputError(where + " is " + kindOf(value) +
+    throw core::InputError(where + " is " + inference::kindOf(value) +
                            "; an object of mean and scale was expected");
   }
   return {rolloutOf(value["mean"], horizon, where + "'s mean"),

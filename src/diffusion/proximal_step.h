@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "sampling_batch.h"
+#include "diffusion/sampling_batch.h"
 
 namespace cdiff::diffusion {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "e2e_cdiff/traffic/rollout.h"
-#include "strict_json.h"
+#include "inference/strict_json.h"
 
 namespace cdiff::diffusion {
 
@@ -15,6 +15,7 @@ namespace cdiff::diffusion {
 std::string rolloutText(const traffic::Rollout& matrix);
 
 /// A [rows, 7] matrix of numbers. Throws InputError that begins with `where`.
-traffic::Rollout rolloutOf(const Json& value, std::int64_t rows, const std::string& where);
+traffic::Rollout rolloutOf(const inference::Json& value, std::int64_t rows,
+                           const std::string& where);
 
 }  // namespace cdiff::diffusion

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/sampler.h"
+#include "diffusion/sampler.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/text.h"
+#include "diffusion/proximal_step.h"
+#include "diffusion/sampling_batch.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "proximal_step.h"
-#include "sampling_batch.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "e2e_cdiff/diffusion/sampler.h"
+#include "diffusion/sampler.h"
 
 namespace cdiff::diffusion {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/diffusion/state_branch.h"
+#include "diffusion/state_branch.h"
 
 #include <utility>
 
-#include "e2e_cdiff/dynamics/executable_action.h"
+#include "dynamics/executable_action.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -7,16 +7,16 @@
 
 #include <vector>
 
-#include "e2e_cdiff/diffusion/denoiser.h"
-#include "unet_layers.h"
+#include "diffusion/denoiser.h"
+#include "inference/unet_layers.h"
 
 namespace cdiff::diffusion {
 
 class StateHead {
  public:
   /// `time_embeddings`: [K + 1, time_width].
-  StateHead(const DenoiserKernels& kernels, const Architecture& architecture,
-            const Tensors& tensors, const Activation& time_embeddings);
+  StateHead(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+            const inference::Tensors& tensors, const inference::Activation& time_embeddings);
 
   void setContexts(const std::vector<Context>& contexts);
   void forward(const float* actions, int k, float* states);
@@ -25,27 +25,27 @@ class StateHead {
  private:
   /// A hidden layer: value before Mish, after it, and Mish'; the gradient overwrites none of them.
   struct Hidden {
-    Activation input;
-    Activation value;
-    Activation slope;
-    Activation gradient;
+    inference::Activation input;
+    inference::Activation value;
+    inference::Activation slope;
+    inference::Activation gradient;
 
     Hidden() = default;
     Hidden(std::int64_t width, std::int64_t rows);
   };
   void mish(Hidden& hidden) const;
 
-  const DenoiserKernels* kernels_;
+  const inference::DenoiserKernels* kernels_;
   std::int64_t action_values_;  ///< T x 3
   std::int64_t state_values_;   ///< T x 4
   std::int64_t width_;
-  Convolution actions_, actions_reversed_;
-  Convolution speed_;
-  Convolution middle_, middle_reversed_;
-  Convolution out_, out_reversed_;
-  Activation time_part_;   ///< [K + 1, width], with the bias
-  Activation speed_part_;  ///< [B, width]
-  Activation action_rows_, state_rows_;
+  inference::Convolution actions_, actions_reversed_;
+  inference::Convolution speed_;
+  inference::Convolution middle_, middle_reversed_;
+  inference::Convolution out_, out_reversed_;
+  inference::Activation time_part_;   ///< [K + 1, width], with the bias
+  inference::Activation speed_part_;  ///< [B, width]
+  inference::Activation action_rows_, state_rows_;
   Hidden hidden_[2];
 };
 

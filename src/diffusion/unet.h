@@ -8,37 +8,38 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/diffusion/architecture.h"
-#include "unet_layers.h"
+#include "diffusion/architecture.h"
+#include "inference/unet_layers.h"
 
 namespace cdiff::diffusion {
 
 /// What a residual block takes of the conditioning.
 struct Injection {
   std::string name;  ///< of the linear layer
-  ChannelLayout layout;
+  inference::ChannelLayout layout;
   std::int64_t first = 0;  ///< its first channel in a row of injections
 };
 
 class UNet {
  public:
-  UNet(const DenoiserKernels& kernels, const Architecture& architecture, const Tensors& tensors);
+  UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+       const inference::Tensors& tensors);
 
   /// In the order of their channels.
   const std::vector<Injection>& injections() const { return parts_.injections; }
   void resize(std::int64_t samples);
   /// `injection`: a row of injections for each sample.
-  void forward(const float* noisy, const Activation& injection, float* actions);
+  void forward(const float* noisy, const inference::Activation& injection, float* actions);
   void pullBack(const float* action_gradient, float* noisy_gradient);
 
  private:
   friend class UNetBuilder;
   struct Parts {
-    std::vector<std::unique_ptr<Signal>> signals;
-    std::vector<std::unique_ptr<Layer>> layers;  ///< in the order of the forward pass
+    std::vector<std::unique_ptr<inference::Signal>> signals;
+    std::vector<std::unique_ptr<inference::Layer>> layers;  ///< in the order of the forward pass
     std::vector<Injection> injections;
-    const Signal* noisy = nullptr;
-    const Signal* actions = nullptr;
+    const inference::Signal* noisy = nullptr;
+    const inference::Signal* actions = nullptr;
   };
 
   std::int64_t horizon_;

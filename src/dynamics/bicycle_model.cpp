@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::dynamics {
 namespace {

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_figures.h"
-#include "e2e_cdiff/report/chart_axes.h"
-#include "e2e_cdiff/report/markup.h"
+#include "core/markup.h"
+#include "core/text.h"
+#include "evaluation/paper_figures.h"
+#include "page/chart_axes.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 constexpr double kHalfLetter = 3.6;  // half the width of a letter of a name [px]
 
-using report::shortNumber;
+using core::shortNumber;
 
 constexpr double kBarShare = 0.8;  // of a group's width that bars fill
-const std::string kPaperStyle = report::systemStyle(7);
+const std::string kPaperStyle = page::systemStyle(7);
 
 double topOf(const Table& table) {
   double top = 1.0;
@@ -30,29 +30,29 @@ double topOf(const Table& table) {
 }
 
 /// Grid lines with numbers; groups have names instead of numbers.
-std::string valueGrid(const report::ChartAxes& axes) {
-  const double step = report::niceStep(axes.high() - axes.low(), 5);
+std::string valueGrid(const page::ChartAxes& axes) {
+  const double step = page::niceStep(axes.high() - axes.low(), 5);
   const int lines = static_cast<int>(std::lround((axes.high() - axes.low()) / step));
   std::string svg;
   for (int i = 0; i <= lines; ++i) {
     const double value = axes.low() + i * step;
-    svg += "<path class=\"grid\" d=\"M" + shortNumber(report::kChartLeft) + " " +
-           shortNumber(axes.y(value)) + "H" +
-           shortNumber(report::kChartWidth - report::kChartRight) + "\"/>" +
-           report::chartText("tick end", report::kChartLeft - 6.0, axes.y(value) + 4.0,
-                             report::axisNumber(value, step));
+    svg += "<path class=\"grid\" d=\"M" + shortNumber(page::kChartLeft) + " " +
+           shortNumber(axes.y(value)) + "H" + shortNumber(page::kChartWidth - page::kChartRight) +
+           "\"/>" +
+           page::chartText("tick end", page::kChartLeft - 6.0, axes.y(value) + 4.0,
+                           page::axisNumber(value, step));
   }
   return svg + "\n";
 }
 
-std::string bar(const report::ChartAxes& axes, double left, double width, double value,
+std::string bar(const page::ChartAxes& axes, double left, double width, double value,
                 const std::string& style) {
   return "<path class=\"bar " + style + "\" d=\"M" + shortNumber(axes.x(left)) + " " +
          shortNumber(axes.y(0.0)) + "V" + shortNumber(axes.y(value)) + "H" +
          shortNumber(axes.x(left + 0.9 * width)) + "V" + shortNumber(axes.y(0.0)) + "Z\"/>";
 }
 
-std::string interval(const report::ChartAxes& axes, double x, const Statistics& figure) {
+std::string interval(const page::ChartAxes& axes, double x, const Statistics& figure) {
   if (!figure.half_width) return "";
   return "<path class=\"error\" d=\"M" + shortNumber(axes.x(x)) + " " +
          shortNumber(axes.y(*figure.mean - *figure.half_width)) + "V" +
@@ -60,7 +60,7 @@ std::string interval(const report::ChartAxes& axes, double x, const Statistics& 
 }
 
 /// Bars of one row: per column ours and the paper's.
-std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes& axes) {
+std::string groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes) {
   const auto& cells = table.cells[row];
   const double width = kBarShare / (2.0 * static_cast<double>(cells.size()));
   double left = static_cast<double>(row) + 0.5 * (1.0 - kBarShare);
@@ -68,7 +68,7 @@ std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const TableCell& cell = cells[i];
     if (cell.seeds.mean) {
-      svg += bar(axes, left, width, *cell.seeds.mean, report::systemStyle(i)) +
+      svg += bar(axes, left, width, *cell.seeds.mean, page::systemStyle(i)) +
              interval(axes, left + 0.45 * width, cell.seeds);
     }
     left += width;
@@ -81,11 +81,11 @@ std::string groupOf(const Table& table, std::size_t row, const report::ChartAxes
   const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
   const std::string& name = table.definition.rows[row].name;
   const double half = kHalfLetter * static_cast<double>(name.size());
-  svg += report::chartText("tick middle", std::clamp(middle, half, report::kChartWidth - half),
-                           report::kChartHeight - 9.0 + lower, name);
+  svg += page::chartText("tick middle", std::clamp(middle, half, page::kChartWidth - half),
+                         page::kChartHeight - 9.0 + lower, name);
   if (empty && !cells.empty())
-    svg += report::chartText("note middle", middle, report::kChartTop + 10.0 + lower,
-                             cells.front().note);
+    svg +=
+        page::chartText("note middle", middle, page::kChartTop + 10.0 + lower, cells.front().note);
   return svg + "\n";
 }
 
@@ -115,14 +115,14 @@ Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>&
   figure.csv = tableCsv(table);
   figure.sheet.title = definition.title + " [" + definition.columns.front().unit + "]";
   for (std::size_t i = 0; i < definition.columns.size(); ++i) {
-    figure.sheet.legend.emplace_back(report::systemStyle(i),
+    figure.sheet.legend.emplace_back(page::systemStyle(i),
                                      definition.columns[i].name + ", 95 % interval over seeds");
   }
   figure.sheet.legend.emplace_back(kPaperStyle, "as the paper prints it");
-  const report::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
-  report::Panel panel;
-  panel.width = report::kChartWidth;
-  panel.height = report::kChartHeight + 14.0;
+  const page::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
+  page::Panel panel;
+  panel.width = page::kChartWidth;
+  panel.height = page::kChartHeight + 14.0;
   panel.content = valueGrid(axes);
   for (std::size_t row = 0; row < table.cells.size(); ++row)
     panel.content += groupOf(table, row, axes);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/batch_files.h"
+#include "evaluation/batch_files.h"
 
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "e2e_cdiff/core/csv.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/markup.h"
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/markup.h"
+#include "core/text.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using report::Outcome;
+using record::Outcome;
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
@@ -70,7 +70,7 @@ Counts countOf(const std::vector<RunRecord>& records) {
 }
 
 std::string attribute(const std::string& name, const std::string& value) {
-  return " " + name + "=\"" + report::escapeMarkup(value) + "\"";
+  return " " + name + "=\"" + core::escapeMarkup(value) + "\"";
 }
 
 std::string caseXml(const std::string& name, const RunRecord& record) {
@@ -81,7 +81,7 @@ std::string caseXml(const std::string& name, const RunRecord& record) {
   const std::string reasons = core::joinText(record.reasons, "; ");
   if (record.has(Outcome::kStruck) || record.has(Outcome::kNotJudged)) {  // count as passed
     return text + ">\n      <system-out>" +
-           report::escapeMarkup(report::wordOf(record.verdict) + ": " + reasons) +
+           core::escapeMarkup(record::wordOf(record.verdict) + ": " + reasons) +
            "</system-out>\n    </testcase>\n";
   }
   const std::string tag = record.failed() ? "error" : record.complete() ? "failure" : "skipped";
@@ -166,7 +166,7 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
     text += core::csvCell(record.id);
     for (const std::string& factor : factorNames())
       text += "," + core::csvCell(record.factors.at(factor));
-    text += "," + record.status + "," + (record.complete() ? report::toText(record.verdict) : "") +
+    text += "," + record.status + "," + (record.complete() ? record::toText(record.verdict) : "") +
             "," + (started ? std::to_string(record.exit_code) : "") + "," +
             std::to_string(record.attempts) + "," +
             (started ? core::formatFixed(record.wall_seconds, 3) : "");

@@ -4,15 +4,15 @@
 #include <iterator>
 #include <map>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/batch_report.h"
-#include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/page_head.h"
+#include "core/markup.h"
+#include "core/text.h"
+#include "evaluation/batch_report.h"
+#include "page/page_head.h"
 
 namespace cdiff::evaluation {
 namespace {
 
-using report::escapeMarkup;
+using core::escapeMarkup;
 
 constexpr const char* kPageStyle = R"CSS(
 .sheet { display: block; max-width: 100%; height: auto; border: 1px solid var(--line);
@@ -21,11 +21,10 @@ td .paper, td .rift { color: var(--soft); font-size: .86rem; display: block; }
 )CSS";
 
 std::string headOf(const std::string& name) {
-  return report::pageHead(name + " – evaluation",
-                          std::string(report::kPanelSheetStyle) + kPageStyle);
+  return page::pageHead(name + " – evaluation", std::string(page::kPanelSheetStyle) + kPageStyle);
 }
 
-using report::Outcome;
+using record::Outcome;
 
 /// Outcomes of runs in the order of the page; what broke, was interrupted or did not run is an
 /// error.
@@ -77,7 +76,7 @@ std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs)
                                   " broke, were interrupted or did not run";
   return "<header>\n<h1>" + escapeMarkup(name) + "</h1>\n<p class=\"sub\">evaluation of " +
          std::to_string(runs.size()) + " runs</p>\n" +
-         report::pageBanner(worst, headlineOf(worst), "<p>" + counts_text + "</p>") + "</header>\n";
+         page::pageBanner(worst, headlineOf(worst), "<p>" + counts_text + "</p>") + "</header>\n";
 }
 
 std::string figureText(const BatchRun& run, const std::string& name, int decimals) {
@@ -93,9 +92,9 @@ std::string runRow(const BatchRun& run) {
       has_report ? "<a href=\"" + escapeMarkup(link) + "\">" + escapeMarkup(record.id) + "</a>"
                  : escapeMarkup(record.id);
   const std::string why = record.complete() ? core::joinText(record.reasons, "; ") : record.cause;
-  std::string html = "<tr class=\"" + std::string(report::toText(outcomeOf(record))) + "\"><td>" +
+  std::string html = "<tr class=\"" + std::string(record::toText(outcomeOf(record))) + "\"><td>" +
                      name + "</td><td>" + record.status +
-                     (record.complete() ? ", " + report::wordOf(record.verdict) : "") + "</td>";
+                     (record.complete() ? ", " + record::wordOf(record.verdict) : "") + "</td>";
   const std::pair<const char*, int> figures[] = {
       {"ego_completion_percent", 1}, {"ego_driving_score", 1},  {"ego_collisions", 0},
       {"cbv_decisions", 0},          {"cbv_ego_collisions", 0}, {"cbv_minimum_distance_m", 1}};
@@ -153,12 +152,12 @@ std::string paperTable(const Table& table) {
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
                       const std::vector<Table>& tables, const std::vector<Figure>& figures) {
   std::string html = headOf(name) + "<body>\n<main>\n" + bannerOf(name, runs) +
-                     report::pageSection("Runs", runTable(runs));
+                     page::pageSection("Runs", runTable(runs));
   for (const Table& table : tables)
-    html += report::pageSection(table.definition.title, paperTable(table));
+    html += page::pageSection(table.definition.title, paperTable(table));
   for (const Figure& figure : figures) {
-    html += report::pageSection(figure.sheet.title, report::sheetSvg(figure.sheet),
-                                figure.wall_clock ? "wall-clock" : "");
+    html += page::pageSection(figure.sheet.title, page::sheetSvg(figure.sheet),
+                              figure.wall_clock ? "wall-clock" : "");
   }
   return html + "</main>\n</body>\n</html>\n";
 }

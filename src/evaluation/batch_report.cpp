@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/batch_report.h"
+#include "evaluation/batch_report.h"
 
 #include <set>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_definitions.h"
+#include "evaluation/paper_definitions.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -86,7 +86,7 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   for (const Figure& figure : figures) {
     core::writeFileAtomically(results / "figures" / (figure.id + ".csv"), figure.csv);
     core::writeFileAtomically(results / "figures" / (figure.id + ".svg"),
-                              report::sheetFile(figure.sheet));
+                              page::sheetFile(figure.sheet));
   }
   core::writeFileAtomically(results / "index.html", batchPage(name, runs, tables, figures));
 }

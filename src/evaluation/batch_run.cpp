@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/batch_run.h"
+#include "evaluation/batch_run.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/evaluation/executor.h"
+#include "evaluation/executor.h"
 
 namespace cdiff::evaluation {
 namespace {

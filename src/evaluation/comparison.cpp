@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/comparison.h"
+#include "evaluation/comparison.h"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "e2e_cdiff/core/csv.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_figures.h"
-#include "e2e_cdiff/metrics/normality_measures.h"
-#include "e2e_cdiff/report/chart_axes.h"
-#include "e2e_cdiff/report/histogram.h"
-#include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/trace_file.h"
+#include "core/csv.h"
+#include "core/markup.h"
+#include "core/text.h"
+#include "evaluation/paper_figures.h"
+#include "metrics/normality_measures.h"
+#include "page/chart_axes.h"
+#include "record/histogram.h"
+#include "record/trace_file.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 /// One quantity of one planner.
 struct Sample {
   std::vector<double> values;
-  report::Histogram histogram;
+  record::Histogram histogram;
   metrics::Measure w;  ///< Shapiro-Wilk
 };
 
@@ -27,18 +27,18 @@ struct PlannerSamples {
   std::string note;
   std::size_t runs = 0;
   std::size_t seeds = 0;
-  Sample speeds{{}, report::Histogram(0.0, 0.5, 40), {}};
-  Sample accelerations{{}, report::Histogram(-8.0, 0.5, 32), {}};
+  Sample speeds{{}, record::Histogram(0.0, 0.5, 40), {}};
+  Sample accelerations{{}, record::Histogram(-8.0, 0.5, 32), {}};
 };
 
 /// Speeds of CBVs at decisions, and d speed / d t over the tick before.
 void addRun(const BatchRun& run, PlannerSamples& samples) {
-  const scenario::ScenarioOptions options = scenarioOf(run);
+  const session::ScenarioOptions options = scenarioOf(run);
   const auto ticks =
       static_cast<std::uint64_t>(std::llround(options.decision_period / options.simulation_step));
   std::unordered_map<std::string, std::pair<std::uint64_t, double>> last;  // tick and speed
-  const std::vector<report::TraceRow> rows = report::readTrace(run.folder / "trace.csv");
-  for (const report::TraceRow& row : rows) {
+  const std::vector<record::TraceRow> rows = record::readTrace(run.folder / "trace.csv");
+  for (const record::TraceRow& row : rows) {
     if (row.tick == rows.back().tick) break;  // the session has ended: nothing is decided
     const auto before = last.find(row.id);
     if (row.role == traffic::VehicleRole::kCbv && row.tick % ticks == 0) {
@@ -77,7 +77,7 @@ std::string number(const std::optional<double>& value) {
 std::string rowsOf(const PlannerSamples& planner, const Sample& sample, const std::string& quantity,
                    const std::string& unit) {
   std::string text;
-  const report::Histogram& histogram = sample.histogram;
+  const record::Histogram& histogram = sample.histogram;
   for (std::size_t bin = 0; bin < histogram.counts().size(); ++bin) {
     const double low = histogram.low() + static_cast<double>(bin) * histogram.width();
     text += core::csvRow(
@@ -109,8 +109,8 @@ std::string csvOf(const std::vector<PlannerSamples>& planners) {
 }
 
 /// The histogram's outline as density.
-std::string outline(const report::Histogram& histogram, const report::ChartAxes& axes) {
-  using report::shortNumber;
+std::string outline(const record::Histogram& histogram, const page::ChartAxes& axes) {
+  using core::shortNumber;
   std::string data = "M" + shortNumber(axes.x(histogram.low())) + " " + shortNumber(axes.y(0.0));
   for (std::size_t bin = 0; bin < histogram.counts().size(); ++bin) {
     const double right = histogram.low() + static_cast<double>(bin + 1) * histogram.width();
@@ -120,24 +120,24 @@ std::string outline(const report::Histogram& histogram, const report::ChartAxes&
   return data + "V" + shortNumber(axes.y(0.0));
 }
 
-report::Panel panelOf(const std::vector<PlannerSamples>& planners, Sample PlannerSamples::*member,
-                      const std::string& title, const std::string& unit) {
-  const report::Histogram& shape = (planners.front().*member).histogram;
+page::Panel panelOf(const std::vector<PlannerSamples>& planners, Sample PlannerSamples::*member,
+                    const std::string& title, const std::string& unit) {
+  const record::Histogram& shape = (planners.front().*member).histogram;
   double top = 0.1;
   for (const PlannerSamples& planner : planners) {
-    const report::Histogram& histogram = (planner.*member).histogram;
+    const record::Histogram& histogram = (planner.*member).histogram;
     for (std::size_t bin = 0; bin < histogram.counts().size(); ++bin)
       top = std::max(top, histogram.share(bin) / histogram.width());
   }
   const double right = shape.low() + static_cast<double>(shape.counts().size()) * shape.width();
-  const report::ChartAxes axes(shape.low(), right, 0.0, top);
-  report::Panel panel;
+  const page::ChartAxes axes(shape.low(), right, 0.0, top);
+  page::Panel panel;
   panel.title = title;
   panel.content = axes.grid(unit);
   for (std::size_t i = planners.size(); i-- > 0;) {
     const Sample& sample = planners[i].*member;
     if (sample.values.empty()) continue;
-    panel.content += "<path class=\"series " + report::systemStyle(i) + "\" d=\"" +
+    panel.content += "<path class=\"series " + page::systemStyle(i) + "\" d=\"" +
                      outline(sample.histogram, axes) + "\"/>\n";
   }
   return panel;
@@ -164,7 +164,7 @@ Figure distributionFigure(const std::vector<BatchRun>& runs) {
   figure.csv = csvOf(planners);
   figure.sheet.title = "Figure 3. Speed and acceleration of CBVs by planner (density)";
   for (std::size_t i = 0; i < planners.size(); ++i)
-    figure.sheet.legend.emplace_back(report::systemStyle(i), legendText(planners[i]));
+    figure.sheet.legend.emplace_back(page::systemStyle(i), legendText(planners[i]));
   figure.sheet.rows = {
       {panelOf(planners, &PlannerSamples::speeds, "Speed", "m/s"),
        panelOf(planners, &PlannerSamples::accelerations, "Acceleration", "m/s^2")}};

@@ -5,21 +5,21 @@
 #include <map>
 #include <memory>
 
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
+#include "core/markup.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_figures.h"
-#include "e2e_cdiff/evaluation/paper_systems.h"
-#include "e2e_cdiff/report/chart_axes.h"
-#include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/plan_file.h"
-#include "e2e_cdiff/report/top_view.h"
+#include "evaluation/paper_figures.h"
+#include "evaluation/paper_systems.h"
+#include "page/chart_axes.h"
+#include "page/top_view.h"
+#include "record/plan_file.h"
 
 namespace cdiff::evaluation {
 namespace {
 
-using report::PlanRow;
-using report::shortNumber;
+using core::shortNumber;
+using record::PlanRow;
 
 constexpr const char* kHeader =
     "part,execution,scenario,seed,vehicle_id,tick,seconds,displacement_mean_m,displacement_p95_m,"
@@ -67,7 +67,7 @@ Execution executionOf(const ShownSystem& system, const std::vector<BatchRun>& ru
   execution.seeds = countSeeds(own);
   for (const BatchRun* run : own) {
     if (!std::filesystem::exists(run->folder / "plans.csv")) continue;
-    const std::vector<PlanRow> rows = report::readPlans(run->folder / "plans.csv");
+    const std::vector<PlanRow> rows = record::readPlans(run->folder / "plans.csv");
     for (const PlanRow& row : rows) {
       if (!row.driven) continue;
       execution.displacements[row.seconds].push_back(displacement(row));
@@ -85,14 +85,14 @@ Execution executionOf(const ShownSystem& system, const std::vector<BatchRun>& ru
 std::string curveRows(const Execution& execution) {
   std::string text;
   for (const auto& [seconds, values] : execution.displacements) {
-    const report::SampleFigures figures = report::figuresOf(values);
+    const record::SampleFigures figures = record::figuresOf(values);
     std::vector<std::string> cells(kColumns);
     cells[0] = "horizon";
     cells[1] = execution.name;
     cells[6] = core::formatNumber(seconds);
     cells[7] = core::formatNumber(*figures.mean);
     cells[8] = core::formatNumber(*figures.percentile_95);
-    cells[9] = core::formatNumber(*report::figuresOf(execution.speed_differences.at(seconds)).mean);
+    cells[9] = core::formatNumber(*record::figuresOf(execution.speed_differences.at(seconds)).mean);
     cells[10] = std::to_string(figures.n);
     cells[11] = std::to_string(execution.runs);
     cells[12] = std::to_string(execution.seeds);
@@ -108,30 +108,29 @@ std::string curveRows(const Execution& execution) {
   return text;
 }
 
-report::Panel curves(const std::vector<Execution>& executions,
-                     std::map<double, std::vector<double>> Execution::*member,
-                     const std::string& title, const std::string& unit) {
+page::Panel curves(const std::vector<Execution>& executions,
+                   std::map<double, std::vector<double>> Execution::*member,
+                   const std::string& title, const std::string& unit) {
   double top = 0.5;
   double right = 1.0;
   for (const Execution& execution : executions) {
     for (const auto& [seconds, values] : execution.*member) {
-      top = std::max(top, *report::figuresOf(values).mean);
+      top = std::max(top, *record::figuresOf(values).mean);
       right = std::max(right, seconds);
     }
   }
-  const report::ChartAxes axes(0.0, right, 0.0, top);
-  report::Panel panel;
+  const page::ChartAxes axes(0.0, right, 0.0, top);
+  page::Panel panel;
   panel.title = title + " [" + unit + "]";
   panel.content = axes.grid("s");
   for (std::size_t i = 0; i < executions.size(); ++i) {
     std::string data;
     for (const auto& [seconds, values] : executions[i].*member) {
       data += (data.empty() ? "M" : "L") + shortNumber(axes.x(seconds)) + " " +
-              shortNumber(axes.y(*report::figuresOf(values).mean));
+              shortNumber(axes.y(*record::figuresOf(values).mean));
     }
     if (!data.empty())
-      panel.content +=
-          "<path class=\"series " + report::systemStyle(i) + "\" d=\"" + data + "\"/>\n";
+      panel.content += "<path class=\"series " + page::systemStyle(i) + "\" d=\"" + data + "\"/>\n";
   }
   return panel;
 }
@@ -156,7 +155,7 @@ std::string exampleRows(const Execution& execution, const BatchRun& run, const P
     cells[5] = std::to_string(row.tick);
     cells[6] = core::formatNumber(row.seconds);
     std::size_t column = 13;
-    for (const report::WayPoint& point : {row.planned, *row.driven}) {
+    for (const record::WayPoint& point : {row.planned, *row.driven}) {
       for (const double value : {point.position.x(), point.position.y(), point.speed})
         cells[column++] = core::formatNumber(value);
     }
@@ -165,14 +164,14 @@ std::string exampleRows(const Execution& execution, const BatchRun& run, const P
   return text;
 }
 
-report::Panel examplePanel(const Execution& execution, const Plan& plan,
-                           const scenario::SessionSetup* setup) {
-  report::Panel panel;
+page::Panel examplePanel(const Execution& execution, const Plan& plan,
+                         const session::SessionSetup* setup) {
+  page::Panel panel;
   panel.height = 220.0;
   panel.cut = true;
-  report::Points planned;
-  report::Points driven;
-  report::Region region{plan.front().planned.position, plan.front().planned.position};
+  page::Points planned;
+  page::Points driven;
+  page::Region region{plan.front().planned.position, plan.front().planned.position};
   for (const PlanRow& row : plan) {
     planned.push_back(row.planned.position);
     driven.push_back(row.driven->position);
@@ -181,18 +180,18 @@ report::Panel examplePanel(const Execution& execution, const Plan& plan,
       region.high = region.high.cwiseMax(point);
     }
   }
-  const report::MapCanvas canvas(region.grown(6.0), {panel.width, panel.height});
+  const page::MapCanvas canvas(region.grown(6.0), {panel.width, panel.height});
   const traffic::VehicleDimensions size;  // the plans do not hold it
-  const report::WayPoint& start = plan.front().planned;
+  const record::WayPoint& start = plan.front().planned;
   panel.title = execution.name + ": " + core::formatFixed(displacement(plan.back()), 2) +
                 " m apart after " + core::formatFixed(plan.back().seconds, 1) + " s";
   panel.content = "<path class=\"ground\" d=\"M0 0H540V220H0Z\"/>\n" +
-                  (setup == nullptr ? std::string() : report::roadSvg(*setup, canvas)) +
-                  report::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
-                                     {start.position, start.heading}, canvas, "cbv") +
+                  (setup == nullptr ? std::string() : page::roadSvg(*setup, canvas)) +
+                  page::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
+                                   {start.position, start.heading}, canvas, "cbv") +
                   "<path class=\"driven\" d=\"" + canvas.line(driven) +
                   "\"/>\n<path class=\"plan\" d=\"" + canvas.line(planned) + "\"/>\n" +
-                  report::scaleBarSvg(canvas);
+                  page::scaleBarSvg(canvas);
   return panel;
 }
 
@@ -210,13 +209,13 @@ void addExamples(std::vector<Execution>& executions, Figure& figure) {
     }
   }
   if (most == 0) return;
-  std::unique_ptr<scenario::SessionSetup> setup;
+  std::unique_ptr<session::SessionSetup> setup;
   try {
-    setup = std::make_unique<scenario::SessionSetup>(scenarioOf(*executions[0].run_of.at(best)));
+    setup = std::make_unique<session::SessionSetup>(scenarioOf(*executions[0].run_of.at(best)));
   } catch (const core::InputError& error) {
     figure.sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
   }
-  std::vector<report::Panel> panels;
+  std::vector<page::Panel> panels;
   for (Execution& execution : executions) {
     const Plan& plan = medianPlan(execution.plans.at(best));
     figure.csv += exampleRows(execution, *execution.run_of.at(best), plan);
@@ -249,7 +248,7 @@ Figure executionFigure(const std::vector<BatchRun>& runs) {
     const Execution& execution = executions[i];
     figure.csv += curveRows(execution);
     figure.sheet.legend.emplace_back(
-        report::systemStyle(i),
+        page::systemStyle(i),
         execution.name + ": " +
             (execution.note.empty() ? std::to_string(execution.displacements.at(0.0).size()) +
                                           " decisions, " + std::to_string(execution.runs) + " runs"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/figures.h"
+#include "evaluation/figures.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/metrics/figure_definitions.h"
+#include "metrics/figure_definitions.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -79,7 +79,7 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
     SummaryFacts facts;
     facts.status = summary.at("status");
     facts.fault = lastFault(summary);
-    facts.verdict = report::outcomeOf(summary.at("verdict").at("outcome"));
+    facts.verdict = record::outcomeOf(summary.at("verdict").at("outcome"));
     facts.reasons = summary.at("verdict").at("reasons").get<std::vector<std::string>>();
     facts.decided_by = summary.at("verdict").value("decided_by", std::vector<std::string>());
     facts.simulated_seconds = summary.at("simulated_seconds");

@@ -6,18 +6,18 @@
 #include <map>
 #include <memory>
 
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
+#include "core/markup.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/paper_figures.h"
-#include "e2e_cdiff/report/markup.h"
-#include "e2e_cdiff/report/top_view.h"
-#include "e2e_cdiff/report/trace_file.h"
+#include "evaluation/paper_figures.h"
+#include "page/top_view.h"
+#include "record/trace_file.h"
 
 namespace cdiff::evaluation {
 namespace {
 
-using report::TraceRow;
+using record::TraceRow;
 using traffic::VehicleRole;
 
 constexpr std::array<double, 3> kOffsets = {-1.5, 0.0, 1.0};  // of frames to the approach [s]
@@ -86,17 +86,17 @@ Approach approachOf(const std::vector<TraceRow>& rows) {
 /// Draws the frames of one run and writes their rows.
 class FrameRow {
  public:
-  FrameRow(const ShownSystem& system, const BatchRun& run, const scenario::SessionSetup* setup)
+  FrameRow(const ShownSystem& system, const BatchRun& run, const session::SessionSetup* setup)
       : system_(system),
         run_(run),
         setup_(setup),
         step_(scenarioOf(run).simulation_step),
-        rows_(report::readTrace(run.folder / "trace.csv")),
+        rows_(record::readTrace(run.folder / "trace.csv")),
         approach_(approachOf(rows_)),
         canvas_({approach_.middle - kReach, approach_.middle + kReach}, {kWidth, kHeight}) {}
 
-  std::vector<report::Panel> panels(std::string& csv) const {
-    std::vector<report::Panel> panels;
+  std::vector<page::Panel> panels(std::string& csv) const {
+    std::vector<page::Panel> panels;
     const std::uint64_t last = rows_.empty() ? 0 : rows_.back().tick;
     for (std::size_t frame = 0; frame < kOffsets.size(); ++frame) {
       const double wanted =
@@ -108,8 +108,8 @@ class FrameRow {
   }
 
  private:
-  report::Panel panelAt(std::size_t frame, std::uint64_t tick, std::string& csv) const {
-    const std::string road = setup_ == nullptr ? "" : report::roadSvg(*setup_, canvas_);
+  page::Panel panelAt(std::size_t frame, std::uint64_t tick, std::string& csv) const {
+    const std::string road = setup_ == nullptr ? "" : page::roadSvg(*setup_, canvas_);
     std::string vehicles;
     const TraceRow* ego = nullptr;
     const TraceRow* other = nullptr;
@@ -125,20 +125,20 @@ class FrameRow {
       if (row.tick == tick && canvas_.shows(row.position))
         csv += csvOf(frame, row, circled && (&row == ego || &row == other));
     }
-    report::Panel panel;
+    page::Panel panel;
     panel.title =
         system_.name + ", " + core::formatFixed(static_cast<double>(tick) * step_, 2) + " s";
     panel.cut = true;
     panel.width = kWidth;
     panel.height = kHeight;
     panel.content = ground() + road + vehicles + (circled ? circle(*ego, *other) : "") +
-                    (frame == 0 ? report::scaleBarSvg(canvas_) : "");
+                    (frame == 0 ? page::scaleBarSvg(canvas_) : "");
     return panel;
   }
 
   static std::string ground() {
-    return "<path class=\"ground\" d=\"M0 0H" + report::shortNumber(kWidth) + "V" +
-           report::shortNumber(kHeight) + "H0Z\"/>\n";
+    return "<path class=\"ground\" d=\"M0 0H" + core::shortNumber(kWidth) + "V" +
+           core::shortNumber(kHeight) + "H0Z\"/>\n";
   }
 
   std::string boxOf(const TraceRow& row) const {
@@ -146,15 +146,15 @@ class FrameRow {
     const char* style = row.role == VehicleRole::kEgo   ? "ego"
                         : row.role == VehicleRole::kCbv ? "cbv"
                                                         : "bg";
-    return report::vehicleSvg({row.id, size.length, size.width}, {row.position, row.heading},
-                              canvas_, style);
+    return page::vehicleSvg({row.id, size.length, size.width}, {row.position, row.heading}, canvas_,
+                            style);
   }
 
   std::string circle(const TraceRow& ego, const TraceRow& other) const {
     const Eigen::Vector2d center = canvas_.toPixels(0.5 * (ego.position + other.position));
     const double radius = (0.5 * (ego.position - other.position).norm() + 3.5) * canvas_.scale();
-    return "<circle class=\"interaction\" cx=\"" + report::shortNumber(center.x()) + "\" cy=\"" +
-           report::shortNumber(center.y()) + "\" r=\"" + report::shortNumber(radius) + "\"/>\n";
+    return "<circle class=\"interaction\" cx=\"" + core::shortNumber(center.x()) + "\" cy=\"" +
+           core::shortNumber(center.y()) + "\" r=\"" + core::shortNumber(radius) + "\"/>\n";
   }
 
   std::string csvOf(std::size_t frame, const TraceRow& row, bool circled) const {
@@ -169,15 +169,15 @@ class FrameRow {
 
   const ShownSystem& system_;
   const BatchRun& run_;
-  const scenario::SessionSetup* setup_;
+  const session::SessionSetup* setup_;
   double step_;
   std::vector<TraceRow> rows_;
   Approach approach_;
-  report::MapCanvas canvas_;
+  page::MapCanvas canvas_;
 };
 
 /// The road is the same in all rows; nullptr, with a note, when the network is no longer there.
-std::unique_ptr<scenario::SessionSetup> setupOf(const RunsBySystem& row, Figure& figure) {
+std::unique_ptr<session::SessionSetup> setupOf(const RunsBySystem& row, Figure& figure) {
   const auto run = std::find_if(row.begin(), row.end(), [](const auto* one) { return one; });
   if (run == row.end()) return nullptr;
   figure.sheet.notes.push_back(
@@ -188,7 +188,7 @@ std::unique_ptr<scenario::SessionSetup> setupOf(const RunsBySystem& row, Figure&
       "Frames 1.5 s before, at and 1 s after the closest approach of ego and CBV. "
       "Boxes have the default size.");
   try {
-    return std::make_unique<scenario::SessionSetup>(scenarioOf(**run));
+    return std::make_unique<session::SessionSetup>(scenarioOf(**run));
   } catch (const core::InputError& error) {
     figure.sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
     return nullptr;

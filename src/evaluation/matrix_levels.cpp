@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "matrix_levels.h"
+#include "evaluation/matrix_levels.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/map/route_source.h"
-#include "e2e_cdiff/suite/suite.h"
+#include "map/route_source.h"
+#include "suite/suite.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -28,7 +28,7 @@ std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) 
     const fs::path network = fs::path(options.networks) / (entry.town + ".net.xml");
     if (!core::isFile(network)) continue;
     missing.erase(std::remove(missing.begin(), missing.end(), entry.id), missing.end());
-    scenario::SessionRequest request;
+    session::SessionRequest request;
     request.bench2drive = options.file;
     request.route = entry.id;
     request.network = network.string();
@@ -104,7 +104,7 @@ std::vector<Combination> productOf(const MatrixOptions& matrix, const std::strin
 std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std::string& source) {
   std::vector<ScenarioLevel> levels;
   for (const std::string& name : scenariosOf(matrix)) {
-    scenario::SessionRequest request;
+    session::SessionRequest request;
     request.scenario = name;
     levels.push_back({core::isFile(name) ? fs::path(name).stem().string() : name, request});
   }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/evaluation/matrix.h"
-#include "e2e_cdiff/scenario/session_request.h"
+#include "evaluation/matrix.h"
+#include "session/session_request.h"
 
 namespace cdiff::evaluation {
 
@@ -18,7 +18,7 @@ constexpr std::size_t kMostRuns = 100000;
 /// One level of the factor scenario.
 struct ScenarioLevel {
   std::string label;
-  scenario::SessionRequest request;
+  session::SessionRequest request;
 };
 
 struct Variant {

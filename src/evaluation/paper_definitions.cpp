@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/paper_definitions.h"
+#include "evaluation/paper_definitions.h"
 
 #include <iterator>
 
-#include "e2e_cdiff/evaluation/paper_systems.h"
+#include "evaluation/paper_systems.h"
 
 namespace cdiff::evaluation {
 namespace {

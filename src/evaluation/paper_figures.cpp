@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/paper_figures.h"
+#include "evaluation/paper_figures.h"
 
 #include <algorithm>
 #include <set>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/evaluation/paper_definitions.h"
-#include "e2e_cdiff/evaluation/paper_systems.h"
-#include "e2e_cdiff/planning/planner_factory.h"
+#include "core/file.h"
+#include "evaluation/paper_definitions.h"
+#include "evaluation/paper_systems.h"
+#include "planners/planner_factory.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -40,7 +40,7 @@ std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs) {
 
 std::string reasonOf(const ShownSystem& system, const std::vector<BatchRun>& runs,
                      const std::string& otherwise) {
-  const std::vector<std::string> known = planning::plannerNames();
+  const std::vector<std::string> known = planners::plannerNames();
   const std::string& planner = system.levels.at("cbv_planner");
   if (std::find(known.begin(), known.end(), planner) == known.end()) return "not implemented";
   if (runsWith(runs, system.levels).empty()) return "not run";
@@ -62,9 +62,9 @@ std::size_t countSeeds(const std::vector<const BatchRun*>& runs) {
   return seeds.size();
 }
 
-scenario::ScenarioOptions scenarioOf(const BatchRun& run) {
+session::ScenarioOptions scenarioOf(const BatchRun& run) {
   const auto file = run.folder / "scenario.yaml";
-  scenario::ScenarioOptions options;
+  session::ScenarioOptions options;
   core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
   return options;
 }

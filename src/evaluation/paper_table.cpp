@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/paper_table.h"
+#include "evaluation/paper_table.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/core/csv.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/planning/planner_factory.h"
+#include "core/csv.h"
+#include "core/text.h"
+#include "planners/planner_factory.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -43,7 +43,7 @@ Statistics overSeeds(const std::vector<const BatchRun*>& runs, const std::string
 
 /// Why a cell without figures is empty.
 std::string reasonOf(const Factors& levels, const TableCell& cell) {
-  const std::vector<std::string> known = planning::plannerNames();
+  const std::vector<std::string> known = planners::plannerNames();
   for (const char* factor : {"ego_planner", "cbv_planner"}) {
     const auto level = levels.find(factor);
     if (level == levels.end()) continue;

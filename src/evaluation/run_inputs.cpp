@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/run_inputs.h"
+#include "evaluation/run_inputs.h"
 
 #include <link.h>
 
 #include <set>
 #include <vector>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/diffusion/model.h"
-#include "e2e_cdiff/map/network_import.h"
-#include "e2e_cdiff/planning/planner_factory.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "diffusion/model.h"
+#include "map/network_import.h"
+#include "planners/planner_factory.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -49,7 +49,7 @@ const std::string& InputHasher::ofModel(const std::string& name) {
   return hash;
 }
 
-InputHashes InputHasher::hashes(const scenario::ScenarioOptions& options) {
+InputHashes InputHasher::hashes(const session::ScenarioOptions& options) {
   InputHashes hashes = {{"program", programSha256()}};
   hashes["network"] = ofFile(map::networkFile(options.network), "network");
   if (options.demand != "generated" && options.demand != "none")
@@ -58,7 +58,7 @@ InputHashes InputHasher::hashes(const scenario::ScenarioOptions& options) {
     hashes["route_file"] = ofFile(options.route.bench2drive_file, "route file");
   if (!options.metrics.speed_target_file.empty())
     hashes["speed_target"] = ofFile(options.metrics.speed_target_file, "speed target");
-  if (planning::seesImages(options.ego_planner) || planning::seesImages(options.cbv_planner))
+  if (planners::seesImages(options.ego_planner) || planners::seesImages(options.cbv_planner))
     hashes["weights"] = ofModel(options.diffusion.model);
   return hashes;
 }

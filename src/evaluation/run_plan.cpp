@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/run_plan.h"
+#include "evaluation/run_plan.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "matrix_levels.h"
+#include "evaluation/matrix_levels.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -99,11 +99,11 @@ class Planner {
   std::vector<PlannedRun> resolve(const ScenarioLevel& level) {
     const std::vector<std::string>& seeds = matrix_.seeds;
     try {
-      scenario::SessionRequest request = level.request;
+      session::SessionRequest request = level.request;
       if (!seeds.empty()) request.seed = seeds.front();
-      scenario::ScenarioOptions options = scenario::resolveRequest(request);
+      session::ScenarioOptions options = session::resolveRequest(request);
       checkEgoPlanner(options.ego_planner);
-      scenario::requireLockstep(options);
+      session::requireLockstep(options);
       std::vector<PlannedRun> runs = {runOf(level.label, options)};
       // An override of the seed ranks above the matrix's seeds.
       const bool overridden = !seeds.empty() && std::stoll(seeds.front()) != options.seed;
@@ -119,7 +119,7 @@ class Planner {
     }
   }
 
-  PlannedRun runOf(const std::string& label, const scenario::ScenarioOptions& options) {
+  PlannedRun runOf(const std::string& label, const session::ScenarioOptions& options) {
     const std::string& profile = options.guidance_profile;
     PlannedRun run;
     run.factors = {{"scenario", label},

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -29,7 +29,7 @@ RunRecord fromJson(const Json& json) {
   record.attempts = json.at("attempts");
   record.wall_seconds = json.at("wall_seconds");
   record.simulated_seconds = json.at("simulated_seconds");
-  record.verdict = report::outcomeOf(json.at("verdict"));
+  record.verdict = record::outcomeOf(json.at("verdict"));
   record.reasons = json.at("reasons").get<std::vector<std::string>>();
   record.decided_by = json.value("decided_by", std::vector<std::string>());
   for (const auto& [name, value] : json.at("figures").items()) record.figures[name] = value;
@@ -77,7 +77,7 @@ std::string recordJson(const RunRecord& record) {
                      {"attempts", record.attempts},
                      {"wall_seconds", record.wall_seconds},
                      {"simulated_seconds", record.simulated_seconds},
-                     {"verdict", report::toText(record.verdict)},
+                     {"verdict", record::toText(record.verdict)},
                      {"reasons", record.reasons},
                      {"decided_by", record.decided_by},
                      {"figures", figures}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/evaluation/statistics.h"
+#include "evaluation/statistics.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>

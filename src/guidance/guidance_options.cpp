@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/guidance/guidance_options.h"
+#include "guidance/guidance_options.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/guidance/objective_factory.h"
+#include "guidance/objective_factory.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/guidance/objective_factory.h"
+#include "guidance/objective_factory.h"
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/guidance/collision_avoidance_objective.h"
-#include "e2e_cdiff/guidance/collision_seeking_objective.h"
-#include "e2e_cdiff/guidance/comfort_objective.h"
-#include "e2e_cdiff/guidance/drivable_area_objective.h"
-#include "e2e_cdiff/guidance/route_objective.h"
-#include "e2e_cdiff/guidance/speed_objective.h"
-#include "e2e_cdiff/guidance/traffic_avoidance_objective.h"
+#include "guidance/collision_avoidance_objective.h"
+#include "guidance/collision_seeking_objective.h"
+#include "guidance/comfort_objective.h"
+#include "guidance/drivable_area_objective.h"
+#include "guidance/route_objective.h"
+#include "guidance/speed_objective.h"
+#include "guidance/traffic_avoidance_objective.h"
 
 namespace cdiff::guidance {
 namespace {

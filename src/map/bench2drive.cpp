@@ -5,10 +5,10 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "map/route_source.h"
 
 namespace cdiff::map {
 namespace {

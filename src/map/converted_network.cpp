@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "converted_network.h"
+#include "map/converted_network.h"
 
+#include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/map/netconvert.h"
+#include "map/netconvert.h"
 
 namespace cdiff::map {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/map/border_index.h"
+#include "map/border_index.h"
 
 namespace cdiff::map {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "lane_candidates.h"
+#include "map/lane_candidates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::map {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/map/lane_graph.h"
+#include "map/lane_graph.h"
 
 namespace cdiff::map {
 

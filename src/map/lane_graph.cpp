@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/map/lane_graph.h"
+#include "map/lane_graph.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "lane_search.h"
-#include "route_builder.h"
+#include "map/lane_search.h"
+#include "map/route_builder.h"
 
 namespace cdiff::map {
 namespace {

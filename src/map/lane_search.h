@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "e2e_cdiff/map/lane_graph.h"
+#include "map/lane_graph.h"
 
 namespace cdiff::map {
 

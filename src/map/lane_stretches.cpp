@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
 
-#include "lane_search.h"
-#include "route_builder.h"
+#include "map/lane_search.h"
+#include "map/route_builder.h"
 
 namespace cdiff::map {
 namespace {

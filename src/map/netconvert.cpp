@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/map/netconvert.h"
+#include "map/netconvert.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/file.h"
+#include "core/guarded_process.h"
+#include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/guarded_process.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::map {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/map/network_import.h"
+#include "map/network_import.h"
 
 #include <algorithm>
 
-#include "converted_network.h"
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "vehicle_classes.h"
+#include "map/converted_network.h"
+#include "map/vehicle_classes.h"
 
 namespace cdiff::map {
 namespace {

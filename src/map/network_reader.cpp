@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "network_reader.h"
+#include "map/network_reader.h"
 
 #include <algorithm>
 #include <cstring>
 #include <pugixml.hpp>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/geometry/pose.h"
-#include "spatial_index.h"
+#include "map/spatial_index.h"
 
 namespace cdiff::map {
 namespace {

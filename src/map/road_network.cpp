@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/angle.h"
-#include "network_reader.h"
-#include "spatial_index.h"
+#include "map/network_reader.h"
+#include "map/spatial_index.h"
 
 namespace cdiff::map {
 namespace {

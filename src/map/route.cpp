@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "lane_search.h"
-#include "route_builder.h"
+#include "map/lane_search.h"
+#include "map/route_builder.h"
 
 namespace cdiff::map {
 namespace {

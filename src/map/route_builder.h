@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "e2e_cdiff/map/lane_graph.h"
+#include "map/lane_graph.h"
 
 namespace cdiff::map {
 

@@ -5,8 +5,8 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/map/route.h"
-#include "lane_candidates.h"
-#include "lane_search.h"
+#include "map/lane_candidates.h"
+#include "map/lane_search.h"
 
 namespace cdiff::map {
 namespace {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/map/route_source.h"
-#include "lane_candidates.h"
-#include "lane_search.h"
-#include "route_builder.h"
+#include "map/lane_candidates.h"
+#include "map/lane_search.h"
+#include "map/route_builder.h"
+#include "map/route_source.h"
 
 namespace cdiff::map {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "vehicle_classes.h"
+#include "map/vehicle_classes.h"
 
 #include <algorithm>
 #include <array>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::map {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/cbv_measures.h"
+#include "metrics/cbv_measures.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/metrics/collisions_per_km.h"
+#include "metrics/collisions_per_km.h"
 
 namespace cdiff::metrics {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/collision_counter.h"
+#include "metrics/collision_counter.h"
 
 namespace cdiff::metrics {
 

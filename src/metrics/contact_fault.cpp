@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/contact_fault.h"
+#include "metrics/contact_fault.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/figure_definitions.h"
+#include "metrics/figure_definitions.h"
 
 #include <algorithm>
 
-#include "figure_rows.h"
+#include "metrics/figure_rows.h"
 
 namespace cdiff::metrics {
 

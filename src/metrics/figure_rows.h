@@ -3,7 +3,7 @@
 /// Rows of the table of figures, by part of summary.json.
 #pragma once
 
-#include "e2e_cdiff/metrics/figure_definitions.h"
+#include "metrics/figure_definitions.h"
 
 namespace cdiff::metrics {
 

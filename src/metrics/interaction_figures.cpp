@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <iterator>
 
-#include "figure_rows.h"
+#include "metrics/figure_rows.h"
 
 namespace cdiff::metrics {
 namespace {

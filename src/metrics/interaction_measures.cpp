@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/interaction_measures.h"
+#include "metrics/interaction_measures.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/metrics/ttc_2d.h"
+#include "metrics/ttc_2d.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/interaction_statistics.h"
+#include "metrics/interaction_statistics.h"
 
-#include "e2e_cdiff/metrics/cbv_measures.h"
+#include "metrics/cbv_measures.h"
 
 namespace cdiff::metrics {
 

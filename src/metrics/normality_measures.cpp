@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/normality_measures.h"
+#include "metrics/normality_measures.h"
 
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
+#include "metrics/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 namespace {

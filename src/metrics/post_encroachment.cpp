@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/post_encroachment.h"
+#include "metrics/post_encroachment.h"
 
 #include <algorithm>
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 
-#include "e2e_cdiff/metrics/cbv_measures.h"
-#include "e2e_cdiff/metrics/sample_statistics.h"
+#include "metrics/cbv_measures.h"
+#include "metrics/sample_statistics.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/rift_measures.h"
+#include "metrics/rift_measures.h"
 
 #include <cmath>
 #include <utility>
 
-#include "e2e_cdiff/metrics/collisions_per_km.h"
-#include "e2e_cdiff/metrics/comfort_measures.h"
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
+#include "metrics/collisions_per_km.h"
+#include "metrics/comfort_measures.h"
+#include "metrics/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/session_metrics.h"
+#include "metrics/session_metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "e2e_cdiff/metrics/cbv_measures.h"
-#include "e2e_cdiff/metrics/comfort_measures.h"
-#include "e2e_cdiff/metrics/contact_fault.h"
-#include "e2e_cdiff/metrics/ego_measures.h"
-#include "e2e_cdiff/metrics/interaction_statistics.h"
-#include "e2e_cdiff/metrics/normality_measures.h"
-#include "e2e_cdiff/metrics/post_encroachment.h"
-#include "e2e_cdiff/metrics/rift_measures.h"
-#include "e2e_cdiff/metrics/speed_target.h"
+#include "metrics/cbv_measures.h"
+#include "metrics/comfort_measures.h"
+#include "metrics/contact_fault.h"
+#include "metrics/ego_measures.h"
+#include "metrics/interaction_statistics.h"
+#include "metrics/normality_measures.h"
+#include "metrics/post_encroachment.h"
+#include "metrics/rift_measures.h"
+#include "metrics/speed_target.h"
 
 namespace cdiff::metrics {
 namespace {

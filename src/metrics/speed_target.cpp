@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/metrics/speed_target.h"
+#include "metrics/speed_target.h"
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/metrics/cbv_measures.h"
-#include "e2e_cdiff/metrics/wasserstein.h"
+#include "core/text.h"
+#include "metrics/cbv_measures.h"
+#include "metrics/wasserstein.h"
 
 namespace cdiff::metrics {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Renders what the driven vehicles see.
-#include "e2e_cdiff/ros/camera_ros.h"
-#include "e2e_cdiff/ros/node_main.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/camera_ros.h"
+#include "ros/node_main.h"
+#include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;

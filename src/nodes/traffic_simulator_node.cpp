@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Owns a session's world and clock.
-#include "e2e_cdiff/ros/node_main.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "e2e_cdiff/ros/traffic_simulator_ros.h"
+#include "ros/node_main.h"
+#include "ros/topics.h"
+#include "ros/traffic_simulator_ros.h"
 
 int main(int argc, char** argv) {
   return cdiff::ros::runNode(argc, argv, cdiff::ros::kTrafficSimulatorNode,

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "e2e_cdiff/ros/session_files.h"
+#include "ros/session_files.h"
 
 int main(int argc, char** argv) {
   constexpr int kFirstArgument = 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/planning/motion_forecast.h"
+#include "planning/motion_forecast.h"
 
 #include <algorithm>
 #include <cmath>

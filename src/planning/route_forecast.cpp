@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/planning/route_forecast.h"
+#include "planning/route_forecast.h"
 
 #include <algorithm>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/planning/route_follower.h"
 #include "e2e_cdiff/traffic/rollout.h"
+#include "planning/route_follower.h"
 
 namespace cdiff::planning {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/rendering/camera_options.h"
+#include "rendering/camera_options.h"
 
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::rendering {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "canvas.h"
+#include "rendering/canvas.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "view.h"
+#include "rendering/view.h"
 
 namespace cdiff::rendering {
 namespace {

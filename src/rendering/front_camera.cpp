@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/rendering/front_camera.h"
+#include "rendering/front_camera.h"
 
 #include <cmath>
 
-#include "road_scene.h"
-#include "signal_heads.h"
-#include "vehicle_body.h"
+#include "rendering/road_scene.h"
+#include "rendering/signal_heads.h"
+#include "rendering/vehicle_body.h"
 
 namespace cdiff::rendering {
 namespace {

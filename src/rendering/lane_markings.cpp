@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "lane_markings.h"
+#include "rendering/lane_markings.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "lane_surface.h"
+#include "rendering/lane_surface.h"
 
 namespace cdiff::rendering {
 namespace {

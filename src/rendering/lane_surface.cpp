@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "lane_surface.h"
+#include "rendering/lane_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "road_scene.h"
+#include "rendering/road_scene.h"
 
 #include <algorithm>
 
-#include "lane_markings.h"
-#include "lane_surface.h"
-#include "road_sides.h"
-#include "triangulation.h"
+#include "rendering/lane_markings.h"
+#include "rendering/lane_surface.h"
+#include "rendering/road_sides.h"
+#include "rendering/triangulation.h"
 
 namespace cdiff::rendering {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "canvas.h"
 #include "e2e_cdiff/map/road_network.h"
-#include "spatial_grid.h"
+#include "rendering/canvas.h"
+#include "rendering/spatial_grid.h"
 
 namespace cdiff::rendering {
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "road_scene.h"
+#include "rendering/road_scene.h"
 
 namespace cdiff::rendering {
 

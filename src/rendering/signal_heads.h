@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "road_scene.h"
+#include "rendering/road_scene.h"
 
 namespace cdiff::rendering {
 

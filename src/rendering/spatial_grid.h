@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "view.h"
+#include "rendering/view.h"
 
 namespace cdiff::rendering {
 

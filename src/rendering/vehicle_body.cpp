@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "vehicle_body.h"
+#include "rendering/vehicle_body.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 /// headlights, and a shadow below.
 #pragma once
 
-#include "canvas.h"
-#include "view.h"
+#include "rendering/canvas.h"
+#include "rendering/view.h"
 
 namespace cdiff::rendering {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "bag_chunk.h"
+#include "ros/bag_chunk.h"
 
 #include <bzlib.h>
 #include <lz4frame.h>

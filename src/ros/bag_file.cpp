@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/bag_file.h"
+#include "ros/bag_file.h"
 
 #include <algorithm>
 #include <cerrno>
 
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/program.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/display.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/conversions.h"
+#include "ros/display.h"
+#include "ros/image_conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/bag_reader.h"
+#include "ros/bag_reader.h"
 
 #include <algorithm>
 #include <boost/interprocess/file_mapping.hpp>
 #include <boost/interprocess/mapped_region.hpp>
 #include <fstream>
 
-#include "bag_chunk.h"
-#include "bag_records.h"
+#include "ros/bag_chunk.h"
+#include "ros/bag_records.h"
 
 namespace cdiff::ros {
 namespace {

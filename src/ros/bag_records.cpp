@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "bag_records.h"
+#include "ros/bag_records.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "bag_session.h"
+#include "ros/bag_session.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/recorded_session.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "e2e_cdiff/scenario/world.h"
+#include "ros/conversions.h"
+#include "ros/recorded_session.h"
+#include "ros/session_bag.h"
+#include "ros/topics.h"
 #include "sensor_msgs/Image.h"
+#include "session/world.h"
 
 namespace cdiff::ros {
 namespace {
@@ -40,7 +40,7 @@ class Reader {
   explicit Reader(const std::filesystem::path& file) : recording_(file, RecordedImages::kAll) {}
 
   BagSession read() {
-    const scenario::ScenarioOptions& options = recording_.setup().options();
+    const session::ScenarioOptions& options = recording_.setup().options();
     session_.name = options.name + "_seed" + std::to_string(options.seed);
     while (const auto snapshot = recording_.next()) take(*snapshot);
     if (!recording_.findings().empty())
@@ -94,13 +94,13 @@ class Reader {
   }
 
   void finish() {
-    const scenario::ScenarioOptions& options = session_.setup->options();
+    const session::ScenarioOptions& options = session_.setup->options();
     if (std::abs(options.decision_period - kDecisionPeriod) > 1e-9) {
       throw InputError("its decisions are " + core::formatNumber(options.decision_period) +
                        " s apart; samples need 0.1 s");
     }
     if (session_.images.empty()) throw InputError("it holds no camera images");
-    const DriveKey ego{scenario::kEgoId, 0};
+    const DriveKey ego{session::kEgoId, 0};
     session_.routes[ego] = session_.setup->egoRoute();
     for (const traffic::TrafficSnapshot& snapshot : session_.decisions)
       session_.drives[snapshot.tick][-1] = ego;

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/scenario/session_setup.h"
 #include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "session/session_setup.h"
 
 namespace cdiff::ros {
 
@@ -29,7 +29,7 @@ struct BagImage {
 
 struct BagSession {
   std::string name;  ///< scenario and seed
-  std::unique_ptr<scenario::SessionSetup> setup;
+  std::unique_ptr<session::SessionSetup> setup;
   std::vector<traffic::TrafficSnapshot> decisions;          ///< at decision ticks, in order
   std::map<std::uint64_t, std::map<int, DriveKey>> drives;  ///< by tick, then slot
   std::map<DriveKey, map::Route> routes;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/camera_ros.h"
+#include "ros/camera_ros.h"
 
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/message_checks.h"
-#include "e2e_cdiff/ros/session_parts.h"
+#include "ros/conversions.h"
+#include "ros/image_conversions.h"
+#include "ros/message_checks.h"
+#include "ros/session_parts.h"
 
 namespace cdiff::ros {
 namespace {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/dataset_from_bag.h"
+#include "ros/dataset_from_bag.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
-#include "bag_session.h"
+#include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/route_tokens.h"
-#include "e2e_cdiff/planning/route_follower.h"
-#include "offset_samples.h"
-#include "sample_kinds.h"
+#include "planning/route_follower.h"
+#include "ros/bag_session.h"
+#include "ros/offset_samples.h"
+#include "ros/sample_kinds.h"
 
 namespace cdiff::ros {
 namespace {

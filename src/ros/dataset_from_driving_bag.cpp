@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/dataset_from_driving_bag.h"
+#include "ros/dataset_from_driving_bag.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "driving_bag.h"
+#include "diffusion/route_tokens.h"
+#include "dynamics/action_inference.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/route_tokens.h"
-#include "e2e_cdiff/dynamics/action_inference.h"
-#include "sample_kinds.h"
+#include "ros/driving_bag.h"
+#include "ros/sample_kinds.h"
 
 namespace cdiff::ros {
 namespace {

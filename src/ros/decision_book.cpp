@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/decision_book.h"
+#include "ros/decision_book.h"
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "core/text.h"
+#include "ros/conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -82,7 +82,7 @@ std::string insteadOf(const msgs::DecidedVehicle& vehicle) {
 
 }  // namespace
 
-DecisionBook::DecisionBook(const scenario::ScenarioOptions& options)
+DecisionBook::DecisionBook(const session::ScenarioOptions& options)
     : ego_planner_("ego:" + options.ego_planner),
       cbv_planner_("cbv:" + options.cbv_planner),
       ticks_per_decision_(static_cast<std::uint64_t>(

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/diffusion_planner_ros.h"
+#include "ros/diffusion_planner_ros.h"
 
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/ros/tick_answers.h"
+#include "ros/session_parts.h"
+#include "ros/tick_answers.h"
 
 namespace cdiff::ros {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "driving_bag.h"
+#include "ros/driving_bag.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "core/text.h"
 #include "cv_bridge/cv_bridge.h"
 #include "e2e_cdiff/ControlAction.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/bag_reader.h"
 #include "nav_msgs/Odometry.h"
 #include "nav_msgs/Path.h"
+#include "ros/bag_reader.h"
 #include "sensor_msgs/CompressedImage.h"
 #include "sensor_msgs/Image.h"
 

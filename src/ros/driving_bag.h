@@ -8,8 +8,8 @@
 #include <string>
 
 #include "e2e_cdiff/geometry/polyline.h"
-#include "e2e_cdiff/ros/dataset_from_driving_bag.h"
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "ros/dataset_from_driving_bag.h"
 
 namespace cdiff::ros {
 

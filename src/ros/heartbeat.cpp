@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/heartbeat.h"
+#include "ros/heartbeat.h"
 
 #include <algorithm>
 #include <chrono>
 
 #include "e2e_cdiff/Heartbeat.h"
-#include "e2e_cdiff/ros/connections.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/connections.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {

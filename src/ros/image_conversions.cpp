@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/image_conversions.h"
+#include "ros/image_conversions.h"
 
 #include <algorithm>
 
+#include "core/text.h"
 #include "cv_bridge/cv_bridge.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 #include "sensor_msgs/distortion_models.h"
 #include "sensor_msgs/image_encodings.h"
 

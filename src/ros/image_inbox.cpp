@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/image_inbox.h"
+#include "ros/image_inbox.h"
 
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
+#include "ros/conversions.h"
+#include "ros/image_conversions.h"
+#include "ros/topics.h"
+#include "session/closed_loop.h"
 
 namespace cdiff::ros {
 namespace {
@@ -37,8 +37,7 @@ double ageOf(const sensor_msgs::Image& image, const traffic::TrafficSnapshot& sn
 /// Puts the images into `images` and points the tasks to them; answers each task's fault.
 std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficSnapshot& snapshot,
                                 std::vector<PlanningTask>& tasks,
-                                std::vector<scenario::SlotImage>& images,
-                                SeeingDecision& decision) {
+                                std::vector<session::SlotImage>& images, SeeingDecision& decision) {
   std::vector<std::string> faults(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const auto message = inbox.find(tasks[i].slot, snapshot.tick);
@@ -56,7 +55,7 @@ std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficS
       ++decision.refused;
     }
   }
-  scenario::attachImages(images, tasks);
+  session::attachImages(images, tasks);
   return faults;
 }
 
@@ -87,7 +86,7 @@ SeeingDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnap
                           const std::vector<PlanningTask>& tasks, const ImageInbox& inbox) {
   SeeingDecision decision;
   std::vector<PlanningTask> with_images = tasks;
-  std::vector<scenario::SlotImage> images;
+  std::vector<session::SlotImage> images;
   const std::vector<std::string> faults = attach(inbox, snapshot, with_images, images, decision);
   std::vector<PlanningTask> seeing;
   for (const PlanningTask& task : with_images) {
@@ -95,7 +94,7 @@ SeeingDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnap
   }
   std::vector<PlannedAction> planned;
   if (!seeing.empty()) {
-    planned = scenario::planTimed(planner, snapshot, seeing, decision.latency_ms, decision.fault);
+    planned = session::planTimed(planner, snapshot, seeing, decision.latency_ms, decision.fault);
   }
   auto next = planned.begin();
   for (std::size_t i = 0; i < tasks.size(); ++i) {

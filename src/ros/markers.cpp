@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/markers.h"
+#include "ros/markers.h"
 
 #include <cmath>
 
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
@@ -141,7 +141,7 @@ Marker conflictMarker(const cbv::CbvAssignment& assignment) {
 
 }  // namespace
 
-visualization_msgs::MarkerArray mapMarkers(const scenario::SessionSetup& setup) {
+visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup) {
   visualization_msgs::MarkerArray array;
   array.markers = {deleteAll(), laneMarker(setup.network()), junctionMarker(setup.network()),
                    routeMarker("ego_route", 0, setup.egoRoute(), kEgoRouteColor)};

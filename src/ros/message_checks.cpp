@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/message_checks.h"
+#include "ros/message_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::ros {
 

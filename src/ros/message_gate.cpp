@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/message_gate.h"
+#include "ros/message_gate.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {

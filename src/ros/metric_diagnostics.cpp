@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/metric_diagnostics.h"
+#include "ros/metric_diagnostics.h"
 
 #include <map>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/metrics/figure_definitions.h"
-#include "e2e_cdiff/report/session_table.h"
+#include "core/text.h"
+#include "metrics/figure_definitions.h"
+#include "record/session_table.h"
 
 namespace cdiff::ros {
 namespace {
@@ -31,7 +31,7 @@ constexpr const char* kMain[] = {
 
 std::string valueText(const metrics::Measure& measure) {
   if (measure.unit == "count" && measure.value) return core::formatNumber(*measure.value);
-  return report::measureText(measure, 3);
+  return record::measureText(measure, 3);
 }
 
 }  // namespace

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/metric_reporter.h"
+#include "ros/metric_reporter.h"
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
 
 /// Figures of the whole session go out once in a simulated second.
-std::uint64_t decisionsPerReport(const scenario::SessionSetup& setup) {
+std::uint64_t decisionsPerReport(const session::SessionSetup& setup) {
   const double decisions = 1.0 / setup.options().decision_period;
   return static_cast<std::uint64_t>(std::max(1L, std::lround(decisions)));
 }
 
 }  // namespace
 
-MetricReporter::MetricReporter(const scenario::SessionSetup& setup)
+MetricReporter::MetricReporter(const session::SessionSetup& setup)
     : metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
       protocol_(setup.options().protocol.preset),
       decisions_per_report_(decisionsPerReport(setup)) {}

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/metrics_ros.h"
+#include "ros/metrics_ros.h"
 
 #include <iostream>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/session_table.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/metric_diagnostics.h"
-#include "e2e_cdiff/ros/parameters.h"
-#include "e2e_cdiff/ros/replay.h"
-#include "e2e_cdiff/ros/session_files.h"
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/ros/tick_record.h"
+#include "core/text.h"
+#include "record/session_table.h"
+#include "ros/conversions.h"
+#include "ros/metric_diagnostics.h"
+#include "ros/parameters.h"
+#include "ros/replay.h"
+#include "ros/session_files.h"
+#include "ros/session_parts.h"
+#include "ros/tick_record.h"
 
 namespace cdiff::ros {
 namespace {
@@ -34,9 +34,9 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   results_ = info.results_folder;
-  writer_ = std::make_unique<report::ResultWriter>(*setup_, factsOf(info, deterministic), results_);
+  writer_ = std::make_unique<page::ResultWriter>(*setup_, factsOf(info, deterministic), results_);
   if (setup_->options().video) {
-    video_ = std::make_unique<report::SessionVideo>(*setup_, results_);
+    video_ = std::make_unique<video::SessionVideo>(*setup_, results_);
   }
   reporter_ = std::make_unique<MetricReporter>(*setup_);
   reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
@@ -65,8 +65,8 @@ bool MetricsRos::handle(const Snapshot& message, bool superseded) {
   return true;
 }
 
-void MetricsRos::note(const std::vector<scenario::PlannerLatency>& latencies) {
-  for (const scenario::PlannerLatency& latency : latencies) {
+void MetricsRos::note(const std::vector<session::PlannerLatency>& latencies) {
+  for (const session::PlannerLatency& latency : latencies) {
     if (latency.milliseconds <= slowest_planner_ms_) continue;
     slowest_planner_ms_ = latency.milliseconds;
     slowest_planner_ = latency.planner;
@@ -105,14 +105,14 @@ int MetricsRos::conclude(Ending ending) {
   if (ending != Ending::kFinalSnapshot) {
     const traffic::TrafficSnapshot snapshot =
         untoldEnd(last_, setup_->options().simulation_step, ending, heartbeatTimeout());
-    scenario::TickRecord record;
+    session::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);
     if (video_) video_->observe(record);
   }
   writer_->finish(wallSeconds());
   const int exit_code = finishVideo(writer_->exitCode());
-  std::cout << writer_->table() << report::fileRow("video", results_ / report::kVideoFile)
+  std::cout << writer_->table() << record::fileRow("video", results_ / video::kVideoFile)
             << std::flush;
   writeExitCode(results_, exit_code);
   return exit_code;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/node_main.h"
+#include "ros/node_main.h"
 
 #include <chrono>
 #include <exception>
@@ -8,8 +8,8 @@
 #include <memory>
 #include <thread>
 
-#include "e2e_cdiff/core/failure.h"
-#include "e2e_cdiff/core/program.h"
+#include "core/failure.h"
+#include "core/program.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/observer.h"
+#include "ros/observer.h"
 
-#include "e2e_cdiff/ros/message_checks.h"
+#include "ros/message_checks.h"
 
 namespace cdiff::ros {
 
 namespace msgs = ::e2e_cdiff;
 
-void Observer::listenToAnswers(const scenario::ScenarioOptions& options,
+void Observer::listenToAnswers(const session::ScenarioOptions& options,
                                const ImageInterest& images) {
   const bool guided = graph().cbvsSee();
   const ExpectedAnswers expected{guided, true, images.ego, images.cbvs, graph().recordsDecisions()};

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "offset_samples.h"
+#include "ros/offset_samples.h"
 
 #include <algorithm>
 
+#include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/diffusion/route_tokens.h"
-#include "e2e_cdiff/planning/lateral_controller.h"
-#include "e2e_cdiff/planning/route_follower.h"
+#include "planners/pdm_lite/lateral_controller.h"
+#include "planning/route_follower.h"
 
 namespace cdiff::ros {
 
-OffsetSamples::OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options)
+OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options)
     : setup_(setup),
       options_(options),
       model_(setup.options().vehicle),
@@ -34,7 +34,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
                               const std::vector<const traffic::TrafficSnapshot*>& future,
                               traffic::Rollout& rollout) const {
   const traffic::VehicleState start = vehicle.state;
-  planning::LateralController controller(setup_.options().pdm_lite);
+  planners::LateralController controller(setup_.options().pdm_lite);
   double arc_length = around.arc_length;
   double heading = 0.0;
   for (std::size_t t = 0; t < future.size(); ++t) {
@@ -42,7 +42,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
     const double reach = std::max(1.0, state.speed);
     arc_length = planning::extendedProjection(around.route, state.position, arc_length - reach,
                                               arc_length + reach);
-    const double aim = arc_length + planning::lookAheadDistance(state.speed);
+    const double aim = arc_length + planners::lookAheadDistance(state.speed);
     auto row = rollout.row(static_cast<Eigen::Index>(t));
     const traffic::ControlAction action{
         row(traffic::kRolloutThrottle),

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/rendering/front_camera.h"
-#include "sample_kinds.h"
+#include "rendering/front_camera.h"
+#include "ros/sample_kinds.h"
 
 namespace cdiff::ros {
 
@@ -29,7 +29,7 @@ struct DisplacedSample {
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.
-  OffsetSamples(const scenario::SessionSetup& setup, const DatasetOptions& options);
+  OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options);
 
   /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
   /// the vehicle would touch another one or leave the road at any time, or begins off it.
@@ -43,7 +43,7 @@ class OffsetSamples {
                  const std::vector<const traffic::TrafficSnapshot*>& future,
                  traffic::Rollout& rollout) const;
 
-  const scenario::SessionSetup& setup_;
+  const session::SessionSetup& setup_;
   const DatasetOptions& options_;
   dynamics::BicycleModel model_;
   rendering::FrontCamera camera_;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/paced_answers.h"
+#include "ros/paced_answers.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/DecidedVehicle.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/topics.h"
 #include "e2e_cdiff/traffic/rollout.h"
+#include "ros/conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {

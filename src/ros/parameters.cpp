@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/parameters.h"
+#include "ros/parameters.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
+#include "ros/launched_nodes.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {
@@ -102,8 +102,8 @@ Parameters launchParameters() {
   return Parameters(command->arguments);
 }
 
-scenario::SessionRequest sessionRequest(const Parameters& parameters) {
-  scenario::SessionRequest request;
+session::SessionRequest sessionRequest(const Parameters& parameters) {
+  session::SessionRequest request;
   request.scenario = parameters.text("scenario");
   request.bench2drive = parameters.text("bench2drive");
   request.route = parameters.text("route");

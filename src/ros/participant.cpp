@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/participant.h"
+#include "ros/participant.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
-#include "e2e_cdiff/ros/session_parts.h"
+#include "core/text.h"
 #include "ros/callback_queue.h"
+#include "ros/conversions.h"
+#include "ros/launched_nodes.h"
+#include "ros/session_parts.h"
 
 namespace cdiff::ros {
 namespace {
@@ -102,7 +102,7 @@ std::optional<Ending> Participant::unstartedEnding() {
 
 int Participant::runSession() {
   begin(*session_);
-  const scenario::ScenarioOptions options = optionsFromMsg(*session_);
+  const session::ScenarioOptions options = optionsFromMsg(*session_);
   simulation_step_ = options.simulation_step;
   lead_ = static_cast<std::uint64_t>(
       std::llround((options.decision_period + kLead) / simulation_step_));

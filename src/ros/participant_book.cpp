@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/participant_book.h"
+#include "ros/participant_book.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/planner_ros.h"
+#include "ros/planner_ros.h"
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/markers.h"
-#include "e2e_cdiff/ros/message_checks.h"
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
+#include "ros/markers.h"
+#include "ros/message_checks.h"
+#include "ros/session_parts.h"
+#include "session/closed_loop.h"
 
 namespace cdiff::ros {
 namespace {
@@ -56,7 +56,7 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
   if (!message->decision_tick) return true;
   const bool blind = !ready(*message);
   const traffic::TrafficSnapshot snapshot = fromMsg(*message);
-  const auto tasks = scenario::egoTasks(snapshot, route_, setup_->options().target_speed);
+  const auto tasks = session::egoTasks(snapshot, route_, setup_->options().target_speed);
   if (tasks.empty()) return true;
   if (blind && !superseded) return false;
   ActionOrigin origin{"ego:" + setup_->options().ego_planner, 0.0, {}};
@@ -72,7 +72,7 @@ std::vector<planning::PlannedAction> EgoPlannerRos::decide(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
     ActionOrigin& origin) {
   if (!graph().ego_sees)
-    return scenario::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
+    return session::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
   SeeingDecision decision = planSeeing(*planner_, snapshot, tasks, images_);
   origin.latency_ms = decision.latency_ms;
   origin.fault = decision.fault;
@@ -113,7 +113,7 @@ bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {
 void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
                          const msgs::CbvSelection& message) {
   const cbv::CbvSelection selection = fromMsg(message, setup_->network());
-  const auto tasks = scenario::cbvTasks(snapshot, selection, setup_->options().target_speed);
+  const auto tasks = session::cbvTasks(snapshot, selection, setup_->options().target_speed);
   if (tasks.empty()) return;
   ActionOrigin origin{"cbv:" + setup_->options().cbv_planner, 0.0, {}};
   const std::vector<planning::PlannedAction> actions = decide(snapshot, tasks, origin);
@@ -124,7 +124,7 @@ void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
 std::vector<planning::PlannedAction> CbvPlannerRos::decide(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
     ActionOrigin& origin) {
-  return scenario::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
+  return session::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
 }
 
 void CbvPlannerRos::publish(const traffic::TrafficSnapshot& snapshot,

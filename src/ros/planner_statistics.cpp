@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/planner_statistics.h"
+#include "ros/planner_statistics.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/latency_log.h"
+#include "core/text.h"
+#include "record/latency_log.h"
 
 namespace cdiff::ros {
 
@@ -39,8 +39,8 @@ void PlannerStatistics::diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
   std::vector<double> sorted = latencies_ms_;
   std::sort(sorted.begin(), sorted.end());
   if (!sorted.empty()) {
-    status.add("latency p50 [ms]", core::formatFixed(report::nearestRank(sorted, 50.0), 2));
-    status.add("latency p95 [ms]", core::formatFixed(report::nearestRank(sorted, 95.0), 2));
+    status.add("latency p50 [ms]", core::formatFixed(record::nearestRank(sorted, 50.0), 2));
+    status.add("latency p95 [ms]", core::formatFixed(record::nearestRank(sorted, 95.0), 2));
   }
   status.add("decisions", latencies_ms_.size());
   status.add("deadline misses", deadline_misses_);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "recorded_channels.h"
+#include "ros/recorded_channels.h"
 
+#include "core/text.h"
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
 #include "e2e_cdiff/DecisionRecord.h"
@@ -9,8 +10,7 @@
 #include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 #include "ros/message_traits.h"
 #include "sensor_msgs/Image.h"
 

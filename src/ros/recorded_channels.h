@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/ros/bag_reader.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/bag_reader.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 

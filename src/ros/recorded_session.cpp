@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/recorded_session.h"
+#include "ros/recorded_session.h"
 
 #include <functional>
 #include <map>
 #include <string_view>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/message_checks.h"
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/ros/tick_record.h"
-#include "recorded_channels.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "ros/conversions.h"
+#include "ros/message_checks.h"
+#include "ros/recorded_channels.h"
+#include "ros/session_parts.h"
+#include "ros/tick_record.h"
 
 namespace cdiff::ros {
 namespace {
@@ -53,7 +53,7 @@ RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImage
   try {
     readInfo();
     setup_ = setupOf(*info_);
-    const scenario::ScenarioOptions& options = setup_->options();
+    const session::ScenarioOptions& options = setup_->options();
     graph_ = info_->participants.empty() ? graphOf(options, GraphRequest()) : graphOf(*info_);
     const ExpectedAnswers expected{graph_.cbvsSee(), true, graph_.egoPlansFromImages(),
                                    graph_.cbvsPlanFromImages()};

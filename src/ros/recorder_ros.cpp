@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/recorder_ros.h"
+#include "ros/recorder_ros.h"
 
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
@@ -15,7 +15,7 @@ std::string bagTopic(const std::string& topic) { return ::ros::names::resolve(to
 }  // namespace
 
 void RecorderRos::begin(const msgs::SessionInfo& info) {
-  const scenario::ScenarioOptions options = optionsFromMsg(info);
+  const session::ScenarioOptions options = optionsFromMsg(info);
   bag_ = std::make_unique<BagFile>(std::filesystem::path(info.results_folder) / "session.bag",
                                    options.camera, bagTopic);
   bag_->write(info);

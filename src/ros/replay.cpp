@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/replay.h"
+#include "ros/replay.h"
 
 #include <chrono>
 #include <memory>
 #include <optional>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/result_folder.h"
-#include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/report/session_table.h"
-#include "e2e_cdiff/report/session_video.h"
-#include "e2e_cdiff/ros/tick_record.h"
+#include "page/result_writer.h"
+#include "record/result_folder.h"
+#include "record/session_table.h"
+#include "ros/tick_record.h"
+#include "video/session_video.h"
 
 namespace cdiff::ros {
 namespace {
@@ -22,9 +22,9 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kRecordedBy = ", recorded by ";
 
 void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& message,
-              const std::vector<scenario::SessionObserver*>& observers) {
+              const std::vector<session::SessionObserver*>& observers) {
   const TickRecordView tick(message, session.answers(), session.setup().network());
-  for (scenario::SessionObserver* observer : observers) observer->observe(tick.record());
+  for (session::SessionObserver* observer : observers) observer->observe(tick.record());
 }
 
 [[noreturn]] void refuseEmpty(const std::filesystem::path& bag, const RecordedSession& session) {
@@ -36,8 +36,8 @@ void showTick(const RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot
 
 /// Shows every tick to the result and to the video, which goes when the disk is full.
 void writeReplay(RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& first,
-                 report::ResultWriter& writer, std::unique_ptr<report::SessionVideo>& video) {
-  std::vector<scenario::SessionObserver*> observers = {&writer};
+                 page::ResultWriter& writer, std::unique_ptr<video::SessionVideo>& video) {
+  std::vector<session::SessionObserver*> observers = {&writer};
   if (video) observers.push_back(video.get());
   try {
     showTick(session, first, observers);
@@ -51,7 +51,7 @@ void writeReplay(RecordedSession& session, const ::e2e_cdiff::TrafficSnapshot& f
 }  // namespace
 
 std::size_t showTicks(RecordedSession& session,
-                      const std::vector<scenario::SessionObserver*>& observers) {
+                      const std::vector<session::SessionObserver*>& observers) {
   std::size_t count = 0;
   for (; const auto message = session.next(); ++count) showTick(session, *message, observers);
   return count;
@@ -61,8 +61,8 @@ std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionIn
   return by + kRecordedBy + recorded.deployment + " of e2e_cdiff " + recorded.package_version;
 }
 
-report::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic) {
-  report::RunFacts facts{info.deployment, info.simulator_version, deterministic};
+record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic) {
+  record::RunFacts facts{info.deployment, info.simulator_version, deterministic};
   const std::size_t at = info.deployment.find(kRecordedBy);
   if (at == std::string::npos) return facts;
   facts.deployment = info.deployment.substr(0, at);
@@ -77,7 +77,7 @@ void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem
     throw core::InputError("'" + results.string() +
                            "' holds the bag that is replayed; give another folder");
   }
-  report::requireFreeFolder(results, overwrite);
+  record::requireFreeFolder(results, overwrite);
 }
 
 ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results,
@@ -91,11 +91,11 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   info.deployment = replayDeployment(kReplayCommand, session.info());
   info.simulator_version = session.info().simulator_version;
   const bool deterministic = session.setup().options().real_time_factor == 0.0;
-  const report::ResultFolder folder(results, kReplayCommand, overwrite);
-  report::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
-  std::unique_ptr<report::SessionVideo> video;
+  const record::ResultFolder folder(results, kReplayCommand, overwrite);
+  page::ResultWriter writer(session.setup(), factsOf(info, deterministic), results);
+  std::unique_ptr<video::SessionVideo> video;
   if (session.setup().options().video)
-    video = std::make_unique<report::SessionVideo>(session.setup(), results);
+    video = std::make_unique<video::SessionVideo>(session.setup(), results);
   writeReplay(session, *first, writer, video);
   try {
     writer.finish(std::chrono::duration<double>(Clock::now() - begin).count());
@@ -106,7 +106,7 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   const std::string video_error = video ? video->error() : "";
   const bool whole = session.findings().empty() && video_error.empty();
   return {whole ? writer.exitCode() : 2,
-          writer.table() + report::fileRow("video", results / report::kVideoFile),
+          writer.table() + record::fileRow("video", results / video::kVideoFile),
           session.findings(), video_error, writer.failure()};
 }
 

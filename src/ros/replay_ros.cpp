@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/replay_ros.h"
+#include "ros/replay_ros.h"
 
 #include <algorithm>
 #include <system_error>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/decision_book.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
-#include "e2e_cdiff/ros/markers.h"
-#include "e2e_cdiff/ros/replay.h"
-#include "e2e_cdiff/ros/session_files.h"
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/ros/tick_record.h"
+#include "ros/conversions.h"
+#include "ros/decision_book.h"
+#include "ros/image_conversions.h"
+#include "ros/launched_nodes.h"
+#include "ros/markers.h"
+#include "ros/replay.h"
+#include "ros/session_files.h"
+#include "ros/session_parts.h"
+#include "ros/spinning.h"
+#include "ros/tick_record.h"
 #include "rosgraph_msgs/Clock.h"
-#include "spinning.h"
 
 namespace cdiff::ros {
 namespace {
@@ -50,7 +50,7 @@ fs::path bagOf(const Parameters& parameters) {
 }
 
 /// The folder given, else one of its own.
-fs::path folderOf(const Parameters& parameters, const scenario::ScenarioOptions& options) {
+fs::path folderOf(const Parameters& parameters, const session::ScenarioOptions& options) {
   const std::string given = parameters.text("results");
   return resultFolder(given.empty() ? "" : fs::path(parameters.text("folder")) / given, options);
 }
@@ -77,7 +77,7 @@ ReplayRos::ReplayRos(const Parameters& parameters, StopSignal& stop)
   results_ = folderOf(parameters, session_.setup().options());
   const bool overwrite = parameters.flag("overwrite", false);
   requireReplayFolder(bag_, results_, overwrite);
-  folder_ = std::make_unique<report::ResultFolder>(results_, kReplayLaunch, overwrite);
+  folder_ = std::make_unique<record::ResultFolder>(results_, kReplayLaunch, overwrite);
   if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().options().camera);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "sample_kinds.h"
+#include "ros/sample_kinds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/planning/route_rules.h"
-#include "e2e_cdiff/training/sample_balance.h"
+#include "planners/pdm_lite/route_rules.h"
+#include "training/sample_balance.h"
 
 namespace cdiff::ros {
 namespace {
@@ -39,10 +39,10 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
     const double distance = (other.state.position - self.state.position).norm();
     if (other.id == id || distance > kLeaderDistance || traffic::onDifferentLevels(self, other))
       continue;
-    if (planning::isLeading(around.route, around.arc_length, other.state))
+    if (planners::isLeading(around.route, around.arc_length, other.state))
       return training::kStopLeader;
   }
-  const auto light = planning::distanceToRedLight(around.route, around.arc_length, around.snapshot);
+  const auto light = planners::distanceToRedLight(around.route, around.arc_length, around.snapshot);
   if (light && *light < kLightDistance) return training::kStopLight;
   for (const auto& [from, to] : around.route.junctionStretches()) {
     if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance)

@@ -4,14 +4,14 @@
 #pragma once
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/ros/dataset_from_bag.h"
-#include "e2e_cdiff/scenario/session_setup.h"
+#include "ros/dataset_from_bag.h"
+#include "session/session_setup.h"
 
 namespace cdiff::ros {
 
 /// What surrounds the vehicle of a sample at planning time.
 struct SampleSurroundings {
-  const scenario::SessionSetup& setup;
+  const session::SessionSetup& setup;
   const traffic::TrafficSnapshot& snapshot;
   const map::Route& route;
   double arc_length = 0.0;  ///< on the route [m]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {

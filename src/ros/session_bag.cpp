@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/session_bag.h"
+#include "ros/session_bag.h"
 
 #include <boost/make_shared.hpp>
 
-#include "e2e_cdiff/planning/planner_factory.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "planners/planner_factory.h"
+#include "ros/conversions.h"
+#include "ros/image_conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -21,8 +21,8 @@ boost::shared_ptr<const Message> shared(Message message) {
   return boost::make_shared<const Message>(std::move(message));
 }
 
-double latencyOf(const scenario::TickRecord& record, const std::string& planner) {
-  for (const scenario::PlannerLatency& latency : record.latencies) {
+double latencyOf(const session::TickRecord& record, const std::string& planner) {
+  for (const session::PlannerLatency& latency : record.latencies) {
     if (latency.planner == planner) return latency.milliseconds;
   }
   return 0.0;
@@ -30,7 +30,7 @@ double latencyOf(const scenario::TickRecord& record, const std::string& planner)
 
 }  // namespace
 
-SessionBag::SessionBag(const scenario::SessionSetup& setup, const fs::path& file,
+SessionBag::SessionBag(const session::SessionSetup& setup, const fs::path& file,
                        const BagOrigin& origin)
     : setup_(setup), file_(file, setup.options().camera, bagTopic), reporter_(setup) {
   msgs::SessionInfo info = toMsg(setup);
@@ -44,7 +44,7 @@ SessionBag::SessionBag(const scenario::SessionSetup& setup, const fs::path& file
 
 SessionBag::~SessionBag() = default;
 
-void SessionBag::observe(const scenario::TickRecord& record) {
+void SessionBag::observe(const session::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   TickMessages tick;
   tick.snapshot = shared(toMsg(snapshot));
@@ -60,11 +60,11 @@ void SessionBag::observe(const scenario::TickRecord& record) {
 }
 
 std::string SessionBag::plannerOf(int slot) const {
-  const scenario::ScenarioOptions& options = setup_.options();
+  const session::ScenarioOptions& options = setup_.options();
   return slot == kEgoSlot ? "ego:" + options.ego_planner : "cbv:" + options.cbv_planner;
 }
 
-void SessionBag::addActions(const scenario::TickRecord& record, TickMessages& tick) const {
+void SessionBag::addActions(const session::TickRecord& record, TickMessages& tick) const {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   for (const planning::PlannedAction& action : *record.actions) {
     ActionOrigin origin{plannerOf(action.slot), 0.0, action.fault};
@@ -77,8 +77,8 @@ void SessionBag::addActions(const scenario::TickRecord& record, TickMessages& ti
 }
 
 /// Where the diffusion planner's node reports it.
-void SessionBag::addGuidance(const scenario::TickRecord& record, TickMessages& tick) const {
-  if (tick.rollouts.empty() || !planning::seesImages(setup_.options().cbv_planner)) return;
+void SessionBag::addGuidance(const session::TickRecord& record, TickMessages& tick) const {
+  if (tick.rollouts.empty() || !planners::seesImages(setup_.options().cbv_planner)) return;
   std::vector<planning::PlannedAction> actions;
   for (const planning::PlannedAction& action : *record.actions) {
     if (action.slot != kEgoSlot) actions.push_back(action);
@@ -88,8 +88,8 @@ void SessionBag::addGuidance(const scenario::TickRecord& record, TickMessages& t
   tick.guidance = shared(std::move(report));
 }
 
-void SessionBag::addImages(const scenario::TickRecord& record, TickMessages& tick) const {
-  for (const scenario::SlotImage& seen : *record.images) {
+void SessionBag::addImages(const session::TickRecord& record, TickMessages& tick) const {
+  for (const session::SlotImage& seen : *record.images) {
     const double time = static_cast<double>(seen.image.tick) * setup_.options().simulation_step;
     tick.images[seen.slot] =
         shared(toMsg(seen.image, time, tick.controls.at(seen.slot)->vehicle_id));

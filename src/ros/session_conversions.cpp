@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/metrics/figure_definitions.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "metrics/figure_definitions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
@@ -27,7 +27,7 @@ msgs::Measure toMsg(const std::string& name, const metrics::Measure& measure) {
 
 }  // namespace
 
-msgs::SessionInfo toMsg(const scenario::SessionSetup& setup) {
+msgs::SessionInfo toMsg(const session::SessionSetup& setup) {
   msgs::SessionInfo message;
   message.header.frame_id = kMapFrame;
   message.scenario_yaml = core::dumpOptions(setup.options());
@@ -47,8 +47,8 @@ msgs::SessionInfo toMsg(const scenario::SessionSetup& setup) {
   return message;
 }
 
-scenario::ScenarioOptions optionsFromMsg(const msgs::SessionInfo& message) {
-  scenario::ScenarioOptions options;
+session::ScenarioOptions optionsFromMsg(const msgs::SessionInfo& message) {
+  session::ScenarioOptions options;
   core::loadOptions({"scenario of the session", message.scenario_yaml}, options);
   return options;
 }

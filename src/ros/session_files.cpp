@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/session_files.h"
+#include "ros/session_files.h"
 
 #include <sys/stat.h>
 
 #include <cstdlib>
 #include <iostream>
 
+#include "core/file.h"
+#include "core/text.h"
+#include "core/time_text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/core/time_text.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
+#include "ros/launched_nodes.h"
 
 namespace cdiff::ros {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path ownFolder(const scenario::ScenarioOptions& options) {
+fs::path ownFolder(const session::ScenarioOptions& options) {
   const char* home = std::getenv("HOME");
   const fs::path base = home != nullptr ? fs::path(home) : core::temporaryFolder();
   return base / "e2e_cdiff_results" /
@@ -41,15 +41,15 @@ fs::path askedFolder(const Parameters& parameters) {
   return text.empty() ? fs::path() : fs::absolute(text).lexically_normal();
 }
 
-int writeUnstarted(const scenario::ScenarioOptions& options, const fs::path& folder,
+int writeUnstarted(const session::ScenarioOptions& options, const fs::path& folder,
                    traffic::SessionStatus status, const traffic::Fault& fault) {
-  const scenario::SessionSetup setup(options);
+  const session::SessionSetup setup(options);
   const bool deterministic = options.real_time_factor == 0.0;
-  report::ResultWriter writer(setup, {kDeployment, "unknown", deterministic}, folder);
+  page::ResultWriter writer(setup, {kDeployment, "unknown", deterministic}, folder);
   traffic::TrafficSnapshot snapshot;
   snapshot.status = status;
   snapshot.faults.push_back(fault);
-  scenario::TickRecord record;
+  session::TickRecord record;
   record.snapshot = &snapshot;
   writer.observe(record);
   writer.finish(0.0);
@@ -59,7 +59,7 @@ int writeUnstarted(const scenario::ScenarioOptions& options, const fs::path& fol
 
 }  // namespace
 
-fs::path resultFolder(const std::string& given, const scenario::ScenarioOptions& options) {
+fs::path resultFolder(const std::string& given, const session::ScenarioOptions& options) {
   return fs::absolute(given.empty() ? ownFolder(options) : fs::path(given)).lexically_normal();
 }
 
@@ -77,11 +77,11 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     folder = askedFolder(parameters);
     if (!folder.empty() && writtenByThisLaunch(folder / "exit_code")) return 2;
     requireKnownLaunchArguments();  // else it would be the result of another session than was meant
-    const auto options = scenario::resolveRequest(sessionRequest(parameters));
+    const auto options = session::resolveRequest(sessionRequest(parameters));
     folder = resultFolder(parameters.text("results"), options);
     const bool overwrite =
         parameters.flag("overwrite", false) || writtenByThisLaunch(folder / "session.yaml");
-    const report::ResultFolder claimed(folder, kDeployment, overwrite);
+    const record::ResultFolder claimed(folder, kDeployment, overwrite);
     const int exit_code = writeUnstarted(options, folder, status, fault);
     writeExitCode(folder, exit_code);
     return exit_code;
@@ -104,7 +104,7 @@ void writeRefusal(const fs::path& folder) {
   writeExitCode({}, kBadInput);
   if (folder.empty()) return;
   try {
-    report::requireFreeFolder(folder, false);
+    record::requireFreeFolder(folder, false);
     const core::FolderLock lock(folder, kDeployment);
     writeExitCode(folder, kBadInput);
   } catch (const core::InputError&) {
@@ -112,11 +112,11 @@ void writeRefusal(const fs::path& folder) {
   }
 }
 
-ReserveResult::ReserveResult(const scenario::SessionSetup& setup, const report::RunFacts& facts,
+ReserveResult::ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
                              const fs::path& results)
     : results_(results),
       folder_(results / ".reserve"),
-      writer_(std::make_unique<report::ResultWriter>(setup, facts, folder_)) {}
+      writer_(std::make_unique<page::ResultWriter>(setup, facts, folder_)) {}
 
 ReserveResult::~ReserveResult() {
   writer_.reset();
@@ -124,7 +124,7 @@ ReserveResult::~ReserveResult() {
   fs::remove_all(folder_, ignored);
 }
 
-void ReserveResult::observe(const scenario::TickRecord& record) {
+void ReserveResult::observe(const session::TickRecord& record) {
   try {
     writer_->observe(record);
   } catch (const core::Error&) {

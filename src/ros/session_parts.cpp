@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/session_parts.h"
+#include "ros/session_parts.h"
 
-#include "e2e_cdiff/planning/planner_factory.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "planners/planner_factory.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {
 
-std::vector<std::string> neededNodes(const scenario::ScenarioOptions& options,
+std::vector<std::string> neededNodes(const session::ScenarioOptions& options,
                                      const GraphRequest& request) {
-  const bool cbvs_see = planning::seesImages(options.cbv_planner);
+  const bool cbvs_see = planners::seesImages(options.cbv_planner);
   std::vector<std::string> nodes = {kCbvIdentificationNode, kEgoPlannerNode,
                                     cbvs_see ? kDiffusionPlannerNode : kCbvPlannerNode,
                                     kMetricsNode};
-  if (cbvs_see || planning::seesImages(options.ego_planner) || request.show_cameras)
+  if (cbvs_see || planners::seesImages(options.ego_planner) || request.show_cameras)
     nodes.emplace_back(kCameraNode);
   if (request.record) nodes.emplace_back(kRecorderNode);
   return nodes;
@@ -22,17 +22,17 @@ std::vector<std::string> neededNodes(const scenario::ScenarioOptions& options,
 
 }  // namespace
 
-std::unique_ptr<scenario::SessionSetup> setupOf(const msgs::SessionInfo& info) {
-  return std::make_unique<scenario::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
-                                                  routeFromMsg(info));
+std::unique_ptr<session::SessionSetup> setupOf(const msgs::SessionInfo& info) {
+  return std::make_unique<session::SessionSetup>(optionsFromMsg(info), importFromMsg(info),
+                                                 routeFromMsg(info));
 }
 
-SessionGraph graphOf(const scenario::ScenarioOptions& options, const GraphRequest& request,
+SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest& request,
                      const std::vector<std::string>& participants) {
   SessionGraph graph;
   graph.max_cbv = static_cast<int>(options.max_cbv);
   graph.external_ego = options.ego_planner == "external";
-  graph.ego_sees = planning::seesImages(options.ego_planner);
+  graph.ego_sees = planners::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
   graph.paced = options.real_time_factor > 0.0;
   for (const std::string& node :
@@ -52,7 +52,7 @@ void putGraph(const SessionGraph& graph, msgs::SessionInfo& info) {
 SessionGraph graphOf(const msgs::SessionInfo& info) {
   SessionGraph graph;
   graph.participants = info.participants;
-  const scenario::ScenarioOptions options = optionsFromMsg(info);
+  const session::ScenarioOptions options = optionsFromMsg(info);
   graph.max_cbv = static_cast<int>(options.max_cbv);
   graph.paced = options.real_time_factor > 0.0;
   graph.external_ego = info.external_ego != 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/stop_signal.h"
+#include "ros/stop_signal.h"
 
 #include <pthread.h>
 #include <signal.h>
 #include <time.h>
 
-#include "e2e_cdiff/core/program.h"
+#include "core/program.h"
 
 namespace cdiff::ros {
 namespace {

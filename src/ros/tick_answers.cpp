@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/tick_answers.h"
+#include "ros/tick_answers.h"
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -51,8 +51,8 @@ std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answer
   return actions;
 }
 
-std::vector<scenario::PlannerLatency> latenciesOf(const std::vector<Answer>& answers) {
-  std::vector<scenario::PlannerLatency> latencies;
+std::vector<session::PlannerLatency> latenciesOf(const std::vector<Answer>& answers) {
+  std::vector<session::PlannerLatency> latencies;
   for (const Answer& answer : answers) {
     if (!std::isfinite(answer.latency_ms) || answer.latency_ms <= 0.0) continue;
     const bool same_call = !latencies.empty() && latencies.back().planner == answer.planner;
@@ -224,8 +224,8 @@ std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) 
   return answers;
 }
 
-std::vector<scenario::SlotImage> TickAnswers::images(const msgs::TrafficSnapshot& snapshot) const {
-  std::vector<scenario::SlotImage> seen;
+std::vector<session::SlotImage> TickAnswers::images(const msgs::TrafficSnapshot& snapshot) const {
+  std::vector<session::SlotImage> seen;
   for (const Answer& answer : answers(snapshot)) {
     const int slot = answer.action.slot;
     if (!image(slot, snapshot.tick)) continue;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/tick_record.h"
+#include "ros/tick_record.h"
 
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/conversions.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
 
-scenario::AnswerTiming::Instead insteadOf(const msgs::DecidedVehicle& vehicle) {
-  using Instead = scenario::AnswerTiming::Instead;
+session::AnswerTiming::Instead insteadOf(const msgs::DecidedVehicle& vehicle) {
+  using Instead = session::AnswerTiming::Instead;
   switch (vehicle.driven_by) {
     case msgs::DecidedVehicle::PLAN:
       return Instead::kPlan;
@@ -22,10 +22,10 @@ scenario::AnswerTiming::Instead insteadOf(const msgs::DecidedVehicle& vehicle) {
   }
 }
 
-std::vector<scenario::AnswerTiming> timingsOf(const msgs::DecisionRecord& record) {
-  std::vector<scenario::AnswerTiming> timings;
+std::vector<session::AnswerTiming> timingsOf(const msgs::DecisionRecord& record) {
+  std::vector<session::AnswerTiming> timings;
   timings.push_back({kCbvIdentificationNode, record.selection_came != 0, record.selection_lateness,
-                     scenario::AnswerTiming::Instead::kNothing});
+                     session::AnswerTiming::Instead::kNothing});
   for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
     if (!vehicle.asked) continue;
     timings.push_back(

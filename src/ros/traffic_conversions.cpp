@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/conversions.h"
+#include "ros/conversions.h"
 
 namespace cdiff::ros {
 namespace {

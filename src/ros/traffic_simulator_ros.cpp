@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/ros/traffic_simulator_ros.h"
+#include "ros/traffic_simulator_ros.h"
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
-#include "e2e_cdiff/ros/message_checks.h"
-#include "e2e_cdiff/ros/session_files.h"
-#include "e2e_cdiff/ros/session_parts.h"
+#include "ros/conversions.h"
+#include "ros/launched_nodes.h"
+#include "ros/message_checks.h"
+#include "ros/session_files.h"
+#include "ros/session_parts.h"
+#include "ros/spinning.h"
 #include "rosgraph_msgs/Clock.h"
-#include "spinning.h"
 
 namespace cdiff::ros {
 namespace {
@@ -38,12 +38,12 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   limits_ = {parameters.positive("start_timeout", 30.0),
              parameters.positive("answer_timeout", 30.0)};
   enterFolder(parameters.text("folder"));
-  const scenario::ScenarioOptions options = scenario::resolveRequest(sessionRequest(parameters));
+  const session::ScenarioOptions options = session::resolveRequest(sessionRequest(parameters));
   results_ = resultFolder(parameters.text("results"), options);
   const bool overwrite = parameters.flag("overwrite", false);
-  report::requireFreeFolder(results_, overwrite);
-  setup_ = std::make_unique<scenario::SessionSetup>(options);
-  folder_ = std::make_unique<report::ResultFolder>(results_, kDeployment, overwrite);
+  record::requireFreeFolder(results_, overwrite);
+  setup_ = std::make_unique<session::SessionSetup>(options);
+  folder_ = std::make_unique<record::ResultFolder>(results_, kDeployment, overwrite);
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
@@ -69,7 +69,7 @@ int TrafficSimulatorRos::run() {
 
 bool TrafficSimulatorRos::startWorld() {
   try {
-    world_ = std::make_unique<scenario::World>(*setup_);
+    world_ = std::make_unique<session::World>(*setup_);
     reserve_ = makeReserve(world_->simulatorVersion());
     return true;
   } catch (const core::SimulatorError& error) {
@@ -190,7 +190,7 @@ void TrafficSimulatorRos::endSession(const Ending& ending) {
 }
 
 std::unique_ptr<ReserveResult> TrafficSimulatorRos::makeReserve(const std::string& version) const {
-  return std::make_unique<ReserveResult>(*setup_, report::RunFacts{kDeployment, version, !paced()},
+  return std::make_unique<ReserveResult>(*setup_, record::RunFacts{kDeployment, version, !paced()},
                                          results_);
 }
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/tick_record.h"
-#include "e2e_cdiff/ros/traffic_simulator_ros.h"
+#include "core/text.h"
+#include "ros/conversions.h"
+#include "ros/spinning.h"
+#include "ros/tick_record.h"
+#include "ros/traffic_simulator_ros.h"
 #include "rosgraph_msgs/Clock.h"
-#include "spinning.h"
 
 namespace cdiff::ros {
 namespace {
@@ -118,7 +118,7 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::sleepUntil(doubl
 
 /// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
-  const scenario::ScenarioOptions& options = setup_->options();
+  const session::ScenarioOptions& options = setup_->options();
   spin(0.0);  // what has come counts, however late this tick began
   const double due = (published_->time + options.simulation_step) / options.real_time_factor;
   if (auto cause = sleepUntil(due)) return cause;
@@ -181,7 +181,7 @@ void TrafficSimulatorRos::advance() {
 void TrafficSimulatorRos::keepInReserve(const cbv::CbvSelection* selection,
                                         const std::vector<planning::PlannedAction>& actions,
                                         const std::vector<Answer>& answers) {
-  scenario::TickRecord record;
+  session::TickRecord record;
   record.snapshot = &world_->snapshot();
   record.selection = selection;
   if (selection != nullptr) record.actions = &actions;

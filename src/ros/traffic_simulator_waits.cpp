@@ -3,12 +3,12 @@
 // What a session waits for, how long, and who is to blame when it does not come.
 #include <algorithm>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/launched_nodes.h"
-#include "e2e_cdiff/ros/node_main.h"
-#include "e2e_cdiff/ros/traffic_simulator_ros.h"
-#include "spinning.h"
+#include "core/text.h"
+#include "ros/conversions.h"
+#include "ros/launched_nodes.h"
+#include "ros/node_main.h"
+#include "ros/spinning.h"
+#include "ros/traffic_simulator_ros.h"
 
 namespace cdiff::ros {
 namespace {
@@ -97,7 +97,7 @@ void TrafficSimulatorRos::waitForObservers() {
 }
 
 void TrafficSimulatorRos::writeResultAlone(const traffic::TrafficSnapshot& snapshot) {
-  scenario::TickRecord record;
+  session::TickRecord record;
   record.snapshot = &snapshot;
   reserve_->observe(record);
   reserve_->adopt(secondsSince(begin_));

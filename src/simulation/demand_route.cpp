@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/demand_route.h"
+#include "simulation/demand_route.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/driven_fleet.h"
+#include "simulation/driven_fleet.h"
 
 #include <libsumo/libtraci.h>
 
 #include <algorithm>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

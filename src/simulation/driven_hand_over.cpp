@@ -4,8 +4,8 @@
 #include <libsumo/libtraci.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/simulation/driven_fleet.h"
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/driven_fleet.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/driven_way.h"
+#include "simulation/driven_way.h"
 
 #include <algorithm>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

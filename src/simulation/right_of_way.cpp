@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/right_of_way.h"
+#include "simulation/right_of_way.h"
 
 namespace cdiff::simulation {
 namespace {

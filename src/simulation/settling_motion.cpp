@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/settling_motion.h"
+#include "simulation/settling_motion.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

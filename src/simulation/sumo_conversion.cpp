@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 #include "e2e_cdiff/core/angle.h"
 

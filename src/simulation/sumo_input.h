@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "e2e_cdiff/simulation/sumo_link.h"
-#include "e2e_cdiff/simulation/sumo_simulator.h"
+#include "simulation/sumo_link.h"
+#include "simulation/sumo_simulator.h"
 
 namespace cdiff::simulation {
 

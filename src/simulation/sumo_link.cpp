@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/sumo_link.h"
+#include "simulation/sumo_link.h"
 
 #include <libsumo/libtraci.h>
 #include <unistd.h>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::simulation {
 

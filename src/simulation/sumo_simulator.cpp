@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/sumo_simulator.h"
+#include "simulation/sumo_simulator.h"
 
 #include <libsumo/libtraci.h>
 
@@ -8,12 +8,12 @@
 #include <optional>
 #include <set>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/simulation/driven_fleet.h"
-#include "e2e_cdiff/simulation/right_of_way.h"
-#include "e2e_cdiff/simulation/traffic_observer.h"
-#include "sumo_input.h"
+#include "simulation/driven_fleet.h"
+#include "simulation/right_of_way.h"
+#include "simulation/sumo_input.h"
+#include "simulation/traffic_observer.h"
 
 namespace cdiff::simulation {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/simulation/traffic_observer.h"
+#include "simulation/traffic_observer.h"
 
 #include <libsumo/libtraci.h>
 
 #include <algorithm>
 
-#include "e2e_cdiff/simulation/sumo_conversion.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
 

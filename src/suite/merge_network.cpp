@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "network_kinds.h"
+#include "suite/network_kinds.h"
 
 namespace cdiff::suite {
 namespace {

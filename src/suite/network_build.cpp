@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/suite/network_build.h"
+#include "suite/network_build.h"
 
 #include <vector>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/map/netconvert.h"
+#include "core/file.h"
+#include "map/netconvert.h"
 
 namespace cdiff::suite {
 namespace {

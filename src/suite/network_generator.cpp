@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/suite/network_generator.h"
+#include "suite/network_generator.h"
 
 #include <array>
 
 #include "e2e_cdiff/core/angle.h"
-#include "network_kinds.h"
+#include "suite/network_kinds.h"
 
 namespace cdiff::suite {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/suite/network_generator.h"
-#include "road_line.h"
+#include "suite/network_generator.h"
+#include "suite/road_line.h"
 
 namespace cdiff::suite {
 

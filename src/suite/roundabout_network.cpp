@@ -4,7 +4,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/geometry/pose.h"
-#include "network_kinds.h"
+#include "suite/network_kinds.h"
 
 namespace cdiff::suite {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/suite/suite_generator.h"
+#include "suite/suite_generator.h"
 
 #include <memory>
 #include <set>
 
+#include "core/file.h"
+#include "core/output_folder.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/suite/network_build.h"
-#include "suite_specs.h"
+#include "suite/network_build.h"
+#include "suite/suite_specs.h"
 
 namespace cdiff::suite {
 namespace {

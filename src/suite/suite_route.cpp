@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/suite/suite_route.h"
+#include "suite/suite_route.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "map/route_source.h"
 
 namespace cdiff::suite {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "suite_specs.h"
+#include "suite/suite_specs.h"
 
 #include <array>
 
-#include "e2e_cdiff/suite/suite_generator.h"
+#include "suite/suite_generator.h"
 
 namespace cdiff::suite {
 namespace {

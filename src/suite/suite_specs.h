@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/suite/network_generator.h"
+#include "suite/network_generator.h"
 
 namespace cdiff::suite {
 

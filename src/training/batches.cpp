@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "batches.h"
+#include "training/batches.h"
 
 #include <cmath>
 #include <cstring>
 
-#include "e2e_cdiff/training/sample_balance.h"
+#include "training/sample_balance.h"
 
 namespace cdiff::training {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/training/dataset.h"
-#include "e2e_cdiff/training/trainer.h"
-#include "networks.h"
+#include "training/dataset.h"
+#include "training/networks.h"
+#include "training/trainer.h"
 
 namespace cdiff::training {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "checkpoint.h"
+#include "training/checkpoint.h"
 
 #include <cstring>
 
-#include "bytes.h"
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
+#include "training/bytes.h"
 
 namespace cdiff::training {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "command_line.h"
+#include "training/command_line.h"
 
 #include <algorithm>
 #include <cctype>
 #include <sstream>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 
 namespace cdiff::training {
 namespace {

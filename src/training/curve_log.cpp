@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "curve_log.h"
+#include "training/curve_log.h"
 
 #include <cerrno>
 #include <cstring>
 #include <sstream>
 
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::training {
 namespace {

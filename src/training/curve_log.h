@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "diffusion_task.h"
+#include "training/diffusion_task.h"
 
 namespace cdiff::training {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/training/dataset.h"
+#include "training/dataset.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 
 namespace cdiff::training {
 namespace {

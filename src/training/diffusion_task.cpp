@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "diffusion_task.h"
+#include "training/diffusion_task.h"
 
 #include <algorithm>
 #include <cmath>

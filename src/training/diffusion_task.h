@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "batches.h"
-#include "e2e_cdiff/diffusion/noise_schedule.h"
+#include "diffusion/noise_schedule.h"
+#include "training/batches.h"
 
 namespace cdiff::training {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "export.h"
+#include "training/export.h"
 
 #include <fstream>
 #include <sstream>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/diffusion/model.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "diffusion/model.h"
 
 namespace cdiff::training {
 namespace {
@@ -115,7 +115,7 @@ void exportModel(const TrainingState& state, const std::map<std::string, StageRe
   model.encoder = state.encoder.parameters().values();
   model.denoiser = state.denoiser.parameters().values();
   const fs::path folder(state.options.output);
-  diffusion::saveModel(model, folder, diffusion::TensorType::kF16, {{"training", facts.dump()}});
+  diffusion::saveModel(model, folder, inference::TensorType::kF16, {{"training", facts.dump()}});
   core::writeFileAtomically(folder / "training.json", facts.dump(2) + "\n");
   core::writeFileAtomically(folder / "model_card.md", modelCard(facts, figures));
 }

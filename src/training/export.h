@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "stage.h"
-#include "stage_runner.h"
+#include "training/stage.h"
+#include "training/stage_runner.h"
 
 namespace cdiff::training {
 

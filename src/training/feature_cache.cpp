@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "feature_cache.h"
+#include "training/feature_cache.h"
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
-#include "checkpoint.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "diffusion/image_encoder.h"
+#include "training/checkpoint.h"
 
 namespace cdiff::training {
 namespace {

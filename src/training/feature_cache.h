@@ -7,7 +7,7 @@
 #include <atomic>
 #include <ostream>
 
-#include "stage.h"
+#include "training/stage.h"
 
 namespace cdiff::training {
 

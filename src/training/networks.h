@@ -4,8 +4,8 @@
 /// that trains the encoder. Float32; B is the batch.
 #pragma once
 
-#include "e2e_cdiff/diffusion/architecture.h"
-#include "parameters.h"
+#include "diffusion/architecture.h"
+#include "training/parameters.h"
 
 namespace cdiff::training {
 

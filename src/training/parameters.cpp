@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "parameters.h"
+#include "training/parameters.h"
 
 #include <cmath>
 #include <cstring>
@@ -68,7 +68,7 @@ void ParameterSet::moveTo(const at::Device& device) {
   for (at::Tensor& tensor : tensors_) tensor = tensor.detach().to(device);
 }
 
-void ParameterSet::load(const std::map<std::string, diffusion::Tensor>& values,
+void ParameterSet::load(const std::map<std::string, inference::Tensor>& values,
                         const std::string& source) {
   const at::NoGradGuard no_gradient;
   for (const auto& [name, value] : values) {
@@ -84,8 +84,8 @@ void ParameterSet::load(const std::map<std::string, diffusion::Tensor>& values,
   }
 }
 
-std::map<std::string, diffusion::Tensor> ParameterSet::values() const {
-  std::map<std::string, diffusion::Tensor> result;
+std::map<std::string, inference::Tensor> ParameterSet::values() const {
+  std::map<std::string, inference::Tensor> result;
   for (std::size_t i = 0; i < names_.size(); ++i)
     result[names_[i]] = {tensors_[i].sizes().vec(), toVector(tensors_[i])};
   return result;

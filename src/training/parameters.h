@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/safetensors.h"
+#include "inference/safetensors.h"
 
 namespace cdiff::training {
 
@@ -45,8 +45,8 @@ class ParameterSet {
   void moveTo(const at::Device& device);
   /// Values in and out, as the weight files hold them. Throws InputError naming the tensor that is
   /// missing, unknown or of another shape.
-  void load(const std::map<std::string, diffusion::Tensor>& values, const std::string& source);
-  std::map<std::string, diffusion::Tensor> values() const;
+  void load(const std::map<std::string, inference::Tensor>& values, const std::string& source);
+  std::map<std::string, inference::Tensor> values() const;
 
  private:
   core::RandomStream start_;

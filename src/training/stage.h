@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "diffusion_task.h"
+#include "training/diffusion_task.h"
 
 namespace cdiff::training {
 

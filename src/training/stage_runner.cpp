@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "stage_runner.h"
+#include "training/stage_runner.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/text.h"
 
 namespace cdiff::training {
 namespace {

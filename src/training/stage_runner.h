@@ -8,10 +8,10 @@
 #include <optional>
 #include <ostream>
 
-#include "checkpoint.h"
-#include "curve_log.h"
-#include "optimizer.h"
-#include "stage.h"
+#include "training/checkpoint.h"
+#include "training/curve_log.h"
+#include "training/optimizer.h"
+#include "training/stage.h"
 
 namespace cdiff::training {
 

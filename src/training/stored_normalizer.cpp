@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "stored_normalizer.h"
+#include "training/stored_normalizer.h"
 
 #include <filesystem>
 
-#include "checkpoint.h"
-#include "stage_runner.h"
+#include "training/checkpoint.h"
+#include "training/stage_runner.h"
 
 namespace cdiff::training {
 namespace {

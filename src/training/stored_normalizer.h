@@ -4,9 +4,9 @@
 /// it travels with every checkpoint as the fact "normalizer" (Normalizer::toJson).
 #pragma once
 
-#include "e2e_cdiff/diffusion/model.h"
-#include "e2e_cdiff/training/dataset.h"
-#include "e2e_cdiff/training/trainer.h"
+#include "diffusion/model.h"
+#include "training/dataset.h"
+#include "training/trainer.h"
 
 namespace cdiff::training {
 

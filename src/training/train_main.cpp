@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <iostream>
 
-#include "command_line.h"
-#include "e2e_cdiff/core/failure.h"
-#include "e2e_cdiff/core/program.h"
+#include "core/failure.h"
+#include "core/program.h"
+#include "training/command_line.h"
 
 namespace {
 

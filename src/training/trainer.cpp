@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/training/trainer.h"
+#include "training/trainer.h"
 
 #include <ATen/Context.h>
 #include <ATen/Parallel.h>
@@ -13,14 +13,14 @@
 #include <optional>
 #include <ostream>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
-#include "e2e_cdiff/diffusion/model.h"
-#include "export.h"
-#include "feature_cache.h"
-#include "stage_runner.h"
-#include "stored_normalizer.h"
-#include "training_folder.h"
+#include "core/file.h"
+#include "core/output_folder.h"
+#include "diffusion/model.h"
+#include "training/export.h"
+#include "training/feature_cache.h"
+#include "training/stage_runner.h"
+#include "training/stored_normalizer.h"
+#include "training/training_folder.h"
 
 namespace cdiff::training {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/training/trainer.h"
+#include "core/text.h"
+#include "training/trainer.h"
 
 namespace cdiff::training {
 namespace {

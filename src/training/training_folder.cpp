@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "training_folder.h"
+#include "training/training_folder.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "stage_runner.h"
+#include "training/stage_runner.h"
 
 namespace cdiff::training {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/training/trainer.h"
+#include "training/trainer.h"
 
 namespace cdiff::training {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/cbv/cbv_selector.h"
+#include "cbv/cbv_selector.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cbv/cbv_selector.h"
 #include "cbv/crossing_world.h"
-#include "e2e_cdiff/cbv/cbv_selector.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::cbv {

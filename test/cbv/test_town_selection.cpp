@@ -7,8 +7,8 @@
 #include <cmath>
 #include <memory>
 
-#include "e2e_cdiff/cbv/cbv_selector.h"
-#include "e2e_cdiff/core/file.h"
+#include "cbv/cbv_selector.h"
+#include "core/file.h"
 #include "e2e_cdiff/core/random.h"
 #include "support/real_data.h"
 #include "support/snapshot_builder.h"

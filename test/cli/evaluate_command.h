@@ -9,9 +9,9 @@
 #include <fstream>
 #include <thread>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/child_process.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "evaluation/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::test {

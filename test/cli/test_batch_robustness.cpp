@@ -6,7 +6,7 @@
 
 #include "cli/evaluate_command.h"
 #include "cli/wall_clock.h"
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "cdiff_command.h"
-#include "e2e_cdiff/training/trainer.h"
+#include "cli/cdiff_command.h"
+#include "training/trainer.h"
 
 namespace cdiff::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <signal.h>
 
 #include "cli/evaluate_command.h"
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cdiff_command.h"
+#include "cli/cdiff_command.h"
 
 namespace cdiff::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cli/evaluate_command.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
 namespace {

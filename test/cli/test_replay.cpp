@@ -7,8 +7,8 @@
 #include <regex>
 #include <thread>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/evaluation/child_process.h"
+#include "core/file.h"
+#include "evaluation/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "e2e_cdiff/core/csv.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/text.h"
 
 namespace cdiff::test {
 

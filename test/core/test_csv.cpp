@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/core/csv.h"
+#include "core/csv.h"
 
 namespace cdiff::core {
 namespace {

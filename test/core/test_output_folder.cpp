@@ -11,9 +11,9 @@
 #include <functional>
 #include <optional>
 
+#include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/output_folder.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::core {

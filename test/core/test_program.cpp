@@ -11,9 +11,9 @@
 #include <cerrno>
 #include <functional>
 
+#include "core/guarded_process.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/guarded_process.h"
-#include "e2e_cdiff/core/program.h"
 
 namespace cdiff::core {
 namespace {

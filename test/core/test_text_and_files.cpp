@@ -10,12 +10,12 @@
 #include <new>
 #include <vector>
 
+#include "core/failure.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "core/time_text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/failure.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/core/time_text.h"
 #include "support/real_data.h"
 #include "support/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "e2e_cdiff/diffusion/sampler.h"
+#include "diffusion/sampler.h"
 
 namespace cdiff::diffusion::test {
 
@@ -69,7 +69,7 @@ class TargetOne : public CleanObjective {
     for (Eigen::Index t = 0; t < clean.rows(); ++t) {
       for (Eigen::Index c = 4; c < 7; ++c) {
         value += weight_ * std::pow(clean(t, c) - 1.0, 2);
-        gradient(t, c) = static_cast<float>(2.0 * weight_ * (clean(t, c) - 1.0));
+        inference::gradient(t, c) = static_cast<float>(2.0 * weight_ * (clean(t, c) - 1.0));
       }
     }
     return value;

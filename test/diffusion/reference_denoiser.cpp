@@ -16,7 +16,7 @@ Doubles mishOf(Doubles values) {
 }
 
 Grid mishOf(Grid grid) {
-  grid.values = mishOf(std::move(grid.values));
+  grid.values = inference::mishOf(std::move(grid.values));
   return grid;
 }
 
@@ -33,11 +33,11 @@ Grid joined(const Grid& left, const Grid& right) {
   return result;
 }
 
-double valueAt(const Tensor& tensor, std::int64_t index) {
+double valueAt(const inference::Tensor& tensor, std::int64_t index) {
   return static_cast<double>(tensor.values[static_cast<std::size_t>(index)]);
 }
 
-Grid biased(const Tensor& bias, std::int64_t rows) {
+Grid biased(const inference::Tensor& bias, std::int64_t rows) {
   Grid result(bias.shape[0], rows);
   for (std::int64_t c = 0; c < result.channels; ++c) {
     for (std::int64_t t = 0; t < rows; ++t) result.at(c, t) = valueAt(bias, c);
@@ -54,8 +54,9 @@ Doubles& append(Doubles& to, const Doubles& values) {
 
 double referenceMish(double x) { return x * std::tanh(std::log1p(std::exp(x))); }
 
-Grid referenceConvolution(const Grid& input, const Tensor& weight, const Tensor& bias,
-                          std::int64_t stride, std::int64_t padding) {
+Grid referenceConvolution(const Grid& input, const inference::Tensor& weight,
+                          const inference::Tensor& bias, std::int64_t stride,
+                          std::int64_t padding) {
   const std::int64_t kernel = weight.shape[2];
   Grid result = biased(bias, (input.rows + 2 * padding - kernel) / stride + 1);
   for (std::int64_t o = 0; o < result.channels; ++o) {
@@ -72,8 +73,9 @@ Grid referenceConvolution(const Grid& input, const Tensor& weight, const Tensor&
   return result;
 }
 
-Grid referenceTransposedConvolution(const Grid& input, const Tensor& weight, const Tensor& bias,
-                                    std::int64_t stride, std::int64_t padding) {
+Grid referenceTransposedConvolution(const Grid& input, const inference::Tensor& weight,
+                                    const inference::Tensor& bias, std::int64_t stride,
+                                    std::int64_t padding) {
   const std::int64_t kernel = weight.shape[2];
   Grid result = biased(bias, (input.rows - 1) * stride + kernel - 2 * padding);
   for (std::int64_t i = 0; i < input.channels; ++i) {
@@ -90,8 +92,8 @@ Grid referenceTransposedConvolution(const Grid& input, const Tensor& weight, con
   return result;
 }
 
-Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const Tensor& weight,
-                        const Tensor& bias) {
+Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const inference::Tensor& weight,
+                        const inference::Tensor& bias) {
   Grid result = input;
   const std::int64_t size = input.channels / groups;
   for (std::int64_t first = 0; first < input.channels; first += size) {
@@ -115,8 +117,8 @@ Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const Tensor& we
 }
 
 Doubles ReferenceDenoiser::linear(const std::string& name, const Doubles& input) const {
-  const Tensor& weight = tensor(name + ".weight");
-  const Tensor& bias = tensor(name + ".bias");
+  const inference::Tensor& weight = tensor(name + ".weight");
+  const inference::Tensor& bias = tensor(name + ".bias");
   Doubles result(bias.values.begin(), bias.values.end());
   for (std::size_t o = 0; o < result.size(); ++o) {
     for (std::size_t i = 0; i < input.size(); ++i) {
@@ -136,24 +138,26 @@ Doubles ReferenceDenoiser::timeEmbedding(int k) const {
     sines.push_back(std::sin(k * w));
     cosines.push_back(std::cos(k * w));
   }
-  return linear("time.2", mishOf(linear("time.0", append(sines, cosines))));
+  return linear("time.2", inference::mishOf(linear("time.0", append(sines, cosines))));
 }
 
 Doubles ReferenceDenoiser::contextVector(const Context& context) const {
   Doubles joined = toDoubles(context.image_features);
-  append(joined, context.route.empty()
-                     ? toDoubles(tensor("no_route").values)
-                     : linear("route.2", mishOf(linear("route.0", toDoubles(context.route)))));
-  append(joined, mishOf(linear("speed.0", {context.speed / 10.0})));
-  return mishOf(linear("context.0", joined));
+  append(joined,
+         context.route.empty()
+             ? toDoubles(tensor("no_route").values)
+             : linear("route.2", inference::mishOf(linear("route.0", toDoubles(context.route)))));
+  append(joined, inference::mishOf(linear("speed.0", {context.speed / 10.0})));
+  return inference::mishOf(linear("context.0", joined));
 }
 
 Grid ReferenceDenoiser::block(const std::string& name, const Grid& input) const {
   const Grid convolved =
       referenceConvolution(input, tensor(name + ".conv.weight"), tensor(name + ".conv.bias"), 1,
                            model_.architecture.kernel / 2);
-  return mishOf(referenceGroupNorm(convolved, model_.architecture.groups,
-                                   tensor(name + ".norm.weight"), tensor(name + ".norm.bias")));
+  return inference::mishOf(referenceGroupNorm(convolved, model_.architecture.groups,
+                                              tensor(name + ".norm.weight"),
+                                              tensor(name + ".norm.bias")));
 }
 
 Grid ReferenceDenoiser::residual(const std::string& name, const Grid& input,
@@ -176,7 +180,7 @@ Grid ReferenceDenoiser::pair(const std::string& name, const Grid& input, const D
 Doubles ReferenceDenoiser::actions(const Doubles& noisy, int k, const Context& context) const {
   const Architecture& a = model_.architecture;
   Doubles z = timeEmbedding(k);
-  z = mishOf(append(z, contextVector(context)));
+  z = inference::mishOf(append(z, contextVector(context)));
   Grid x(7, a.horizon);
   for (std::int64_t t = 0; t < a.horizon; ++t) {
     for (std::int64_t c = 0; c < 7; ++c) x.at(c, t) = noisy[static_cast<std::size_t>(7 * t + c)];
@@ -211,20 +215,21 @@ Doubles ReferenceDenoiser::states(const Doubles& actions, int k, const Context& 
   Doubles input = actions;
   input.push_back(context.speed / 10.0);
   append(input, timeEmbedding(k));
-  return linear("state.4", mishOf(linear("state.2", mishOf(linear("state.0", input)))));
+  return linear("state.4",
+                inference::mishOf(linear("state.2", inference::mishOf(linear("state.0", input)))));
 }
 
 Model randomModel(const Architecture& architecture) {
   Model model;
   model.architecture = architecture;
   const core::RandomStream random(7, "test_weights");
-  for (const TensorShape& shape : denoiserTensors(architecture)) {
+  for (const inference::TensorShape& shape : denoiserTensors(architecture)) {
     const bool bias = shape.shape.size() == 1;
     const bool scale = bias && shape.name.find(".weight") != std::string::npos;
     std::int64_t count = 1;
     for (const std::int64_t size : shape.shape) count *= size;
     const auto fan = static_cast<double>(bias ? 100 : count / shape.shape[0]);
-    Tensor tensor{shape.shape, {}};
+    inference::Tensor tensor{shape.shape, {}};
     core::RandomKey key;
     key.vehicle = core::hashText(shape.name);
     for (std::int64_t i = 0; i < count; ++i) {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "e2e_cdiff/diffusion/denoiser.h"
-#include "e2e_cdiff/diffusion/model.h"
+#include "diffusion/denoiser.h"
+#include "diffusion/model.h"
 
 namespace cdiff::diffusion {
 
@@ -20,8 +20,8 @@ struct Grid {
   Doubles values;
 
   Grid(std::int64_t channels_in, std::int64_t rows_in)
-      : channels(channels_in),
-        rows(rows_in),
+      : inference::channels(channels_in),
+        inference::rows(rows_in),
         values(static_cast<std::size_t>(channels_in * rows_in), 0.0) {}
   double& at(std::int64_t c, std::int64_t t) {
     return values[static_cast<std::size_t>(c * rows + t)];
@@ -32,12 +32,13 @@ struct Grid {
 };
 
 double referenceMish(double x);
-Grid referenceConvolution(const Grid& input, const Tensor& weight, const Tensor& bias,
-                          std::int64_t stride, std::int64_t padding);
-Grid referenceTransposedConvolution(const Grid& input, const Tensor& weight, const Tensor& bias,
-                                    std::int64_t stride, std::int64_t padding);
-Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const Tensor& weight,
-                        const Tensor& bias);
+Grid referenceConvolution(const Grid& input, const inference::Tensor& weight,
+                          const inference::Tensor& bias, std::int64_t stride, std::int64_t padding);
+Grid referenceTransposedConvolution(const Grid& input, const inference::Tensor& weight,
+                                    const inference::Tensor& bias, std::int64_t stride,
+                                    std::int64_t padding);
+Grid referenceGroupNorm(const Grid& input, std::int64_t groups, const inference::Tensor& weight,
+                        const inference::Tensor& bias);
 
 class ReferenceDenoiser {
  public:
@@ -49,7 +50,9 @@ class ReferenceDenoiser {
   Doubles states(const Doubles& actions, int k, const Context& context) const;
 
  private:
-  const Tensor& tensor(const std::string& name) const { return model_.denoiser.at(name); }
+  const inference::Tensor& tensor(const std::string& name) const {
+    return model_.denoiser.at(name);
+  }
   Doubles linear(const std::string& name, const Doubles& input) const;
   Doubles timeEmbedding(int k) const;
   Doubles contextVector(const Context& context) const;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/diffusion/model.h"
+#include "diffusion/model.h"
 #include "e2e_cdiff/traffic/camera_image.h"
 
 namespace cdiff::diffusion {
@@ -22,7 +22,7 @@ struct PlainMap {
   std::vector<double> values;
 
   PlainMap(std::int64_t c, std::int64_t h, std::int64_t w)
-      : channels(c), height(h), width(w), values(static_cast<std::size_t>(c * h * w)) {}
+      : inference::channels(c), height(h), width(w), values(static_cast<std::size_t>(c * h * w)) {}
   double& at(std::int64_t c, std::int64_t y, std::int64_t x) {
     return values[static_cast<std::size_t>((c * height + y) * width + x)];
   }
@@ -46,7 +46,7 @@ class ReferenceEncoder {
   }
 
  private:
-  const Tensor& tensor(const std::string& name) const { return model_.encoder.at(name); }
+  const inference::Tensor& tensor(const std::string& name) const { return model_.encoder.at(name); }
 
   static PlainMap read(const traffic::CameraImage& image) {
     PlainMap map(3, image.height, image.width);
@@ -60,7 +60,7 @@ class ReferenceEncoder {
   }
 
   PlainMap convolution(PlainMap in, const std::string& name, std::int64_t stride) const {
-    const Tensor& weight = tensor(name + ".weight");
+    const inference::Tensor& weight = tensor(name + ".weight");
     const std::int64_t kernel = weight.shape[2];
     const std::int64_t padding = kernel / 2;
     PlainMap out(weight.shape[0], (in.height + 2 * padding - kernel) / stride + 1,
@@ -99,8 +99,8 @@ class ReferenceEncoder {
   }
 
   PlainMap norm(PlainMap map, const std::string& name) const {
-    const Tensor& gain = tensor(name + ".weight");
-    const Tensor& shift = tensor(name + ".bias");
+    const inference::Tensor& gain = tensor(name + ".weight");
+    const inference::Tensor& shift = tensor(name + ".bias");
     const std::size_t pixels = static_cast<std::size_t>(map.height * map.width);
     const std::size_t group = 16 * pixels;
     for (std::size_t begin = 0; begin < map.values.size(); begin += group) {
@@ -149,8 +149,8 @@ class ReferenceEncoder {
   }
 
   std::vector<double> project(const PlainMap& map) const {
-    const Tensor& weight = tensor("project.weight");
-    const Tensor& bias = tensor("project.bias");
+    const inference::Tensor& weight = tensor("project.weight");
+    const inference::Tensor& bias = tensor("project.bias");
     std::vector<double> features;
     for (std::size_t o = 0; o < bias.values.size(); ++o) {
       double sum = bias.values[o];

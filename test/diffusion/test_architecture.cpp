@@ -5,24 +5,24 @@
 #include <functional>
 #include <map>
 
+#include "diffusion/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/diffusion/architecture.h"
 
 namespace cdiff::diffusion {
 namespace {
 
 using Shape = std::vector<std::int64_t>;
 
-std::map<std::string, Shape> byName(const std::vector<TensorShape>& tensors) {
+std::map<std::string, Shape> byName(const std::vector<inference::TensorShape>& tensors) {
   std::map<std::string, Shape> map;
-  for (const TensorShape& tensor : tensors) map[tensor.name] = tensor.shape;
+  for (const inference::TensorShape& tensor : tensors) map[tensor.name] = tensor.shape;
   EXPECT_EQ(map.size(), tensors.size()) << "a name occurs twice";
   return map;
 }
 
-std::int64_t elementCount(const std::vector<TensorShape>& tensors) {
+std::int64_t elementCount(const std::vector<inference::TensorShape>& tensors) {
   std::int64_t sum = 0;
-  for (const TensorShape& tensor : tensors) {
+  for (const inference::TensorShape& tensor : tensors) {
     std::int64_t count = 1;
     for (const std::int64_t size : tensor.shape) count *= size;
     sum += count;
@@ -89,7 +89,7 @@ TEST(Architecture, DenoiserTensorsAreThoseOfTheDocument) {
 }
 
 TEST(Architecture, EncoderTensorsAreThoseOfResnet34) {
-  const std::vector<TensorShape> list = encoderTensors(Architecture());
+  const std::vector<inference::TensorShape> list = encoderTensors(Architecture());
   const std::map<std::string, Shape> tensors = byName(list);
   const std::map<std::string, Shape> expected = {{"stem.conv.weight", {64, 3, 7, 7}},
                                                  {"stem.norm.weight", {64}},

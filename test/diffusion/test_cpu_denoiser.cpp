@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "diffusion/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -18,7 +18,7 @@ using InstructionSet = CpuDenoiser::InstructionSet;
 /// A model with a batch of contexts, the second without route, and inputs.
 struct Case {
   explicit Case(const Architecture& architecture, std::uint32_t samples)
-      : model(randomModel(architecture)), rows(architecture.horizon) {
+      : model(randomModel(architecture)), inference::rows(architecture.horizon) {
     for (std::uint32_t b = 0; b < samples; ++b) {
       contexts.push_back(randomContext(architecture, b, b != 1));
     }

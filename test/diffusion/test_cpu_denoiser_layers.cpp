@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "../../src/diffusion/unet_layers.h"
+#include "diffusion/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -20,13 +20,14 @@ class DenoiserLayers : public testing::TestWithParam<CpuDenoiser::InstructionSet
       GTEST_SKIP() << "this CPU lacks " << CpuDenoiser::toText(GetParam());
     }
   }
-  const DenoiserKernels& kernels() const {
-    if (GetParam() == CpuDenoiser::InstructionSet::kPlain) return *plainKernels();
-    return GetParam() == CpuDenoiser::InstructionSet::kAvx2 ? *avx2Kernels() : *avx512Kernels();
+  const inference::DenoiserKernels& kernels() const {
+    if (GetParam() == CpuDenoiser::InstructionSet::kPlain) return *inference::plainKernels();
+    return GetParam() == CpuDenoiser::InstructionSet::kAvx2 ? *inference::avx2Kernels()
+                                                            : *inference::avx512Kernels();
   }
 };
 
-Tensor randomTensor(const std::vector<std::int64_t>& shape, std::uint32_t seed) {
+inference::Tensor randomTensor(const std::vector<std::int64_t>& shape, std::uint32_t seed) {
   std::int64_t count = 1;
   for (const std::int64_t size : shape) count *= size;
   return {shape, randomValues(count, seed)};
@@ -39,8 +40,8 @@ Grid randomGrid(std::int64_t channels, std::int64_t rows, std::uint32_t seed) {
 }
 
 /// Channels first in double to channels last and padded in float, and back.
-Activation activationOf(const Grid& grid, const ChannelLayout& layout) {
-  Activation result(layout, grid.rows, kHalo);
+inference::Activation activationOf(const Grid& grid, const inference::ChannelLayout& layout) {
+  inference::Activation result(layout, grid.rows, kHalo);
   result.resize(1);
   for (std::int64_t c = 0; c < grid.channels; ++c) {
     for (std::int64_t t = 0; t < grid.rows; ++t) {
@@ -51,7 +52,8 @@ Activation activationOf(const Grid& grid, const ChannelLayout& layout) {
   return result;
 }
 
-std::vector<float> valuesOf(const Activation& activation, const ChannelLayout& layout) {
+std::vector<float> valuesOf(const inference::Activation& activation,
+                            const inference::ChannelLayout& layout) {
   std::vector<float> result;
   for (std::int64_t c = 0; c < layout.channels; ++c) {
     for (std::int64_t t = 0; t < activation.rows(); ++t) {
@@ -61,24 +63,26 @@ std::vector<float> valuesOf(const Activation& activation, const ChannelLayout& l
   return result;
 }
 
-Activation emptyActivation(const ChannelLayout& layout, std::int64_t rows) {
+inference::Activation emptyActivation(const inference::ChannelLayout& layout, std::int64_t rows) {
   return activationOf(Grid(layout.channels, rows), layout);
 }
 
 /// Compares a convolution with the reference's `expected` and its reverse by <C x, y> = <x, C^T y>,
 /// where C is the convolution without its bias.
-void expectConvolution(const DenoiserKernels& kernels, const Filter& filter, const Spacing& spacing,
-                       const Tensor& bias, const Grid& input, const Grid& expected) {
-  const Activation x = activationOf(input, filter.inputs);
-  Activation output = emptyActivation(filter.outputs, expected.rows);
-  Convolution(kernels, filter, spacing, &bias).apply(x.view(), output.view(), expected.rows);
+void expectConvolution(const inference::DenoiserKernels& kernels, const inference::Filter& filter,
+                       const inference::Spacing& spacing, const inference::Tensor& bias,
+                       const Grid& input, const Grid& expected) {
+  const inference::Activation x = activationOf(input, filter.inputs);
+  inference::Activation output = emptyActivation(filter.outputs, expected.rows);
+  inference::Convolution(kernels, filter, spacing, &bias)
+      .apply(x.view(), output.view(), expected.rows);
   EXPECT_LT(relativeError(valuesOf(output, filter.outputs), expected.values), 1e-6);
 
-  Convolution(kernels, filter, spacing).apply(x.view(), output.view(), expected.rows);
+  inference::Convolution(kernels, filter, spacing).apply(x.view(), output.view(), expected.rows);
   const Doubles linear = toDoubles(valuesOf(output, filter.outputs));
   const Grid y = randomGrid(expected.channels, expected.rows, 5);
-  Activation pulled = emptyActivation(filter.inputs, input.rows);
-  Convolution(kernels, filter.transposed(), spacing.reversed())
+  inference::Activation pulled = emptyActivation(filter.inputs, input.rows);
+  inference::Convolution(kernels, filter.transposed(), spacing.reversed())
       .apply(activationOf(y, filter.outputs).view(), pulled.view(), input.rows);
   const Doubles back = toDoubles(valuesOf(pulled, filter.inputs));
   EXPECT_NEAR(dot(linear, y.values), dot(input.values, back),
@@ -90,11 +94,11 @@ TEST_P(DenoiserLayers, ConvolutionsAgreeWithTheReference) {
     for (const std::int64_t kernel : {1, 3, 5}) {
       for (const std::int64_t stride : {1, 2}) {
         if (kernel != 3 && stride == 2) continue;
-        const Tensor weight = randomTensor({outputs, 6, kernel}, 1);
-        const Tensor bias = randomTensor({outputs}, 2);
+        const inference::Tensor weight = randomTensor({outputs, 6, kernel}, 1);
+        const inference::Tensor bias = randomTensor({outputs}, 2);
         const Grid input = randomGrid(6, 20, 3);
         const Grid expected = referenceConvolution(input, weight, bias, stride, kernel / 2);
-        Filter filter = Filter::ofConvolution(weight);
+        inference::Filter filter = inference::Filter::ofConvolution(weight);
         expectConvolution(kernels(), filter, {stride, kernel / 2, false}, bias, input, expected);
         filter.inputs.parts = 2;  // the same channels, three by three
         expectConvolution(kernels(), filter, {stride, kernel / 2, false}, bias, input, expected);
@@ -104,32 +108,33 @@ TEST_P(DenoiserLayers, ConvolutionsAgreeWithTheReference) {
 }
 
 TEST_P(DenoiserLayers, TransposedConvolutionAgreesWithTheReference) {
-  const Tensor weight = randomTensor({6, 20, 4}, 1);
-  const Tensor bias = randomTensor({20}, 2);
+  const inference::Tensor weight = randomTensor({6, 20, 4}, 1);
+  const inference::Tensor bias = randomTensor({20}, 2);
   const Grid input = randomGrid(6, 10, 3);
-  expectConvolution(kernels(), Filter::ofTransposedConvolution(weight), {2, 1, true}, bias, input,
-                    referenceTransposedConvolution(input, weight, bias, 2, 1));
+  expectConvolution(kernels(), inference::Filter::ofTransposedConvolution(weight), {2, 1, true},
+                    bias, input, referenceTransposedConvolution(input, weight, bias, 2, 1));
 }
 
 TEST_P(DenoiserLayers, AccumulatingConvolutionAddsToWhatIsThere) {
   // One input 2, one weight 3, on top of 10: 10 + 2 x 3 = 16; the bias does not count.
-  const Tensor weight{{1, 1, 1}, {3.0f}};
-  const Tensor bias{{1}, {100.0f}};
-  Activation input = matrix(1, 1);
-  Activation output = matrix(1, 1);
+  const inference::Tensor weight{{1, 1, 1}, {3.0f}};
+  const inference::Tensor bias{{1}, {100.0f}};
+  inference::Activation input = inference::matrix(1, 1);
+  inference::Activation output = inference::matrix(1, 1);
   *input.row(0) = 2.0f;
   *output.row(0) = 10.0f;
-  Convolution(kernels(), Filter::ofConvolution(weight), Spacing{}, &bias)
+  inference::Convolution(kernels(), inference::Filter::ofConvolution(weight), inference::Spacing{},
+                         &bias)
       .apply(input.view(), output.view(), 1, true);
   EXPECT_EQ(*output.row(0), 16.0f);
 }
 
 TEST_P(DenoiserLayers, MishAndItsSlopeAreAccurate) {
   for (double x = -80.0; x < 80.0; x += 0.37) {
-    float input[kChannelMultiple] = {static_cast<float>(x)};
-    float value[kChannelMultiple];
-    float slope[kChannelMultiple];
-    kernels().mish(input, kChannelMultiple, value, slope);
+    float input[inference::kChannelMultiple] = {static_cast<float>(x)};
+    float value[inference::kChannelMultiple];
+    float slope[inference::kChannelMultiple];
+    kernels().mish(input, inference::kChannelMultiple, value, slope);
     const double given = static_cast<double>(input[0]);
     const double tangent = std::tanh(std::log1p(std::exp(given)));
     // (tanh s)' = (1 - tanh^2 s) s' with s = ln(1 + e^x), s' = e^x / (1 + e^x).
@@ -142,10 +147,10 @@ TEST_P(DenoiserLayers, MishAndItsSlopeAreAccurate) {
 }
 
 TEST_P(DenoiserLayers, MishIsFiniteFarOut) {
-  float input[kChannelMultiple] = {1e4f, -1e4f, 1e30f};
-  float value[kChannelMultiple];
-  float slope[kChannelMultiple];
-  kernels().mish(input, kChannelMultiple, value, slope);
+  float input[inference::kChannelMultiple] = {1e4f, -1e4f, 1e30f};
+  float value[inference::kChannelMultiple];
+  float slope[inference::kChannelMultiple];
+  kernels().mish(input, inference::kChannelMultiple, value, slope);
   EXPECT_EQ(value[0], 1e4f);
   EXPECT_EQ(slope[0], 1.0f);
   EXPECT_NEAR(value[1], 0.0f, 1e-30);
@@ -156,10 +161,10 @@ TEST_P(DenoiserLayers, MishIsFiniteFarOut) {
 
 TEST_P(DenoiserLayers, NormalizedConvolutionAgreesWithTheReference) {
   const std::int64_t rows = 9;
-  const Tensors tensors = {{"block.conv.weight", randomTensor({12, 5, 3}, 1)},
-                           {"block.conv.bias", randomTensor({12}, 2)},
-                           {"block.norm.weight", randomTensor({12}, 3)},
-                           {"block.norm.bias", randomTensor({12}, 4)}};
+  const inference::Tensors tensors = {{"block.conv.weight", randomTensor({12, 5, 3}, 1)},
+                                      {"block.conv.bias", randomTensor({12}, 2)},
+                                      {"block.norm.weight", randomTensor({12}, 3)},
+                                      {"block.norm.bias", randomTensor({12}, 4)}};
   const auto function = [&](const Grid& x) {
     Grid y = referenceGroupNorm(referenceConvolution(x, tensors.at("block.conv.weight"),
                                                      tensors.at("block.conv.bias"), 1, 1),
@@ -167,19 +172,19 @@ TEST_P(DenoiserLayers, NormalizedConvolutionAgreesWithTheReference) {
     for (double& value : y.values) value = referenceMish(value) + 1.0;
     return y;
   };
-  const ChannelLayout inputs{5};
-  const ChannelLayout outputs{12};
+  const inference::ChannelLayout inputs{5};
+  const inference::ChannelLayout outputs{12};
   const Grid x = randomGrid(5, rows, 6);
-  NormalizedConvolution block({kernels(), tensors, 4, kHalo}, "block", inputs, rows);
+  inference::NormalizedConvolution block({kernels(), tensors, 4, kHalo}, "block", inputs, rows);
   block.resize(1);
-  Activation ones = matrix(16, 1);
+  inference::Activation ones = inference::matrix(16, 1);
   std::fill_n(ones.row(0), 16, 1.0f);
-  Activation y = emptyActivation(outputs, rows);
+  inference::Activation y = emptyActivation(outputs, rows);
   block.forward(0, activationOf(x, inputs).view(), {ones.row(0), 0}, y.view());
   EXPECT_LT(relativeError(valuesOf(y, outputs), function(x).values), 1e-6);
 
   const Grid gradient = randomGrid(12, rows, 7);
-  Activation pulled = emptyActivation(inputs, rows);
+  inference::Activation pulled = emptyActivation(inputs, rows);
   block.pullBack(0, activationOf(gradient, outputs).view(), pulled.view(), false);
   Doubles expected;
   for (std::size_t i = 0; i < x.values.size(); ++i) {

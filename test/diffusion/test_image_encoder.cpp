@@ -8,16 +8,16 @@
 #include <stdexcept>
 #include <thread>
 
+#include "diffusion/image_encoder.h"
+#include "diffusion/reference_encoder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
-#include "reference_encoder.h"
 
 namespace cdiff::diffusion {
 namespace {
 
 /// Weights uniform with variance 2 / fan-in (He), gains around 1, shifts and biases around 0.
-Tensor randomTensor(const TensorShape& description, std::uint32_t number) {
+inference::Tensor randomTensor(const inference::TensorShape& description, std::uint32_t number) {
   const core::RandomStream random(1, "image encoder test");
   std::int64_t count = 1;
   for (const std::int64_t side : description.shape) count *= side;
@@ -25,7 +25,7 @@ Tensor randomTensor(const TensorShape& description, std::uint32_t number) {
   const double fan_in = static_cast<double>(count / description.shape[0]);
   const double reach = weight ? std::sqrt(6.0 / fan_in) : 0.5;
   const bool gain = !weight && description.name.find("weight") != std::string::npos;
-  Tensor tensor;
+  inference::Tensor tensor;
   tensor.shape = description.shape;
   for (std::int64_t i = 0; i < count; ++i) {
     tensor.values.push_back(static_cast<float>(
@@ -41,7 +41,7 @@ Model smallModel() {
   model.architecture.image_width = 64;
   model.architecture.image_height = 32;
   std::uint32_t number = 0;
-  for (const TensorShape& tensor : encoderTensors(model.architecture))
+  for (const inference::TensorShape& tensor : encoderTensors(model.architecture))
     model.encoder[tensor.name] = randomTensor(tensor, number++);
   return model;
 }
@@ -52,7 +52,7 @@ Model randomModel(std::int64_t width, std::int64_t height) {
   Model model = small;
   model.architecture.image_width = width;
   model.architecture.image_height = height;
-  for (const TensorShape& tensor : encoderTensors(model.architecture)) {
+  for (const inference::TensorShape& tensor : encoderTensors(model.architecture)) {
     if (model.encoder.at(tensor.name).shape != tensor.shape)
       model.encoder[tensor.name] = randomTensor(tensor, 1000);
   }

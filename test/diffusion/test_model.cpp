@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <optional>
 
-#include "diffusion/weight_file_text.h"
-#include "e2e_cdiff/diffusion/model.h"
+#include "diffusion/model.h"
+#include "inference/weight_file_text.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -32,10 +32,10 @@ Architecture smallArchitecture() {
 }
 
 /// Values that F16 holds exactly: multiples of 1/8 up to 125.
-std::map<std::string, Tensor> filled(const std::vector<TensorShape>& shapes) {
-  std::map<std::string, Tensor> tensors;
+std::map<std::string, inference::Tensor> filled(const std::vector<inference::TensorShape>& shapes) {
+  std::map<std::string, inference::Tensor> tensors;
   int next = 0;
-  for (const TensorShape& shape : shapes) {
+  for (const inference::TensorShape& shape : shapes) {
     std::size_t count = 1;
     for (const std::int64_t size : shape.shape) count *= static_cast<std::size_t>(size);
     std::vector<float> values(count);
@@ -57,8 +57,8 @@ Model smallModel() {
   return model;
 }
 
-void expectEqual(const std::map<std::string, Tensor>& left,
-                 const std::map<std::string, Tensor>& right) {
+void expectEqual(const std::map<std::string, inference::Tensor>& left,
+                 const std::map<std::string, inference::Tensor>& right) {
   ASSERT_EQ(left.size(), right.size());
   for (const auto& [name, tensor] : left) {
     ASSERT_EQ(right.count(name), 1u) << name;
@@ -77,8 +77,9 @@ std::string matrix(const std::string& value) {
 Metadata metadataOf(const std::string& part) {
   return {{"format", "e2e_cdiff." + part + ".1"},
           {"architecture", smallArchitecture().toJson()},
-          {"normalizer", "{\"mean\":" + matrix("0.5") + ",\"scale\":" + matrix("2") + "}"},
-          {"spread", matrix("1")}};
+          {"normalizer",
+           "{\"mean\":" + inference::matrix("0.5") + ",\"scale\":" + inference::matrix("2") + "}"},
+          {"spread", inference::matrix("1")}};
 }
 
 /// Sets an environment variable for one test.
@@ -106,12 +107,14 @@ class Setting {
 class ModelFiles : public ::testing::Test {
  protected:
   void writeDenoiser(const Metadata& metadata) {
-    writeSafetensors(folder_.path() / "denoiser.safetensors",
-                     {metadata, filled(denoiserTensors(smallArchitecture()))}, TensorType::kF32);
+    inference::writeSafetensors(folder_.path() / "denoiser.safetensors",
+                                {metadata, filled(denoiserTensors(smallArchitecture()))},
+                                inference::TensorType::kF32);
   }
   /// Without tensors: what the metadata says is checked before them.
   void writeEncoder(const Metadata& metadata) {
-    writeSafetensors(folder_.path() / "encoder.safetensors", {metadata, {}}, TensorType::kF32);
+    inference::writeSafetensors(folder_.path() / "encoder.safetensors", {metadata, {}},
+                                inference::TensorType::kF32);
   }
   std::string loadError() {
     return test::inputErrorOf([&] { loadModel(folder_.path().string()); });
@@ -143,7 +146,7 @@ TEST_F(ModelFiles, RoundTrip) {
   Model model = smallModel();
   model.encoder = filled(encoderTensors(model.architecture));
   const fs::path folder = folder_.path() / "new" / "tiny";
-  saveModel(model, folder, TensorType::kF32, {{"training.steps", "100"}});
+  saveModel(model, folder, inference::TensorType::kF32, {{"training.steps", "100"}});
   const Model back = loadModel(folder.string() + "/");
   EXPECT_EQ(back.name, "tiny");
   EXPECT_EQ(back.sha256.size(), 64u);
@@ -158,10 +161,10 @@ TEST_F(ModelFiles, RoundTrip) {
   // The encoder's file tells nothing of the denoiser, so a denoiser trained anew leaves it alone.
   const std::string encoder = test::readBytes(folder / "encoder.safetensors");
   model.spread *= 2.0;
-  saveModel(model, folder, TensorType::kF32, {{"training.steps", "200"}});
+  saveModel(model, folder, inference::TensorType::kF32, {{"training.steps", "200"}});
   EXPECT_EQ(test::readBytes(folder / "encoder.safetensors"), encoder);
   // F16 holds these values exactly, in other bytes.
-  saveModel(model, folder, TensorType::kF16, {});
+  saveModel(model, folder, inference::TensorType::kF16, {});
   const Model halves = loadModel(folder.string());
   expectEqual(halves.encoder, model.encoder);
   EXPECT_NE(halves.sha256, back.sha256);
@@ -171,10 +174,10 @@ TEST_F(ModelFiles, AnEncoderOfOtherWeightsIsRefused) {
   Model model = smallModel();
   model.encoder = filled(encoderTensors(model.architecture));
   const fs::path folder = folder_.path();
-  saveModel(model, folder, TensorType::kF32, {});
+  saveModel(model, folder, inference::TensorType::kF32, {});
   const std::string denoiser = test::readBytes(folder / "denoiser.safetensors");
   model.encoder.begin()->second.values.front() += 1.0F;
-  saveModel(model, folder, TensorType::kF32, {});
+  saveModel(model, folder, inference::TensorType::kF32, {});
   test::writeBytes(folder / "denoiser.safetensors", denoiser);
   expectMentions(loadError(), "does not belong to the denoiser beside it");
 }
@@ -194,19 +197,22 @@ TEST_F(ModelFiles, MalformedMetadataIsNamed) {
   expectMentions(errorWith("architecture", "{}"), "the architecture lacks the key 'horizon'");
   expectMentions(errorWith("normalizer", "[]"), "'normalizer' is an array");
   expectMentions(errorWith("normalizer", "{"), "'normalizer' is not JSON");
-  expectMentions(errorWith("normalizer", normalizer(matrix("0"), matrix("0"))),
-                 "scale of row 0, column 0 is 0; a positive one");
-  expectMentions(errorWith("normalizer", normalizer(matrix("0"), matrix("-1"))),
-                 "is -1; a positive");
-  expectMentions(errorWith("normalizer", normalizer(matrix("null"), matrix("1"))),
-                 "mean, row 0, column 0 is null; a number");
-  expectMentions(errorWith("normalizer", normalizer("[[1,2]]", matrix("1"))),
+  expectMentions(
+      errorWith("normalizer", normalizer(inference::matrix("0"), inference::matrix("0"))),
+      "scale of row 0, column 0 is 0; a positive one");
+  expectMentions(
+      errorWith("normalizer", normalizer(inference::matrix("0"), inference::matrix("-1"))),
+      "is -1; a positive");
+  expectMentions(
+      errorWith("normalizer", normalizer(inference::matrix("null"), inference::matrix("1"))),
+      "mean, row 0, column 0 is null; a number");
+  expectMentions(errorWith("normalizer", normalizer("[[1,2]]", inference::matrix("1"))),
                  "mean is an array of 1; T = 2 rows");
-  expectMentions(errorWith("normalizer", normalizer("[[1,2],[1,2]]", matrix("1"))),
+  expectMentions(errorWith("normalizer", normalizer("[[1,2],[1,2]]", inference::matrix("1"))),
                  "mean, row 0: 7 numbers");
   expectMentions(errorWith("spread", "[[1]]"), "'spread' is an array of 1; T = 2 rows");
-  expectMentions(errorWith("spread", matrix("-0.5")), "spread: row 0, column 0 is -0.5");
-  expectMentions(errorWith("spread", matrix("nan")), "'spread' is not JSON");
+  expectMentions(errorWith("spread", inference::matrix("-0.5")), "spread: row 0, column 0 is -0.5");
+  expectMentions(errorWith("spread", inference::matrix("nan")), "'spread' is not JSON");
 }
 
 TEST_F(ModelFiles, AnotherHorizonDoesNotFitTheScales) {
@@ -263,7 +269,7 @@ TEST_F(ModelFiles, ShippedModelsAreFoundByName) {
 TEST_F(ModelFiles, SaveRefusesWhatCouldNotBeLoaded) {
   const auto saveError = [&](const Model& model, const Metadata& facts) {
     return test::inputErrorOf(
-        [&] { saveModel(model, folder_.path() / "out", TensorType::kF32, facts); });
+        [&] { saveModel(model, folder_.path() / "out", inference::TensorType::kF32, facts); });
   };
   Model model = smallModel();
   expectMentions(saveError(model, {}), "encoder lacks tensor 'stem.conv.weight'");

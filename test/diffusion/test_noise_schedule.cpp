@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "diffusion/noise_schedule.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/diffusion/noise_schedule.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <limits>
 
+#include "diffusion/normalizer.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/diffusion/normalizer.h"
 
 namespace cdiff::diffusion {
 namespace {

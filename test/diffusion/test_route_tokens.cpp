@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "e2e_cdiff/diffusion/route_tokens.h"
+#include "diffusion/route_tokens.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "dynamics/action_inference.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/dynamics/action_inference.h"
 
 namespace cdiff::dynamics {
 namespace {

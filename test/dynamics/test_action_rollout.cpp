@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/dynamics/action_rollout.h"
 
 namespace cdiff::dynamics {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/dynamics/executable_action.h"
+#include "dynamics/executable_action.h"
 
 namespace cdiff::dynamics {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "e2e_cdiff/evaluation/run_record.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::test {
 
@@ -35,7 +35,7 @@ inline evaluation::RunRecord recordWithout(const Levels& levels, const std::stri
 /// Completed and passed, with the figure ego_driving_score.
 inline evaluation::RunRecord recordWith(const Levels& levels, double score) {
   evaluation::RunRecord record = recordWithout(levels, "completed");
-  record.verdict = report::Outcome::kPassed;
+  record.verdict = record::Outcome::kPassed;
   record.attempts = 1;
   record.exit_code = 0;
   record.figures["ego_driving_score"] = score;

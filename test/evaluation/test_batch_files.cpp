@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/evaluation/batch_files.h"
-#include "e2e_cdiff/evaluation/batch_report.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "evaluation/batch_files.h"
+#include "evaluation/batch_report.h"
 #include "evaluation/run_records.h"
-#include "report/verdict_cases.h"
+#include "record/verdict_cases.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -25,14 +25,14 @@ class BatchFiles : public testing::Test {
     failed.attempts = 2;
     failed.exit_code = 2;
     RunRecord not_passed = recordWith({"s", "2"}, 20);
-    not_passed.verdict = report::Outcome::kFailed;
+    not_passed.verdict = record::Outcome::kFailed;
     not_passed.reasons = {"score < 30"};
     not_passed.decided_by = {"driving_score", "red_lights"};
     RunRecord struck = recordWith({"u", "1"}, 30);
-    struck.verdict = report::Outcome::kStruck;
+    struck.verdict = record::Outcome::kStruck;
     struck.reasons = {"struck by cbv_1"};
     RunRecord not_judged = recordWith({"v", "1"}, 40);
-    not_judged.verdict = report::Outcome::kNotJudged;
+    not_judged.verdict = record::Outcome::kNotJudged;
     not_judged.reasons = {"no rules"};
     records_ = {recordWith({"s", "1"}, 10),           not_passed, failed,
                 recordWithout({"t", "1"}, "not_run"), struck,     not_judged};
@@ -101,7 +101,7 @@ TEST_F(BatchFiles, MarkdownShowsTheFactorsThatVary) {
 /// The record that a batch keeps of a session.
 RunRecord recordOf(const test::VerdictCase& wanted, const std::filesystem::path& folder) {
   const test::SampleSetup sample(test::optionsOf(wanted));
-  report::ResultWriter writer(sample.setup, test::sampleFacts(), folder);
+  page::ResultWriter writer(sample.setup, test::sampleFacts(), folder);
   test::playCase(writer, wanted);
   writer.finish(1.0);
   const SummaryFacts facts =
@@ -133,7 +133,7 @@ TEST_P(BatchVerdict, IsThatOfTheSession) {
   const test::VerdictCase& wanted = GetParam();
   const test::TemporaryFolder folder;
   const RunRecord record = recordOf(wanted, folder.path());
-  const std::string word = report::toText(wanted.outcome);
+  const std::string word = record::toText(wanted.outcome);
   const auto has = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   };
@@ -148,11 +148,11 @@ TEST_P(BatchVerdict, IsThatOfTheSession) {
         has(summary, std::string("\"verdict_") + each + "\": " + (word == each ? "1" : "0")))
         << each << summary;
   const std::string xml = batchJunitXml("night", {record});
-  EXPECT_EQ(has(xml, "<failure"), wanted.outcome == report::Outcome::kFailed);
-  EXPECT_EQ(has(xml, "<error"), wanted.outcome == report::Outcome::kError);
-  EXPECT_EQ(has(xml, "<skipped"), wanted.outcome == report::Outcome::kInterrupted);
-  EXPECT_EQ(has(xml, "<system-out>struck: "), wanted.outcome == report::Outcome::kStruck);
-  EXPECT_EQ(has(xml, "<system-out>not judged: "), wanted.outcome == report::Outcome::kNotJudged);
+  EXPECT_EQ(has(xml, "<failure"), wanted.outcome == record::Outcome::kFailed);
+  EXPECT_EQ(has(xml, "<error"), wanted.outcome == record::Outcome::kError);
+  EXPECT_EQ(has(xml, "<skipped"), wanted.outcome == record::Outcome::kInterrupted);
+  EXPECT_EQ(has(xml, "<system-out>struck: "), wanted.outcome == record::Outcome::kStruck);
+  EXPECT_EQ(has(xml, "<system-out>not judged: "), wanted.outcome == record::Outcome::kNotJudged);
   const std::string sessions_xml = core::readFile(folder.path() / "junit.xml", "junit");
   EXPECT_EQ(typesIn(xml, "failure"), typesIn(sessions_xml, "failure")) << sessions_xml;
   const std::string shown = record.complete() ? word : "error";

@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/evaluation/comparison.h"
-#include "e2e_cdiff/evaluation/matrix.h"
-#include "e2e_cdiff/evaluation/run_plan.h"
+#include "evaluation/comparison.h"
+#include "evaluation/matrix.h"
+#include "evaluation/run_plan.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

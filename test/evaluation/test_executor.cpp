@@ -6,10 +6,10 @@
 #include <map>
 #include <thread>
 
+#include "core/file.h"
+#include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/diffusion/model.h"
-#include "e2e_cdiff/evaluation/executor.h"
+#include "evaluation/executor.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
@@ -89,7 +89,7 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   const auto records = execute(plan({"good", "refuses", "half", "good"}));
   ASSERT_EQ(records.size(), 4U);
   EXPECT_EQ(records[0].status, "completed");
-  EXPECT_TRUE(records[0].has(report::Outcome::kPassed));
+  EXPECT_TRUE(records[0].has(record::Outcome::kPassed));
   EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
   EXPECT_DOUBLE_EQ(records[0].simulated_seconds, 4.0);
   EXPECT_EQ(records[1].status, "error");
@@ -152,7 +152,7 @@ TEST(RunInputs, HashTheContentOfTheFilesThatAScenarioNames) {
   const test::TemporaryFolder folder;
   const fs::path demand = folder.path() / "demand.rou.xml";
   std::ofstream(demand) << "<routes/>";
-  scenario::ScenarioOptions options = scenario::loadScenario("arterial_exit");
+  session::ScenarioOptions options = session::loadScenario("arterial_exit");
   options.cbv_planner = "pdm_lite";
   options.demand = "generated";
   const InputHashes plain = InputHasher().hashes(options);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/evaluation/figures.h"
+#include "evaluation/figures.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -25,7 +25,7 @@ TEST(Figures, OfASummary) {
                                          "file");
   EXPECT_EQ(facts.status, "completed");
   EXPECT_EQ(facts.fault, "last");
-  EXPECT_EQ(facts.verdict, report::Outcome::kFailed);
+  EXPECT_EQ(facts.verdict, record::Outcome::kFailed);
   EXPECT_EQ(facts.reasons, std::vector<std::string>{"too slow"});
   EXPECT_DOUBLE_EQ(facts.simulated_seconds, 12.5);
   EXPECT_DOUBLE_EQ(facts.figures.at("ego_completion_percent"), 80.0);

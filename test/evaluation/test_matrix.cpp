@@ -6,9 +6,9 @@
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/evaluation/matrix.h"
-#include "e2e_cdiff/evaluation/run_plan.h"
-#include "e2e_cdiff/scenario/scenario_options.h"
+#include "evaluation/matrix.h"
+#include "evaluation/run_plan.h"
+#include "session/scenario_options.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
@@ -103,7 +103,7 @@ TEST(Plan, IsTheProductOfItsFactors) {
   ASSERT_EQ(plan.size(), 8U);
   EXPECT_EQ(plan[0].id, "arterial_exit__slow__seed1__repetition1");
   EXPECT_EQ(plan[7].id, "arterial_exit__fast__seed2__repetition2");
-  EXPECT_EQ(plan[7].factors.at("cbv_planner"), scenario::ScenarioOptions().cbv_planner);
+  EXPECT_EQ(plan[7].factors.at("cbv_planner"), session::ScenarioOptions().cbv_planner);
   expectIn("target_speed: 4\n", plan[0].scenario_text);
   expectIn("time_limit: 3\n", plan[0].scenario_text);  // a variant goes over set
   expectIn("time_limit: 5\n", plan[7].scenario_text);
@@ -120,7 +120,7 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   const auto plan = planRuns(matrix, "matrix.yaml");
   ASSERT_EQ(plan.size(), 4U);
   EXPECT_EQ(plan[0].factors.at("cbv_planner"), "pdm_lite");
-  EXPECT_EQ(plan[0].factors.at("mode"), scenario::ScenarioOptions().mode);
+  EXPECT_EQ(plan[0].factors.at("mode"), session::ScenarioOptions().mode);
   EXPECT_EQ(plan[3].factors.at("ego_planner"), "diffusion");
   EXPECT_EQ(plan[3].factors.at("mode"), "safety_critical");
   EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");

@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "e2e_cdiff/evaluation/paper_definitions.h"
-#include "e2e_cdiff/evaluation/paper_table.h"
+#include "evaluation/paper_definitions.h"
+#include "evaluation/paper_table.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "e2e_cdiff/evaluation/process_pool.h"
+#include "evaluation/process_pool.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {

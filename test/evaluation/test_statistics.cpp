@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "e2e_cdiff/evaluation/cell.h"
-#include "e2e_cdiff/evaluation/statistics.h"
+#include "evaluation/cell.h"
 #include "evaluation/run_records.h"
+#include "evaluation/statistics.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -8,11 +8,11 @@
 #include <map>
 #include <set>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/guidance/collision_seeking_objective.h"
-#include "e2e_cdiff/guidance/guidance_options.h"
-#include "e2e_cdiff/guidance/objective_factory.h"
+#include "guidance/collision_seeking_objective.h"
+#include "guidance/guidance_options.h"
+#include "guidance/objective_factory.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "e2e_cdiff/guidance/drivable_area_objective.h"
-#include "e2e_cdiff/guidance/objective_factory.h"
-#include "e2e_cdiff/guidance/route_objective.h"
+#include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
+#include "guidance/objective_factory.h"
+#include "guidance/route_objective.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -7,15 +7,15 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/guidance/collision_avoidance_objective.h"
-#include "e2e_cdiff/guidance/collision_seeking_objective.h"
-#include "e2e_cdiff/guidance/comfort_objective.h"
-#include "e2e_cdiff/guidance/drivable_area_objective.h"
-#include "e2e_cdiff/guidance/objective_factory.h"
-#include "e2e_cdiff/guidance/route_objective.h"
-#include "e2e_cdiff/guidance/speed_objective.h"
-#include "e2e_cdiff/guidance/traffic_avoidance_objective.h"
+#include "guidance/collision_avoidance_objective.h"
+#include "guidance/collision_seeking_objective.h"
+#include "guidance/comfort_objective.h"
+#include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
+#include "guidance/objective_factory.h"
+#include "guidance/route_objective.h"
+#include "guidance/speed_objective.h"
+#include "guidance/traffic_avoidance_objective.h"
 #include "support/network_text.h"
 
 namespace cdiff::guidance {

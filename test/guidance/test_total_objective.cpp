@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/guidance/total_objective.h"
 #include "guidance/guidance_world.h"
+#include "guidance/total_objective.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -16,13 +16,13 @@ RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"training"}),
-    "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"diffusion"}),
+    "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"inference", "diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
-    "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "report", "ros"}),
+    "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "ros"}),
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
-ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance diffusion rendering simulation",
-         "planning training", "scenario", "suite", "report", "evaluation ros", "nodes cli"]
+ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion", "planning",
+         "planners training", "session", "collection suite record", "page", "video", "evaluation ros", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 
@@ -57,7 +57,7 @@ def violations(layer, headers, source, build):
         for name, (pattern, allowed) in RESTRICTED.items():
             if layer not in allowed and re.search(pattern, path):
                 yield f"reads {name}'s header {path}"
-        inside = re.search(re.escape(f"{source}/include/e2e_cdiff/") + r"([a-z_]+)/", path)
+        inside = re.search(re.escape(source) + r"/(?:include/e2e_cdiff|src)/([a-z_]+)/", path)
         if inside and RANK.get(inside.group(1), -1) > RANK.get(layer, 99):
             yield f"reads {path}, which is of a higher layer"
 

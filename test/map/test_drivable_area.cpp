@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/core/text.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "support/network_text.h"
 #include "support/real_data.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/map/lane_graph.h"
+#include "map/lane_graph.h"
 #include "support/network_text.h"
 
 namespace cdiff::map {

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <functional>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/map/network_import.h"
 #include "e2e_cdiff/map/road_network.h"
+#include "map/network_import.h"
 #include "support/real_data.h"
 
 namespace cdiff::map {

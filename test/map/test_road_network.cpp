@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "support/network_text.h"
 #include "support/real_data.h"

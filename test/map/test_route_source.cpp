@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "map/route_source.h"
 #include "support/network_text.h"
 #include "support/real_data.h"
 

@@ -12,10 +12,10 @@
 #include <cstdlib>
 #include <pugixml.hpp>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/map/network_import.h"
-#include "e2e_cdiff/map/route_source.h"
+#include "map/network_import.h"
+#include "map/route_source.h"
 #include "support/real_data.h"
 
 namespace cdiff::map {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
 
 namespace cdiff::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/metrics/comfort_measures.h"
+#include "metrics/comfort_measures.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/metrics/driving_score.h"
+#include "metrics/driving_score.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/metrics/ego_infractions.h"
+#include "metrics/ego_infractions.h"
 #include "metrics/straight_road.h"
 #include "support/network_text.h"
 

@@ -5,8 +5,8 @@
 #include <regex>
 #include <set>
 
-#include "e2e_cdiff/metrics/figure_definitions.h"
-#include "e2e_cdiff/metrics/rift_measures.h"
+#include "metrics/figure_definitions.h"
+#include "metrics/rift_measures.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "e2e_cdiff/metrics/interaction_measures.h"
+#include "metrics/interaction_measures.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "e2e_cdiff/metrics/collisions_per_km.h"
-#include "e2e_cdiff/metrics/off_road_rate.h"
-#include "e2e_cdiff/metrics/sample_statistics.h"
+#include "metrics/collisions_per_km.h"
+#include "metrics/off_road_rate.h"
+#include "metrics/sample_statistics.h"
 
 namespace cdiff::metrics {
 namespace {

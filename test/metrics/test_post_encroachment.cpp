@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/metrics/post_encroachment.h"
+#include "metrics/post_encroachment.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
-#include "e2e_cdiff/metrics/ttc_2d.h"
-#include "e2e_cdiff/metrics/wasserstein.h"
+#include "core/text.h"
 #include "metrics/reference_data.h"
+#include "metrics/shapiro_wilk.h"
+#include "metrics/ttc_2d.h"
+#include "metrics/wasserstein.h"
 
 #define SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "missing: " << path

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "e2e_cdiff/metrics/rift_measures.h"
+#include "metrics/rift_measures.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/metrics/session_metrics.h"
+#include "metrics/session_metrics.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/metrics/session_metrics.h"
+#include "metrics/session_metrics.h"
 #include "metrics/straight_road.h"
 #include "support/network_text.h"
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "e2e_cdiff/metrics/shapiro_wilk.h"
+#include "metrics/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/metrics/speed_target.h"
-#include "e2e_cdiff/metrics/wasserstein.h"
+#include "metrics/speed_target.h"
+#include "metrics/wasserstein.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "e2e_cdiff/metrics/wasserstein.h"
+#include "metrics/wasserstein.h"
 
 namespace cdiff::metrics {
 namespace {

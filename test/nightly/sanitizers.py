@@ -18,13 +18,13 @@ import junit  # noqa: E402
 
 KIND, BUILD, SOURCE, RESULT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), Path(sys.argv[4])
 FLAGS = {"address": "-fsanitize=address,undefined -fno-sanitize-recover=undefined", "thread": "-fsanitize=thread"}
-LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "rendering", "guidance", "diffusion", "planning",
-          "simulation", "scenario", "suite", "report", "evaluation"]
+LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "rendering", "guidance", "inference", "diffusion", "planning",
+          "planners", "pdm_lite", "two_stage_pid", "simulation", "session", "collection", "suite", "record", "page", "video", "evaluation"]
 # Nothing of memory or threads is in these that the others do not run too, and with a sanitizer they take many minutes.
-SLOW = {"test_suite_suite_generator", "test_suite_shipped_suite", "test_planning_guided_plans", "test_planning_diffusion_modes",
-        "test_planning_mirror_symmetry", "test_diffusion_safetensors_memory", "test_scenario_soak"}
+SLOW = {"test_suite_suite_generator", "test_suite_shipped_suite", "test_diffusion_planner_guided_plans", "test_diffusion_planner_modes",
+        "test_planners_mirror_symmetry", "test_inference_safetensors_memory", "test_session_soak"}
 THREADED = ["test_evaluation_executor", "test_evaluation_process_pool", "test_simulation_sumo_loss", "test_diffusion_image_encoder",
-            "test_report_session_video"]
+            "test_video_session_video"]
 OPTIONS = {"ASAN_OPTIONS": "detect_leaks=1:abort_on_error=0", "UBSAN_OPTIONS": "print_stacktrace=1",
            "TSAN_OPTIONS": "halt_on_error=0:exitcode=66:second_deadlock_stack=1"}
 
@@ -37,7 +37,7 @@ def programs(folder):
         return THREADED
     listed = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
     names = {line.partition(":")[0] for line in listed.splitlines() if line.endswith(": phony")}
-    return sorted(name for name in names if name not in SLOW and any(name.startswith(f"test_{layer}_") for layer in LAYERS))
+    return sorted(name for name in names if name not in SLOW and any(f"{name}_".startswith(f"test_{layer}_") for layer in LAYERS))
 
 
 def build(folder):

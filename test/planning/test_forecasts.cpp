@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "course.h"
-#include "e2e_cdiff/planning/box_forecast.h"
-#include "e2e_cdiff/planning/ego_forecast.h"
-#include "e2e_cdiff/planning/motion_forecast.h"
+#include "planners/course.h"
+#include "planners/pdm_lite/box_forecast.h"
+#include "planners/pdm_lite/ego_forecast.h"
+#include "planning/motion_forecast.h"
 
 namespace cdiff::planning {
 namespace {
@@ -92,10 +92,12 @@ TEST(MotionForecast, AStandingVehicleStays) {
 TEST(EgoForecast, AcceleratesTowardsTheTargetAndLeavesTheDriverAlone) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
   const map::Route route = routeAlong(network, {"road"});
-  DriverState driver{RouteFollower(), LateralController(PdmLiteOptions())};
+  planners::DriverState driver{RouteFollower(),
+                               planners::LateralController(planners::PdmLiteOptions())};
   const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.0, 0.0, 0.0);
   driver.follower.update(route, ego.state.position);
-  const auto rollout = forecastEgo(ego.state, route, driver, 8.0, dynamics::BicycleModel(), 20);
+  const auto rollout =
+      planners::forecastEgo(ego.state, route, driver, 8.0, dynamics::BicycleModel(), 20);
   ASSERT_EQ(rollout.size(), 20u);
   EXPECT_EQ(rollout.front().action.throttle, 1.0);
   // Full throttle for 0.1 s from rest: about 7.6 m/s^2 x 0.1 s.
@@ -111,29 +113,29 @@ TEST(EgoForecast, AcceleratesTowardsTheTargetAndLeavesTheDriverAlone) {
 TEST(BoxForecast, GrowsAsPublished) {
   traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0, 0.0, 4.9);
   const std::vector<RolloutPoint> points(2, RolloutPoint{ego.state, {}});
-  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[0].length, 4.5);
+  EXPECT_DOUBLE_EQ(planners::egoBoxes(ego, points)[0].length, 4.5);
   ego.state.speed = 5.0;
-  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[1].length, 4.5 * 1.3);
-  EXPECT_DOUBLE_EQ(egoBoxes(ego, points)[1].width, 1.8 * 1.2);
+  EXPECT_DOUBLE_EQ(planners::egoBoxes(ego, points)[1].length, 4.5 * 1.3);
+  EXPECT_DOUBLE_EQ(planners::egoBoxes(ego, points)[1].width, 1.8 * 1.2);
 
   std::vector<traffic::VehicleState> states(20, ego.state);
   states[5].speed = 0.9;
-  const auto boxes = otherBoxes(ego.dimensions, states, false);
+  const auto boxes = planners::otherBoxes(ego.dimensions, states, false);
   EXPECT_DOUBLE_EQ(boxes[0].length, 4.5 * 1.2);
   EXPECT_DOUBLE_EQ(boxes[0].width, 1.8);
   EXPECT_DOUBLE_EQ(boxes[5].length, 4.5);
   // Step 18 of 20: 1.3 x 18 / 20 = 1.17.
   EXPECT_DOUBLE_EQ(boxes[17].width, 1.8 * 1.17);
   EXPECT_DOUBLE_EQ(boxes[19].width, 1.8 * 1.3);
-  EXPECT_DOUBLE_EQ(otherBoxes(ego.dimensions, states, true)[0].length, 9.0);
+  EXPECT_DOUBLE_EQ(planners::otherBoxes(ego.dimensions, states, true)[0].length, 9.0);
 }
 
 TEST(BoxForecast, BoxesMeetOnlyAtTheSameStep) {
   const geometry::OrientedBox here{{0.0, 0.0}, 0.0, 4.0, 2.0};
   const geometry::OrientedBox away{{20.0, 0.0}, 0.0, 4.0, 2.0};
-  EXPECT_EQ(meet({here, away}, {away, here}, 2), std::nullopt);
-  EXPECT_EQ(meet({away, here}, {here, here}, 2), 1U);
-  EXPECT_EQ(meet({away, here}, {here, here}, 1), std::nullopt);
+  EXPECT_EQ(planners::meet({here, away}, {away, here}, 2), std::nullopt);
+  EXPECT_EQ(planners::meet({away, here}, {here, here}, 2), 1U);
+  EXPECT_EQ(planners::meet({away, here}, {here, here}, 1), std::nullopt);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "e2e_cdiff/planning/surrounding_vehicles.h"
+#include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planning {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "e2e_cdiff/rendering/front_camera.h"
+#include "rendering/front_camera.h"
 
 namespace cdiff::rendering {
 

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "camera_worlds.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/rendering/front_camera.h"
+#include "rendering/camera_worlds.h"
+#include "rendering/front_camera.h"
 
 namespace cdiff::rendering {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "camera_worlds.h"
+#include "rendering/camera_worlds.h"
 
 namespace cdiff::rendering {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "fake_simulator.h"
+#include "ros/fake_simulator.h"
 
 #include <algorithm>
 
-#include "e2e_cdiff/ros/session_parts.h"
+#include "ros/session_parts.h"
 #include "support/random_model.h"
 
 namespace cdiff::test {
@@ -21,9 +21,9 @@ template <class Message, class Callback>
       ::ros::TransportHints().tcpNoDelay());
 }
 
-scenario::ScenarioOptions scenarioFor(const std::string& node,
-                                      const std::filesystem::path& results) {
-  scenario::ScenarioOptions options = scenario::loadScenario("crossing_left_turn");
+session::ScenarioOptions scenarioFor(const std::string& node,
+                                     const std::filesystem::path& results) {
+  session::ScenarioOptions options = session::loadScenario("crossing_left_turn");
   options.cbv_planner = node == kDiffusionPlannerNode ? "diffusion" : "pdm_lite";
   if (node != kDiffusionPlannerNode) return options;
   options.diffusion.model = testing::writeRandomModel(results / "model");

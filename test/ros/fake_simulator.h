@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "e2e_cdiff/TickAck.h"
-#include "e2e_cdiff/ros/connections.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/topics.h"
 #include "ros/callback_queue.h"
+#include "ros/connections.h"
+#include "ros/conversions.h"
+#include "ros/topics.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"
 
@@ -55,7 +55,7 @@ class FakeSimulator {
   void publishImage(const sensor_msgs::Image& image);  ///< of slot 0
   void publishSelection(const traffic::TrafficSnapshot& snapshot);
 
-  const scenario::SessionSetup& setup() const { return setup_; }
+  const session::SessionSetup& setup() const { return setup_; }
   // What came, by tick.
   std::map<std::uint64_t, ros::msgs::CbvSelection::ConstPtr> selections;
   std::map<std::uint64_t, ros::msgs::ControlAction::ConstPtr> ego_controls;
@@ -72,7 +72,7 @@ class FakeSimulator {
   void answerForOthers(const std::string& node);
   void listen();
 
-  scenario::SessionSetup setup_;
+  session::SessionSetup setup_;
   ros::SessionGraph graph_;
   ros::Connections connections_;
   ::ros::NodeHandle node_;

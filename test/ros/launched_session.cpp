@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "launched_session.h"
+#include "ros/launched_session.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/metrics/figure_definitions.h"
-#include "e2e_cdiff/rendering/front_camera.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "fake_simulator.h"
+#include "core/file.h"
+#include "metrics/figure_definitions.h"
+#include "rendering/front_camera.h"
+#include "ros/fake_simulator.h"
+#include "ros/image_conversions.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 
@@ -151,7 +151,7 @@ TEST(Camera, ShowsEgoAndOccupiedSlotAtDecisionTicksOnly) {
   EXPECT_EQ(simulator.images.count(0), 1U);
   EXPECT_EQ(simulator.images.count(1), 0U);
   EXPECT_EQ(simulator.ego_images.count(1), 0U);
-  const scenario::ScenarioOptions& options = simulator.setup().options();
+  const session::ScenarioOptions& options = simulator.setup().options();
   rendering::FrontCamera camera(options.camera, simulator.setup().network());
   const traffic::TrafficSnapshot snapshot = simulator.snapshot(2);
   const traffic::CameraImage here = camera.render(snapshot, snapshot.vehicles[1]);

@@ -8,21 +8,21 @@
 #include <functional>
 #include <string>
 
-#include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
+#include "page/result_writer.h"
+#include "ros/session_bag.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
 
 namespace cdiff::test {
 
 /// Result folder and bag of a session, driven in this process.
-inline void runInOneProcess(const scenario::SessionRequest& request,
+inline void runInOneProcess(const session::SessionRequest& request,
                             const std::filesystem::path& folder) {
-  const scenario::SessionSetup setup(scenario::resolveRequest(request));
-  scenario::ClosedLoop loop(setup);
-  report::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
+  const session::SessionSetup setup(session::resolveRequest(request));
+  session::ClosedLoop loop(setup);
+  page::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
   ros::SessionBag bag(setup, folder / "session.bag", {"test", "SUMO"});
   loop.addObserver(writer);
   loop.addObserver(bag);
@@ -36,7 +36,7 @@ inline void runInOneProcess(const scenario::SessionRequest& request,
 /// are keys of the scenario.
 inline void recordSession(const std::filesystem::path& folder,
                           const std::vector<std::string>& settings) {
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.set = settings;

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
 #include "ros/recorded_bag.h"
 
 namespace cdiff {
@@ -72,7 +72,7 @@ class Session : public ::testing::Test {
 };
 
 /// The trace of the same session in one process.
-inline std::string traceInOneProcess(const scenario::SessionRequest& request,
+inline std::string traceInOneProcess(const session::SessionRequest& request,
                                      const fs::path& folder) {
   test::runInOneProcess(request, folder);
   return core::sha256(core::readFile(folder / "trace.csv", "trace"));

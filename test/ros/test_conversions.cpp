@@ -7,10 +7,10 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/metrics/figure_definitions.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/metric_diagnostics.h"
-#include "sample_messages.h"
+#include "metrics/figure_definitions.h"
+#include "ros/conversions.h"
+#include "ros/metric_diagnostics.h"
+#include "ros/sample_messages.h"
 #include "support/network_text.h"
 
 namespace cdiff::ros {
@@ -181,10 +181,10 @@ TEST(Conversions, RouteOnAnUnknownLaneIsAnError) {
 }
 
 TEST(Conversions, SessionInfoRebuildsTheSameSetup) {
-  const scenario::SessionSetup setup(scenario::loadScenario("crossing_left_turn"));
+  const session::SessionSetup setup(session::loadScenario("crossing_left_turn"));
   const msgs::SessionInfo message = overTheWire(toMsg(setup));
-  const scenario::SessionSetup back(optionsFromMsg(message), importFromMsg(message),
-                                    routeFromMsg(message));
+  const session::SessionSetup back(optionsFromMsg(message), importFromMsg(message),
+                                   routeFromMsg(message));
   EXPECT_EQ(core::dumpOptions(back.options()), core::dumpOptions(setup.options()));
   EXPECT_EQ(back.import().text, setup.import().text);
   EXPECT_EQ(back.import().source_sha256, setup.import().source_sha256);

@@ -8,13 +8,13 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/file.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/ros/bag_reader.h"
-#include "e2e_cdiff/ros/replay.h"
+#include "ros/bag_reader.h"
 #include "ros/recorded_bag.h"
+#include "ros/replay.h"
 #include "std_msgs/Float64.h"
 #include "std_msgs/String.h"
 #include "support/temporary_folder.h"
@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 using msgs = ::e2e_cdiff::TrafficSnapshot;
 
 /// What observers were shown, as one number.
-class Digest : public scenario::SessionObserver {
+class Digest : public session::SessionObserver {
  public:
-  void observe(const scenario::TickRecord& record) override {
+  void observe(const session::TickRecord& record) override {
     const traffic::TrafficSnapshot& snapshot = *record.snapshot;
     text_ += std::to_string(snapshot.tick) + traffic::toText(snapshot.status);
     for (const traffic::Vehicle& vehicle : snapshot.vehicles)

@@ -5,14 +5,14 @@
 #include <optional>
 #include <set>
 
+#include "collection/collection_loop.h"
+#include "core/file.h"
+#include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/diffusion/route_tokens.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/geometry/polyline.h"
-#include "e2e_cdiff/ros/dataset_from_bag.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/scenario/collection_loop.h"
+#include "ros/dataset_from_bag.h"
+#include "ros/session_bag.h"
 #include "std_msgs/String.h"
 #include "support/sumo_network.h"
 
@@ -20,15 +20,15 @@ namespace cdiff::ros {
 namespace {
 
 /// What a session's samples are compared with.
-class Witness : public scenario::SessionObserver {
+class Witness : public session::SessionObserver {
  public:
-  explicit Witness(const scenario::CollectionLoop& loop) : loop_(loop) {}
-  void observe(const scenario::TickRecord& record) override {
+  explicit Witness(const collection::CollectionLoop& loop) : loop_(loop) {}
+  void observe(const session::TickRecord& record) override {
     if (record.actions == nullptr) return;
     for (const planning::PlannedAction& action : *record.actions) {
       if (loop_.perturbed(action.vehicle_id))
         perturbed.insert({action.vehicle_id, record.snapshot->tick});
-      for (const scenario::SlotImage& seen : *record.images) {
+      for (const session::SlotImage& seen : *record.images) {
         if (seen.slot == action.slot)
           images[{action.vehicle_id, record.snapshot->tick}] = seen.image.rgb;
       }
@@ -38,7 +38,7 @@ class Witness : public scenario::SessionObserver {
   std::map<std::pair<std::string, std::uint64_t>, std::vector<std::uint8_t>> images;
 
  private:
-  const scenario::CollectionLoop& loop_;
+  const collection::CollectionLoop& loop_;
 };
 
 DatasetOptions noneDisplaced() {
@@ -80,15 +80,15 @@ class DatasetFromBag : public testing::Test {
   static std::filesystem::path bag() { return folder_->path() / "session.bag"; }
 
   static void record(const std::filesystem::path& file, bool images) {
-    scenario::CollectionOptions options;
+    collection::CollectionOptions options;
     options.duration = images ? 10.0 : 0.5;
     options.vehicles = 4;
     options.noise.interval = 4.0;
-    scenario::ScenarioOptions wanted = scenario::loadScenario("crossing_left_turn");
+    session::ScenarioOptions wanted = session::loadScenario("crossing_left_turn");
     wanted.seed = 3;
     const auto setup =
-        scenario::collectionSetup(scenario::collectionScenario(wanted, options), options);
-    scenario::CollectionLoop loop(*setup, options, images);
+        collection::collectionSetup(collection::collectionScenario(wanted, options), options);
+    collection::CollectionLoop loop(*setup, options, images);
     SessionBag bag(*setup, file, {"test", "SUMO"});
     bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
     loop.addObserver(bag);

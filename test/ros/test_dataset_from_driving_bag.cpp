@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "dynamics/action_rollout.h"
 #include "e2e_cdiff/ControlAction.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/dynamics/action_rollout.h"
-#include "e2e_cdiff/ros/dataset_from_driving_bag.h"
 #include "nav_msgs/Odometry.h"
 #include "nav_msgs/Path.h"
+#include "ros/dataset_from_driving_bag.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Image.h"
 #include "std_msgs/String.h"

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/decision_book.h"
-#include "e2e_cdiff/ros/tick_record.h"
-#include "sample_messages.h"
+#include "ros/conversions.h"
+#include "ros/decision_book.h"
+#include "ros/sample_messages.h"
+#include "ros/tick_record.h"
 
 namespace cdiff::ros {
 namespace {
@@ -90,8 +90,8 @@ TEST(PacedAnswers, TakesAVehicleOverWhenItsFirstActionHasCome) {
 class LateSession : public testing::Test {
  protected:
   LateSession() : book_(options()), paced_(0.05) {}
-  static scenario::ScenarioOptions options() {
-    scenario::ScenarioOptions options;
+  static session::ScenarioOptions options() {
+    session::ScenarioOptions options;
     options.ego_planner = "sample";
     options.cbv_planner = "sample";
     return options;

@@ -4,11 +4,11 @@
 
 #include "boost/make_shared.hpp"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/image_inbox.h"
-#include "e2e_cdiff/ros/planner_statistics.h"
-#include "sample_messages.h"
+#include "ros/conversions.h"
+#include "ros/image_conversions.h"
+#include "ros/image_inbox.h"
+#include "ros/planner_statistics.h"
+#include "ros/sample_messages.h"
 
 namespace cdiff::ros {
 namespace {

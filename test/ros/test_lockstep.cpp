@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "e2e_cdiff/ros/connections.h"
-#include "e2e_cdiff/ros/conversions.h"
-#include "e2e_cdiff/ros/image_conversions.h"
-#include "e2e_cdiff/ros/participant_book.h"
-#include "e2e_cdiff/ros/session_parts.h"
-#include "e2e_cdiff/ros/tick_answers.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "sample_messages.h"
+#include "ros/connections.h"
+#include "ros/conversions.h"
+#include "ros/image_conversions.h"
+#include "ros/participant_book.h"
+#include "ros/sample_messages.h"
+#include "ros/session_parts.h"
+#include "ros/tick_answers.h"
+#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -102,7 +102,7 @@ TEST(TickAnswers, RolloutsAndImagesAreWaitedForWhereTheyAreExpected) {
   EXPECT_TRUE(all[0].action.rollout.empty());
   ASSERT_EQ(all[1].action.rollout.size(), 1U);
   EXPECT_EQ(all[1].action.rollout[0].state.speed, 6.0);
-  const std::vector<scenario::SlotImage> seen = answers.images(message);
+  const std::vector<session::SlotImage> seen = answers.images(message);
   ASSERT_EQ(seen.size(), 2U);
   EXPECT_EQ(seen[0].slot, -1);
   EXPECT_EQ(seen[1].slot, 1);
@@ -232,8 +232,8 @@ TEST(Topics, ListenersAreThoseThatTakePart) {
   EXPECT_EQ(listeners(kTickAckTopic, graph), Texts{kTrafficSimulatorNode});
 }
 
-scenario::ScenarioOptions scenarioWith(const std::string& ego, const std::string& cbv) {
-  scenario::ScenarioOptions options;
+session::ScenarioOptions scenarioWith(const std::string& ego, const std::string& cbv) {
+  session::ScenarioOptions options;
   options.ego_planner = ego;
   options.cbv_planner = cbv;
   return options;

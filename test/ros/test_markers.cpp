@@ -5,9 +5,9 @@
 #include <Eigen/Geometry>
 #include <set>
 
-#include "e2e_cdiff/ros/display.h"
-#include "e2e_cdiff/ros/markers.h"
-#include "sample_messages.h"
+#include "ros/display.h"
+#include "ros/markers.h"
+#include "ros/sample_messages.h"
 
 namespace cdiff::ros {
 namespace {
@@ -53,7 +53,7 @@ TEST(Markers, RolesHaveTheirColours) {
 }
 
 TEST(Markers, SelectionShowsConflictPointAndRoute) {
-  const scenario::SessionSetup setup(scenario::loadScenario("crossing_left_turn"));
+  const session::SessionSetup setup(session::loadScenario("crossing_left_turn"));
   cbv::CbvSelection selection;
   selection.assignments.resize(1);
   selection.assignments[0].conflict_aware_route = setup.egoRoute();

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/ros/message_checks.h"
-#include "e2e_cdiff/ros/message_gate.h"
+#include "ros/message_checks.h"
+#include "ros/message_gate.h"
 
 namespace cdiff::ros {
 namespace {

@@ -5,8 +5,8 @@
 #include <csignal>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/ros/parameters.h"
-#include "e2e_cdiff/ros/stop_signal.h"
+#include "ros/parameters.h"
+#include "ros/stop_signal.h"
 
 namespace cdiff::ros {
 namespace {
@@ -40,7 +40,7 @@ TEST(Parameters, WrongValuesAreErrors) {
 }
 
 TEST(Parameters, SessionRequestTakesAssignmentsApart) {
-  const scenario::SessionRequest request =
+  const session::SessionRequest request =
       sessionRequest(Parameters(Values{{"set", "seed=3  max_cbv=1"}, {"mode", "naturalistic"}}));
   EXPECT_EQ(request.scenario, "crossing_left_turn");
   EXPECT_EQ(request.mode, "naturalistic");
@@ -49,7 +49,7 @@ TEST(Parameters, SessionRequestTakesAssignmentsApart) {
 
 TEST(Parameters, BadAssignmentNamesTheParameter) {
   try {
-    scenario::resolveRequest(sessionRequest(Parameters(Values{{"set", "sed=3"}})));
+    session::resolveRequest(sessionRequest(Parameters(Values{{"set", "sed=3"}})));
     FAIL() << "expected an InputError";
   } catch (const core::InputError& error) {
     EXPECT_NE(std::string(error.what()).find("parameter ~set"), std::string::npos) << error.what();

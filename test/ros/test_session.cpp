@@ -7,20 +7,20 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/report/result_writer.h"
-#include "e2e_cdiff/ros/replay.h"
-#include "e2e_cdiff/ros/session_bag.h"
-#include "e2e_cdiff/ros/tick_answers.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
+#include "page/result_writer.h"
+#include "ros/replay.h"
+#include "ros/session_bag.h"
 #include "ros/session_launch.h"
+#include "ros/tick_answers.h"
+#include "ros/topics.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 #include "sensor_msgs/Image.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
 #include "support/random_model.h"
 
 namespace cdiff {
@@ -33,7 +33,7 @@ TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
   EXPECT_EQ(summary()["status"], "timed_out") << log;
   EXPECT_EQ(exitCode(), "0\n");
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.set = {"protocol.time_limit=8", "verdict.judge=false"};
@@ -91,7 +91,7 @@ TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
                                  "scenario:=crossing_left_turn seed:=2 record:=true camera:=true "
                                  "set:=\"protocol.time_limit=8 verdict.judge=false\"");
   EXPECT_EQ(exitCode(), "0\n") << log;
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.set = {"protocol.time_limit=8", "verdict.judge=false"};
@@ -112,7 +112,7 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
                                  "cbv_planner:=diffusion set:=\"" +
                                      settings + "\"");
   EXPECT_EQ(exitCode(), "0\n") << log;
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.cbv_planner = "diffusion";
@@ -160,7 +160,7 @@ TEST_F(Session, ReplayOfTheNodeGraphsBagHasItsResultOnTheCommandLineAndFromRosla
 }
 
 TEST_F(Session, ReplayLaunchOfACutOffBagHasTheResultOfTheCommandLine) {
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.cbv_planner = "pdm_lite";
@@ -181,7 +181,7 @@ TEST_F(Session, ReplayLaunchOfACutOffBagHasTheResultOfTheCommandLine) {
 TEST_F(Session, WholeRoundaboutHasTheTraceOfTheClosedLoop) {
   const std::string log = launch("e2e_cdiff session.launch", "scenario:=roundabout_cross seed:=1");
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "roundabout_cross";
   request.seed = "1";
   EXPECT_EQ(summary()["trace_sha256"], traceInOneProcess(request, folder_ / "one_process"));

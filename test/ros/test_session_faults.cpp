@@ -10,11 +10,11 @@
 #include <random>
 #include <thread>
 
-#include "e2e_cdiff/ros/connections.h"
-#include "e2e_cdiff/ros/heartbeat.h"
-#include "e2e_cdiff/ros/participant_book.h"
-#include "e2e_cdiff/ros/topics.h"
-#include "launched_session.h"
+#include "ros/connections.h"
+#include "ros/heartbeat.h"
+#include "ros/launched_session.h"
+#include "ros/participant_book.h"
+#include "ros/topics.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // Sessions beside nodes and tools that are no part of them.
-#include "e2e_cdiff/ros/replay.h"
+#include "ros/replay.h"
 #include "ros/session_launch.h"
 
 namespace cdiff {
@@ -38,7 +38,7 @@ TEST_F(Session, NodeThatIsNoPartOfItChangesNothingAndIsNamed) {
   const std::string log = launch(E2E_CDIFF_TEST_FOLDER "/rogue.launch",
                                  "set:=\"protocol.time_limit=8 at_most=4 verdict.judge=false\"");
   ASSERT_TRUE(fs::exists(results() / "summary.json")) << log;
-  scenario::SessionRequest request;
+  session::SessionRequest request;
   request.scenario = "crossing_left_turn";
   request.seed = "2";
   request.cbv_planner = "pdm_lite";

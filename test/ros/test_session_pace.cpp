@@ -2,12 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // A session at the pace of the wall clock whose planner is late at most decisions: what its result
 // and its bag say is what drove.
+#include "core/text.h"
 #include "e2e_cdiff/DecisionRecord.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "e2e_cdiff/core/text.h"
-#include "e2e_cdiff/ros/replay.h"
-#include "e2e_cdiff/ros/topics.h"
+#include "ros/replay.h"
 #include "ros/session_launch.h"
+#include "ros/topics.h"
 #include "support/random_model.h"
 
 namespace cdiff {

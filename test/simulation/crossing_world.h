@@ -9,8 +9,8 @@
 
 #include <memory>
 
-#include "e2e_cdiff/map/lane_graph.h"
-#include "e2e_cdiff/simulation/sumo_simulator.h"
+#include "map/lane_graph.h"
+#include "simulation/sumo_simulator.h"
 #include "support/sumo_network.h"
 
 namespace cdiff::test {

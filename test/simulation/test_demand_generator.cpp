@@ -8,8 +8,8 @@
 #include <set>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/simulation/demand_generator.h"
 #include "simulation/crossing_world.h"
+#include "simulation/demand_generator.h"
 
 namespace cdiff {
 namespace {

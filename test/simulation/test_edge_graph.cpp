@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/simulation/driven_way.h"
-#include "e2e_cdiff/simulation/sumo_conversion.h"
 #include "simulation/crossing_world.h"
+#include "simulation/driven_way.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff {
 namespace {

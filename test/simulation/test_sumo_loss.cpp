@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/simulation/sumo_process.h"
 #include "simulation/crossing_world.h"
+#include "simulation/sumo_process.h"
 
 namespace cdiff {
 namespace {

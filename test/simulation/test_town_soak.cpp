@@ -8,9 +8,9 @@
 #include <map>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/map/network_import.h"
-#include "e2e_cdiff/simulation/demand_generator.h"
+#include "map/network_import.h"
 #include "simulation/crossing_world.h"
+#include "simulation/demand_generator.h"
 #include "support/real_data.h"
 
 namespace cdiff {

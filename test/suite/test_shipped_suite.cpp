@@ -7,12 +7,12 @@
 #include <map>
 #include <set>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/metrics/session_metrics.h"
-#include "e2e_cdiff/scenario/closed_loop.h"
-#include "e2e_cdiff/scenario/session_request.h"
-#include "e2e_cdiff/suite/suite_generator.h"
+#include "metrics/session_metrics.h"
+#include "session/closed_loop.h"
+#include "session/session_request.h"
+#include "suite/suite_generator.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::suite {
@@ -22,12 +22,12 @@ namespace fs = std::filesystem;
 
 std::vector<SuiteRoute> testRoutes() { return loadSuite("test").routes; }
 
-scenario::ScenarioOptions scenarioOf(const SuiteRoute& route, const std::vector<std::string>& set) {
-  scenario::SessionRequest request;
+session::ScenarioOptions scenarioOf(const SuiteRoute& route, const std::vector<std::string>& set) {
+  session::SessionRequest request;
   request.scenario = loadSuite("test").scenarioFile(route).string();
   request.cbv_planner = "pdm_lite";
   request.set = set;
-  return scenario::resolveRequest(request);
+  return session::resolveRequest(request);
 }
 
 TEST(ShippedTestSuite, HasTheTenRoutesOnSevenNetworks) {
@@ -66,13 +66,13 @@ class TestRoute : public testing::TestWithParam<SuiteRoute> {};
 
 TEST_P(TestRoute, CarriesTheStandardRules) {
   EXPECT_EQ(core::dumpOptions(scenarioOf(GetParam(), {}).verdict),
-            core::dumpOptions(scenario::VerdictOptions::standard()));
+            core::dumpOptions(session::VerdictOptions::standard()));
 }
 
 /// From the route's own points, independent of what the manifest says.
 TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
   const SuiteRoute& planned = GetParam();
-  const scenario::SessionSetup setup(scenarioOf(planned, {}));
+  const session::SessionSetup setup(scenarioOf(planned, {}));
   const map::Route& route = setup.egoRoute();
   EXPECT_GE(route.length(), 80.0);
   EXPECT_LE(route.length(), 200.0);
@@ -100,11 +100,11 @@ TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
 
 /// Alone on the road PDM-Lite drives all of it, on the road.
 TEST_P(TestRoute, IsDrivenWholeByPdmLiteAlone) {
-  const scenario::SessionSetup setup(scenarioOf(GetParam(), {"demand=none"}));
-  struct OffRoad : scenario::SessionObserver {
-    explicit OffRoad(const scenario::SessionSetup& setup)
+  const session::SessionSetup setup(scenarioOf(GetParam(), {"demand=none"}));
+  struct OffRoad : session::SessionObserver {
+    explicit OffRoad(const session::SessionSetup& setup)
         : metrics({}, setup.drivableArea(), setup.egoRoute()) {}
-    void observe(const scenario::TickRecord& record) override {
+    void observe(const session::TickRecord& record) override {
       const auto measures = metrics.observe(*record.snapshot, record.selection);
       outside += measures.ego_off_road;
       completion = measures.route_completion_percent;
@@ -116,7 +116,7 @@ TEST_P(TestRoute, IsDrivenWholeByPdmLiteAlone) {
     int outside = 0;
   } off_road(setup);
   const std::atomic<bool> stop{false};
-  scenario::ClosedLoop loop(setup);
+  session::ClosedLoop loop(setup);
   loop.addObserver(off_road);
   EXPECT_EQ(loop.run(stop), traffic::SessionStatus::kCompleted);
   EXPECT_GT(off_road.ticks, 100);

@@ -4,9 +4,9 @@
 
 #include <fstream>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/suite/suite.h"
+#include "suite/suite.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::suite {

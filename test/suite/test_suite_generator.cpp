@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/scenario/session_setup.h"
-#include "e2e_cdiff/suite/suite_generator.h"
+#include "session/session_setup.h"
+#include "suite/suite_generator.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::suite {
@@ -86,12 +86,12 @@ TEST_F(TrainingSuite, EveryRouteIsWhatItSays) {
   std::set<std::string> ways;
   for (const SuiteRoute& route : suite_->routes) {
     SCOPED_TRACE(route.name);
-    const scenario::ScenarioOptions options =
-        scenario::loadScenario(suite_->scenarioFile(route).string());
+    const session::ScenarioOptions options =
+        session::loadScenario(suite_->scenarioFile(route).string());
     EXPECT_EQ(options.name, route.name);
     EXPECT_EQ(options.traffic.density, vehiclesAt(route.density));
     EXPECT_EQ(options.route.edges, route.edges);
-    const scenario::SessionSetup setup(options);
+    const session::SessionSetup setup(options);
     EXPECT_GE(setup.egoRoute().length(), 80.0);
     EXPECT_LE(setup.egoRoute().length(), 200.0);
     EXPECT_FALSE(setup.egoRoute().junctionStretches().empty());

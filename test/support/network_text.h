@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/core/text.h"
+#include "core/text.h"
 #include "e2e_cdiff/map/road_network.h"
 
 namespace cdiff::test {

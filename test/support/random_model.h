@@ -7,23 +7,23 @@
 #include <cmath>
 #include <filesystem>
 
+#include "diffusion/model.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/model.h"
 
 namespace cdiff::testing {
 
 /// He-scaled weights; gains of normalisations 1, their biases 0.
-inline std::map<std::string, diffusion::Tensor> randomTensors(
-    const std::vector<diffusion::TensorShape>& shapes) {
+inline std::map<std::string, inference::Tensor> randomTensors(
+    const std::vector<inference::TensorShape>& shapes) {
   const core::RandomStream random(1, "random model");
-  std::map<std::string, diffusion::Tensor> tensors;
-  for (const diffusion::TensorShape& shape : shapes) {
+  std::map<std::string, inference::Tensor> tensors;
+  for (const inference::TensorShape& shape : shapes) {
     std::size_t count = 1;
     for (const std::int64_t size : shape.shape) count *= static_cast<std::size_t>(size);
     const double fan_in = shape.shape.size() > 1
                               ? static_cast<double>(count) / static_cast<double>(shape.shape[0])
                               : 1.0;
-    diffusion::Tensor tensor{shape.shape, {}};
+    inference::Tensor tensor{shape.shape, {}};
     const bool norm = shape.name.find("norm") != std::string::npos;
     const bool vector = shape.shape.size() == 1;
     for (std::size_t i = 0; i < count; ++i) {
@@ -67,7 +67,7 @@ inline std::string writeRandomModel(const std::filesystem::path& folder,
                                     const diffusion::Architecture& architecture = {}) {
   std::filesystem::create_directories(folder);
   diffusion::saveModel(cdiff::testing::randomModel(architecture), folder,
-                       diffusion::TensorType::kF16, {});
+                       inference::TensorType::kF16, {});
   return folder.string();
 }
 

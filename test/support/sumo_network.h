@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "e2e_cdiff/core/file.h"
+#include "core/file.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "support/temporary_folder.h"
 

@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "diffusion/architecture.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/diffusion/architecture.h"
-#include "e2e_cdiff/training/shard.h"
 #include "support/temporary_folder.h"
+#include "training/shard.h"
 
 namespace cdiff::test {
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/training/dataset.h"
+#include "training/dataset.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {

@@ -5,10 +5,10 @@
 // order.
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/diffusion/cpu_denoiser.h"
-#include "e2e_cdiff/diffusion/image_encoder.h"
-#include "networks.h"
+#include "diffusion/cpu_denoiser.h"
+#include "diffusion/image_encoder.h"
 #include "support/random_model.h"
+#include "training/networks.h"
 
 namespace cdiff::training {
 namespace {

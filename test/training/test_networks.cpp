@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "networks.h"
+#include "training/networks.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {
@@ -18,9 +18,9 @@ Shapes shapesOf(const ParameterSet& parameters) {
   return shapes;
 }
 
-Shapes shapesOf(const std::vector<diffusion::TensorShape>& tensors) {
+Shapes shapesOf(const std::vector<inference::TensorShape>& tensors) {
   Shapes shapes;
-  for (const diffusion::TensorShape& tensor : tensors) shapes[tensor.name] = tensor.shape;
+  for (const inference::TensorShape& tensor : tensors) shapes[tensor.name] = tensor.shape;
   return shapes;
 }
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/training/sample_balance.h"
+#include "training/sample_balance.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {

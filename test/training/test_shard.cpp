@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/training/shard.h"
+#include "training/shard.h"
 #include "training/small_samples.h"
 
 namespace cdiff::training {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <sstream>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "stage_runner.h"
 #include "training/small_samples.h"
+#include "training/stage_runner.h"
 
 namespace cdiff::training {
 namespace {

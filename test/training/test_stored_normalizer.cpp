@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "checkpoint.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "stage_runner.h"
-#include "stored_normalizer.h"
+#include "training/checkpoint.h"
 #include "training/small_samples.h"
+#include "training/stage_runner.h"
+#include "training/stored_normalizer.h"
 
 namespace cdiff::training {
 namespace {

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "checkpoint.h"
+#include "core/file.h"
+#include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/core/file.h"
-#include "e2e_cdiff/diffusion/model.h"
-#include "e2e_cdiff/training/trainer.h"
+#include "training/checkpoint.h"
 #include "training/small_samples.h"
+#include "training/trainer.h"
 
 namespace cdiff::training {
 namespace {

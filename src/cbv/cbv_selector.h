@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// CBV identification (paper III-B): for every vehicle the best conflict point with the ego's
+/// remaining route by equal distance, equal arrival time and nearness; the best candidates fill the
+/// slots and keep them (RIFT's life cycle by default).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cbv/cbv_options.h"
+#include "cbv/conflict_search.h"
+#include "cbv/held_cbv.h"
+#include "cbv/rejection_reason.h"
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "map/lane_graph.h"
+
+namespace cdiff::cbv {
+
+/// Not copyable; one per session; called once per tick in order: `update` at decision ticks,
+/// `observe` at all others.
+class CbvSelector {
+ public:
+  /// Keeps references: the graph's network and the route must outlive the selector. Throws
+  /// InputError for bad options or a negative count.
+  CbvSelector(const CbvOptions& options, int max_cbv, const map::LaneGraph& graph,
+              const map::Route& ego_route);
+  CbvSelector(const CbvSelector&) = delete;
+  CbvSelector& operator=(const CbvSelector&) = delete;
+
+  /// A tick without decision: remembers contacts, so that a release names its reason.
+  void observe(const traffic::TrafficSnapshot& snapshot);
+  /// The selection of this decision. A pure function of the snapshots seen so far.
+  CbvSelection update(const traffic::TrafficSnapshot& snapshot);
+
+ private:
+  /// A vehicle with a conflict that may get a slot.
+  struct Candidate {
+    const traffic::Vehicle* vehicle = nullptr;
+    map::LanePosition place;
+    Conflict conflict;
+    double separation = 0.0;  ///< from the ego, centre to centre [m]
+  };
+
+  bool reselects() const { return options_.life_cycle == "reselect"; }
+  void followEgo(const traffic::Vehicle& ego);
+  bool selectionDue(double time);
+  bool holds(const std::string& vehicle_id) const;
+  void updateHeld(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  void releaseLost(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  void release(int slot, const char* reason, CbvSelection& selection);
+  void select(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
+  std::vector<Candidate> rankedCandidates(const traffic::TrafficSnapshot& snapshot,
+                                          CbvSelection& selection) const;
+  const char* examine(const traffic::TrafficSnapshot& snapshot, Candidate& candidate) const;
+  int slotFor(const Candidate& candidate, std::uint64_t tick) const;
+  std::optional<HeldCbv> makeHeld(int slot, const Candidate& candidate, std::uint64_t tick) const;
+
+  CbvOptions options_;
+  int max_cbv_;
+  map::LaneGraph graph_;  ///< turns round only where the ego's route does
+  const map::Route& ego_route_;
+  ConflictSearch search_;
+  std::map<int, HeldCbv> slots_;
+  std::set<std::string> never_again_;
+  std::set<std::string> contacted_;  ///< between decisions
+  EgoProgress ego_;
+  bool seen_ego_ = false;
+  double last_selection_ = -1.0;  ///< index of the last selection period
+};
+
+}  // namespace cdiff::cbv

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/collection_options.h"
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::collection {
+namespace {
+
+void requireOrder(const char* low_key, double low, const char* high_key, double high) {
+  if (low <= high) return;
+  throw core::InputError(std::string("collection: ") + low_key + " is " + core::formatNumber(low) +
+                         ", more than " + high_key + " (" + core::formatNumber(high) + ")");
+}
+
+}  // namespace
+
+void NoiseOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"interval", "s", "Mean time between bursts of noise."}, interval, 0.5, 1e6);
+  visitor.number({"minimum_time", "s", "Shortest burst."}, minimum_time, 0.1, 10.0);
+  visitor.number({"maximum_time", "s", "Longest burst."}, maximum_time, 0.1, 10.0);
+  visitor.number({"steer", "", "Largest addition to the steering."}, steer, 0.0, 1.0);
+  visitor.number({"steer_speed", "m/s", "Speed above which the addition shrinks."}, steer_speed,
+                 0.1, 40.0);
+  visitor.number({"pedal", "", "Largest addition to throttle or brake."}, pedal, 0.0, 1.0);
+  visitor.number({"stall_share", "", "Part of the bursts that stop the vehicle."}, stall_share, 0.0,
+                 1.0);
+  visitor.number({"stall_minimum_time", "s", "Shortest stop, braking included."},
+                 stall_minimum_time, 0.1, 60.0);
+  visitor.number({"stall_maximum_time", "s", "Longest stop, at most standing_time."},
+                 stall_maximum_time, 0.1, 60.0);
+  visitor.number({"lateral", "m", "Standard deviation of the place at the take-over."}, lateral,
+                 0.0, 2.0);
+  visitor.number({"heading", "deg", "Standard deviation of the heading at the take-over."}, heading,
+                 0.0, 30.0);
+}
+
+void CollectionOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.integer({"vehicles", "", "Background vehicles driven at a time."}, vehicles, 0, 16);
+  visitor.number({"duration", "s", "Longest session."}, duration, 1.0, 3600.0);
+  visitor.number({"image_period", "s", "Time between images of a vehicle."}, image_period, 0.1,
+                 10.0);
+  visitor.number({"minimum_speed", "m/s", "Lowest target speed."}, minimum_speed, 0.5, 40.0);
+  visitor.number({"maximum_speed", "m/s", "Highest target speed."}, maximum_speed, 0.5, 40.0);
+  visitor.number({"maximum_gap", "m", "Largest gap kept behind a standing leader."}, maximum_gap,
+                 4.0, 50.0);
+  visitor.number({"maximum_headway", "s", "Largest time kept to a leader."}, maximum_headway, 0.25,
+                 10.0);
+  visitor.text({"pedals", "", "Even pedals, or PDM-Lite's as published: full or none."}, pedals,
+               {"even", "published"});
+  visitor.number({"minimum_acceleration", "m/s^2", "Least acceleration of an even vehicle."},
+                 minimum_acceleration, 0.5, 8.0);
+  visitor.number({"maximum_acceleration", "m/s^2", "Largest acceleration of an even vehicle."},
+                 maximum_acceleration, 0.5, 8.0);
+  visitor.number({"minimum_deceleration", "m/s^2", "Least comfortable deceleration."},
+                 minimum_deceleration, 0.5, 8.0);
+  visitor.number({"maximum_deceleration", "m/s^2", "Largest comfortable deceleration."},
+                 maximum_deceleration, 0.5, 8.0);
+  visitor.number({"radius", "m", "Vehicles this near the ego are driven."}, radius, 10.0, 1000.0);
+  visitor.number({"spacing", "m", "Wished between driven vehicles when chosen."}, spacing, 0.0,
+                 100.0);
+  visitor.number({"minimum_route", "m", "Shorter routes are not taken."}, minimum_route, 20.0,
+                 2000.0);
+  visitor.number({"route_length", "m", "Length of routes where the network allows."}, route_length,
+                 20.0, 2000.0);
+  visitor.number({"route_end", "m", "Released with less of the route left."}, route_end, 5.0,
+                 500.0);
+  visitor.number({"off_road_distance", "m", "Released farther outside the drivable area."},
+                 off_road_distance, 0.0, 50.0);
+  visitor.number({"standing_time", "s", "Released after standing so long."}, standing_time, 1.0,
+                 1000.0);
+  visitor.number({"pause", "s", "Before a released vehicle may be driven again."}, pause, 0.0,
+                 1000.0);
+  visitor.number({"lane_change_share", "", "Share of long lanes on which a route changes lane."},
+                 lane_change_share, 0.0, 1.0);
+  visitor.number({"program_lights_share", "", "Share of sessions with the lights' programs."},
+                 program_lights_share, 0.0, 1.0);
+  visitor.number({"minimum_density", "", "Fewest vehicles of generated demand."}, minimum_density,
+                 0.0, 500.0);
+  visitor.number({"maximum_density", "", "Most vehicles of generated demand."}, maximum_density,
+                 0.0, 500.0);
+  visitor.number({"standing_share", "", "Part kept of samples that stand all the time."},
+                 standing_share, 0.0, 1.0);
+  visitor.number({"offset_share", "", "Part of moving samples that are displaced once more."},
+                 offset_share, 0.0, 1.0);
+  visitor.number({"offset_lateral", "m", "Largest displacement to the side."}, offset_lateral, 0.0,
+                 3.0);
+  visitor.number({"offset_heading", "deg", "Largest turn of a displaced vehicle."}, offset_heading,
+                 0.0, 45.0);
+  visitor.group({"noise", "", "Disturbances."}, noise);
+}
+
+void CollectionOptions::validate() const {
+  requireOrder("minimum_speed", minimum_speed, "maximum_speed", maximum_speed);
+  requireOrder("minimum_acceleration", minimum_acceleration, "maximum_acceleration",
+               maximum_acceleration);
+  requireOrder("minimum_deceleration", minimum_deceleration, "maximum_deceleration",
+               maximum_deceleration);
+  requireOrder("minimum_density", minimum_density, "maximum_density", maximum_density);
+  requireOrder("minimum_route", minimum_route, "route_length", route_length);
+  requireOrder("route_end", route_end, "minimum_route", minimum_route);
+  requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
+               noise.stall_maximum_time);
+  if (noise.stall_share > 0.0)
+    requireOrder("noise.stall_maximum_time", noise.stall_maximum_time, "standing_time",
+                 standing_time);
+  requireOrder("noise.minimum_time", noise.minimum_time, "noise.maximum_time", noise.maximum_time);
+}
+
+}  // namespace cdiff::collection

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Options of data collection: how many vehicles are driven, on which routes, how they are
+/// disturbed, and how often an image is taken (SI units).
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/core/options.h"
+
+namespace cdiff::collection {
+
+/// Disturbances of what the recorded planner commands, and of where it begins.
+struct NoiseOptions {
+  double interval = 6.0;            ///< mean time from one burst to the next of a vehicle [s]
+  double minimum_time = 0.3;        ///< shortest burst [s]
+  double maximum_time = 0.8;        ///< longest burst [s]
+  double steer = 0.45;              ///< largest addition to the steering, up to steer_speed
+  double steer_speed = 3.5;         ///< faster vehicles get less: steer x steer_speed / speed [m/s]
+  double pedal = 0.6;               ///< largest addition to throttle or brake
+  double stall_share = 0.15;        ///< of bursts: a vehicle that moves is stopped instead
+  double stall_minimum_time = 3.0;  ///< shortest stop, braking included [s]
+  double stall_maximum_time = 6.0;  ///< longest stop [s]
+  double lateral = 0.4;             ///< standard deviation of the place at the take-over [m]
+  double heading = 5.0;             ///< standard deviation of the heading at the take-over [deg]
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+struct CollectionOptions {
+  std::int64_t vehicles = 12;         ///< background vehicles driven at a time
+  double duration = 60.0;             ///< longest session [s]
+  double image_period = 0.5;          ///< between two images of a vehicle [s]
+  double minimum_speed = 5.0;         ///< lowest target speed of a vehicle [m/s]
+  double maximum_speed = 12.0;        ///< highest target speed of a vehicle [m/s]
+  double maximum_gap = 7.0;           ///< largest s0 behind a leader, drawn from 4 m on [m]
+  double maximum_headway = 1.2;       ///< largest T behind a leader, drawn from 0.25 s on [s]
+  std::string pedals = "even";        ///< even | published (PDM-Lite's, full or none)
+  double minimum_acceleration = 1.5;  ///< least a of an even vehicle [m/s^2]
+  double maximum_acceleration = 3.5;  ///< largest a of an even vehicle [m/s^2]
+  double minimum_deceleration = 2.0;  ///< least b of an even vehicle [m/s^2]
+  double maximum_deceleration = 4.0;  ///< largest b of an even vehicle [m/s^2]
+  double radius = 150.0;              ///< of the ego: vehicles within it are driven [m]
+  double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
+  double minimum_route = 120.0;       ///< shorter routes are not taken [m]
+  double route_length = 250.0;        ///< of a vehicle, where the network allows [m]
+  double route_end = 40.0;            ///< released with less of its route left [m]
+  double off_road_distance = 3.0;     ///< released farther outside the drivable area [m]
+  double standing_time = 8.0;         ///< released after standing so long [s]
+  double pause = 3.0;                 ///< before a released vehicle may be driven again [s]
+  double lane_change_share = 0.15;    ///< of lanes longer than 60 m that have a neighbour
+  double program_lights_share = 0.4;  ///< of sessions with the lights' own programs
+  double minimum_density = 18.0;      ///< fewest vehicles near the ego, of generated demand
+  double maximum_density = 45.0;      ///< most vehicles near the ego, of generated demand
+  double standing_share = 0.25;       ///< of samples that stand all the time, the part kept
+  double offset_share = 0.2;          ///< of samples that move, the part displaced once more
+  double offset_lateral = 0.75;       ///< largest displacement to the side [m]
+  double offset_heading = 12.0;       ///< largest turn of a displaced vehicle [deg]
+  NoiseOptions noise;
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError for fields that contradict each other.
+  void validate() const;
+};
+
+}  // namespace cdiff::collection

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/traffic_driver.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "cbv/candidate_gates.h"
+#include "cbv/held_cbv.h"
+#include "cbv/rejection_reason.h"
+#include "collection/random_route.h"
+
+namespace cdiff::collection {
+namespace {
+
+constexpr double kStandingSpeed = 0.1;  // [m/s]
+constexpr int kTakenAtOnce = 2;         // vehicles a decision
+constexpr double kNotAgain = 1.0;       // [s] after a failed try
+
+}  // namespace
+
+TrafficDriver::TrafficDriver(const CollectionOptions& options, const map::LaneGraph& graph,
+                             const map::DrivableArea& area, std::uint64_t seed)
+    : options_(options), graph_(graph), area_(area), random_(seed, "collection_routes") {
+  options_.validate();
+}
+
+void TrafficDriver::observe(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Contact& contact : snapshot.contacts) {
+    contacted_.insert(contact.first);
+    contacted_.insert(contact.second);
+  }
+}
+
+cbv::CbvSelection TrafficDriver::update(const traffic::TrafficSnapshot& snapshot) {
+  cbv::CbvSelection selection;
+  selection.tick = snapshot.tick;
+  observe(snapshot);
+  updateHeld(snapshot, selection);
+  fill(snapshot);
+  contacted_.clear();
+  for (const auto& [slot, held] : slots_) selection.assignments.push_back(held.assignment);
+  return selection;
+}
+
+void TrafficDriver::updateHeld(const traffic::TrafficSnapshot& snapshot,
+                               cbv::CbvSelection& selection) {
+  for (auto entry = slots_.begin(); entry != slots_.end();) {
+    const std::string id = entry->second.assignment.vehicle_id;
+    const char* reason = releaseReason(snapshot, entry->second);
+    if (reason == nullptr) {
+      ++entry;
+      continue;
+    }
+    selection.released.push_back({entry->first, id, reason});
+    not_before_[id] = snapshot.time + options_.pause;
+    entry = slots_.erase(entry);
+  }
+}
+
+const char* TrafficDriver::releaseReason(const traffic::TrafficSnapshot& snapshot,
+                                         Held& held) const {
+  const std::string& id = held.assignment.vehicle_id;
+  if (contacted_.count(id) != 0) return cbv::kContact;
+  const traffic::Vehicle* vehicle = snapshot.find(id);
+  if (vehicle == nullptr) return cbv::kGone;
+  const map::Route& route = held.assignment.conflict_aware_route;
+  const traffic::VehicleState& state = vehicle->state;
+  held.follower.update(route, state.position);
+  held.assignment.conflict_point.cbv_distance =
+      std::max(0.0, route.length() - held.follower.arcLength());
+  if (held.assignment.conflict_point.cbv_distance < options_.route_end) return cbv::kRouteEnd;
+  const double inside = area_.signedDistance(state.position, state.elevation);
+  if (inside < -options_.off_road_distance) return kLeftRoad;
+  if (state.speed > kStandingSpeed)
+    held.standing_since = -1.0;
+  else if (held.standing_since < 0.0)
+    held.standing_since = snapshot.time;
+  const bool stood =
+      held.standing_since >= 0.0 && snapshot.time - held.standing_since >= options_.standing_time;
+  return stood ? kStoodTooLong : nullptr;
+}
+
+/// Distance to the nearest driven vehicle.
+double TrafficDriver::spaceAround(const traffic::TrafficSnapshot& snapshot,
+                                  const traffic::Vehicle& vehicle) const {
+  double space = std::numeric_limits<double>::infinity();
+  for (const traffic::Vehicle& other : snapshot.vehicles) {
+    const bool driven = other.role == traffic::VehicleRole::kEgo ||
+                        std::any_of(slots_.begin(), slots_.end(), [&](const auto& slot) {
+                          return slot.second.assignment.vehicle_id == other.id;
+                        });
+    if (!driven) continue;
+    space = std::min(space, (other.state.position - vehicle.state.position).norm());
+  }
+  return space;
+}
+
+/// Those that may be driven, nearest to the ego first; crowded ones last.
+std::vector<const traffic::Vehicle*> TrafficDriver::candidates(
+    const traffic::TrafficSnapshot& snapshot) const {
+  struct Ranked {
+    bool crowded;
+    double distance;
+    const traffic::Vehicle* vehicle;
+  };
+  std::vector<Ranked> ranked;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role != traffic::VehicleRole::kBackground) continue;
+    const auto pause = not_before_.find(vehicle.id);
+    if (pause != not_before_.end() && snapshot.time < pause->second) continue;
+    if (contacted_.count(vehicle.id) != 0) continue;
+    const double distance = (vehicle.state.position - snapshot.ego()->state.position).norm();
+    if (distance > options_.radius) continue;
+    ranked.push_back({spaceAround(snapshot, vehicle) < options_.spacing, distance, &vehicle});
+  }
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& left, const Ranked& right) {
+    if (left.crowded != right.crowded) return right.crowded;
+    if (left.distance != right.distance) return left.distance < right.distance;
+    return left.vehicle->id < right.vehicle->id;
+  });
+  std::vector<const traffic::Vehicle*> vehicles;
+  for (const Ranked& one : ranked) vehicles.push_back(one.vehicle);
+  return vehicles;
+}
+
+void TrafficDriver::fill(const traffic::TrafficSnapshot& snapshot) {
+  if (snapshot.ego() == nullptr) return;
+  int taken = 0;
+  for (int slot = 0; slot < options_.vehicles && taken < kTakenAtOnce; ++slot) {
+    if (slots_.count(slot) != 0) continue;
+    const std::vector<const traffic::Vehicle*> all = candidates(snapshot);
+    const auto fits = [&](const traffic::Vehicle* vehicle) {
+      const bool held = std::any_of(slots_.begin(), slots_.end(), [&](const auto& entry) {
+        return entry.second.assignment.vehicle_id == vehicle->id;
+      });
+      return !held && take(snapshot, *vehicle, slot);
+    };
+    if (std::none_of(all.begin(), all.end(), fits)) return;
+    ++taken;
+  }
+}
+
+bool TrafficDriver::take(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle,
+                         int slot) {
+  const cbv::LanePlacement placement =
+      cbv::placeOnLane(graph_.network(), vehicle, cbv::CbvOptions());
+  const RandomRouteOptions wished{options_.minimum_route, options_.route_length,
+                                  options_.lane_change_share};
+  const core::RandomKey key{core::hashText(vehicle.id), static_cast<std::uint32_t>(snapshot.tick),
+                            0};
+  std::optional<map::Route> route;
+  if (placement.reason == nullptr)
+    route = randomRoute(graph_, placement.place, wished, random_, key);
+  if (!route) {
+    not_before_[vehicle.id] = snapshot.time + kNotAgain;
+    return false;
+  }
+  Held held;
+  held.follower.update(*route, vehicle.state.position);
+  held.assignment.slot = slot;
+  held.assignment.vehicle_id = vehicle.id;
+  held.assignment.selected_tick = snapshot.tick;
+  held.assignment.conflict_point.position = route->path().points().back();
+  held.assignment.conflict_point.cbv_distance = route->length();
+  held.assignment.conflict_aware_route = std::move(*route);
+  slots_.emplace(slot, std::move(held));
+  return true;
+}
+
+}  // namespace cdiff::collection

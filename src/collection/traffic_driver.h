@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Fills the slots of data collection with background vehicles near the ego, each on a random route
+/// of its own, and releases them; speaks as CBV identification does, so that the world and the
+/// records need not know. Distances in metres, times in seconds.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "collection/collection_options.h"
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "map/lane_graph.h"
+#include "planning/route_follower.h"
+
+namespace cdiff::collection {
+
+/// Reasons of release that CBV identification does not have.
+inline constexpr const char* kStoodTooLong = "stood_too_long";
+inline constexpr const char* kLeftRoad = "left_road";
+
+class TrafficDriver {
+ public:
+  /// References must outlive the object.
+  TrafficDriver(const CollectionOptions& options, const map::LaneGraph& graph,
+                const map::DrivableArea& area, std::uint64_t seed);
+
+  /// For ticks between decisions: remembers contacts.
+  void observe(const traffic::TrafficSnapshot& snapshot);
+  /// Who is driven at this decision. The conflict point of an assignment is the end of its route.
+  cbv::CbvSelection update(const traffic::TrafficSnapshot& snapshot);
+
+ private:
+  struct Held {
+    cbv::CbvAssignment assignment;
+    planning::RouteFollower follower;
+    double standing_since = -1.0;
+  };
+  void updateHeld(const traffic::TrafficSnapshot& snapshot, cbv::CbvSelection& selection);
+  const char* releaseReason(const traffic::TrafficSnapshot& snapshot, Held& held) const;
+  void fill(const traffic::TrafficSnapshot& snapshot);
+  std::vector<const traffic::Vehicle*> candidates(const traffic::TrafficSnapshot& snapshot) const;
+  double spaceAround(const traffic::TrafficSnapshot& snapshot,
+                     const traffic::Vehicle& vehicle) const;
+  bool take(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle, int slot);
+
+  CollectionOptions options_;
+  const map::LaneGraph& graph_;
+  const map::DrivableArea& area_;
+  core::RandomStream random_;
+  std::map<int, Held> slots_;
+  std::map<std::string, double> not_before_;  ///< by vehicle: time it may be driven again
+  std::set<std::string> contacted_;
+};
+
+}  // namespace cdiff::collection

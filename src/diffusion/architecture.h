@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Sizes of the networks; they travel in the metadata of the weight files (docs/network.md draws
+/// the networks and names every tensor).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "inference/safetensors.h"
+
+namespace cdiff::diffusion {
+
+struct Architecture {
+  std::int64_t horizon = 32;                           ///< T, a multiple of 4
+  std::int64_t diffusion_steps = 100;                  ///< K
+  std::vector<std::int64_t> channels = {32, 64, 128};  ///< of the U-Net's levels
+  std::int64_t kernel = 5;                             ///< of its convolutions
+  std::int64_t groups = 8;                             ///< of its group normalisation
+  std::int64_t time_width = 64;                        ///< time embedding; hidden layer: 4 times
+  std::int64_t image_width = 160;                      ///< [px]
+  std::int64_t image_height = 96;                      ///< [px]
+  std::int64_t image_features = 256;                   ///< output of the image encoder
+  std::int64_t route_points = 16;                      ///< route tokens
+  double route_spacing = 3.0;                          ///< between route points [m]
+  std::int64_t route_features = 64;                    ///< their hidden layer has twice as many
+  std::int64_t speed_features = 32;
+  std::int64_t context_width = 128;  ///< c
+  std::int64_t state_hidden = 256;   ///< of the state head
+
+  /// Throws InputError naming the size that is out of range or does not fit the others.
+  void validate() const;
+  /// As JSON text and back; throws InputError naming the key that is missing, unknown or of the
+  /// wrong type.
+  std::string toJson() const;
+  static Architecture fromJson(const std::string& text, const std::string& source);
+};
+
+bool operator==(const Architecture& left, const Architecture& right);
+
+/// Every tensor of the denoiser (U-Net, conditioning, heads) in a fixed order.
+std::vector<inference::TensorShape> denoiserTensors(const Architecture& architecture);
+/// Every tensor of the image encoder in a fixed order.
+std::vector<inference::TensorShape> encoderTensors(const Architecture& architecture);
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The image encoder: ResNet-34 with group normalisation and a projection, rgb8 image -> features
+/// (architecture.image_features). Float32, one image at a time, so that an image's features do not
+/// depend on its neighbours.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "diffusion/model.h"
+#include "e2e_cdiff/traffic/camera_image.h"
+
+namespace cdiff::diffusion {
+
+/// One per thread; reuses its buffers.
+class ImageEncoder {
+ public:
+  explicit ImageEncoder(const Model& model);
+  ImageEncoder(ImageEncoder&&) noexcept;
+  ImageEncoder& operator=(ImageEncoder&&) noexcept;
+  ~ImageEncoder();
+
+  /// Throws std::invalid_argument for an image of another size.
+  std::vector<float> encode(const traffic::CameraImage& image);
+  /// Instruction set that computes, for records.
+  static std::string instructionSet();
+
+ private:
+  struct Network;
+  std::unique_ptr<Network> network_;
+};
+
+}  // namespace cdiff::diffusion

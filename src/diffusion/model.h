@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The trained planner as it comes from disk: encoder.safetensors and denoiser.safetensors in one
+/// folder, with the architecture in the metadata of each, normaliser and spread in the denoiser's.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "diffusion/normalizer.h"
+#include "inference/safetensors.h"
+
+namespace cdiff::diffusion {
+
+struct Model {
+  std::string name;    ///< for records: folder name
+  std::string sha256;  ///< of both data sections
+  Architecture architecture;
+  Normalizer normalizer;
+  traffic::Rollout spread;  ///< [T, 7] sd of the clean trajectory given its context, normalised
+  std::map<std::string, inference::Tensor> encoder;
+  std::map<std::string, inference::Tensor> denoiser;
+};
+
+/// Reads a folder, or the name of a shipped model (share folder, weights/NAME). Throws InputError:
+/// see readSafetensors; also when the encoder is not the one that the denoiser was trained with
+/// (architecture, and SHA-256 where the denoiser names it), or the metadata keys "format"
+/// ("e2e_cdiff.encoder.1", "e2e_cdiff.denoiser.1"), "architecture" and, of the denoiser,
+/// "normalizer" and "spread" are missing or malformed.
+Model loadModel(const std::string& name_or_folder);
+
+/// Identifies the files of a folder or shipped model for records: SHA-256 of the hashes of encoder
+/// and denoiser file, one after the other. Throws InputError for an unknown model or missing file.
+std::string modelFilesSha256(const std::string& name_or_folder);
+
+/// Writes both files into `folder`; `training_facts` go into the denoiser's.
+void saveModel(const Model& model, const std::filesystem::path& folder, inference::TensorType type,
+               const std::map<std::string, std::string>& training_facts);
+
+}  // namespace cdiff::diffusion

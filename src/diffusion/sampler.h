@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Guided sampling of a batch of normalised trajectories (paper III-C4 and III-D).
+///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k =
+///  gradient
+///    of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state branch; no noise
+///    is added at k = 1.
+///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
+///    J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c r_k per element, r_k^2 =
+///    s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s = spread given the context.
+///  - `unguided`: DDPM over all K steps without J.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diffusion/denoiser.h"
+#include "diffusion/noise_schedule.h"
+#include "diffusion/normalizer.h"
+#include "diffusion/state_branch.h"
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/core/random.h"
+
+namespace cdiff::diffusion {
+
+struct SamplerOptions {
+  std::string mode = "real_time";     ///< paper | real_time | unguided
+  std::int64_t steps = 10;            ///< of real_time
+  std::int64_t inner_iterations = 4;  ///< of the proximal step
+  double trust_region = 2.0;          ///< c; a matter of guidance, so its options set it
+  bool warm_start = false;            ///< real_time: start from the previous plan where it fits
+  std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
+  std::int64_t warm_steps = 5;        ///< denoising steps from there
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError; `diffusion_steps` is K of the model.
+  void validate(int diffusion_steps) const;
+};
+
+/// J of one sample of the batch on clean normalised trajectories.
+class CleanObjective {
+ public:
+  virtual ~CleanObjective() = default;
+  /// Whether anything acts on this sample at this diffusion step.
+  virtual bool actsAt(std::size_t sample, int k) const = 0;
+  /// J and its gradient with respect to the normalised cells (states and actions as independent
+  /// variables); `gradient` has the shape of `clean` and is overwritten.
+  virtual double evaluate(std::size_t sample, int k, const Trajectory& clean,
+                          Trajectory& gradient) = 0;
+};
+
+/// One sample to draw.
+struct SampleRequest {
+  core::RandomKey key;               ///< vehicle and decision of its noise
+  std::uint32_t candidate = 0;       ///< index among the samples of that vehicle
+  const Trajectory* warm = nullptr;  ///< previous plan, shifted to now; nullptr: cold start
+};
+
+struct SampledTrajectory {
+  Trajectory clean;  ///< [T, 7]
+  std::int64_t guided_steps = 0;
+  std::int64_t trust_region_hits = 0;  ///< guided steps in which the trust region acted
+};
+
+/// One per planner; keeps references.
+class Sampler {
+ public:
+  Sampler(const SamplerOptions& options, const NoiseSchedule& schedule,
+          const traffic::Rollout& spread, const core::RandomStream& noise);
+
+  /// Draws all requests as one batch, for the contexts that `denoiser` holds (same order and
+  /// count). Cold or warm starts, not both (std::invalid_argument); modes other than real_time
+  /// start cold. `objective` may be nullptr.
+  std::vector<SampledTrajectory> sample(Denoiser& denoiser, StateBranch& states,
+                                        const std::vector<SampleRequest>& requests,
+                                        CleanObjective* objective) const;
+  /// Diffusion steps that the mode visits, in order, for a cold or a warm start.
+  std::vector<int> visitedSteps(bool warm) const;
+
+ private:
+  SamplerOptions options_;
+  const NoiseSchedule& schedule_;
+  const traffic::Rollout& spread_;
+  core::RandomStream noise_;
+};
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What a finished batch is read by: tables/table_N.csv, tables/tables.md, figures/figure_N.csv and
+/// .svg, index.html. All are functions of the folder's records and runs, and need nothing to run.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "evaluation/paper_figures.h"
+
+namespace cdiff::evaluation {
+
+/// Writes them all, each file whole. Throws InputError naming the file for a folder without
+/// records, a damaged record, summary or trace, and a file that cannot be written.
+void writeBatchReport(const std::filesystem::path& results, const std::string& name);
+
+/// Text of tables.md.
+std::string tablesMarkdown(const std::vector<Table>& tables);
+
+/// Text of index.html: what failed first, every run with a link to its report, tables and figures;
+/// self-contained. Elements of class "wall-clock" hold all that depends on wall-clock time.
+std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
+                      const std::vector<Table>& tables, const std::vector<Figure>& figures);
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// J_total = sum_i c_i w_i J_i of one sample at one diffusion step, with the bookkeeping of
+/// GuidanceReport. c_i = min(1, gradient_cap / |w_i dJ_i/d tau|) where the step begins: value and
+/// gradient stay those of one function within a step. Not finite there -> the objective is left out
+/// of that step and counted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "e2e_cdiff/guidance/guidance_report.h"
+#include "guidance/guidance_options.h"
+
+namespace cdiff::guidance {
+
+/// For ranking samples: fewer undefined objectives first, then the lower value.
+struct Score {
+  std::size_t undefined = 0;  ///< objectives that are not finite
+  double value = 0.0;         ///< weighted sum of the others
+  bool operator<(const Score& other) const {
+    return undefined != other.undefined ? undefined < other.undefined : value < other.value;
+  }
+};
+
+/// One per sample and decision. References must outlive it.
+class TotalObjective {
+ public:
+  TotalObjective(const GuidanceOptions& options, const GuidanceScene& scene);
+
+  /// Whether any objective acts at this diffusion step.
+  bool actsAt(int diffusion_step) const;
+  /// J_total of a metric rollout; `gradient` (resized to its shape) becomes dJ_total/d(rollout).
+  /// `scale` [T, 7] is the size of a normalised unit in each cell: caps and reported norms are
+  /// those of gradient x scale. The first call of a diffusion step begins it; a later one is
+  /// infinite where an objective is not finite that was so at first.
+  double evaluate(int diffusion_step, const traffic::Rollout& rollout,
+                  const traffic::Rollout& scale, traffic::Rollout& gradient);
+  /// Every objective with a weight, whatever its window.
+  Score score(const traffic::Rollout& rollout) const;
+  /// What happened so far, with the values at `chosen`.
+  GuidanceReport report(const traffic::Rollout& chosen) const;
+
+ private:
+  struct Tally {
+    double norm_sum = 0.0;
+    std::int64_t steps = 0;
+    std::int64_t capped = 0;
+    std::int64_t dropped = 0;
+  };
+  /// Weighted value and gradient of one objective, into part_.
+  double weighted(std::size_t index, const traffic::Rollout& rollout);
+  /// c_i of a step that begins; 0 to leave the objective out.
+  double shareOf(std::size_t index, double value, double norm);
+  const GuidanceOptions& options_;
+  const GuidanceScene& scene_;
+  std::vector<Tally> tallies_;  ///< by objective
+  int step_ = 0;                ///< the diffusion step that shares_ are of
+  std::vector<double> shares_;  ///< c_i; 0 for an objective that is left out
+  traffic::Rollout part_;       ///< gradient of one objective
+};
+
+}  // namespace cdiff::guidance

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The kernels for any CPU, on the compiler's generic vectors; a multiplication and an addition
+/// take the place of the fused ones.
+#include "inference/convolution_kernel.h"
+#include "inference/normalization_kernel.h"
+
+namespace cdiff::inference {
+namespace {
+
+typedef float Lanes __attribute__((vector_size(16), aligned(4), may_alias));
+typedef std::uint32_t Bits __attribute__((vector_size(16)));
+
+struct Vector {
+  static constexpr int kWidth = 4;
+  static constexpr int kTileRows = 4;
+  Lanes lanes;
+
+  static Vector load(const float* from) { return {*reinterpret_cast<const Lanes*>(from)}; }
+  static Vector broadcast(float value) { return {Lanes{value, value, value, value}}; }
+  static Vector fma(Vector a, Vector b, Vector c) { return {a.lanes * b.lanes + c.lanes}; }
+  static Vector min(Vector a, Vector b) { return {a.lanes < b.lanes ? a.lanes : b.lanes}; }
+  static Vector max(Vector a, Vector b) { return {a.lanes > b.lanes ? a.lanes : b.lanes}; }
+  static Vector squareRoot(Vector a) {
+    for (int i = 0; i < kWidth; ++i) a.lanes[i] = __builtin_sqrtf(a.lanes[i]);
+    return a;
+  }
+  /// 2^k of the integer k in the low bits of `shifted` (see exponential).
+  static Vector powerOfTwo(Vector shifted) {
+    const Bits bits = (reinterpret_cast<Bits>(shifted.lanes) + 127u) << 23;
+    return {reinterpret_cast<Lanes>(bits)};
+  }
+  void store(float* to) const { *reinterpret_cast<Lanes*>(to) = lanes; }
+  friend Vector operator+(Vector a, Vector b) { return {a.lanes + b.lanes}; }
+  friend Vector operator-(Vector a, Vector b) { return {a.lanes - b.lanes}; }
+  friend Vector operator*(Vector a, Vector b) { return {a.lanes * b.lanes}; }
+  friend Vector operator/(Vector a, Vector b) { return {a.lanes / b.lanes}; }
+};
+
+constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
+
+}  // namespace
+
+const DenoiserKernels* plainKernels() { return &kKernels; }
+
+}  // namespace cdiff::inference

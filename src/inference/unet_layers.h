@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its pull-back
+/// (the product of its transposed Jacobian with a gradient). Layers are joined by signals.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "inference/activation.h"
+#include "inference/convolution.h"
+
+namespace cdiff::inference {
+
+using Tensors = std::map<std::string, Tensor>;
+
+/// Throws InputError naming the tensor when there is none.
+const Tensor& tensorNamed(const Tensors& tensors, const std::string& name);
+
+/// What goes from layer to layer, with the gradient that comes back.
+struct Signal {
+  Activation value;
+  Activation gradient;
+
+  Signal() = default;
+  Signal(const ChannelLayout& layout, std::int64_t rows, std::int64_t halo)
+      : value(layout, rows, halo), gradient(layout, rows, halo) {}
+  void resize(std::int64_t samples) {
+    value.resize(samples);
+    gradient.resize(samples);
+  }
+};
+
+/// A signal from a channel on.
+struct Port {
+  const Signal* signal = nullptr;
+  std::int64_t channel = 0;
+
+  View value(std::int64_t sample) const { return signal->value.view(sample, channel); }
+  View gradient(std::int64_t sample) const { return signal->gradient.view(sample, channel); }
+};
+
+/// What all layers are built from.
+struct LayerSource {
+  const DenoiserKernels& kernels;
+  const Tensors& tensors;
+  std::int64_t groups;
+  std::int64_t halo;
+};
+
+class Layer {
+ public:
+  virtual ~Layer() = default;
+  /// Makes room for a batch.
+  virtual void resize(std::int64_t samples) = 0;
+  /// `injection`: the sample's row of injections.
+  virtual void forward(std::int64_t sample, const float* injection) = 0;
+  /// From the gradient at the output to that at the input, at the last forward.
+  virtual void pullBack(std::int64_t sample) = 0;
+};
+
+/// Between which signals a layer stands.
+struct Connection {
+  Port input;
+  Port output;
+  /// Another, later layer reads the input too: add to its gradient.
+  bool shared_input = false;
+};
+
+/// Mish(GN(convolution(input))) + added.
+class NormalizedConvolution {
+ public:
+  NormalizedConvolution(const LayerSource& source, const std::string& name,
+                        const ChannelLayout& inputs, std::int64_t rows);
+
+  void resize(std::int64_t samples);
+  void forward(std::int64_t sample, const View& input, const View& added, const View& output);
+  void pullBack(std::int64_t sample, const View& output_gradient, const View& input_gradient,
+                bool accumulate);
+  const ChannelLayout& outputs() const { return outputs_; }
+
+ private:
+  NormalizationShape shape() const;
+
+  const DenoiserKernels* kernels_;
+  ChannelLayout outputs_;
+  std::int64_t groups_;
+  std::int64_t rows_;
+  std::optional<Convolution> convolution_;
+  std::optional<Convolution> reversed_;
+  AlignedFloats scale_;
+  AlignedFloats shift_;
+  AlignedFloats scratch_;
+  Activation inverse_deviation_;  ///< [B, channels]
+  Activation normalized_;
+  Activation slope_;
+  Activation gradient_;  ///< at the convolution's output, of one sample
+};
+
+/// Two normalised convolutions, the injection after the first, plus the input.
+class ResidualBlock : public Layer {
+ public:
+  /// `injection`: its first channel in a row of injections.
+  ResidualBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,
+                const Connection& connection, std::int64_t injection);
+
+  void resize(std::int64_t samples) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
+
+ private:
+  void buildSkip(const LayerSource& source, const std::string& name, const ChannelLayout& inputs);
+
+  Connection connection_;
+  std::int64_t injection_;
+  std::int64_t rows_;
+  NormalizedConvolution first_;
+  NormalizedConvolution second_;
+  std::optional<Convolution> skip_;
+  std::optional<Convolution> skip_reversed_;
+  Signal hidden_;  ///< of one sample
+};
+
+/// A convolution alone: changes of resolution and the head's output.
+class PlainConvolution : public Layer {
+ public:
+  PlainConvolution(const LayerSource& source, const std::string& name, const Spacing& spacing,
+                   const Connection& connection);
+
+  void resize(std::int64_t samples) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
+
+ private:
+  Connection connection_;
+  std::optional<Convolution> convolution_;
+  std::optional<Convolution> reversed_;
+};
+
+/// The head's normalised convolution, with nothing added.
+class HeadBlock : public Layer {
+ public:
+  HeadBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,
+            const Connection& connection);
+
+  void resize(std::int64_t samples) override;
+  void forward(std::int64_t sample, const float* injection) override;
+  void pullBack(std::int64_t sample) override;
+
+ private:
+  Connection connection_;
+  NormalizedConvolution block_;
+  AlignedFloats zeros_;
+};
+
+}  // namespace cdiff::inference

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The CBVs that came nearest to the ego: what CBV and ego saw at the closest approach, and a plan
+/// from 3 s before against what was driven.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "record/session_result.h"
+
+namespace cdiff::page {
+
+/// At most this many CBVs are shown with pictures.
+inline constexpr std::size_t kMostApproaches = 4;
+
+/// The approaches that are shown, smallest gap first (ties: the vehicle that was driven first).
+std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& log);
+
+/// As HTML. Renders the front views anew, at 640 x 384 pixels.
+std::string approachSection(const record::SessionResult& result);
+
+}  // namespace cdiff::page

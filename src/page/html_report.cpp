@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/html_report.h"
+
+#include <algorithm>
+
+#include "core/markup.h"
+#include "core/text.h"
+#include "page/approach_section.h"
+#include "page/driving_section.h"
+#include "page/guidance_section.h"
+#include "page/page_head.h"
+#include "page/playback.h"
+#include "page/report_style.h"
+#include "page/report_tables.h"
+#include "page/session_charts.h"
+#include "page/stage.h"
+#include "record/session_story.h"
+
+namespace cdiff::page {
+namespace {
+
+std::string head(const record::SessionResult& result) {
+  return pageHead(result.setup.options().name + " – session report");
+}
+
+/// What the banner says first.
+const char* headlineOf(record::Outcome outcome) {
+  switch (outcome) {
+    case record::Outcome::kPassed:
+      return "Passed";
+    case record::Outcome::kStruck:
+      return "Struck: the ego met its rules, but was hit";
+    case record::Outcome::kFailed:
+      return "Failed";
+    case record::Outcome::kNotJudged:
+      return "Not judged";
+    case record::Outcome::kInterrupted:
+      return "Interrupted: the session was not judged";
+    case record::Outcome::kError:
+      break;
+  }
+  return "Error: the session could not be judged";
+}
+
+/// Of a session that passed.
+std::string metText(const record::SessionResult& result) {
+  const auto& checks = result.verdict.checks;
+  const bool all = std::none_of(checks.begin(), checks.end(), [](const record::Check& check) {
+    return check.outcome == record::CheckOutcome::kSkipped;
+  });
+  return "the session ended with status '" + std::string(traffic::toText(result.status)) +
+         (all ? "' and met every rule of the scenario"
+              : "' and met every rule of the scenario that applies");
+}
+
+std::string banner(const record::SessionResult& result) {
+  const session::ScenarioOptions& options = result.setup.options();
+  const record::Outcome outcome = result.verdict.outcome;
+  std::string content;
+  for (const std::string& reason : result.verdict.reasons)
+    content += "<p>" + core::escapeMarkup(reason) + "</p>";
+  if (outcome == record::Outcome::kPassed) content += "<p>" + metText(result) + "</p>";
+  content += "<p class=\"story\">";
+  for (const std::string& sentence : record::sessionStory(result))
+    content += core::escapeMarkup(sentence) + " ";
+  return "<header>\n<h1>" + core::escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
+         core::escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) + " · ego " +
+         core::escapeMarkup(options.ego_planner) + " · CBV " +
+         core::escapeMarkup(options.cbv_planner) + "</p>\n" +
+         pageBanner(outcome, headlineOf(outcome), content + "</p>") + "</header>\n";
+}
+
+/// Below the verdict: a session that late answers went into cannot be repeated.
+std::string lateBanner(const record::SessionResult& result) {
+  const std::string text = record::latenessText(result.late);
+  if (text.empty()) return "";
+  return "<div class=\"late\" role=\"note\"><strong>Answers came late: </strong>" +
+         core::escapeMarkup(text) + ". Another run will differ.</div>\n";
+}
+
+std::string figure(const std::string& name, const std::string& value, const std::string& unit,
+                   const std::string& note) {
+  return "<div class=\"figure\"><span class=\"name\">" + name + "</span><span class=\"value\">" +
+         value + (unit.empty() ? "" : " <small>" + core::escapeMarkup(unit) + "</small>") +
+         "</span><span class=\"under\">" + core::escapeMarkup(note) + "</span></div>\n";
+}
+
+std::string figure(const std::string& name, const metrics::Measure& measure, int decimals) {
+  if (!measure.value) return figure(name, "–", "", measure.reason);
+  return figure(name, core::formatFixed(*measure.value, decimals), measure.unit,
+                "n = " + std::to_string(measure.n));
+}
+
+std::string figures(const record::SessionResult& result) {
+  const metrics::SessionMeasures& measures = result.measures;
+  const std::string pace =
+      result.wall_seconds > 0.0
+          ? core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) +
+                " times real time"
+          : "wall time not measured";
+  return "<div class=\"figures\">\n" +
+         figure("Route completion", core::formatFixed(measures.route_completion_percent, 1), "%",
+                traffic::toText(result.status)) +
+         figure("Driving score", core::formatFixed(measures.driving_score, 1), "",
+                "of 100, by " + measures.protocol) +
+         figure("Ego collisions", std::to_string(measures.ego_collisions), "",
+                std::to_string(measures.contactsAtFault()) + " its fault, " +
+                    std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
+         figure("CBVs", std::to_string(measures.cbv_count), "",
+                std::to_string(measures.cbv_decisions) + " decisions, " +
+                    core::formatFixed(measures.cbv_distance_m, 0) + " m") +
+         figure("CBV collisions", std::to_string(measures.cbv_collisions), "",
+                measures.collisions_per_km.value
+                    ? core::formatFixed(*measures.collisions_per_km.value, 2) + " per km"
+                    : measures.collisions_per_km.reason) +
+         figure("CBV off-road rate", measures.cbv_off_road_rate_percent, 2) +
+         figure("2D-TTC, minimum", measures.ttc_2d.minimum, 2) +
+         figure("2D-TTC, mean", measures.ttc_2d.mean, 2) +
+         figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", pace) +
+         "</div>\n";
+}
+
+std::string planSection(const record::PlanLog& plans) {
+  if (plans.empty()) return "<p class=\"note\">No plan of a CBV was shown.</p>\n";
+  return planTable(plans) +
+         "<p class=\"note\">Distance between where a decision's plan put the CBV and where it was, "
+         "1, 2 and 3 s later, over all decisions whose plan and drive reach that far. State "
+         "mismatch: "
+         "largest distance between planned positions and what the vehicle dynamics makes of the "
+         "planned actions.</p>\n";
+}
+
+std::string configuration(const record::SessionResult& result) {
+  return originTable(result) + "<details><summary>Resolved scenario</summary>\n<pre>" +
+         core::escapeMarkup(core::dumpOptions(result.setup.options())) + "</pre>\n</details>\n";
+}
+
+}  // namespace
+
+std::string htmlReport(const record::SessionResult& result) {
+  const MapCanvas canvas(sessionRegion(result));
+  return head(result) + "<body>\n<main>\n" + banner(result) + lateBanner(result) + figures(result) +
+         pageSection("What happened", stageHtml(result, canvas)) +
+         pageSection("Over time", sessionCharts(result)) +
+         pageSection("Distributions", drivingSection(result)) +
+         pageSection("Closest approach", approachSection(result)) +
+         pageSection("Plans against what was driven", planSection(result.plans)) +
+         pageSection("Guidance", guidanceSection(result)) +
+         pageSection("Rules", ruleTable(result)) +
+         pageSection("Metrics", metricTable(result.measures)) +
+         pageSection("Infractions of the ego", infractionTable(result.measures)) +
+         pageSection("Critical background vehicles", selectionTable(result)) +
+         pageSection("Why others were no CBVs", rejectionTable(result.cbv)) +
+         pageSection("Contacts", contactTable(result)) +
+         pageSection("Planner latency", latencyTable(result.latencies)) +
+         pageSection("Late answers", lateTable(result.late)) +
+         pageSection("Faults", faultTable(result.faults)) +
+         pageSection("Configuration and versions", configuration(result)) +
+         "</main>\n<script type=\"application/json\" id=\"playback\">" +
+         playbackJson(result, canvas) + "</script>\n<script>" + kReportScript +
+         "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace cdiff::page

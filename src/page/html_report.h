@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Text of report.html: one self-contained page with verdict, figures, a picture from above, charts
+/// and tables.
+#pragma once
+
+#include <string>
+
+#include "record/session_result.h"
+
+namespace cdiff::page {
+
+std::string htmlReport(const record::SessionResult& result);
+
+}  // namespace cdiff::page

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Pictures side by side under one title as one SVG element, in fixed light colours: a figure for
+/// print (pixels, x right, y down).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cdiff::page {
+
+struct Panel {
+  std::string title;
+  std::string content;  ///< SVG in pixels of the panel
+  double width = 540.0;
+  double height = 190.0;
+  bool cut = false;  ///< whether what lies outside is cut off
+};
+
+struct PanelSheet {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> legend = {};  ///< (CSS class of a line, text)
+  std::vector<std::vector<Panel>> rows = {};                     ///< panels from left to right
+  std::vector<std::string> notes = {};                           ///< a paragraph each
+};
+
+/// For a page that holds kPanelSheetStyle.
+std::string sheetSvg(const PanelSheet& sheet);
+
+/// A file of its own.
+std::string sheetFile(const PanelSheet& sheet);
+
+/// CSS classes of lines and bars that belong together, for the i-th system.
+std::string systemStyle(std::size_t index);
+
+extern const char kPanelSheetStyle[];
+
+}  // namespace cdiff::page

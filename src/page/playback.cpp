@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/playback.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "e2e_cdiff/core/angle.h"
+#include "page/top_view.h"
+#include "record/image_data_uri.h"
+
+namespace cdiff::page {
+namespace {
+
+using record::Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPoses = 60000;
+
+std::size_t poseCount(const record::Timeline& timeline) {
+  std::size_t count = 0;
+  for (const record::TimelineFrame& frame : timeline.frames()) count += frame.poses.size();
+  return count;
+}
+
+constexpr float kLongestTime = 100.0F;  // to a collision [s]
+constexpr double kRounding = 1e-6;      // [s]
+
+/// 0 where there is no number.
+long rounded(double value) { return std::isfinite(value) ? std::lround(value) : 0; }
+
+double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
+
+/// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
+/// [0.1 m/s].
+record::Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& canvas,
+                          const std::vector<std::size_t>& cbv_styles) {
+  record::Json numbers = record::Json::array();
+  for (auto pose = frame.poses.rbegin(); pose != frame.poses.rend(); ++pose) {
+    if (!canvas.shows({pose->x, pose->y})) continue;
+    const Eigen::Vector2d pixel = canvas.toPixels({pose->x, pose->y});
+    const std::size_t style = pose->role == traffic::VehicleRole::kEgo   ? 0
+                              : pose->role == traffic::VehicleRole::kCbv ? cbv_styles[pose->vehicle]
+                                                                         : 1;
+    numbers.push_back(pose->vehicle);
+    numbers.push_back(style);
+    numbers.push_back(rounded(10.0 * pixel.x()));
+    numbers.push_back(rounded(10.0 * pixel.y()));
+    numbers.push_back(rounded(-core::radiansToDegrees(static_cast<double>(pose->heading))));
+    numbers.push_back(rounded(10.0 * static_cast<double>(pose->speed)));
+  }
+  return numbers;
+}
+
+/// Seven numbers per driven vehicle: index, slot (-1: the ego), throttle, brake, steer [%], gap
+/// [cm] and 2D-TTC [0.01 s], both negative where not defined.
+record::Json momentNumbers(const record::TimelineFrame& frame) {
+  record::Json numbers = record::Json::array();
+  for (const record::TimelinePose& pose : frame.poses) {
+    if (pose.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    numbers.push_back(pose.vehicle);
+    numbers.push_back(pose.slot);
+    for (const float value : {pose.throttle, pose.brake, pose.steer, pose.gap,
+                              std::min(pose.time_to_collision, kLongestTime)}) {
+      numbers.push_back(rounded(100.0 * static_cast<double>(value)));
+    }
+  }
+  return numbers;
+}
+
+/// By slot: [time [s], vehicle index, JPEG].
+record::Json viewLists(const record::SessionResult& result) {
+  std::map<std::string, std::size_t> indices;
+  for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    indices.emplace(vehicle.id, indices.size());
+  }
+  record::Json lists = record::Json::object();
+  for (const record::FrontView& view : result.front_views.views()) {
+    const auto vehicle = indices.find(view.vehicle_id);
+    if (vehicle == indices.end()) continue;  // it came and went between two frames
+    lists[std::to_string(view.slot)].push_back(
+        {hundredths(view.time), vehicle->second, record::base64(view.jpeg)});
+  }
+  return lists;
+}
+
+/// The frame that the page shows first: the closest approach, else the last.
+std::size_t firstShown(const record::Json& times, const record::Timeline& timeline) {
+  const auto& gap = timeline.smallestGap();
+  std::size_t shown = times.empty() ? 0 : times.size() - 1;
+  if (!gap) return shown;
+  while (shown > 0 && times[shown].get<double>() > gap->time + kRounding) --shown;
+  return shown;
+}
+
+/// Index of the style that each vehicle has as CBV.
+std::vector<std::size_t> cbvStyles(const record::SessionResult& result) {
+  std::vector<std::size_t> styles;
+  for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    const std::string style = styleOf(traffic::VehicleRole::kCbv, vehicle.id, result.cbv);
+    styles.push_back(2 + static_cast<std::size_t>(style.back() - '0'));
+  }
+  return styles;
+}
+
+void addVehicles(record::Json& data, const record::SessionResult& result) {
+  for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
+    data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
+  }
+}
+
+void addFrames(record::Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
+  const std::vector<std::size_t> cbv_styles = cbvStyles(result);
+  const auto& frames = result.timeline.frames();
+  const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i % stride != 0 && i + 1 != frames.size()) continue;
+    data["times"].push_back(hundredths(frames[i].time));
+    data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
+    data["moments"].push_back(momentNumbers(frames[i]));
+  }
+}
+
+/// `<` never appears, so no text can end the script element.
+std::string safeInScript(const std::string& json) {
+  std::string safe;
+  for (const char letter : json) {
+    if (letter == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += letter;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
+  record::Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
+                       {"vehicles", record::Json::array()},
+                       {"times", record::Json::array()},
+                       {"frames", record::Json::array()},
+                       {"moments", record::Json::array()},
+                       {"period", result.front_views.period()},
+                       {"views", viewLists(result)}};
+  addVehicles(data, result);
+  addFrames(data, result, canvas);
+  data["start"] = firstShown(data["times"], result.timeline);
+  return safeInScript(data.dump(-1, ' ', false, record::Json::error_handler_t::replace));
+}
+
+}  // namespace cdiff::page

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/report_tables.h"
+
+#include <algorithm>
+
+#include "core/markup.h"
+#include "core/text.h"
+#include "metrics/figure_definitions.h"
+#include "record/build_info.h"
+#include "record/reason_text.h"
+#include "record/summary.h"
+
+namespace cdiff::page {
+namespace {
+
+constexpr std::size_t kMostFaults = 200;  // rows shown
+
+std::string fixed(double value, int decimals) { return core::formatFixed(value, decimals); }
+
+std::string fixedOrDash(const std::optional<double>& value, int decimals) {
+  return value ? fixed(*value, decimals) : "–";
+}
+
+/// Rows of plain texts under a head; a column whose name begins with '#' holds numbers.
+class Table {
+ public:
+  explicit Table(const std::vector<std::string>& head) {
+    html_ = "<div class=\"scroll\"><table><thead><tr>";
+    for (const std::string& name : head) {
+      const bool number = name.front() == '#';
+      numeric_.push_back(number);
+      html_ += std::string(number ? "<th scope=\"col\" class=\"number\">" : "<th scope=\"col\">") +
+               core::escapeMarkup(number ? name.substr(1) : name) + "</th>";
+    }
+    html_ += "</tr></thead><tbody>\n";
+  }
+  void row(const std::vector<std::string>& cells, const std::string& style = {}) {
+    html_ += style.empty() ? "<tr>" : "<tr class=\"" + style + "\">";
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      html_ += std::string(numeric_[i] ? "<td class=\"number\">" : "<td>") +
+               core::escapeMarkup(cells[i]) + "</td>";
+    }
+    html_ += "</tr>\n";
+  }
+  std::string html() const { return html_ + "</tbody></table></div>\n"; }
+
+ private:
+  std::vector<bool> numeric_;
+  std::string html_;
+};
+
+/// At most three ids, highest count first.
+std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& counts) {
+  std::vector<std::pair<std::string, std::size_t>> rows(counts.begin(), counts.end());
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& left, const auto& right) { return left.second > right.second; });
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, rows.size()); ++i) {
+    ids.push_back(rows[i].first + " (" + std::to_string(rows[i].second) + ")");
+  }
+  return ids;
+}
+
+/// Why a figure is absent, how its samples were taken, and what it is compared with.
+std::string noteOf(const metrics::Measure& measure) {
+  if (measure.target.empty()) return measure.reason;
+  return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
+}
+
+void measureRow(Table& table, const std::string& name, const metrics::Measure& measure) {
+  const int decimals = measure.unit == "count" ? 0 : 3;
+  table.row(
+      {name, measure.value ? fixed(*measure.value, decimals) : "–",
+       measure.unit == "count" ? "" : measure.unit, std::to_string(measure.n), noteOf(measure)},
+      measure.value ? "" : "absent");
+}
+
+}  // namespace
+
+std::string ruleTable(const record::SessionResult& result) {
+  Table table({"Rule", "Outcome", "Found"});
+  for (const record::Check& check : result.verdict.checks) {
+    table.row({check.name, record::toText(check.outcome), check.text},
+              record::toText(check.outcome));
+  }
+  return table.html();
+}
+
+std::string metricTable(const metrics::SessionMeasures& measures) {
+  Table table({"Metric", "#Value", "Unit", "#n", "Note"});
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
+    measureRow(table, figure.label, figure.measure(measures));
+  return table.html();
+}
+
+std::string infractionTable(const metrics::SessionMeasures& measures) {
+  Table table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
+  for (const auto& [name, measure] : measures.infractions) measureRow(table, name, measure);
+  measureRow(table, "Penalty", measures.penalty);
+  return table.html();
+}
+
+std::string selectionTable(const record::SessionResult& result) {
+  if (result.cbv.records().empty()) {
+    return "<p class=\"note\">No vehicle was selected as CBV.</p>\n";
+  }
+  Table table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score", "#Ego to conflict [m]",
+               "#CBV to conflict [m]", "#Arrival gap [s]", "Place", "#Decisions", "#Released [s]",
+               "Why", "#Route driven [%]", "Conflict point"});
+  const double step = result.setup.options().simulation_step;
+  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
+    const record::CbvRecord& record = result.cbv.records()[i];
+    const cbv::ConflictPoint& conflict = record.conflict_point;
+    const bool junction = record::atOrBeyondFirstJunction(conflict, result.setup.egoRoute());
+    const std::optional<std::string> other = record::contactPartner(record, result);
+    table.row(
+        {"C" + std::to_string(i + 1), record.vehicle_id, std::to_string(record.slot),
+         fixed(static_cast<double>(record.selected_tick) * step, 2),
+         fixed(record.interaction_score, 3), fixed(conflict.ego_distance, 1),
+         fixed(conflict.cbv_distance, 1), fixed(conflict.arrivalTimeGap(), 2),
+         junction ? "junction or beyond" : "before junction",
+         std::to_string(record.decisions_driven),
+         record.released_tick ? fixed(static_cast<double>(*record.released_tick) * step, 2) : "–",
+         record::releaseText(record.release_reason) + (other ? " (" + *other + ")" : ""),
+         fixed(record.routeCompletionPercent(), 1),
+         record.conflict_point_passed ? "passed" : "not reached"});
+  }
+  return table.html();
+}
+
+std::string planTable(const record::PlanLog& plans) {
+  Table table({"CBV", "#Plans", "#After 1\u00a0s: mean [m]", "#95th percentile [m]",
+               "#After 2\u00a0s: mean [m]", "#95th percentile [m]", "#After 3\u00a0s: mean [m]",
+               "#95th percentile [m]", "#State mismatch: mean [m]", "#95th percentile [m]",
+               "#maximum [m]"});
+  for (const record::VehiclePlans& vehicle : plans.vehicles()) {
+    if (vehicle.plans.empty()) continue;
+    std::vector<std::string> cells = {vehicle.vehicle_id, std::to_string(vehicle.plans.size())};
+    for (const double seconds : {1.0, 2.0, 3.0}) {
+      const record::SampleFigures figures =
+          record::figuresOf(plans.displacements(vehicle, seconds));
+      cells.push_back(fixedOrDash(figures.mean, 2));
+      cells.push_back(fixedOrDash(figures.percentile_95, 2));
+    }
+    const record::SampleFigures mismatch = record::mismatchFigures(vehicle);
+    cells.push_back(fixedOrDash(mismatch.mean, 3));
+    cells.push_back(fixedOrDash(mismatch.percentile_95, 3));
+    cells.push_back(fixedOrDash(mismatch.maximum, 3));
+    table.row(cells);
+  }
+  return table.html();
+}
+
+std::string guidanceTable(const record::GuidanceLog& log) {
+  Table table({"Objective", "#Weight", "#Mean value", "#Mean gradient norm",
+               "#Steps with the gradient capped [%]", "#Steps left out", "#Decisions"});
+  for (const record::GuidanceSeries& series : log.series()) {
+    const record::ObjectiveFigures figures = record::figuresOf(series);
+    std::optional<double> capped = figures.capped_share;
+    if (capped) *capped *= 100.0;
+    table.row({series.objective, fixedOrDash(figures.weight, 3), fixedOrDash(figures.value, 4),
+               fixedOrDash(figures.gradient_norm, 4), fixedOrDash(capped, 1),
+               std::to_string(figures.dropped), std::to_string(figures.n)});
+  }
+  return table.html();
+}
+
+std::string rejectionTable(const record::CbvLog& cbv) {
+  if (cbv.rejected().empty()) return "<p class=\"note\">No candidate was rejected.</p>\n";
+  std::vector<std::pair<std::string, std::size_t>> rows(cbv.rejected().begin(),
+                                                        cbv.rejected().end());
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& left, const auto& right) { return left.second > right.second; });
+  Table table({"Reason", "#Times, over all decisions", "#Vehicles", "Most often", "Meaning"});
+  for (const auto& [reason, count] : rows) {
+    const auto& vehicles = cbv.rejectedVehicles().at(reason);
+    table.row({reason, std::to_string(count), std::to_string(vehicles.size()),
+               core::joinText(mostOften(vehicles), ", "), record::rejectionText(reason)});
+  }
+  return table.html();
+}
+
+std::string contactTable(const record::SessionResult& result) {
+  const auto& all = result.timeline.contacts();
+  if (all.empty()) return "<p class=\"note\">No vehicles touched.</p>\n";
+  Table table(
+      {"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]", "#Other [m/s]"});
+  auto own = result.measures.ego_contacts.begin();  // in the order of `all`
+  for (const record::TimelineContact& contact : all) {
+    std::vector<std::string> cells = {fixed(contact.time, 2), contact.first, contact.second};
+    const bool ego = own != result.measures.ego_contacts.end() &&
+                     (contact.first == own->partner || contact.second == own->partner) &&
+                     contact.time == own->seconds;
+    if (ego) {
+      cells.insert(cells.end(), {own->ego_at_fault ? "yes" : "no", own->reason,
+                                 fixed(own->ego_speed, 1), fixed(own->partner_speed, 1)});
+      ++own;
+    } else {
+      cells.insert(cells.end(), {"–", "", "", ""});
+    }
+    table.row(cells);
+  }
+  return table.html();
+}
+
+std::string latencyTable(const std::map<std::string, record::LatencyFigures>& latencies) {
+  if (latencies.empty()) return "<p class=\"note\">No planner was timed.</p>\n";
+  Table table({"Planner", "#Median [ms]", "#95th percentile [ms]", "#Maximum [ms]", "#Decisions"});
+  for (const auto& [planner, figures] : latencies) {
+    table.row({planner, fixed(figures.median, 2), fixed(figures.percentile_95, 2),
+               fixed(figures.maximum, 2), std::to_string(figures.n)});
+  }
+  return table.html();
+}
+
+std::string lateTable(const std::map<std::string, record::LateFigures>& late) {
+  if (late.empty()) return "<p class=\"note\">The session waited for every answer.</p>\n";
+  Table table({"Planner", "#Asked", "#Late", "#Never came", "#Drove on by its plan",
+               "#Braked fully", "#Not taken over yet", "#Lateness: median [s]",
+               "#95th percentile [s]", "#Maximum [s]"});
+  for (const auto& [planner, figures] : late) {
+    table.row({planner, std::to_string(figures.asked), std::to_string(figures.late),
+               std::to_string(figures.missing), std::to_string(figures.by_plan),
+               std::to_string(figures.by_full_brake), std::to_string(figures.not_driven),
+               fixed(figures.median, 3), fixed(figures.percentile_95, 3),
+               fixed(figures.maximum, 3)});
+  }
+  return table.html();
+}
+
+std::string faultTable(const std::vector<traffic::Fault>& faults) {
+  if (faults.empty()) return "<p class=\"note\">None.</p>\n";
+  Table table({"#Tick", "Source", "What happened"});
+  const std::size_t shown = std::min(faults.size(), kMostFaults);
+  for (std::size_t i = 0; i < shown; ++i) {
+    table.row({std::to_string(faults[i].tick), faults[i].source, faults[i].text});
+  }
+  const std::size_t left = faults.size() - shown;
+  if (left == 0) return table.html();
+  return table.html() + "<p class=\"note\">" + std::to_string(left) +
+         " more are in summary.json.</p>\n";
+}
+
+std::string originTable(const record::SessionResult& result) {
+  const map::ImportedNetwork& network = result.setup.import();
+  Table table({"What", "Is"});
+  table.row({"package",
+             "e2e_cdiff " + record::packageVersion() + ", revision " + record::packageRevision()});
+  table.row(
+      {"deployment", result.facts.deployment +
+                         (result.facts.deterministic ? ", deterministic" : ", not deterministic")});
+  table.row({"simulator", result.facts.simulator_version});
+  table.row({"network", network.source.string()});
+  table.row({"network sha256", network.source_sha256});
+  for (const std::string& change : network.changes) table.row({"network import", change});
+  for (const auto& [name, version] : record::libraryVersions()) table.row({name, version});
+  table.row({"processor", record::processorModel() + "; built for " + record::instructionSet()});
+  table.row({"trace sha256", result.trace_sha256});
+  return table.html();
+}
+
+}  // namespace cdiff::page

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/result_writer.h"
+
+#include <functional>
+#include <optional>
+#include <system_error>
+
+#include "core/file.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "metrics/session_metrics.h"
+#include "page/html_report.h"
+#include "record/junit.h"
+#include "record/plan_file.h"
+#include "record/session_table.h"
+#include "record/session_yaml.h"
+#include "record/summary.h"
+#include "record/trace_writer.h"
+
+namespace cdiff::page {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What summary and verdict take on the disk from the start [bytes]; some 12,000 and 1,000 are
+/// usual.
+constexpr std::size_t kSummaryRoom = 1 << 16;
+constexpr std::size_t kJunitRoom = 1 << 14;
+
+/// Makes the folder and takes away the files of an earlier session, so that none can be mistaken
+/// for this one's.
+fs::path preparedFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw core::InputError("cannot make the result folder '" + folder.string() +
+                           "': " + error.message());
+  }
+  for (const char* name :
+       {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"}) {
+    fs::remove(folder / name, error);
+    if (error) {
+      throw core::InputError("cannot replace '" + (folder / name).string() +
+                             "': " + error.message());
+    }
+  }
+  return folder;
+}
+
+}  // namespace
+
+/// What is gathered while the session runs.
+class ResultWriter::Record {
+ public:
+  Record(const session::SessionSetup& setup, const record::RunFacts& facts, const fs::path& folder)
+      : folder_(preparedFolder(folder)),
+        summary_(folder_ / "summary.json", kSummaryRoom),
+        junit_(folder_ / "junit.xml", kJunitRoom),
+        trace_(std::make_unique<record::TraceWriter>(folder_ / "trace.csv")),
+        metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
+        timeline_(setup.options().simulation_step),
+        plans_(setup.options().simulation_step),
+        front_views_(setup),
+        result_{setup,     timeline_,    cbv_,     approaches_, plans_,
+                guidance_, front_views_, driving_, facts} {
+    core::writeFileAtomically(folder_ / "session.yaml", record::sessionYaml(setup, facts));
+  }
+
+  void observe(const session::TickRecord& record) {
+    const traffic::TrafficSnapshot& snapshot = *record.snapshot;
+    result_.status = snapshot.status;
+    result_.faults.insert(result_.faults.end(), snapshot.faults.begin(), snapshot.faults.end());
+    latencies_.observe(record.latencies);
+    late_.observe(record.timings);
+    if (last_tick_ && snapshot.tick <= *last_tick_)
+      return;  // the same tick again, ended from outside
+    last_tick_ = snapshot.tick;
+    result_.simulated_seconds = snapshot.time;
+    metrics_.observe(snapshot, record.selection);
+    timeline_.observe(snapshot);
+    if (record.selection != nullptr) cbv_.observe(snapshot, *record.selection);
+    approaches_.observe(record);
+    plans_.observe(record);
+    guidance_.observe(record);
+    front_views_.observe(snapshot);
+    driving_.observe(snapshot);
+    writeTrace(snapshot);
+  }
+
+  const record::Verdict& finish(double wall_seconds) {
+    if (finished_) return result_.verdict;
+    finished_ = true;
+    result_.wall_seconds = wall_seconds;
+    attempt([&] {
+      if (trace_) result_.trace_sha256 = trace_->finish();
+    });
+    completeResult();
+    attempt([&] { core::writeFileAtomically(folder_ / "plans.csv", record::plansCsv(plans_)); });
+    attempt([&] { core::writeFileAtomically(folder_ / "report.html", htmlReport(result_)); });
+    attempt([&] { junit_.write(record::junitXml(result_)); });
+    summary_.write(record::summaryJson(result_));
+    return result_.verdict;
+  }
+
+  /// The result lacks something from now on: it is one of a session that broke.
+  void fail(const std::string& text) {
+    if (failure_.empty()) failure_ = text;
+    result_.status = traffic::SessionStatus::kError;
+    result_.faults.push_back({last_tick_.value_or(0), "result folder", text});
+    if (finished_) decide();
+  }
+  const std::string& failure() const { return failure_; }
+
+  /// First, since the last one is why a session ended.
+  void recordFault(const traffic::Fault& fault) {
+    result_.faults.insert(result_.faults.begin(), fault);
+  }
+
+  const fs::path& folder() const { return folder_; }
+  const record::SessionResult& result() const { return result_; }
+
+ private:
+  /// Gives the trace's room back when it cannot be written.
+  void writeTrace(const traffic::TrafficSnapshot& snapshot) {
+    if (!trace_) return;
+    try {
+      trace_->write(snapshot);
+    } catch (const core::InputError& error) {
+      trace_.reset();
+      fail(error.what());
+      throw core::Error(error.what());
+    }
+  }
+
+  void attempt(const std::function<void()>& writing) {
+    try {
+      writing();
+    } catch (const core::InputError& error) {
+      fail(error.what());
+    }
+  }
+
+  void completeResult() {
+    if (!failure_.empty()) result_.status = traffic::SessionStatus::kError;
+    if (result_.status == traffic::SessionStatus::kRunning) {
+      result_.status = traffic::SessionStatus::kError;
+      result_.faults.push_back({last_tick_.value_or(0), "session",
+                                "the record ends while the session was still running"});
+    }
+    result_.measures = metrics_.measures();
+    result_.latencies = latencies_.figures();
+    result_.late = late_.figures();
+    decide();
+  }
+
+  void decide() {
+    result_.verdict =
+        record::judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
+  }
+
+  fs::path folder_;
+  core::ReservedFile summary_;
+  core::ReservedFile junit_;
+  std::unique_ptr<record::TraceWriter> trace_;  ///< null once it could not be written
+  metrics::SessionMetrics metrics_;
+  record::Timeline timeline_;
+  record::CbvLog cbv_;
+  record::ApproachLog approaches_;
+  record::PlanLog plans_;
+  record::GuidanceLog guidance_;
+  record::FrontViewLog front_views_;
+  record::DrivingLog driving_;
+  record::LatencyLog latencies_;
+  record::LateLog late_;
+  record::SessionResult result_;
+  std::optional<std::uint64_t> last_tick_;
+  std::string failure_;
+  bool finished_ = false;
+};
+
+ResultWriter::ResultWriter(const session::SessionSetup& setup, const record::RunFacts& facts,
+                           const fs::path& folder)
+    : record_(std::make_unique<Record>(setup, facts, folder)) {}
+
+ResultWriter::~ResultWriter() = default;
+
+void ResultWriter::observe(const session::TickRecord& record) { record_->observe(record); }
+
+record::Verdict ResultWriter::finish(double wall_seconds) { return record_->finish(wall_seconds); }
+
+void ResultWriter::recordFault(const traffic::Fault& fault) { record_->recordFault(fault); }
+
+const std::string& ResultWriter::failure() const { return record_->failure(); }
+
+std::string ResultWriter::table() const { return table(record_->folder()); }
+
+std::string ResultWriter::table(const fs::path& folder) const {
+  return record::sessionTable(record_->result(), folder);
+}
+
+int ResultWriter::exitCode() const {
+  const record::SessionResult& result = record_->result();
+  const record::Outcome outcome = result.verdict.outcome;
+  const bool bad_input = outcome == record::Outcome::kError && !result.faults.empty() &&
+                         result.faults.back().source == traffic::kInputFault;
+  return bad_input ? 3 : exitCodeOf(outcome);
+}
+
+const record::SessionResult& ResultWriter::result() const { return record_->result(); }
+
+}  // namespace cdiff::page

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did,
+/// from above in its own frame (metres, forward is up, route green), by kind of driving.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "training/dataset.h"
+
+namespace cdiff::page {
+
+/// A table's row: what is counted, how often, its share.
+struct CountRow {
+  std::string name;
+  std::string number;
+  std::string share;
+};
+
+/// Indices of up to `count` samples of each kind (training/sample_balance.h), evenly over the data
+/// set, by name of the kind.
+std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
+    const training::Dataset& dataset, std::size_t count);
+
+/// The page: `counts` and a row of pictures for each kind. Self-contained.
+std::string sampleSheet(const std::string& title, const std::vector<CountRow>& counts,
+                        const training::Dataset& dataset, std::size_t count);
+
+}  // namespace cdiff::page

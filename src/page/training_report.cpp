@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/training_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/csv.h"
+#include "core/markup.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "page/line_chart.h"
+#include "page/page_head.h"
+
+namespace cdiff::page {
+namespace {
+
+constexpr std::size_t kColumns = 5;
+constexpr const char* kHeader = "stage,step,seconds,figure,value";
+constexpr const char* kHeldOut = "held_out_";
+constexpr const char* kStyles[] = {"ego", "bg", "c0 cbv", "c1 cbv", "c3 cbv"};
+
+/// Held-out figures end in what they measure.
+struct Quantity {
+  const char* ending;
+  const char* title;
+  const char* unit;
+};
+constexpr Quantity kQuantities[] = {
+    {"ade_m", "Held out: mean displacement", "m"},
+    {"fde_m", "Held out: last displacement", "m"},
+    {"speed_mps", "Held out: speed", "m/s"},
+    {"heading_rad", "Held out: heading", "rad"},
+    {"throttle", "Held out: throttle", ""},
+    {"steer", "Held out: steer", ""},
+    {"brake", "Held out: brake", ""},
+};
+
+bool startsWith(const std::string& text, const std::string& start) {
+  return text.rfind(start, 0) == 0;
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+TrainingStage& stageNamed(std::vector<TrainingStage>& stages, const std::string& name) {
+  for (TrainingStage& stage : stages) {
+    if (stage.name == name) return stage;
+  }
+  stages.push_back({name, 0, 0.0, {}});
+  return stages.back();
+}
+
+void addRow(const std::vector<std::string>& cells, std::vector<TrainingStage>& stages) {
+  TrainingStage& stage = stageNamed(stages, cells[0]);
+  stage.steps = std::stol(cells[1]);
+  stage.seconds = std::stod(cells[2]);
+  stage.curves[cells[3]].emplace_back(stage.seconds, std::stod(cells[4]));
+}
+
+std::string legend(const std::vector<std::pair<std::string, std::string>>& items) {
+  if (items.size() < 2) return "";
+  std::string html = "<div class=\"legend\">";
+  for (const auto& [style, text] : items) {
+    html +=
+        "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
+        "class=\"series " +
+        style + "\" d=\"M1 7H27\"/></svg>" + core::escapeMarkup(text) + "</span>";
+  }
+  return html + "</div>\n";
+}
+
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  return name.empty() ? "all" : name;
+}
+
+/// One chart of the named curves; empty where there are none.
+std::string chartOf(const TrainingStage& stage, const std::string& title, const std::string& unit,
+                    const std::vector<std::pair<std::string, std::string>>& named) {
+  Chart chart;
+  chart.title = title;
+  chart.unit = unit;
+  chart.duration = stage.seconds;
+  chart.least_top = 1e-6;
+  chart.own_time = true;
+  std::vector<std::pair<std::string, std::string>> items;
+  for (const auto& [figure, text] : named) {
+    const std::string style = kStyles[items.size() % std::size(kStyles)];
+    chart.series.push_back({style, stage.curves.at(figure)});
+    items.emplace_back(style, text);
+  }
+  return named.empty() ? "" : "<div>" + chartSvg(chart) + legend(items) + "</div>\n";
+}
+
+/// Figures of the stage that satisfy a test, with the words of their names that `shown` leaves.
+template <class Matches, class Shown>
+std::vector<std::pair<std::string, std::string>> figuresOf(const TrainingStage& stage,
+                                                           Matches matches, Shown shown) {
+  std::vector<std::pair<std::string, std::string>> named;
+  for (const auto& [figure, curve] : stage.curves) {
+    if (matches(figure)) named.emplace_back(figure, words(shown(figure)));
+  }
+  return named;
+}
+
+std::string heldOutCharts(const TrainingStage& stage) {
+  std::string html;
+  const std::size_t start = std::string(kHeldOut).size();
+  for (const Quantity& quantity : kQuantities) {
+    const std::string ending = quantity.ending;
+    const auto matches = [&](const std::string& figure) {
+      return startsWith(figure, kHeldOut) && endsWith(figure, ending);
+    };
+    const auto shown = [&](const std::string& figure) {
+      return figure.substr(start, figure.size() - start - ending.size());
+    };
+    html += chartOf(stage, quantity.title, quantity.unit, figuresOf(stage, matches, shown));
+  }
+  return html;
+}
+
+std::string stageSection(const TrainingStage& stage) {
+  const auto losses = [](const std::string& figure) { return startsWith(figure, "loss"); };
+  const auto whole = [](const std::string& figure) { return figure; };
+  const auto one = [&](const char* figure, const char* title, const char* unit) {
+    return chartOf(stage, title, unit,
+                   figuresOf(
+                       stage, [&](const std::string& name) { return name == figure; }, whole));
+  };
+  return "<section>\n<h2>" + core::escapeMarkup(words(stage.name)) + "</h2>\n<p class=\"note\">" +
+         std::to_string(stage.steps) + " steps in " + core::formatFixed(stage.seconds, 0) +
+         " s; horizontally: seconds of training</p>\n<div class=\"charts\">\n" +
+         chartOf(stage, "Loss (running mean, and its terms at the time)", "",
+                 figuresOf(stage, losses, whole)) +
+         heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
+         one("gradient_norm", "Norm of the gradient before clipping", "") +
+         one("samples_per_second", "Pace", "samples/s") + "</div>\n</section>\n";
+}
+
+}  // namespace
+
+std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std::string& source) {
+  std::istringstream rows(text);
+  std::string row;
+  if (!std::getline(rows, row) || row != kHeader)
+    throw core::InputError(source + ": line 1 is not '" + kHeader + "'");
+  std::vector<TrainingStage> stages;
+  for (int line = 2; std::getline(rows, row); ++line) {
+    const std::vector<std::string> cells = core::csvCells(row);
+    if (rows.eof()) break;  // without its line end
+    try {
+      if (cells.size() != kColumns) throw std::invalid_argument("columns");
+      addRow(cells, stages);
+    } catch (const std::logic_error&) {
+      throw core::InputError(source + ": line " + std::to_string(line) + " is '" + row +
+                             "', expected " + kHeader);
+    }
+  }
+  if (stages.empty()) throw core::InputError(source + ": no figure in it yet");
+  return stages;
+}
+
+std::string trainingReport(const std::string& title, const std::vector<TrainingStage>& stages,
+                           const std::string& card) {
+  std::string html =
+      pageHead(title + " – training") + "<body>\n<main>\n<header>\n<h1>" +
+      core::escapeMarkup(title) +
+      "</h1>\n<p class=\"sub\">course of training; errors are of the averaged weights on held-out "
+      "sessions</p>\n</header>\n";
+  for (const TrainingStage& stage : stages) html += stageSection(stage);
+  if (!card.empty())
+    html +=
+        "<section>\n<h2>Model card</h2>\n<pre>" + core::escapeMarkup(card) + "</pre>\n</section>\n";
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace cdiff::page

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The course of a training as one HTML page: for each stage its loss, its held-out errors (m, m/s,
+/// rad, share of an action) and its speed over the seconds of training.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cdiff::page {
+
+/// Values of one figure over time: (seconds of training, value).
+using TrainingCurve = std::vector<std::pair<double, double>>;
+
+/// One stage of `cdiff train`.
+struct TrainingStage {
+  std::string name;
+  long steps = 0;                               ///< of its last row
+  double seconds = 0.0;                         ///< of its last row
+  std::map<std::string, TrainingCurve> curves;  ///< by figure
+};
+
+/// The stages of a `curves.csv`, in order of appearance; an incomplete last row, which a kill
+/// leaves, is passed over. Throws InputError naming `source` and the line of anything else that is
+/// no such file.
+std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std::string& source);
+
+/// The page; `card` is the text of the model card, empty if there is none yet.
+std::string trainingReport(const std::string& title, const std::vector<TrainingStage>& stages,
+                           const std::string& card);
+
+}  // namespace cdiff::page

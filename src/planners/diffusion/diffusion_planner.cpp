@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/diffusion/diffusion_planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.h"
+#include "diffusion/route_tokens.h"
+#include "dynamics/executable_action.h"
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/random.h"
+#include "planners/diffusion/guided_batch.h"
+#include "planners/diffusion/last_plan.h"
+#include "planners/diffusion/plan_choice.h"
+#include "planning/motion_forecast.h"
+#include "planning/route_forecast.h"
+#include "planning/surrounding_vehicles.h"
+
+namespace cdiff::planners {
+namespace {
+
+using diffusion::SampledTrajectory;
+using traffic::Rollout;
+
+diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
+                                         const guidance::GuidanceOptions& guidance) {
+  diffusion::SamplerOptions sampler = options.sampler;
+  sampler.trust_region = guidance.trust_region;
+  return sampler;
+}
+
+/// Rows of a rollout in a decision period.
+double rowsOf(const planning::PlanningContext& context) {
+  return context.decision_period / traffic::kRolloutStep;
+}
+
+std::uint64_t ticksOf(const planning::PlanningContext& context) {
+  return static_cast<std::uint64_t>(
+      std::llround(context.decision_period / context.simulation_step));
+}
+
+}  // namespace
+
+/// What is remembered of a vehicle between decisions.
+struct DiffusionPlanner::Memory {
+  planning::RouteFollower follower;
+  ImageWatch watch;
+  std::optional<LastPlan> plan;
+  std::vector<float> features;  ///< of the last image
+  std::uint64_t features_hash = 0;
+};
+
+/// One vehicle of this decision.
+struct DiffusionPlanner::Situation {
+  const planning::PlanningTask* task = nullptr;
+  Memory* memory = nullptr;
+  diffusion::Context context;
+  guidance::GuidanceScene scene;
+  guidance::OtherMotion other;
+  std::optional<Rollout> previous;            ///< last plan as seen from here, metric
+  std::optional<diffusion::Trajectory> warm;  ///< the same, normalised, where it fits
+  std::vector<std::unique_ptr<guidance::TotalObjective>> objectives;  ///< one per candidate
+  Rollout plan;                                                       ///< the chosen one
+  guidance::GuidanceReport report;
+};
+
+DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
+                                   const guidance::GuidanceOptions& guidance,
+                                   const dynamics::BicycleModelOptions& vehicle,
+                                   const planning::PlanningContext& context,
+                                   const std::string& guidance_group)
+    : options_(options),
+      guidance_(guidance),
+      tells_route_(options.conditioningUnder(guidance) == "image_route"),
+      vehicle_(vehicle),
+      context_(context),
+      model_(diffusion::loadModel(options.model)),
+      schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
+      encoder_(model_),
+      denoiser_(model_),
+      sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
+               core::RandomStream(context.seed, "diffusion")),
+      exact_(vehicle) {
+  guidance_.validate(guidance_group);
+  if (options.sampler.mode != "unguided") {
+    guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
+  }
+}
+
+DiffusionPlanner::~DiffusionPlanner() = default;
+
+std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTask& task,
+                                                     std::uint64_t tick, Memory& memory) {
+  if (!planning::isFinite(task.vehicle->state)) return "its state is not finite";
+  const diffusion::Architecture& sizes = model_.architecture;
+  const ImageExpectation expectation{static_cast<int>(sizes.image_width),
+                                     static_cast<int>(sizes.image_height),
+                                     options_.frozen_image_time, context_.simulation_step};
+  if (auto fault = memory.watch.fault(expectation, task.image, task.vehicle->state, tick))
+    return fault;
+  const bool has_route = task.route != nullptr && !task.route->empty();
+  if (!has_route && tells_route_) return "it has no route";
+  return std::nullopt;
+}
+
+/// For a CBV the other is the ego along its route; for the ego the nearest other vehicle. The
+/// vehicles around both are the traffic.
+void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation) {
+  const traffic::Vehicle& vehicle = *situation.task->vehicle;
+  const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
+  const traffic::Vehicle* ego = snapshot.ego();
+  const bool about_ego = situation.task->slot >= 0;
+  const traffic::Vehicle* other = about_ego ? ego : planning::nearestVehicle(snapshot, vehicle);
+  for (const traffic::Vehicle* near : planning::vehiclesAround(snapshot, vehicle, other)) {
+    situation.scene.traffic.push_back(
+        {near->state, near->dimensions,
+         planning::forecastMotion(*near, context_.network, vehicle_, steps)});
+  }
+  if (other == nullptr || !planning::isFinite(other->state) ||
+      traffic::onDifferentLevels(*other, vehicle))
+    return;
+  situation.other.now = other->state;
+  situation.other.dimensions = other->dimensions;
+  const bool along_route =
+      about_ego && context_.ego_route != nullptr && !context_.ego_route->empty();
+  situation.other.predicted =
+      along_route ? planning::forecastAlongRoute(*other, *context_.ego_route,
+                                                 ego_follower_.arcLength(), steps)
+                  : planning::forecastMotion(*other, context_.network, vehicle_, steps);
+  situation.scene.other = &situation.other;
+}
+
+/// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
+/// plan said, on its way to the same goal.
+void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
+  const std::optional<LastPlan>& last = situation.memory->plan;
+  if (!last || last->tick() + ticksOf(context_) != tick) return;
+  const planning::PlanningTask& task = *situation.task;
+  const double rows = rowsOf(context_);
+  situation.previous = last->continued(rows, exact_, task.vehicle->state);
+  if (situation.previous && options_.sampler.warm_start &&
+      last->holds(std::lround(rows), task.vehicle->state, task.route))
+    situation.warm = model_.normalizer.normalize(*situation.previous);
+}
+
+/// Encodes an image unless it is the one of the last decision, as before a standing vehicle.
+const std::vector<float>& DiffusionPlanner::featuresOf(const traffic::CameraImage& image,
+                                                       Memory& memory) {
+  const std::uint64_t hash = memory.watch.imageHash();
+  if (memory.features.empty() || memory.features_hash != hash) {
+    memory.features = encoder_.encode(image);
+    memory.features_hash = hash;
+  }
+  return memory.features;
+}
+
+std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
+    const traffic::TrafficSnapshot& snapshot, const planning::PlanningTask& task, Memory& memory) {
+  auto situation = std::make_unique<Situation>();
+  situation->task = &task;
+  situation->memory = &memory;
+  const traffic::Vehicle& vehicle = *task.vehicle;
+  guidance::GuidanceScene& scene = situation->scene;
+  scene.state = vehicle.state;
+  scene.dimensions = vehicle.dimensions;
+  scene.target_speed = task.target_speed;
+  scene.drivable_area = &context_.drivable_area;
+  situation->context.speed = vehicle.state.speed;
+  situation->context.image_features = featuresOf(*task.image, memory);
+  if (task.route != nullptr && !task.route->empty()) {
+    memory.follower.update(*task.route, vehicle.state.position);
+    const double arc_length = memory.follower.arcLength();
+    scene.route = task.route;
+    scene.route_arc_length = arc_length;
+    const double place = std::clamp(arc_length, 0.0, task.route->length());
+    scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
+    if (tells_route_) {
+      situation->context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
+                                                        arc_length, vehicle.state.pose());
+    }
+  }
+  setOther(snapshot, *situation);
+  setWarmStart(snapshot.tick, *situation);
+  for (std::int64_t i = 0; i < options_.candidates; ++i) {
+    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(guidance_, scene));
+  }
+  return situation;
+}
+
+std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
+    const std::vector<diffusion::Context>& contexts) {
+  if (options_.state_branch == "learned")
+    return std::make_unique<diffusion::LearnedStateBranch>(denoiser_);
+  std::vector<double> speeds;
+  for (const diffusion::Context& context : contexts) speeds.push_back(context.speed);
+  return std::make_unique<diffusion::ExactStateBranch>(vehicle_, model_.normalizer, speeds);
+}
+
+/// Samples one batch: all candidates of all `situations`.
+void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& situations) {
+  if (situations.empty()) return;
+  std::vector<diffusion::Context> contexts;
+  std::vector<diffusion::SampleRequest> requests;
+  std::vector<guidance::TotalObjective*> objectives;
+  for (const Situation* situation : situations) {
+    for (std::size_t candidate = 0; candidate < situation->objectives.size(); ++candidate) {
+      contexts.push_back(situation->context);
+      diffusion::SampleRequest request;
+      request.key = {core::hashText(situation->task->vehicle->id), static_cast<std::uint32_t>(tick),
+                     0};
+      request.candidate = static_cast<std::uint32_t>(candidate);
+      request.warm = situation->warm ? &*situation->warm : nullptr;
+      requests.push_back(request);
+      objectives.push_back(situation->objectives[candidate].get());
+    }
+  }
+  denoiser_.setContexts(contexts);
+  const auto branch = stateBranch(contexts);
+  GuidedBatch guided(model_.normalizer, objectives);
+  const auto samples = sampler_.sample(denoiser_, *branch, requests, &guided);
+  const auto candidates = static_cast<std::size_t>(options_.candidates);
+  for (std::size_t i = 0; i < situations.size(); ++i)
+    choose(*situations[i], samples, i * candidates);
+}
+
+void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTrajectory>& samples,
+                              std::size_t first) const {
+  std::vector<Rollout> plans;
+  std::vector<guidance::Score> scores;
+  for (std::size_t i = 0; i < situation.objectives.size(); ++i) {
+    plans.push_back(model_.normalizer.denormalize(samples[first + i].clean));
+    scores.push_back(situation.objectives[i]->score(plans.back()));
+  }
+  const std::size_t chosen = choosePlan(plans, scores, situation.previous, options_.hysteresis);
+  situation.plan = plans[chosen];
+  situation.report = situation.objectives[chosen]->report(situation.plan);
+  situation.report.candidates = options_.candidates;
+  situation.report.chosen = static_cast<std::int64_t>(chosen);
+  const SampledTrajectory& sample = samples[first + chosen];
+  if (sample.guided_steps > 0) {
+    situation.report.trust_region_share =
+        static_cast<double>(sample.trust_region_hits) / static_cast<double>(sample.guided_steps);
+  }
+}
+
+planning::PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
+  const planning::PlanningTask& task = *situation.task;
+  const traffic::VehicleState& start = task.vehicle->state;
+  Rollout driven = situation.plan;
+  dynamics::makeExecutable(driven);
+  planning::PlannedAction planned{
+      task.slot, task.vehicle->id, dynamics::executableAction(situation.plan, 0), {}};
+  planned.guidance = situation.report;
+  for (Eigen::Index row = 0; row < driven.rows(); ++row) {
+    const traffic::ControlAction action = dynamics::executableAction(situation.plan, row);
+    traffic::VehicleState state = start;
+    state.position = start.pose().toMap(situation.plan.row(row).head<2>().transpose());
+    state.heading = core::wrapAngle(start.heading + situation.plan(row, traffic::kRolloutHeading));
+    state.speed = std::max(0.0, situation.plan(row, traffic::kRolloutSpeed));
+    planned.rollout.push_back({state, action});
+  }
+  exact_.rollOut(start.speed, driven);
+  planned.state_mismatch =
+      (driven.leftCols<2>() - situation.plan.leftCols<2>()).rowwise().norm().maxCoeff();
+  return planned;
+}
+
+void DiffusionPlanner::followEgo(const traffic::TrafficSnapshot& snapshot) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego == nullptr || context_.ego_route == nullptr || context_.ego_route->empty()) return;
+  if (!planning::isFinite(ego->state)) return;
+  constexpr double kFastest = 40.0;  // [m/s]
+  const auto skipped = static_cast<double>(snapshot.tick - std::min(snapshot.tick, ego_tick_));
+  ego_follower_.update(*context_.ego_route, ego->state.position,
+                       kFastest * skipped * context_.simulation_step);
+  ego_tick_ = snapshot.tick;
+}
+
+void DiffusionPlanner::rememberOnly(const std::vector<planning::PlanningTask>& tasks) {
+  std::map<std::string, std::unique_ptr<Memory>> kept;
+  for (const planning::PlanningTask& task : tasks) {
+    std::unique_ptr<Memory>& known = memories_[task.vehicle->id];
+    kept[task.vehicle->id] = known ? std::move(known) : std::make_unique<Memory>();
+  }
+  memories_ = std::move(kept);
+}
+
+/// The chosen plan becomes the vehicle's action, unless it cannot be executed.
+void DiffusionPlanner::conclude(std::uint64_t tick, const Situation& situation,
+                                planning::PlannedAction& planned) const {
+  if (!situation.plan.allFinite()) {
+    planned.fault = "vehicle '" + planned.vehicle_id +
+                    "': the sampled plan is not finite; full braking instead";
+    situation.memory->plan.reset();
+    return;
+  }
+  planned = actionOf(situation);
+  const planning::PlanningTask& task = *situation.task;
+  situation.memory->plan.emplace(situation.plan, tick, task.vehicle->state, task.route);
+}
+
+std::vector<planning::PlannedAction> DiffusionPlanner::plan(
+    const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
+  followEgo(snapshot);
+  rememberOnly(tasks);
+  std::vector<planning::PlannedAction> actions;
+  std::vector<std::unique_ptr<Situation>> situations(tasks.size());
+  std::vector<Situation*> cold;
+  std::vector<Situation*> warm;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const std::string& id = tasks[i].vehicle->id;
+    actions.push_back({tasks[i].slot, id, traffic::ControlAction::failSafe(), {}});
+    Memory& memory = *memories_[id];
+    if (auto fault = faultOf(tasks[i], snapshot.tick, memory)) {
+      actions[i].fault = "vehicle '" + id + "': " + *fault + "; full braking instead";
+      memory.plan.reset();
+      continue;
+    }
+    situations[i] = situationOf(snapshot, tasks[i], memory);
+    (situations[i]->warm ? warm : cold).push_back(situations[i].get());
+  }
+  solve(snapshot.tick, cold);
+  solve(snapshot.tick, warm);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (situations[i]) conclude(snapshot.tick, *situations[i], actions[i]);
+  }
+  return actions;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
+/// future states and throttle, steer and brake out, of which the first action drives. All vehicles
+/// of a decision form one batch.
+///
+/// Choices where the paper leaves them open:
+///  - the image is encoded once per decision, the denoiser runs on its features;
+///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
+///    nearest other vehicle, for the ego;
+///  - attackers are not told their route (DiffusionOptions::conditioningUnder);
+///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
+///    brake the larger one acts;
+///  - of several candidates the one with the lowest weighted objective drives, unless the one
+///  nearest
+///    to the previous plan is no worse by `hysteresis`.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diffusion/cpu_denoiser.h"
+#include "diffusion/image_encoder.h"
+#include "diffusion/model.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "guidance/guidance_options.h"
+#include "planners/diffusion/diffusion_options.h"
+#include "planners/diffusion/image_watch.h"
+#include "planning/route_follower.h"
+
+namespace cdiff::planners {
+
+class DiffusionPlanner : public planning::Planner {
+ public:
+  /// Loads the model. Throws InputError for a bad model or bad options; `guidance_group` is put
+  /// before the keys of guidance that it names.
+  DiffusionPlanner(const DiffusionOptions& options, const guidance::GuidanceOptions& guidance,
+                   const dynamics::BicycleModelOptions& vehicle,
+                   const planning::PlanningContext& context,
+                   const std::string& guidance_group = "guidance.");
+  ~DiffusionPlanner() override;
+
+  /// A vehicle with a NaN state, without a usable image, or without a route where one is asked for
+  /// gets the fail-safe action and a fault that names what is wrong; the others drive on.
+  std::vector<planning::PlannedAction> plan(
+      const traffic::TrafficSnapshot& snapshot,
+      const std::vector<planning::PlanningTask>& tasks) override;
+  bool needsImages() const override { return true; }
+  const diffusion::Model& model() const { return model_; }
+
+ private:
+  struct Memory;
+  struct Situation;
+
+  void followEgo(const traffic::TrafficSnapshot& snapshot);
+  void rememberOnly(const std::vector<planning::PlanningTask>& tasks);
+  std::optional<std::string> faultOf(const planning::PlanningTask& task, std::uint64_t tick,
+                                     Memory& memory);
+  const std::vector<float>& featuresOf(const traffic::CameraImage& image, Memory& memory);
+  std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
+                                         const planning::PlanningTask& task, Memory& memory);
+  void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
+  void setWarmStart(std::uint64_t tick, Situation& situation) const;
+  std::unique_ptr<diffusion::StateBranch> stateBranch(
+      const std::vector<diffusion::Context>& contexts);
+  void solve(std::uint64_t tick, const std::vector<Situation*>& situations);
+  void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
+              std::size_t first) const;
+  planning::PlannedAction actionOf(const Situation& situation) const;
+  void conclude(std::uint64_t tick, const Situation& situation,
+                planning::PlannedAction& planned) const;
+
+  DiffusionOptions options_;
+  guidance::GuidanceOptions guidance_;
+  bool tells_route_;  ///< the network the route
+  dynamics::BicycleModelOptions vehicle_;
+  planning::PlanningContext context_;
+  diffusion::Model model_;
+  diffusion::NoiseSchedule schedule_;
+  diffusion::ImageEncoder encoder_;
+  diffusion::CpuDenoiser denoiser_;
+  diffusion::Sampler sampler_;
+  dynamics::ActionRollout exact_;
+  planning::RouteFollower ego_follower_;
+  std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
+  std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
+};
+
+}  // namespace cdiff::planners

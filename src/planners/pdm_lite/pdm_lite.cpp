@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/pdm_lite/pdm_lite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamics/action_inference.h"
+#include "e2e_cdiff/traffic/rollout.h"
+#include "planners/pdm_lite/box_forecast.h"
+#include "planners/pdm_lite/idm.h"
+#include "planners/pdm_lite/longitudinal_controller.h"
+#include "planners/pdm_lite/route_rules.h"
+#include "planning/motion_forecast.h"
+
+namespace cdiff::planners {
+namespace {
+
+constexpr double kStandingSpeed = 0.1;      // [m/s]
+constexpr double kStuckTime = 8.5;          // published: 170 ticks at 20 Hz [s]
+constexpr double kRollbackSpeed = 0.5;      // [m/s]
+constexpr double kLaneChangeHorizon = 1.1;  // of boxes near a lane change [s]
+constexpr double kEndZone = 5.0;            // of the route [m]
+constexpr double kCreepSpeed = 1.0;         // in the end zone [m/s]
+constexpr double kLightGap = 6.0;           // s0 before a stop line [m]
+constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
+constexpr double kLeastBraking = 1.0;       // of an even style that waits [m/s^2]
+constexpr double kHardestBraking = 8.0;     // of an even style [m/s^2]
+
+/// Pedals in the last metres of the route.
+PedalCommand endPedals(double remaining, double speed, double target_speed) {
+  if (remaining > 0.0 && speed < kCreepSpeed) {
+    return pedals(speed, std::min(kCreepSpeed, target_speed));
+  }
+  return {0.0, true};
+}
+
+/// Brake that stops the vehicle 1 m beyond the end of the route at an even deceleration.
+double endBrake(double remaining, double speed, double full_deceleration) {
+  constexpr double kOvershoot = 1.0;
+  const double distance = remaining + kOvershoot;
+  if (distance <= 0.0) return 1.0;
+  return std::clamp(speed * speed / (2.0 * distance * full_deceleration), 0.0, 1.0);
+}
+
+/// Even deceleration that ends where the vehicle would be in the way [m/s^2].
+double evenBraking(const traffic::VehicleState& now, const traffic::VehicleState& meeting) {
+  constexpr double kMargin = 2.0;  // [m]
+  constexpr double kShortest = 0.5;
+  const double distance = (meeting.position - now.position).norm() - kMargin;
+  return std::clamp(now.speed * now.speed / (2.0 * std::max(distance, kShortest)), kLeastBraking,
+                    kHardestBraking);
+}
+
+/// How long the way of a vehicle that gave way must be clear before it drives on [s].
+double restartDelay(int slot) { return slot < 0 ? 0.0 : 0.5 + 0.2 * slot; }
+
+void requireComplete(const planning::PlanningTask& task) {
+  if (task.vehicle == nullptr) {
+    throw std::invalid_argument("PdmLite: the task of slot " + std::to_string(task.slot) +
+                                " has no vehicle");
+  }
+  if (task.route == nullptr || task.route->empty()) {
+    throw std::invalid_argument("PdmLite: vehicle '" + task.vehicle->id + "' has no route");
+  }
+}
+
+/// PDM-Lite's constants, or those of a vehicle with an even style.
+IdmParameters parametersOf(const planning::DrivingStyle& style) {
+  IdmParameters parameters;
+  if (!style.even()) return parameters;
+  parameters.acceleration = style.acceleration;
+  parameters.slow_deceleration = style.deceleration;
+  parameters.fast_deceleration = style.deceleration;
+  return parameters;
+}
+
+/// Target on a free road: the desired speed, or for an even style IDM's way towards it, slowing
+/// down by no more than b.
+double freeSpeed(const planning::PlanningTask& task, double desired) {
+  if (!task.style.even()) return desired;
+  const double speed = task.vehicle->state.speed;
+  const IdmParameters parameters = parametersOf(task.style);
+  IdmObstacle none;
+  none.distance = 1e9;
+  return std::max(idmSpeed(speed, desired, none, parameters),
+                  speed - task.style.deceleration * parameters.time_bound);
+}
+
+/// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
+/// freeSpeed alone, for IDM's own term planning::knows no bound.
+double desiredBehind(const planning::PlanningTask& task, double desired) {
+  return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
+}
+
+/// IDM speed behind a leader or before a light.
+double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
+                 double desired) {
+  const traffic::Vehicle& self = *task.vehicle;
+  IdmObstacle obstacle;
+  obstacle.minimum_gap = task.style.minimum_gap;
+  obstacle.time_headway = task.style.time_headway;
+  obstacle.distance = (leader.state.position - self.state.position).norm();
+  obstacle.speed = leader.state.speed;
+  obstacle.length = leader.dimensions.length;
+  return idmSpeed(self.state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
+}
+
+double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance) {
+  IdmObstacle obstacle;
+  obstacle.distance = distance;
+  obstacle.minimum_gap = kLightGap;
+  obstacle.time_headway = kLightHeadway;
+  return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
+}
+
+}  // namespace
+
+PdmLite::PdmLite(const PdmLiteOptions& options, const dynamics::BicycleModelOptions& vehicle,
+                 const planning::PlanningContext& context)
+    : options_(options),
+      model_(vehicle),
+      network_(context.network),
+      decision_period_(context.decision_period) {
+  options_.validate();
+}
+
+std::size_t PdmLite::forecastSteps(double horizon) const {
+  const double shorter = std::min(horizon, options_.forecast_horizon);
+  return static_cast<std::size_t>(std::max(1L, std::lround(shorter / planning::kForecastStep)));
+}
+
+std::vector<planning::PlannedAction> PdmLite::plan(
+    const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
+  std::map<std::string, Memory> kept;
+  Forecasts forecasts(snapshot.vehicles.size());
+  std::vector<planning::PlannedAction> actions;
+  for (const planning::PlanningTask& asked : tasks) {
+    requireComplete(asked);
+    planning::PlanningTask task = asked;
+    if (task.slot >= 0 && !task.style.even()) {
+      task.style.acceleration = options_.cbv_acceleration;
+      task.style.deceleration = options_.cbv_deceleration;
+    }
+    const traffic::VehicleState& state = task.vehicle->state;
+    auto known = memories_.extract(task.vehicle->id);
+    if (!known.empty()) kept.insert(std::move(known));
+    const Memory fresh{{planning::RouteFollower(), LateralController(options_)}};
+    Memory& memory = kept.try_emplace(task.vehicle->id, fresh).first->second;
+    memory.driver.follower.update(*task.route, state.position);
+    const double s = memory.driver.follower.arcLength();
+    const Situation situation{
+        task, snapshot, s,
+        initialTargetSpeed(options_, *task.route, s, state.speed, task.target_speed),
+        nearLaneChange(*task.route, s, state.speed)};
+    actions.push_back(planOne(situation, memory, forecasts));
+  }
+  memories_ = std::move(kept);
+  return actions;
+}
+
+planning::PlannedAction PdmLite::planOne(const Situation& situation, Memory& memory,
+                                         Forecasts& forecasts) const {
+  const planning::PlanningTask& task = situation.task;
+  const traffic::VehicleState& state = task.vehicle->state;
+  planning::PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
+  planned.rollout = forecastEgo(state, *task.route, memory.driver, situation.initial_speed, model_,
+                                forecastSteps(options_.forecast_horizon));
+  const double target = targetSpeed(situation, planned.rollout, memory, forecasts);
+  planned.action = pedalAction(situation, target, memory);
+  planned.action.steer = steerAlong(*task.route, state, memory.driver);
+  return planned;
+}
+
+traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double target,
+                                            Memory& memory) const {
+  const double speed = situation.task.vehicle->state.speed;
+  const double remaining = situation.task.route->length() - situation.arc_length;
+  if (situation.task.style.even()) return evenAction(situation.task, remaining, target);
+  const PedalCommand pedal =
+      remaining < kEndZone ? endPedals(remaining, speed, target) : pedals(speed, target);
+  memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
+  const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
+  if (stuck) return {1.0, 0.0, 0.0};
+  const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
+  if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
+  const bool ends = remaining < kEndZone && target > 0.0 && speed >= kRollbackSpeed;
+  const double strongest = model_.options().max_deceleration;
+  return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
+}
+
+traffic::ControlAction PdmLite::evenAction(const planning::PlanningTask& task, double remaining,
+                                           double target) const {
+  const double speed = task.vehicle->state.speed;
+  const bool creeps = remaining > 0.0 && speed < kCreepSpeed;
+  const bool ends = remaining < kEndZone;
+  if (ends && creeps) target = std::min(target, kCreepSpeed);
+  const double wanted = (target - speed) / IdmParameters().time_bound;
+  const double acceleration = std::clamp(wanted, -kHardestBraking, task.style.acceleration);
+  const double next = std::max(0.0, speed + acceleration * traffic::kRolloutStep);
+  traffic::ControlAction action = dynamics::inferAction(model_, {speed, next, 0.0});
+  if (!ends || creeps) return action;
+  action.throttle = 0.0;
+  action.brake =
+      std::max(action.brake, endBrake(remaining, speed, model_.options().max_deceleration));
+  return action;
+}
+
+double PdmLite::targetSpeed(const Situation& situation,
+                            const std::vector<planning::RolloutPoint>& rollout, Memory& memory,
+                            Forecasts& forecasts) const {
+  const planning::PlanningTask& task = situation.task;
+  const Obstruction others = obstructionOf(situation, rollout, forecasts);
+  double target = others.target;
+  if (options_.obey_lights) {
+    const auto light = distanceToRedLight(*task.route, situation.arc_length, situation.snapshot);
+    if (light) target = std::min(target, idmBeforeLight(task, situation.initial_speed, *light));
+  }
+  if (!mustWait(situation, others.met.has_value(), memory)) {
+    memory.waiting = 0.0;
+    return target;
+  }
+  if (!task.style.even()) return 0.0;
+  const traffic::VehicleState& now = task.vehicle->state;
+  if (others.met)
+    memory.waiting = std::max(memory.waiting, evenBraking(now, rollout[*others.met].state));
+  return std::min(target, now.speed - memory.waiting * IdmParameters().time_bound);
+}
+
+PdmLite::Obstruction PdmLite::obstructionOf(const Situation& situation,
+                                            const std::vector<planning::RolloutPoint>& rollout,
+                                            Forecasts& forecasts) const {
+  const traffic::Vehicle& self = *situation.task.vehicle;
+  const map::Route& route = *situation.task.route;
+  const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
+  const bool exempt = !situation.near_lane_change;
+  const bool first_counts = situation.task.style.even();
+  Obstruction found{freeSpeed(situation.task, situation.initial_speed), {}};
+  for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
+    const traffic::Vehicle& other = situation.snapshot.vehicles[i];
+    if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
+    if (exempt && isLeading(route, situation.arc_length, other.state)) {
+      const double behind = idmBehind(situation.task, other, situation.initial_speed);
+      found.target = std::min(found.target, behind);
+      continue;
+    }
+    if (exempt && isTrailing(route, situation.arc_length, other.state)) continue;
+    const double distance = (other.state.position - self.state.position).norm();
+    if (distance > options_.detection_radius || (found.met && !first_counts)) continue;
+    const auto step = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
+    if (step && (!found.met || *step < *found.met)) found.met = step;
+  }
+  return found;
+}
+
+std::optional<std::size_t> PdmLite::meetsBox(
+    const Situation& situation, const traffic::Vehicle& other,
+    const std::vector<geometry::OrientedBox>& own,
+    const std::vector<traffic::VehicleState>& forecast) const {
+  const bool lane_change = situation.near_lane_change;
+  const double horizon = lane_change ? kLaneChangeHorizon : options_.forecast_horizon;
+  return meet(own, otherBoxes(other.dimensions, forecast, lane_change), forecastSteps(horizon));
+}
+
+bool PdmLite::mustWait(const Situation& situation, bool box_met, Memory& memory) const {
+  memory.clear_time = box_met ? 0.0 : memory.clear_time + decision_period_;
+  if (box_met) {
+    memory.gave_way = true;
+    return true;
+  }
+  const bool delayed =
+      memory.gave_way && memory.clear_time < restartDelay(situation.task.slot) - 1e-9;
+  if (!delayed) memory.gave_way = false;
+  return delayed;
+}
+
+const std::vector<traffic::VehicleState>& PdmLite::forecastOf(
+    const traffic::TrafficSnapshot& snapshot, std::size_t index, Forecasts& forecasts) const {
+  auto& forecast = forecasts[index];
+  if (!forecast) {
+    forecast = planning::forecastMotion(snapshot.vehicles[index], network_, model_.options(),
+                                        forecastSteps(options_.forecast_horizon));
+  }
+  return *forecast;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/pdm_lite/pdm_lite_options.h"
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::planners {
+namespace {
+
+void requirePositive(const char* key, double value) {
+  if (value > 0.0) return;
+  throw core::InputError(std::string("pdm_lite: ") + key + " is " + core::formatNumber(value) +
+                         ", but must be positive");
+}
+
+}  // namespace
+
+void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"speed_limit_share", "", "Initial target speed as a share of the limit."},
+                 speed_limit_share, 0.05, 1.5);
+  visitor.number({"junction_speed", "m/s", "Cap when a junction lies within 30 m."}, junction_speed,
+                 0.5, 60.0);
+  visitor.number({"forecast_horizon", "s", "Horizon of the box forecasts."}, forecast_horizon, 0.1,
+                 10.0);
+  visitor.number({"detection_radius", "m", "Vehicles within it are forecast."}, detection_radius,
+                 1.0, 500.0);
+  visitor.number({"lateral_kp", "", "Proportional gain of the steering."}, lateral_kp, 0.0, 20.0);
+  visitor.number({"lateral_ki", "", "Gain of the mean error of the steering."}, lateral_ki, 0.0,
+                 20.0);
+  visitor.number({"lateral_kd", "", "Gain of the last error change of the steering."}, lateral_kd,
+                 0.0, 20.0);
+  visitor.integer({"lateral_window", "", "Errors in the mean of the steering."}, lateral_window, 1,
+                  1000);
+  visitor.flag({"obey_lights", "", "Stop for lights that are not green."}, obey_lights);
+  visitor.number(
+      {"cbv_acceleration", "m/s^2", "Of CBVs with even pedals; 0: PDM-Lite's, published."},
+      cbv_acceleration, 0.0, 8.0);
+  visitor.number({"cbv_deceleration", "m/s^2", "Comfortable, of CBVs with even pedals."},
+                 cbv_deceleration, 0.5, 8.0);
+}
+
+void PdmLiteOptions::validate() const {
+  requirePositive("speed_limit_share", speed_limit_share);
+  requirePositive("junction_speed", junction_speed);
+  requirePositive("forecast_horizon", forecast_horizon);
+  requirePositive("detection_radius", detection_radius);
+  requirePositive("lateral_window", static_cast<double>(lateral_window));
+}
+
+}  // namespace cdiff::planners

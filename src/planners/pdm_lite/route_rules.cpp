@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/pdm_lite/route_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "planning/route_follower.h"
+
+namespace cdiff::planners {
+namespace {
+
+constexpr double kSearchDistance = 80.0;    // of leading and trailing vehicles [m]
+constexpr double kLaneChangeBehind = 15.0;  // [m]
+
+double lowestLimit(const map::Route& route, double begin, double end) {
+  constexpr double kSpacing = 1.0;
+  double limit = route.speedLimitAt(end);
+  for (double s = begin; s < end; s += kSpacing) limit = std::min(limit, route.speedLimitAt(s));
+  return limit;
+}
+
+bool changesLaneWithin(const map::Route& route, double begin, double end) {
+  const auto& changes = route.laneChanges();
+  return std::any_of(changes.begin(), changes.end(),
+                     [&](double s) { return s >= begin && s <= end; });
+}
+
+/// Near a stretch of the extended route and along its heading there.
+bool follows(const map::Route& route, std::pair<double, double> stretch,
+             const traffic::VehicleState& vehicle, double max_distance, double max_angle) {
+  const double s =
+      planning::extendedProjection(route, vehicle.position, stretch.first, stretch.second);
+  const double distance = (planning::extendedPositionAt(route, s) - vehicle.position).norm();
+  if (distance >= max_distance) return false;
+  const double heading = route.path().headingAt(std::clamp(s, 0.0, route.length()));
+  return std::abs(core::angleDifference(vehicle.heading, heading)) < max_angle;
+}
+
+bool isGreenOrOff(char letter) {
+  return letter == 'G' || letter == 'g' || letter == 'o' || letter == 'O';
+}
+
+/// Letter of a link, or 'O' (no light) when the snapshot does not know it.
+char signalLetter(const traffic::TrafficSnapshot& snapshot, const map::Route::Signal& signal) {
+  for (const traffic::SignalState& light : snapshot.signals) {
+    if (light.id != signal.id) continue;
+    const bool known = signal.link >= 0 && signal.link < static_cast<int>(light.state.size());
+    return known ? light.state[static_cast<std::size_t>(signal.link)] : 'O';
+  }
+  return 'O';
+}
+
+}  // namespace
+
+double initialTargetSpeed(const PdmLiteOptions& options, const map::Route& route, double arc_length,
+                          double speed, double task_speed) {
+  constexpr double kAnticipatedDeceleration = 4.0;
+  constexpr double kJunctionDistance = 30.0;
+  const double begin = std::clamp(arc_length, 0.0, route.length());
+  const double braking = speed * speed / (2.0 * kAnticipatedDeceleration);
+  const double limit = lowestLimit(route, begin, std::min(begin + braking, route.length()));
+  double target = std::min({options.speed_limit_share * limit, task_speed, limit});
+  for (const auto& [from, to] : route.junctionStretches()) {
+    const bool near = to >= arc_length && from <= arc_length + kJunctionDistance;
+    if (near) target = std::min(target, options.junction_speed);
+  }
+  return target;
+}
+
+bool nearLaneChange(const map::Route& route, double arc_length, double speed) {
+  const double tens = 3.6 * speed / 10.0;
+  const double rest = route.length() - arc_length;
+  const double ahead = std::max(20.0, std::min(rest, 0.5 * tens * tens + 10.0));
+  return changesLaneWithin(route, arc_length - kLaneChangeBehind, arc_length + ahead);
+}
+
+bool isLeading(const map::Route& route, double arc_length, const traffic::VehicleState& other) {
+  constexpr double kDistance = 2.5;
+  const double end = std::max(arc_length, std::min(arc_length + kSearchDistance, route.length()));
+  return follows(route, {arc_length, end}, other, kDistance, core::degreesToRadians(35.0));
+}
+
+bool isTrailing(const map::Route& route, double arc_length, const traffic::VehicleState& other) {
+  constexpr double kDistance = 3.0;
+  constexpr double kDistanceAfterLaneChange = 6.0;
+  const bool changed = changesLaneWithin(route, arc_length - kLaneChangeBehind, arc_length);
+  return follows(route, {arc_length - kSearchDistance, arc_length}, other,
+                 changed ? kDistanceAfterLaneChange : kDistance, core::degreesToRadians(30.0));
+}
+
+std::optional<double> distanceToRedLight(const map::Route& route, double arc_length,
+                                         const traffic::TrafficSnapshot& snapshot) {
+  for (const map::Route::Signal& signal : route.signals()) {
+    if (signal.arc_length <= arc_length) continue;
+    if (!isGreenOrOff(signalLetter(snapshot, signal))) return signal.arc_length - arc_length;
+  }
+  return std::nullopt;
+}
+
+}  // namespace cdiff::planners

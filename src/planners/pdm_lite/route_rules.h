@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
+/// speed, lane change near, who leads, who trails, the next light.
+#pragma once
+
+#include <optional>
+
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
+
+namespace cdiff::planners {
+
+/// min(share x limit, task's target speed, limit), capped where a junction lies within 30 m [m/s].
+/// The limit is the lowest one within the distance of braking at 4 m/s^2: SUMO's lanes inside
+/// junctions carry the speed of their curve (CARLA's roads do not).
+double initialTargetSpeed(const PdmLiteOptions& options, const map::Route& route, double arc_length,
+                          double speed, double task_speed);
+
+/// Whether the route changes lane within the next max(20, min(rest, (v_kmh / 10)^2 / 2 + 10)) m or
+/// the last 15 m.
+bool nearLaneChange(const map::Route& route, double arc_length, double speed);
+
+/// Within 2.5 m of the next 80 m of the route and heading along it within 35 degrees.
+bool isLeading(const map::Route& route, double arc_length, const traffic::VehicleState& other);
+
+/// Within 3 m (6 m when a lane change lies in the last 15 m) of the past 80 m and heading along it
+/// within 30 degrees.
+bool isTrailing(const map::Route& route, double arc_length, const traffic::VehicleState& other);
+
+/// Distance to the stop line of the first light ahead that is not green ('G', 'g') nor switched off
+/// ('o', 'O') [m].
+std::optional<double> distanceToRedLight(const map::Route& route, double arc_length,
+                                         const traffic::TrafficSnapshot& snapshot);
+
+}  // namespace cdiff::planners

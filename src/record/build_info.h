@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What this binary was built from and runs on, for the record of a session.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cdiff::record {
+
+/// Version of the package, "unknown" when the build did not give one.
+std::string packageVersion();
+/// Git revision at configure time, or "unknown".
+std::string packageRevision();
+/// (name, version) of the libraries and the compiler that decide results.
+std::vector<std::pair<std::string, std::string>> libraryVersions();
+/// Model name of the processor, or "unknown".
+std::string processorModel();
+/// Instruction set that the binary was compiled for, e.g. "x86-64 baseline".
+std::string instructionSet();
+
+}  // namespace cdiff::record

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "record/summary.h"
+
+#include "record/cbv_summary.h"
+#include "record/summary_figures.h"
+
+namespace cdiff::record {
+namespace {
+
+/// Each contact of the ego, with who is at fault and why.
+Json contactList(const std::vector<metrics::EgoContact>& contacts) {
+  Json list = Json::array();
+  for (const metrics::EgoContact& contact : contacts) {
+    list.push_back({{"tick", contact.tick},
+                    {"seconds", contact.seconds},
+                    {"with", contact.partner},
+                    {"ego_at_fault", contact.ego_at_fault},
+                    {"why", contact.reason},
+                    {"ego_speed_mps", contact.ego_speed},
+                    {"other_speed_mps", contact.partner_speed},
+                    {"ego_side", contact.ego_side},
+                    {"other_side", contact.partner_side},
+                    {"x", contact.x},
+                    {"y", contact.y}});
+  }
+  return list;
+}
+
+Json egoObject(const metrics::SessionMeasures& measures) {
+  Json object = {{"route_completion_percent", measures.route_completion_percent},
+                 {"driving_score", measures.driving_score},
+                 {"protocol", measures.protocol}};
+  addMeasure(object, "penalty", measures.penalty);
+  object["infractions"] = Json::object();
+  object["infractions_n"] = Json::object();
+  for (const auto& [name, measure] : measures.infractions) {
+    addMeasure(object["infractions"], name, measure);
+    object["infractions_n"][name] = measure.n;
+  }
+  object["blocked"] = measures.blocked;
+  object["collisions"] = measures.ego_collisions;
+  object["contacts_at_fault"] = measures.contactsAtFault();
+  object["contacts"] = contactList(measures.ego_contacts);
+  addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
+  return object;
+}
+
+/// What guidance did to the plans of CBVs, by objective; null without guidance.
+Json guidanceObject(const GuidanceLog& log) {
+  if (log.series().empty()) return nullptr;
+  Json object = Json::object();
+  for (const GuidanceSeries& series : log.series()) {
+    const ObjectiveFigures figures = figuresOf(series);
+    object[series.objective] = {{"weight", number(figures.weight)},
+                                {"value", number(figures.value)},
+                                {"gradient_norm", number(figures.gradient_norm)},
+                                {"capped_share", number(figures.capped_share)},
+                                {"dropped", figures.dropped},
+                                {"n", figures.n}};
+  }
+  return object;
+}
+
+Json latencyObject(const std::map<std::string, LatencyFigures>& latencies) {
+  Json object = Json::object();
+  for (const auto& [planner, figures] : latencies) {
+    object[planner] = {{"p50", figures.median},
+                       {"p95", figures.percentile_95},
+                       {"max", figures.maximum},
+                       {"n", figures.n}};
+  }
+  return object;
+}
+
+Json verdictObject(const Verdict& verdict) {
+  Json rules = Json::array();
+  for (const Check& check : verdict.checks) {
+    rules.push_back(
+        {{"rule", check.name}, {"outcome", toText(check.outcome)}, {"found", check.text}});
+  }
+  return {{"outcome", toText(verdict.outcome)},
+          {"reasons", verdict.reasons},
+          {"decided_by", verdict.decided_by},
+          {"rules", rules}};
+}
+
+Json lateObject(const std::map<std::string, LateFigures>& late) {
+  Json object = {{"count", lateAnswers(late)}, {"planners", Json::object()}};
+  for (const auto& [planner, figures] : late) {
+    object["planners"][planner] = {
+        {"asked", figures.asked},
+        {"late", figures.late},
+        {"missing", figures.missing},
+        {"by_plan", figures.by_plan},
+        {"by_full_brake", figures.by_full_brake},
+        {"not_driven", figures.not_driven},
+        {"lateness_s",
+         {{"p50", figures.median}, {"p95", figures.percentile_95}, {"max", figures.maximum}}}};
+  }
+  return object;
+}
+
+Json faultList(const std::vector<traffic::Fault>& faults) {
+  Json list = Json::array();
+  for (const traffic::Fault& fault : faults) {
+    list.push_back({{"tick", fault.tick}, {"source", fault.source}, {"text", fault.text}});
+  }
+  return list;
+}
+
+/// How the session was asked for and how it ended.
+Json headOf(const SessionResult& result) {
+  const session::ScenarioOptions& options = result.setup.options();
+  Json head = {{"schema_version", 1},
+               {"scenario", options.name},
+               {"seed", options.seed},
+               {"mode", options.mode},
+               {"ego_planner", options.ego_planner},
+               {"cbv_planner", options.cbv_planner},
+               {"status", traffic::toText(result.status)},
+               {"simulated_seconds", result.simulated_seconds},
+               {"wall_seconds", result.wall_seconds}};
+  if (result.wall_seconds > 0.0) {
+    head["real_time_factor"] = result.simulated_seconds / result.wall_seconds;
+  } else {
+    head["real_time_factor"] = nullptr;
+    head["real_time_factor_reason"] = "no wall time was measured";
+  }
+  head["trace_sha256"] = result.trace_sha256;
+  return head;
+}
+
+}  // namespace
+
+std::string summaryJson(const SessionResult& result) {
+  Json summary = headOf(result);
+  summary["ego"] = egoObject(result.measures);
+  summary["cbv"] = cbvObject(result);
+  summary["guidance"] = guidanceObject(result.guidance);
+  summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);
+  summary["metrics"] = Json::object();
+  addFigures(summary["metrics"], "metrics", result.measures);
+  summary["planner_latency_ms"] = latencyObject(result.latencies);
+  summary["late_answers"] = lateObject(result.late);
+  summary["faults"] = faultList(result.faults);
+  summary["verdict"] = verdictObject(result.verdict);
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace cdiff::record

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Text of summary.json: the session's figures under fixed keys in a fixed order; an absent figure
+/// is null beside a reason.
+#pragma once
+
+#include <string>
+
+#include "record/session_result.h"
+
+namespace cdiff::record {
+
+std::string summaryJson(const SessionResult& result);
+
+/// Id of the vehicle that a CBV touched last during its stay; nullopt when none.
+std::optional<std::string> contactPartner(const CbvRecord& record, const SessionResult& result);
+
+/// Whether a selected conflict lies at or beyond the first junction of the ego route.
+bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route);
+
+}  // namespace cdiff::record

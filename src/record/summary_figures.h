@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Figures of a session as they stand in summary.json: null where absent, with the reason beside.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "metrics/session_measures.h"
+
+namespace cdiff::record {
+
+using Json = nlohmann::ordered_json;
+
+/// The value, or null.
+Json number(const std::optional<double>& value);
+
+/// `key: value`, and `key_reason` beside it where there is one.
+void addMeasure(Json& object, const std::string& key, const metrics::Measure& measure);
+
+/// Adds the defined figures whose place in the summary begins with "/section/".
+void addFigures(Json& object, const std::string& section, const metrics::SessionMeasures& measures);
+
+}  // namespace cdiff::record

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "record/verdict.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::record {
+namespace {
+
+using traffic::SessionStatus;
+
+constexpr double kNoLimit = 1e9;  // default of the rules on counts
+
+constexpr std::pair<Outcome, const char*> kOutcomes[] = {
+    {Outcome::kPassed, "passed"}, {Outcome::kStruck, "struck"},
+    {Outcome::kFailed, "failed"}, {Outcome::kNotJudged, "not_judged"},
+    {Outcome::kError, "error"},   {Outcome::kInterrupted, "interrupted"}};
+
+Check judged(const std::string& name, bool met, const std::string& text) {
+  return {name, met ? CheckOutcome::kPassed : CheckOutcome::kFailed, text};
+}
+
+std::string quotedStatus(SessionStatus status) {
+  return "'" + std::string(traffic::toText(status)) + "'";
+}
+
+Check sessionCheck(SessionStatus status, const std::vector<traffic::Fault>& faults) {
+  const std::string text = "the session ended with status " + quotedStatus(status);
+  if (endedByItself(status)) return {"session", CheckOutcome::kPassed, text};
+  if (faults.empty()) return {"session", CheckOutcome::kError, text};
+  return {"session", CheckOutcome::kError,
+          text + ": " + faults.back().source + ": " + faults.back().text};
+}
+
+std::string countText(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::vector<std::string> contactTexts(const metrics::SessionMeasures& measures, bool at_fault) {
+  std::vector<std::string> texts;
+  for (const metrics::EgoContact& contact : measures.ego_contacts) {
+    if (contact.ego_at_fault == at_fault) texts.push_back(contactText(contact));
+  }
+  return texts;
+}
+
+std::string atFaultText(const std::vector<std::string>& contacts) {
+  return "the ego was at fault in " + countText(contacts.size(), "contact") + ": with " +
+         core::joinText(contacts, "; with ");
+}
+
+std::string struckText(const std::vector<std::string>& contacts) {
+  return "the ego was struck without fault in " + countText(contacts.size(), "contact") + ", by " +
+         core::joinText(contacts, "; by ");
+}
+
+/// Adds a check for each rule that the scenario sets.
+class RuleBook {
+ public:
+  RuleBook(const session::ScenarioOptions& options, SessionStatus status,
+           const metrics::SessionMeasures& measures)
+      : rules_(options.verdict), mode_(options.mode), status_(status), measures_(measures) {}
+
+  std::vector<Check> checks() {
+    if (!rules_.judge) return {};
+    addStatus();
+    addCompletion();
+    addContacts();
+    addScore();
+    addCollisions();
+    addInfraction("red_lights", "red lights that the ego ran", rules_.maximum_red_lights, kNoLimit);
+    addInfraction("stop_signs", "stop signs that the ego did not obey", rules_.maximum_stop_signs,
+                  kNoLimit);
+    addInfraction("outside_lanes_percent", "share of its way that the ego drove outside the lanes",
+                  rules_.maximum_outside_lanes_percent, 100.0);
+    addOffRoad();
+    return std::move(checks_);
+  }
+
+ private:
+  void addStatus() {
+    const auto& allowed = rules_.statuses;
+    if (allowed.empty()) return;
+    const bool met =
+        std::find(allowed.begin(), allowed.end(), traffic::toText(status_)) != allowed.end();
+    checks_.push_back(judged("status", met,
+                             "the session ended with status " + quotedStatus(status_) +
+                                 "; allowed: " + core::joinText(allowed, ", ")));
+  }
+
+  void addCompletion() {
+    const double least = rules_.minimum_route_completion;
+    const double percent = measures_.route_completion_percent;
+    if (least <= 0.0) return;
+    checks_.push_back(judged("route_completion", percent >= least,
+                             "the ego completed " + core::formatFixed(percent, 1) +
+                                 " % of its route; at least " + core::formatNumber(least) +
+                                 " % is asked"));
+  }
+
+  void addContacts() {
+    const std::vector<std::string> own = contactTexts(measures_, true);
+    const double most = rules_.maximum_contacts_at_fault;
+    if (most < kNoLimit) {
+      checks_.push_back(
+          judged("contacts_at_fault", static_cast<double>(own.size()) <= most,
+                 "the ego was at fault in " + countText(own.size(), "contact") + "; at most " +
+                     core::formatNumber(most) + " allowed" +
+                     (own.empty() ? "" : ": with " + core::joinText(own, "; with "))));
+    }
+    addContactsWithoutFault(contactTexts(measures_, false));
+  }
+
+  void addContactsWithoutFault(const std::vector<std::string>& others) {
+    std::string meaning = rules_.contact_without_fault;
+    if (meaning == "allowed") return;
+    const bool by_mode = meaning == "by_mode";
+    if (by_mode) meaning = mode_ == "safety_critical" ? "struck" : "failed";
+    Check check{"contact_without_fault", CheckOutcome::kPassed, "nobody struck the ego"};
+    if (!others.empty()) {
+      check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
+      check.text =
+          struckText(others) + (by_mode ? "; in mode " + mode_ + " that counts as " + meaning : "");
+    }
+    checks_.push_back(check);
+  }
+
+  void addScore() {
+    if (rules_.minimum_driving_score <= 0.0) return;
+    checks_.push_back(judged("driving_score",
+                             measures_.driving_score >= rules_.minimum_driving_score,
+                             "the ego's driving score by " + measures_.protocol + " was " +
+                                 core::formatFixed(measures_.driving_score, 1) + " %; at least " +
+                                 core::formatNumber(rules_.minimum_driving_score) + " % is asked"));
+  }
+
+  void addCollisions() {
+    const double limit = rules_.maximum_ego_collisions;
+    if (limit >= kNoLimit) return;
+    const std::size_t count = measures_.ego_collisions;
+    checks_.push_back(judged("ego_collisions", static_cast<double>(count) <= limit,
+                             "the ego had " + countText(count, "collision") + "; at most " +
+                                 core::formatNumber(limit) + " allowed"));
+  }
+
+  /// A limit on one of the ego's infractions; `none` is the limit that allows all.
+  void addInfraction(const std::string& name, const std::string& what, double limit, double none) {
+    if (limit >= none) return;
+    const auto found = measures_.infractions.find(name);
+    if (found == measures_.infractions.end() || !found->second.value) {
+      const std::string reason =
+          found == measures_.infractions.end() ? "it was not measured" : found->second.reason;
+      checks_.push_back(
+          {name, CheckOutcome::kSkipped, name + " of the ego is not defined: " + reason});
+      return;
+    }
+    const double value = *found->second.value;
+    const std::string unit = found->second.unit.empty() ? "" : " " + found->second.unit;
+    checks_.push_back(judged(name, value <= limit,
+                             what + ": " + core::formatFixed(value, unit.empty() ? 0 : 2) + unit +
+                                 "; at most " + core::formatNumber(limit) + unit + " allowed"));
+  }
+
+  void addOffRoad() {
+    const double limit = rules_.maximum_cbv_off_road_percent;
+    const metrics::Measure& rate = measures_.cbv_off_road_rate_percent;
+    if (limit >= 100.0) return;
+    if (!rate.value) {
+      checks_.push_back({"cbv_off_road", CheckOutcome::kSkipped,
+                         "the off-road rate of the CBVs is not defined: " + rate.reason});
+      return;
+    }
+    checks_.push_back(judged("cbv_off_road", *rate.value <= limit,
+                             "the CBVs were off the road " + core::formatFixed(*rate.value, 2) +
+                                 " % of their time; at most " + core::formatNumber(limit) +
+                                 " % allowed"));
+  }
+
+  const session::VerdictOptions& rules_;
+  std::string mode_;
+  SessionStatus status_;
+  const metrics::SessionMeasures& measures_;
+  std::vector<Check> checks_;
+};
+
+bool has(const std::vector<Check>& checks, CheckOutcome outcome) {
+  return std::any_of(checks.begin(), checks.end(),
+                     [outcome](const Check& check) { return check.outcome == outcome; });
+}
+
+Outcome outcomeFrom(SessionStatus status, const std::vector<Check>& checks) {
+  if (status == SessionStatus::kInterrupted) return Outcome::kInterrupted;
+  if (!endedByItself(status)) return Outcome::kError;
+  if (checks.size() == 1) return Outcome::kNotJudged;
+  if (has(checks, CheckOutcome::kFailed)) return Outcome::kFailed;
+  return has(checks, CheckOutcome::kStruck) ? Outcome::kStruck : Outcome::kPassed;
+}
+
+/// Why a session is not judged, and what is worth knowing of it all the same.
+std::vector<std::string> reasonsNotToJudge(bool judge, const metrics::SessionMeasures& measures) {
+  std::vector<std::string> reasons = {
+      judge ? "the scenario has no rules (group 'verdict')"
+            : "the scenario is not to be judged (verdict.judge is false)"};
+  const std::vector<std::string> own = contactTexts(measures, true);
+  const std::vector<std::string> others = contactTexts(measures, false);
+  if (!own.empty()) reasons.push_back(atFaultText(own));
+  if (!others.empty()) reasons.push_back(struckText(others));
+  return reasons;
+}
+
+/// Notes the checks that made the outcome.
+void addReasons(Verdict& verdict) {
+  for (const Check& check : verdict.checks) {
+    const bool decided =
+        check.outcome != CheckOutcome::kPassed && check.outcome != CheckOutcome::kSkipped;
+    if (!decided) continue;
+    verdict.reasons.push_back(check.text);
+    verdict.decided_by.push_back(check.name);
+  }
+}
+
+}  // namespace
+
+const char* toText(Outcome outcome) {
+  for (const auto& [each, text] : kOutcomes) {
+    if (each == outcome) return text;
+  }
+  return "error";
+}
+
+std::string wordOf(Outcome outcome) {
+  return outcome == Outcome::kNotJudged ? "not judged" : toText(outcome);
+}
+
+std::string capitalsOf(Outcome outcome) {
+  std::string text = wordOf(outcome);
+  for (char& letter : text) letter = static_cast<char>(std::toupper(letter));
+  return text;
+}
+
+Outcome outcomeOf(const std::string& text) {
+  for (const auto& [outcome, name] : kOutcomes) {
+    if (text == name) return outcome;
+  }
+  throw core::InputError("'" + text + "' is no outcome of a session");
+}
+
+int exitCodeOf(Outcome outcome) {
+  if (outcome == Outcome::kInterrupted) return 130;
+  if (outcome == Outcome::kError) return 2;
+  return outcome == Outcome::kFailed ? 1 : 0;
+}
+
+const char* toText(CheckOutcome outcome) {
+  constexpr const char* kTexts[] = {"passed", "struck", "failed", "error", "skipped"};
+  return kTexts[static_cast<std::size_t>(outcome)];
+}
+
+bool endedByItself(SessionStatus status) {
+  return status != SessionStatus::kError && status != SessionStatus::kInterrupted &&
+         status != SessionStatus::kRunning;
+}
+
+Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults) {
+  Verdict verdict;
+  verdict.checks = {sessionCheck(status, faults)};
+  for (Check& check : RuleBook(options, status, measures).checks()) {
+    if (!endedByItself(status)) {
+      check.outcome = CheckOutcome::kSkipped;
+      check.text = "not judged: the session ended with status " + quotedStatus(status);
+    }
+    verdict.checks.push_back(std::move(check));
+  }
+  verdict.outcome = outcomeFrom(status, verdict.checks);
+  if (verdict.outcome == Outcome::kNotJudged)
+    verdict.reasons = reasonsNotToJudge(options.verdict.judge, measures);
+  else
+    addReasons(verdict);
+  return verdict;
+}
+
+std::string contactText(const metrics::EgoContact& contact) {
+  return contact.partner + " at " + core::formatFixed(contact.seconds, 2) + " s (" +
+         contact.reason + ")";
+}
+
+}  // namespace cdiff::record

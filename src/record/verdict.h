@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Judges a session by its scenario's rules. `judge` is the one place that decides: report, video,
+/// summary, JUnit, tables, batches and exit codes read what it found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "metrics/session_measures.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::record {
+
+/// What became of a session.
+enum class Outcome {
+  kPassed,
+  kStruck,     ///< passed, but somebody drove into the ego
+  kFailed,     ///< a rule was not met
+  kNotJudged,  ///< ended by itself, without any rule
+  kError,      ///< broke
+  kInterrupted
+};
+
+/// "passed", "struck", "failed", "not_judged", "error" or "interrupted": in files.
+const char* toText(Outcome outcome);
+/// The same for people: "not judged".
+std::string wordOf(Outcome outcome);
+/// In capitals: "NOT JUDGED".
+std::string capitalsOf(Outcome outcome);
+/// Throws InputError for any other text.
+Outcome outcomeOf(const std::string& text);
+/// Of `cdiff`, scripts/session and the file exit_code: 0 passed, struck and not judged; 1 failed;
+/// 2 error; 130 interrupted.
+int exitCodeOf(Outcome outcome);
+
+enum class CheckOutcome { kPassed, kStruck, kFailed, kError, kSkipped };
+
+/// "passed", "struck", "failed", "error" or "skipped".
+const char* toText(CheckOutcome outcome);
+
+/// One rule of the scenario, or the session itself (name "session").
+struct Check {
+  std::string name;
+  CheckOutcome outcome = CheckOutcome::kPassed;
+  std::string text;  ///< what was found and what was asked
+};
+
+struct Verdict {
+  Outcome outcome = Outcome::kError;
+  /// A sentence for each check that decided; empty when passed. Of a session that is not judged:
+  /// why not, and its contacts.
+  std::vector<std::string> reasons;
+  std::vector<Check> checks;  ///< the session first, then each rule that the scenario sets
+  std::vector<std::string> decided_by;  ///< names of the checks that decided
+};
+
+/// Whether the session ended by its own rules, so that it can be judged.
+bool endedByItself(traffic::SessionStatus status);
+
+/// Applies the rules of `options.verdict` in `options.mode`. A session that broke or was
+/// interrupted is not judged by them.
+Verdict judge(const session::ScenarioOptions& options, traffic::SessionStatus status,
+              const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults);
+
+/// "cbv_1 at 5.85 s (the other's front struck the ego's rear ...)".
+std::string contactText(const metrics::EgoContact& contact);
+
+}  // namespace cdiff::record

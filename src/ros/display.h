@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What people and tools look at, besides the session's own messages: /ego/odometry (while somebody
+/// listens) and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every tick and,
+/// once a vehicle, those of its camera. Nothing of the session is computed from it.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "nav_msgs/Odometry.h"
+#include "rendering/camera_options.h"
+#include "ros/ros.h"
+#include "tf2_msgs/TFMessage.h"
+#include "tf2_ros/static_transform_broadcaster.h"
+#include "tf2_ros/transform_broadcaster.h"
+
+namespace cdiff::ros {
+
+/// Pose in `map`, speed in the body frame.
+nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time);
+using Transforms = std::vector<geometry_msgs::TransformStamped>;
+/// Transforms of ego and CBVs.
+Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot);
+/// A vehicle's base_link -> camera (x along the view, z up) -> camera_optical (x right, y down, z
+/// along the view); they never change.
+Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
+                            const rendering::CameraOptions& camera);
+/// Both, for a bag; without cameras where `camera` is null.
+tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
+                            const rendering::CameraOptions* camera = nullptr);
+
+class Display {
+ public:
+  explicit Display(::ros::NodeHandle& node);
+  /// From now on tf holds the camera frames too.
+  void showCameras(const rendering::CameraOptions& camera) { camera_ = camera; }
+  void publish(const traffic::TrafficSnapshot& snapshot);
+
+ private:
+  void mountCameras(const traffic::TrafficSnapshot& snapshot);
+
+  ::ros::Publisher odometry_;
+  tf2_ros::TransformBroadcaster transforms_;
+  tf2_ros::StaticTransformBroadcaster mounts_;
+  std::optional<rendering::CameraOptions> camera_;
+  std::set<std::string> mounted_;  ///< vehicles whose camera frames are out
+};
+
+}  // namespace cdiff::ros

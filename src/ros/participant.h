@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What every node but the traffic simulator has in common: it waits for the session, reports when
+/// it is connected both ways, handles snapshots tick by tick in one thread, and leaves in order
+/// with the last one, whoever ends the session.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/Heartbeat.h"
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TickAck.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "ros/connections.h"
+#include "ros/heartbeat.h"
+#include "ros/message_gate.h"
+#include "ros/ros.h"
+#include "ros/stop_signal.h"
+#include "ros/topics.h"
+
+namespace cdiff::ros {
+
+/// How a node's session came to its end.
+enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped };
+
+/// What a result says of the traffic simulator that left, or fell silent for `timeout` [s].
+std::string simulatorFault(Ending ending, double timeout);
+
+class Participant {
+ public:
+  explicit Participant(StopSignal& stop);
+  virtual ~Participant() = default;
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// Runs the session to its end and answers the exit code.
+  int run();
+
+ protected:
+  using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
+
+  /// The session is known: make what it needs, advertise and listen.
+  virtual void begin(const ::e2e_cdiff::SessionInfo& info) = 0;
+  /// What is missing besides connections before the first tick; empty when nothing is.
+  virtual std::string waitingFor() const { return {}; }
+  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
+  /// is there, nothing more will come.
+  virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
+  /// Whether all that this decision needs is here; asked where decisions may be left out.
+  virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
+  /// Whether the node leaves decisions out when it falls behind the wall clock.
+  virtual bool leavesOut() const { return false; }
+  /// The session is over; answers the exit code.
+  virtual int conclude(Ending ending) = 0;
+  /// The traffic simulator has ended, or hangs, before it published a session; answers the exit
+  /// code.
+  virtual int concludeUnstarted(Ending) { return 0; }
+
+  template <class Message>
+  ::ros::Publisher advertise(const std::string& topic, bool latch = false) {
+    return connections_.advertise<Message>(node_, topic, listeners(topic, graph_), latch);
+  }
+  /// Takes what the topic's publisher sends; see MessageGate::subscribe.
+  template <class Message, class Callback>
+  void listen(const std::string& topic, Callback callback) {
+    inputs_.push_back(gate_.subscribe<Message>(
+        node_, topic, siblingNodes(publishersOf(topic, graph_)), callback));
+  }
+  /// Tells the traffic simulator that a tick is dealt with.
+  void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
+  const SessionGraph& graph() const { return graph_; }
+  /// Whether no message will come any more.
+  bool over() const { return over_; }
+  /// For publishers that advertise() does not make.
+  Connections& connections() { return connections_; }
+  ::ros::NodeHandle& node() { return node_; }
+  /// [s] of silence that the traffic simulator has promised not to exceed.
+  double heartbeatTimeout() const { return heartbeat_.timeout(); }
+
+ private:
+  std::optional<Ending> waitForSession();
+  std::optional<Ending> unstartedEnding();
+  int standBy();
+  int runSession();
+  std::optional<Ending> unexpectedEnding();
+  void endSilentSimulator();
+  int leave(Ending ending);
+  int fail(const std::string& text);
+  void queue(const Snapshot& snapshot);
+  bool handleQueue();
+  void leaveOutdatedOut();
+  void report();
+  std::string missing() const;
+  bool simulatorSilent();
+  bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
+  void tell(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
+  std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
+
+  StopSignal& stop_;
+  Connections connections_;
+  MessageGate gate_;
+  ::ros::NodeHandle node_;
+  std::string name_;
+  SessionGraph graph_;
+  ::ros::Publisher acks_;
+  SilenceWatch heartbeat_;
+  ::ros::Subscriber heartbeat_input_;
+  ::ros::Subscriber session_input_;
+  ::ros::Subscriber traffic_input_;
+  std::vector<::ros::Subscriber> inputs_;
+  ::e2e_cdiff::SessionInfo::ConstPtr session_;
+  std::deque<Snapshot> snapshots_;
+  std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
+  double simulation_step_ = 0.05;  ///< [s]
+  std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
+  ::ros::WallTime began_ = ::ros::WallTime::now();
+  ::ros::WallTime stopped_at_;   ///< when the stop signal was seen
+  ::ros::WallTime reported_at_;  ///< when this node last said how it stands
+  bool final_handled_ = false;
+  bool over_ = false;
+};
+
+}  // namespace cdiff::ros

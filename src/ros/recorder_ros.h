@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The recorder as a node: takes part in the lockstep and writes every tick of the session to
+/// session.bag in the result folder.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "ros/bag_file.h"
+#include "ros/observer.h"
+
+namespace cdiff::ros {
+
+class RecorderRos : public Observer {
+ public:
+  using Observer::Observer;
+
+ protected:
+  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  std::string waitingFor() const override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending ending) override;
+
+ private:
+  bool measured(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
+  TickMessages messagesOf(const Snapshot& snapshot) const;
+
+  std::unique_ptr<BagFile> bag_;
+  bool has_route_ = false;
+  std::map<std::uint64_t, ::e2e_cdiff::MetricReport::ConstPtr> reports_;  ///< by tick
+  ::ros::WallTime waiting_since_;
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "session/closed_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <set>
+#include <thread>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using planning::PlannedAction;
+using planning::PlanningTask;
+using traffic::SessionStatus;
+
+PlannedAction failSafe(const PlanningTask& task) {
+  return {task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}};
+}
+
+std::vector<PlannedAction> failSafe(const std::vector<PlanningTask>& tasks) {
+  std::vector<PlannedAction> actions;
+  for (const PlanningTask& task : tasks) actions.push_back(failSafe(task));
+  return actions;
+}
+
+bool answersAll(const std::vector<PlannedAction>& actions, const std::vector<PlanningTask>& tasks) {
+  if (actions.size() != tasks.size()) return false;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (actions[i].slot != tasks[i].slot || actions[i].vehicle_id != tasks[i].vehicle->id)
+      return false;
+  }
+  return true;
+}
+
+/// Sleeps until the wall clock has come as far as the simulation asks for, or a stop is asked for.
+void pace(Clock::time_point begin, double simulated_seconds, double at_most,
+          const std::atomic<bool>& stop) {
+  constexpr auto kSlice = std::chrono::milliseconds(50);
+  if (at_most <= 0.0) return;
+  const std::chrono::duration<double> due(simulated_seconds / at_most);
+  const Clock::time_point wake = begin + std::chrono::duration_cast<Clock::duration>(due);
+  while (!stop && Clock::now() < wake) {
+    std::this_thread::sleep_until(std::min(wake, Clock::now() + kSlice));
+  }
+}
+
+}  // namespace
+
+void requireLockstep(const ScenarioOptions& options) {
+  if (options.real_time_factor <= 0.0) return;
+  throw core::InputError(
+      "key 'real_time_factor' is " + core::formatNumber(options.real_time_factor) +
+      ", which needs the node graph (roslaunch e2e_cdiff session.launch): in one process no answer "
+      "can be late; expected 0 here, and 'at_most' to limit the pace");
+}
+
+std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
+                                   const cbv::CbvSelection& selection, double target_speed) {
+  std::vector<PlanningTask> tasks;
+  for (const cbv::CbvAssignment& assignment : selection.assignments) {
+    const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
+    if (vehicle == nullptr) continue;
+    tasks.push_back({assignment.slot, vehicle, &assignment.conflict_aware_route, target_speed});
+  }
+  return tasks;
+}
+
+std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
+                                   const map::Route& route, double target_speed) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego == nullptr) return {};
+  return {{-1, ego, &route, target_speed}};
+}
+
+std::vector<PlannedAction> planTimed(planning::Planner& planner,
+                                     const traffic::TrafficSnapshot& snapshot,
+                                     const std::vector<PlanningTask>& tasks, double& milliseconds,
+                                     std::string& fault) {
+  const Clock::time_point begin = Clock::now();
+  std::vector<PlannedAction> actions;
+  fault.clear();
+  try {
+    actions = planner.plan(snapshot, tasks);
+    if (!answersAll(actions, tasks))
+      fault = "the planner answered for other vehicles than it was asked for";
+  } catch (const std::exception& error) {
+    fault = error.what();
+  }
+  milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  return fault.empty() ? actions : failSafe(tasks);
+}
+
+void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask>& tasks) {
+  for (PlanningTask& task : tasks) {
+    for (const SlotImage& seen : images) {
+      if (seen.slot == task.slot) task.image = &seen.image;
+    }
+  }
+}
+
+ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
+  const ScenarioOptions& options = setup.options();
+  requireLockstep(options);
+  ego_planner_ = setup.makeEgoPlanner();
+  cbv_planner_ = setup.makeCbvPlanner();
+  if (ego_planner_->needsImages() || cbv_planner_->needsImages())
+    camera_.emplace(options.camera, setup.network());
+  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
+                                                 setup.graph(), setup.egoRoute());
+  world_ = std::make_unique<World>(setup);
+}
+
+ClosedLoop::~ClosedLoop() = default;
+
+struct ClosedLoop::Decision {
+  cbv::CbvSelection selection;
+  std::vector<PlannedAction> actions;
+  std::vector<SlotImage> images;
+  std::vector<PlannerLatency> latencies;
+};
+
+void ClosedLoop::render(const std::vector<PlanningTask>& tasks, std::vector<SlotImage>& images) {
+  for (const PlanningTask& task : tasks)
+    images.push_back({task.slot, camera_->render(world_->snapshot(), *task.vehicle)});
+}
+
+void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
+                     std::vector<PlanningTask> tasks, Decision& decision) {
+  if (tasks.empty()) return;
+  if (planner.needsImages()) {
+    render(tasks, decision.images);
+    attachImages(decision.images, tasks);
+  }
+  PlannerLatency latency{name, 0.0};
+  std::string fault;
+  std::set<std::string> recorded;  // vehicles may share a cause
+  for (PlannedAction& action :
+       planTimed(planner, world_->snapshot(), tasks, latency.milliseconds, fault)) {
+    if (!action.fault.empty() && recorded.insert(action.fault).second)
+      world_->recordFault(name, action.fault);
+    decision.actions.push_back(std::move(action));
+  }
+  if (!fault.empty()) world_->recordFault(name, fault);
+  decision.latencies.push_back(latency);
+}
+
+ClosedLoop::Decision ClosedLoop::decide() {
+  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const ScenarioOptions& options = setup_.options();
+  Decision decision;
+  decision.selection = selector_->update(snapshot);
+  ask(*ego_planner_, "ego:" + options.ego_planner,
+      egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
+  ask(*cbv_planner_, "cbv:" + options.cbv_planner,
+      cbvTasks(snapshot, decision.selection, options.target_speed), decision);
+  return decision;
+}
+
+SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
+  const Clock::time_point begin = Clock::now();
+  while (true) {
+    const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+    TickRecord record;
+    record.snapshot = &snapshot;
+    Decision decision;
+    if (snapshot.decision_tick) {
+      try {
+        decision = decide();
+      } catch (const std::exception& error) {
+        world_->end(SessionStatus::kError, {snapshot.tick, "cbv_identification", error.what()});
+        continue;
+      }
+      record.selection = &decision.selection;
+      record.actions = &decision.actions;
+      record.images = &decision.images;
+      record.latencies = decision.latencies;
+    } else {
+      selector_->observe(snapshot);
+    }
+    for (SessionObserver* observer : observers_) observer->observe(record);
+    if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
+    if (stop) {
+      world_->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
+      continue;
+    }
+    pace(begin, snapshot.time, setup_.options().at_most, stop);
+    world_->advance(record.selection, decision.actions);
+  }
+}
+
+}  // namespace cdiff::session

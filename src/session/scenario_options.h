@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A scenario: everything that decides a session, as one YAML file (schema of `cdiff validate`).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cbv/cbv_selector.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "map/route_source.h"
+#include "metrics/metrics_options.h"
+#include "planners/planner_factory.h"
+#include "rendering/camera_options.h"
+#include "session/protocol.h"
+#include "simulation/demand_generator.h"
+#include "simulation/sumo_simulator.h"
+
+namespace cdiff::session {
+
+/// The rules by which a session is judged; the defaults are none.
+struct VerdictOptions {
+  bool judge = true;                       ///< false: as if there were no rules
+  double minimum_route_completion = 0.0;   ///< of the ego [%]
+  double maximum_contacts_at_fault = 1e9;  ///< contacts that are the ego's fault
+  std::string contact_without_fault =
+      "allowed";  ///< allowed | struck | failed | by_mode: failed where CBVs drive naturalistically
+                  ///< and struck where they attack
+  double minimum_driving_score = 0.0;            ///< of the ego, by the protocol [%]
+  double maximum_ego_collisions = 1e9;           ///< contacts
+  double maximum_red_lights = 1e9;               ///< run by the ego
+  double maximum_stop_signs = 1e9;               ///< not obeyed by the ego
+  double maximum_outside_lanes_percent = 100.0;  ///< of the ego's way along its route [%]
+  double maximum_cbv_off_road_percent = 100.0;   ///< [%]
+  std::vector<std::string>
+      statuses;  ///< allowed final statuses; empty: all but error and interrupted
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Rules for routes that bring none of their own, and those of the shipped scenarios: the route
+  /// driven to 90 %, neither blocked nor deviated, no contact at fault, others by mode.
+  static VerdictOptions standard();
+};
+
+/// What the report holds.
+struct ReportOptions {
+  double front_view_rate = 2.5;  ///< pictures a second of each CBV's front view; 0: none
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+struct ScenarioOptions {
+  std::int64_t schema_version = 1;
+  std::string name = "unnamed";
+  std::string network;                ///< shipped name or file (*.net.xml, *.xodr)
+  map::RouteOptions route;            ///< of the ego
+  std::string demand = "generated";   ///< generated | none | a *.rou.xml file
+  simulation::DemandOptions traffic;  ///< of generated demand
+  double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
+  std::string lights = "green";       ///< green | program
+  std::string mode = "naturalistic";  ///< naturalistic | safety_critical
+  std::string ego_planner = "pdm_lite";
+  std::string cbv_planner = "diffusion";
+  std::int64_t max_cbv = 2;
+  cbv::CbvOptions cbv;
+  planners::PdmLiteOptions pdm_lite;
+  planners::DiffusionOptions diffusion;
+  planners::TrajectoryTrackerOptions two_stage_pid;
+  std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
+  guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
+  std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
+  guidance::GuidanceOptions ego_guidance;             ///< of an ego whose planner can be guided
+  rendering::CameraOptions camera;                    ///< that planners see through
+  dynamics::BicycleModelOptions vehicle;
+  simulation::SumoOptions sumo;
+  ProtocolOptions protocol;
+  metrics::MetricsOptions metrics;
+  VerdictOptions verdict;
+  ReportOptions report;
+  bool video = false;             ///< also write session.mp4
+  double target_speed = 8.0;      ///< v* [m/s], capped by the lane's limit
+  double simulation_step = 0.05;  ///< [s]
+  double decision_period = 0.1;   ///< [s], a multiple of simulation_step
+  double real_time_factor = 0.0;  ///< of nodes that the wall clock rules; 0: lockstep
+  double at_most = 0.0;           ///< times real time, in lockstep; 0: as fast as possible
+  std::int64_t seed = 1;
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError for fields that contradict each other.
+  void validate() const;
+  planners::PlannerOptions egoPlannerOptions() const {
+    return {pdm_lite, diffusion, two_stage_pid, ego_guidance, "ego_guidance.", vehicle, camera};
+  }
+  planners::PlannerOptions cbvPlannerOptions() const {
+    return {pdm_lite, diffusion, two_stage_pid, guidance, "guidance.", vehicle, camera};
+  }
+
+ private:
+  void describeTraffic(core::OptionsVisitor& visitor);
+  void describePlanners(core::OptionsVisitor& visitor);
+  void describeTime(core::OptionsVisitor& visitor);
+  void validateTime() const;
+};
+
+/// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside
+/// it are resolved against the file's folder; keys that it does not name keep the values of `base`.
+/// Throws InputError naming file, line and key, or the
+/// nearest shipped scenario.
+ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base = {});
+
+/// Names of the shipped scenarios, sorted.
+std::vector<std::string> shippedScenarios();
+
+}  // namespace cdiff::session

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "session/session_request.h"
+
+#include <filesystem>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "session/sample_file.h"
+
+namespace cdiff::session {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+/// A scenario made of a Bench2Drive route alone, with generated demand and the standard rules.
+ScenarioOptions bench2DriveScenario(const SessionRequest& request, const ScenarioOptions& base) {
+  if (request.route.empty())
+    throw InputError("a Bench2Drive file needs the id of a route (--route ID)");
+  if (request.network.empty()) {
+    throw InputError("route " + request.route + " lies in " +
+                     map::bench2DriveTown(request.bench2drive, request.route) +
+                     "; give that town's network (--network NET.net.xml)");
+  }
+  ScenarioOptions options = base;
+  options.name = "bench2drive_" + request.route;
+  options.verdict = VerdictOptions::standard();
+  options.route.bench2drive_file = fs::absolute(request.bench2drive).string();
+  options.route.bench2drive_id = request.route;
+  return options;
+}
+
+ScenarioOptions baseScenario(const SessionRequest& request, const ScenarioOptions& base) {
+  const bool bench2drive = !request.bench2drive.empty();
+  if (bench2drive && !request.scenario.empty()) {
+    throw InputError("give either a scenario or a Bench2Drive file, not both ('" +
+                     request.scenario + "' and '" + request.bench2drive + "')");
+  }
+  if (bench2drive) return bench2DriveScenario(request, base);
+  if (!request.route.empty())
+    throw InputError("--route " + request.route + " needs --bench2drive FILE");
+  if (request.scenario.empty()) {
+    throw InputError(
+        "nothing to run: give a scenario (name or file), or --bench2drive FILE --route ID "
+        "--network NET");
+  }
+  return loadScenario(request.scenario, base);
+}
+
+/// `base` with the scenario's keys and then the request's on top.
+ScenarioOptions applyRequest(const SessionRequest& request, const ScenarioOptions& base) {
+  ScenarioOptions options = baseScenario(request, base);
+  if (!request.network.empty()) {
+    options.network =
+        core::isFile(request.network) ? fs::absolute(request.network).string() : request.network;
+  }
+  const auto apply = [&](const std::string& key, const std::string& value) {
+    if (!value.empty()) core::overrideOption(key + "=" + value, "argument '" + key + "'", options);
+  };
+  apply("mode", request.mode);
+  apply("ego_planner", request.ego_planner);
+  apply("cbv_planner", request.cbv_planner);
+  apply("seed", request.seed);
+  if (request.video) options.video = true;
+  for (const std::string& assignment : request.set)
+    core::overrideOption(assignment, request.set_source, options);
+  return options;
+}
+
+guidance::GuidanceOptions profileOf(const std::string& key, const std::string& name) {
+  try {
+    return guidance::loadProfile(name);
+  } catch (const InputError& error) {
+    throw InputError("key '" + key + "': " + error.what());
+  }
+}
+
+/// The content of the file that speeds are compared with, so that a recording needs no file.
+void fillSpeedTarget(metrics::MetricsOptions& options) {
+  if (options.speed_target != "file" || options.speed_target_file.empty() ||
+      !options.speed_target_samples.empty()) {
+    return;
+  }
+  for (const double speed : readSamples(options.speed_target_file))
+    options.speed_target_samples.push_back(core::formatNumber(speed));
+}
+
+}  // namespace
+
+ScenarioOptions resolveRequest(const SessionRequest& request) {
+  // Which profile and which protocol apply is only known when everything was read; their values
+  // then lie below everything else.
+  const ScenarioOptions first = applyRequest(request, {});
+  ScenarioOptions base;
+  base.guidance = profileOf("guidance_profile",
+                            first.guidance_profile.empty() ? first.mode : first.guidance_profile);
+  base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
+  base.protocol = loadProtocol(first.protocol.preset);
+  ScenarioOptions options = applyRequest(request, base);
+  fillSpeedTarget(options.metrics);
+  options.validate();
+  return options;
+}
+
+}  // namespace cdiff::session

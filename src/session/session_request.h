@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What a user asks for on a command line or in a launch file, resolved to one scenario.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "session/scenario_options.h"
+
+namespace cdiff::session {
+
+/// Empty texts mean "not given".
+struct SessionRequest {
+  std::string scenario;     ///< shipped name or file
+  std::string bench2drive;  ///< Bench2Drive route file, instead of a scenario
+  std::string route;        ///< id of a route in it
+  std::string network;      ///< network; replaces the scenario's
+  std::string mode;
+  std::string ego_planner;
+  std::string cbv_planner;
+  std::string seed;
+  bool video = false;                ///< session.mp4 too
+  std::vector<std::string> set;      ///< "key=value" each, applied last
+  std::string set_source = "--set";  ///< how the user knows `set`, for errors
+};
+
+/// The scenario with everything that was asked for applied and validated. Throws InputError.
+ScenarioOptions resolveRequest(const SessionRequest& request);
+
+}  // namespace cdiff::session

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "session/session_setup.h"
+
+#include <cmath>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::session {
+namespace {
+
+const ScenarioOptions& validated(const ScenarioOptions& options) {
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+SessionSetup::SessionSetup(const ScenarioOptions& options)
+    : options_(validated(options)),
+      import_(map::importNetwork(options.network)),
+      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
+      graph_(network_),
+      drivable_area_(network_),
+      ego_route_(
+          map::matchRoute(network_, map::makeRoute(graph_, options_.route).path().points())) {}
+
+SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
+                           const std::vector<Eigen::Vector3d>& ego_route_points)
+    : options_(options),
+      import_(std::move(import)),
+      network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
+      graph_(network_),
+      drivable_area_(network_),
+      ego_route_(map::matchRoute(network_, ego_route_points)) {}
+
+planning::PlanningContext SessionSetup::planningContext() const {
+  return {network_,
+          drivable_area_,
+          static_cast<std::uint64_t>(options_.seed),
+          options_.simulation_step,
+          options_.decision_period,
+          &ego_route_};
+}
+
+std::unique_ptr<planning::Planner> SessionSetup::makeEgoPlanner() const {
+  return planners::makePlanner(options_.ego_planner, options_.egoPlannerOptions(),
+                               planningContext());
+}
+
+std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
+  return planners::makePlanner(options_.cbv_planner, options_.cbvPlannerOptions(),
+                               planningContext());
+}
+
+metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
+  metrics::SessionMetricsOptions options;
+  options.simulation_step = options_.simulation_step;
+  options.decision_period = options_.decision_period;
+  options.completion_percent = options_.protocol.completion_percent;
+  options.completion_distance = options_.protocol.completion_distance;
+  options.protocol = options_.protocol.preset;
+  options.infractions = options_.protocol.infractions;
+  options.target_speed = options_.target_speed;
+  options.network = &network_;
+  options.metrics = options_.metrics;
+  return options;
+}
+
+std::uint64_t SessionSetup::ticksPerDecision() const {
+  return static_cast<std::uint64_t>(
+      std::llround(options_.decision_period / options_.simulation_step));
+}
+
+}  // namespace cdiff::session

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What every part of a session derives from its scenario: network, drivable area, lane graph, ego
+/// route. The same in every deployment.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "map/network_import.h"
+#include "metrics/session_metrics.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::session {
+
+class SessionSetup {
+ public:
+  /// Imports the network that the scenario names and plans the ego route.
+  explicit SessionSetup(const ScenarioOptions& options);
+  /// The same from an imported network's text and the ego route's points, as a recording or the
+  /// session's topic holds them.
+  SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
+               const std::vector<Eigen::Vector3d>& ego_route_points);
+  SessionSetup(const SessionSetup&) = delete;
+  SessionSetup& operator=(const SessionSetup&) = delete;
+
+  const ScenarioOptions& options() const { return options_; }
+  const map::ImportedNetwork& import() const { return import_; }
+  const map::RoadNetwork& network() const { return network_; }
+  const map::LaneGraph& graph() const { return graph_; }
+  const map::DrivableArea& drivableArea() const { return drivable_area_; }
+  /// Always matched from its points, so that every deployment has the same.
+  const map::Route& egoRoute() const { return ego_route_; }
+  planning::PlanningContext planningContext() const;
+  /// The planners that the scenario names; they refer to this setup. Throw InputError.
+  std::unique_ptr<planning::Planner> makeEgoPlanner() const;
+  std::unique_ptr<planning::Planner> makeCbvPlanner() const;
+  /// What the session is measured by, in every deployment.
+  metrics::SessionMetricsOptions metricsOptions() const;
+  /// Ticks from one decision to the next.
+  std::uint64_t ticksPerDecision() const;
+
+ private:
+  ScenarioOptions options_;
+  map::ImportedNetwork import_;
+  map::RoadNetwork network_;
+  map::LaneGraph graph_;
+  map::DrivableArea drivable_area_;
+  map::Route ego_route_;
+};
+
+}  // namespace cdiff::session

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The world of a session: SUMO's traffic, the vehicles that we drive through our own dynamics,
+/// hand-over between the two, contacts, and the protocol's end rules. Advances tick by tick;
+/// decides nothing.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "session/session_setup.h"
+#include "simulation/demand_generator.h"
+
+namespace cdiff::session {
+
+/// Id of the ego in every snapshot.
+inline constexpr const char* kEgoId = "ego";
+
+class World {
+ public:
+  /// Starts SUMO, drives the warm-up and places the ego: afterwards `snapshot()` is tick 0. `setup`
+  /// must outlive the world.
+  explicit World(const SessionSetup& setup);
+  ~World();
+
+  /// The world at the present tick.
+  const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
+
+  /// Goes to the next tick. At a decision tick give the selection and the actions decided; between
+  /// them nullptr and {}: the last actions are held. Invalid actions become the fail-safe action,
+  /// as a recorded fault. A lost simulator ends the session with status kError in a last snapshot;
+  /// it does not throw.
+  void advance(const cbv::CbvSelection* selection,
+               const std::vector<planning::PlannedAction>& actions);
+
+  /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
+  /// present one with this status and fault.
+  void end(traffic::SessionStatus status, const traffic::Fault& fault);
+  /// Where a vehicle that we take over begins to be driven, given its id and where SUMO had it.
+  using TakeOverDisturbance =
+      std::function<traffic::VehicleState(const std::string&, const traffic::VehicleState&)>;
+  /// For data collection: shifts every vehicle as it is taken over. Without it they begin where
+  /// they are.
+  void setTakeOverDisturbance(TakeOverDisturbance disturbance) {
+    disturbance_ = std::move(disturbance);
+  }
+  /// Records a fault that was survived; shown in the next snapshot.
+  void recordFault(const std::string& source, const std::string& text);
+
+  /// Time since which the ego has been standing [s]; nullopt while it drives.
+  std::optional<double> egoStandsSince() const { return monitor_.standingSince(); }
+  /// As long as it is withheld, standing does not end the session; its time counts on.
+  void withholdBlocked(bool withheld) { monitor_.withholdBlocked(withheld); }
+
+  /// Version text of the simulator.
+  std::string simulatorVersion() const;
+  double routeCompletionPercent() const { return monitor_.routeCompletionPercent(); }
+  int simulatorProcessId() const;
+
+ private:
+  struct Driven;
+  void warmUp();
+  void keepDensity(bool warm_up);
+  bool isOurs(const std::string& id) const;
+  std::vector<traffic::Vehicle> presentTraffic(const Eigen::Vector2d& ego_position);
+  void placeEgo();
+  void applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed);
+  void takeOver(const cbv::CbvAssignment& assignment);
+  void release(const std::string& id);
+  void applyActions(const std::vector<planning::PlannedAction>& actions);
+  void moveDriven();
+  void stepSimulator();
+  void removeContacted(const std::vector<std::string>& removed);
+  traffic::Vehicle snapshotOf(const Driven& driven) const;
+  void collectVehicles(const std::vector<traffic::Vehicle>& before);
+  void takeSnapshot();
+  void checkContact(const traffic::Vehicle& ours, const traffic::Vehicle& other);
+  void findContacts();
+
+  const SessionSetup& setup_;
+  dynamics::BicycleModel dynamics_;
+  std::unique_ptr<simulation::SumoSimulator> simulator_;
+  std::unique_ptr<simulation::DemandGenerator> demand_;
+  ProtocolMonitor monitor_;
+  traffic::TrafficSnapshot snapshot_;
+  std::vector<std::unique_ptr<Driven>> driven_;  ///< ego first, then CBVs by slot
+  std::vector<traffic::Fault> pending_faults_;
+  std::vector<std::string> to_remove_;  ///< in contact at the present tick
+  TakeOverDisturbance disturbance_;     ///< may be empty
+};
+
+}  // namespace cdiff::session

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Generated demand: seeded background vehicles on lane-connected routes that start near the ego
+/// route, on both directions and every approach of its junctions; keeps `density` of them alive
+/// near the ego.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/core/random.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "map/lane_graph.h"
+#include "simulation/demand_route.h"
+
+namespace cdiff::simulation {
+
+struct DemandOptions {
+  std::int64_t density = 30;       ///< vehicles kept alive within `radius` of the ego
+  double radius = 150.0;           ///< of the ego route [m]
+  double clear_start = 10.0;       ///< none is placed nearer to the ego's start [m]
+  double warm_up = 30.0;           ///< driven before the session begins [s]
+  double forget_distance = 300.0;  ///< a vehicle farther from the ego leaves the simulation [m]
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+/// A vehicle to be added.
+struct DemandVehicle {
+  std::string id;                  ///< "bg_0", "bg_1", ...
+  std::vector<std::string> edges;  ///< SUMO route
+  double depart_position = 0.0;    ///< of the front bumper along the first edge [m]
+  int depart_lane = 0;
+  double depart_speed = 0.0;  ///< [m/s]
+  traffic::VehicleDimensions dimensions;
+};
+
+class DemandGenerator {
+ public:
+  /// References must outlive the generator.
+  DemandGenerator(const DemandOptions& options, const map::LaneGraph& graph,
+                  const map::Route& ego_route, std::uint64_t seed);
+  /// The next vehicle to try at this place and time given those present; nullopt when enough are
+  /// alive near `ego_position` or no free place is left. Call repeatedly within a step.
+  std::optional<DemandVehicle> next(const std::vector<traffic::Vehicle>& present,
+                                    const Eigen::Vector2d& ego_position, double ego_elevation,
+                                    bool warm_up);
+
+ private:
+  /// Where a vehicle may begin: its front bumper on a lane.
+  struct Start {
+    map::LaneIndex lane = map::kNoLane;
+    double front = 0.0;                                  ///< along the lane [m]
+    Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the front bumper [m]
+    double elevation = 0.0;                              ///< [m]
+  };
+  void collectStarts();
+  void addStartsOf(map::LaneIndex lane);
+  bool allowed(const Start& start, const Eigen::Vector2d& ego_position, double ego_elevation,
+               bool warm_up) const;
+  std::size_t countNear(const std::vector<traffic::Vehicle>& vehicles,
+                        const Eigen::Vector2d& ego_position) const;
+  void forgetOldCandidates(const std::vector<traffic::Vehicle>& present);
+  std::optional<DemandVehicle> tryStart(const Start& start,
+                                        const std::vector<traffic::Vehicle>& vehicles);
+
+  DemandOptions options_;
+  const map::Route& ego_route_;
+  core::RandomStream random_;
+  EdgeGraph edges_;
+  DemandRouter router_;
+  std::vector<Start> starts_;
+  std::uint32_t draws_ = 0;  ///< attempts so far: the counter of the random stream
+  std::uint32_t count_ = 0;  ///< vehicles so far
+  std::vector<traffic::Vehicle>
+      announced_;             ///< returned in this step, not yet among the present ones
+  double fingerprint_ = 0.0;  ///< of the present vehicles at the last call
+};
+
+}  // namespace cdiff::simulation

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
+/// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
+/// log; into an InputError where the network or the demand is at fault.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "e2e_cdiff/core/options.h"
+#include "simulation/traffic_simulator.h"
+
+namespace cdiff::simulation {
+
+struct SumoOptions {
+  std::string binary = "sumo";    ///< program to start
+  double start_timeout = 20.0;    ///< until SUMO answers [s of wall time]
+  double step_timeout = 10.0;     ///< a step that takes longer is a frozen SUMO [s of wall time]
+  double match_threshold = 20.0;  ///< of moveToXY [m]
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+/// What one session gives to SUMO.
+struct SumoSession {
+  std::filesystem::path network_file;    ///< as imported
+  std::filesystem::path network_source;  ///< what the user gave, for errors; may be empty
+  std::filesystem::path demand_file;     ///< *.rou.xml; may be empty: no background traffic
+  double begin_time = 0.0;               ///< SUMO's clock at the start [s]
+  double simulation_step = 0.05;         ///< [s]
+  std::uint64_t seed = 1;
+  bool lights_green = true;          ///< every signal shows 'g' for the whole session
+  std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
+};
+
+class SumoSimulator : public TrafficSimulator {
+ public:
+  /// Starts SUMO and connects. `network` must outlive the simulator. Throws InputError that names
+  /// network or demand and quotes SUMO when it refuses one of them (also crashing over it).
+  SumoSimulator(const SumoOptions& options, const SumoSession& session,
+                const map::RoadNetwork& network);
+  /// Ends the SUMO process that it started, and only that one.
+  ~SumoSimulator() override;
+
+  void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
+                 const DrivenVehicle& start) override;
+  void takeOver(const std::string& id) override;
+  bool release(const DrivenVehicle& vehicle) override;
+  void remove(const std::string& id) override;
+  void step(const std::vector<DrivenVehicle>& driven) override;
+  const std::vector<SimulatedVehicle>& vehicles() const override;
+  const std::vector<traffic::SignalState>& signals() const override;
+  std::string version() const override;
+
+  /// Process id of SUMO, for tests of its loss.
+  int processId() const;
+  /// Adds a background vehicle that SUMO drives along edges, departing now; used by generated
+  /// demand. Answers false when SUMO refuses it; one that finds no room in the next step is
+  /// dropped.
+  bool addBackground(const std::string& id, const std::vector<std::string>& edges,
+                     double depart_position, int depart_lane, double depart_speed,
+                     const traffic::VehicleDimensions& dimensions);
+
+ private:
+  class Connection;
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace cdiff::simulation

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
+/// districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
+#pragma once
+
+#include <string>
+
+#include "suite/draws.h"
+#include "suite/road_plan.h"
+
+namespace cdiff::suite {
+
+enum class NetworkKind { kCrossing, kRoundabout, kMerge, kDistrict };
+
+/// What is given about a network; the draws decide the rest.
+struct NetworkSpec {
+  std::string name;
+  NetworkKind kind = NetworkKind::kCrossing;
+  int arms = 4;                      ///< of a crossing (3, 4) or a roundabout (3 to 5)
+  int lanes = 1;                     ///< most lanes a direction (1 to 3; a roundabout 1 or 2)
+  std::string control = "priority";  ///< of a crossing: priority, right_before_left, traffic_light
+  bool elevation = false;            ///< whether roads climb or fall
+};
+
+RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws);
+
+}  // namespace cdiff::suite

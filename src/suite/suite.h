@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A route suite: a folder with suite.yaml (its routes), networks/NAME/ and scenarios/ROUTE.yaml.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "suite/suite_route.h"
+
+namespace cdiff::suite {
+
+struct Suite {
+  std::string name;
+  std::int64_t seed = 1;  ///< it was generated from
+  std::vector<SuiteRoute> routes;
+  std::filesystem::path folder;
+
+  std::filesystem::path networkFile(const SuiteRoute& route) const;
+  std::filesystem::path scenarioFile(const SuiteRoute& route) const;
+};
+
+/// Reads a suite by its folder, or by the name of one in config/suites. Throws InputError that
+/// names the nearest shipped suite, the manifest's line and key, or the route whose network or
+/// scenario file is missing.
+Suite loadSuite(const std::string& name_or_folder);
+
+/// Scenario files of its routes, in their order.
+std::vector<std::string> scenarioFiles(const Suite& suite);
+
+/// Names of the shipped suites, sorted.
+std::vector<std::string> shippedSuites();
+
+/// The manifest suite.yaml, a line for each route.
+std::string manifestText(const Suite& suite);
+
+}  // namespace cdiff::suite

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+
+#include "core/file.h"
+#include "page/html_report.h"
+#include "record/image_data_uri.h"
+#include "record/seen_session.h"
+
+namespace cdiff::page {
+namespace {
+
+using traffic::SessionStatus;
+
+/// The page of the sample session under a scenario name.
+std::string pageOf(const std::string& name, SessionStatus status = SessionStatus::kTimedOut) {
+  const test::TemporaryFolder scratch;
+  session::ScenarioOptions options = test::sampleOptions();
+  options.name = name;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, status, {{120, "planner", "</script><b>fault</b>"}});
+  writer.finish(2.0);
+  return core::readFile(scratch.path() / "report.html", "report");
+}
+
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t from = text.find(begin);
+  if (from == std::string::npos) return {};
+  const std::size_t to = text.find(end, from + begin.size());
+  return text.substr(from + begin.size(), to - from - begin.size());
+}
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(HtmlReport, EscapesNamesEverywhere) {
+  const std::string page = pageOf("<img src=x onerror=alert(1)>");
+  EXPECT_EQ(page.find("<img src"), std::string::npos);
+  EXPECT_NE(page.find("<h1>&lt;img src=x onerror=alert(1)&gt;</h1>"), std::string::npos);
+  EXPECT_EQ(page.find("<b>fault"), std::string::npos);
+  EXPECT_EQ(countOf(page, "</script>"), 2u);
+}
+
+TEST(HtmlReport, LabelsOfThePlayerBeginWithACapital) {
+  const std::string row = between(pageOf("s"), "<label>", "keys");
+  EXPECT_EQ(row.rfind("Pace <select", 0), 0u) << row;
+  EXPECT_NE(row.find("id=\"follow\"> Follow the ego</label>"), std::string::npos) << row;
+}
+
+TEST(HtmlReport, AVehicleNameCannotEndTheScript) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+  snapshot.vehicles[2].id = "</script><b>";
+  snapshot.status = SessionStatus::kTimedOut;
+  session::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_EQ(countOf(page, "</script>"), 2u);
+  EXPECT_EQ(page.find("<b>"), std::string::npos);
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  EXPECT_EQ(data["vehicles"][2][0], "</script><b>");
+}
+
+/// The page of the session with images, plans and guidance.
+std::string seenPage() {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSeenSession(writer, sample.setup);
+  writer.finish(2.0);
+  return core::readFile(scratch.path() / "report.html", "report");
+}
+
+void expectPictures(const std::string& page, std::size_t least) {
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("<svg"); at != std::string::npos;
+       at = page.find("<svg", at + 1)) {
+    const std::string svg = page.substr(at, page.find("</svg>", at) + 6 - at);
+    pugi::xml_document document;
+    EXPECT_TRUE(document.load_string(svg.c_str())) << svg.substr(0, 200);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    ++pictures;
+  }
+  EXPECT_GT(pictures, least);
+}
+
+TEST(HtmlReport, EveryPictureIsWellFormed) {
+  expectPictures(pageOf("crossing"), 6u);  // from above, five charts, legends
+  expectPictures(seenPage(), 10u);         // and plan from above, speeds, two objectives
+}
+
+TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
+  const std::string page = seenPage();
+  const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
+  // Ego at (5 + 8 t, -2), CBV at (102, -60 + 6 t): they approach until the end at 6 s, when dx = 49
+  // and dy = 22: 53.7 m.
+  EXPECT_NE(article.find("<h3>bg_1 at 6.00 s"), std::string::npos) << article.substr(0, 300);
+  EXPECT_NE(article.find("Centres 53.7 m apart; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
+  EXPECT_EQ(countOf(article, "width=\"640\" height=\"384\""), 2u);  // from the CBV and the ego
+  EXPECT_EQ(countOf(article, "width=\"160\" height=\"96\""), 1u);   // only the CBV's planner sees
+  EXPECT_NE(article.find(record::pngDataUri(test::redAndBlue(120))), std::string::npos);
+  // 3 s before is tick 60, driven for 3 s only; the last plan with 3.2 s is that of tick 56.
+  EXPECT_NE(article.find("decision at 2.80 s against what was driven in the next 3.2 s: 0.80 m"),
+            std::string::npos);
+  EXPECT_NE(page.find("speed: value of the chosen plan"), std::string::npos);
+  EXPECT_LT(page.size(), 3'000'000u);
+}
+
+TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
+  const auto data =
+      nlohmann::json::parse(between(pageOf("crossing"), "id=\"playback\">", "</script>"));
+  // bg_1 is a CBV after tick 52; every 8th tick to 120: 56, 64 ... 120.
+  ASSERT_EQ(data["views"].size(), 1u);
+  const auto& views = data["views"]["0"];
+  ASSERT_EQ(views.size(), 9u);
+  EXPECT_DOUBLE_EQ(views[0][0], 2.8);
+  EXPECT_EQ(data["vehicles"][views[0][1].get<std::size_t>()][0], "bg_1");
+  EXPECT_EQ(views[0][2].get<std::string>().substr(0, 4), "/9j/");  // JPEG begins with FF D8 FF
+  EXPECT_DOUBLE_EQ(data["period"], 0.4);
+  // The ego alone, then the ego and bg_1: index, slot, throttle, brake, steer, gap, 2D-TTC.
+  ASSERT_EQ(data["moments"].size(), 31u);
+  ASSERT_EQ(data["moments"][0].size(), 7u);
+  ASSERT_EQ(data["moments"][30].size(), 14u);
+  const auto moment = data["moments"][30].get<std::vector<int>>();
+  EXPECT_EQ(moment[1], -1);
+  EXPECT_EQ(moment[2], 25);
+  EXPECT_EQ(moment[8], 0);
+  EXPECT_EQ(moment[12], 4957);   // sqrt((49 - 3.15)^2 + (22 - 3.15)^2) m
+  EXPECT_EQ(data["start"], 30);  // they approach until the end
+}
+
+TEST(HtmlReport, ACbvBetweenTwoFramesDoesNoHarm) {
+  const test::TemporaryFolder scratch;
+  session::ScenarioOptions options = test::sampleOptions();
+  options.report.front_view_rate = 10.0;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  for (std::uint64_t tick = 0; tick <= 4; ++tick) {  // frames at 0 and 4, a view at 2
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
+    snapshot.vehicles[1].cbv_slot = 0;
+    if (tick != 2) snapshot.vehicles.erase(snapshot.vehicles.begin() + 1);
+    if (tick == 4) snapshot.status = SessionStatus::kTimedOut;
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  EXPECT_EQ(writer.result().front_views.views().size(), 1u);
+  writer.finish(1.0);
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "report.html"));
+}
+
+TEST(HtmlReport, SaysWhyThereIsNoFrontView) {
+  EXPECT_NE(seenPage().find("in more pixels than its planner gets"), std::string::npos);
+  const test::TemporaryFolder scratch;
+  session::ScenarioOptions options = test::sampleOptions();
+  options.cbv_planner = "pdm_lite";
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 60, SessionStatus::kTimedOut);
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_NE(page.find("its planner pdm_lite sees no images"), std::string::npos);
+}
+
+TEST(HtmlReport, ASessionWithoutTicksHasAPage) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  writer.finish(0.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_NE(page.find("class=\"banner error\""), std::string::npos);
+  EXPECT_NE(page.find("The session ended before its first tick."), std::string::npos);
+  EXPECT_NE(page.find("No vehicle was selected as CBV: no front view."), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(HtmlReport, TellsWhatHappenedUnderTheVerdict) {
+  const std::string banner =
+      between(pageOf("crossing"), "class=\"banner not_judged\"", "</header>");
+  EXPECT_NE(banner.find("bg_1 was the only CBV"), std::string::npos);
+  EXPECT_NE(banner.find("Nobody touched the ego."), std::string::npos);
+}
+
+TEST(HtmlReport, EqualSessionsGiveEqualPages) { EXPECT_EQ(seenPage(), seenPage()); }
+
+TEST(HtmlReport, ShowsViewsWithoutImagesAndPlans) {
+  const std::string page = pageOf("crossing");
+  const std::string article = between(page, "<article class=\"approach cbv c0\">", "</article>");
+  EXPECT_EQ(countOf(article, "<img "), 2u);
+  EXPECT_EQ(article.find("Plan of the decision"), std::string::npos);
+  EXPECT_NE(page.find("No plan of a CBV was guided."), std::string::npos);
+}
+
+TEST(HtmlReport, NeedsNothingFromOutside) {
+  const std::string page = pageOf("crossing");
+  EXPECT_EQ(countOf(page, "http"), countOf(page, "http://www.w3.org/2000/svg"));
+  EXPECT_EQ(countOf(page, "src="), countOf(page, "src=\"data:image/png;base64,"));
+  for (const char* loader :
+       {"@import", "url(", "<link", "<iframe", "fetch(", "XMLHttp", "import("}) {
+    EXPECT_EQ(page.find(loader), std::string::npos) << loader;
+  }
+}
+
+TEST(HtmlReport, ShowsTheInfractionsWithTheirProtocol) {
+  const std::string page = pageOf("crossing");
+  EXPECT_NE(page.find("Infraction by rift_dev10"), std::string::npos);
+  EXPECT_NE(page.find("of 100, by rift_dev10"), std::string::npos);
+  EXPECT_NE(page.find("<td>vehicle_collisions</td><td class=\"number\">0.000</td>"),
+            std::string::npos);
+  EXPECT_NE(page.find("these sessions have no pedestrians"), std::string::npos);
+}
+
+TEST(HtmlReport, ShowsTheVerdictFirst) {
+  const std::string page = pageOf("crossing");
+  const std::size_t banner = page.find("class=\"banner not_judged\"");
+  ASSERT_NE(banner, std::string::npos);
+  EXPECT_LT(banner, page.find("class=\"figures\""));
+  EXPECT_NE(pageOf("crossing", SessionStatus::kError).find("class=\"banner error\""),
+            std::string::npos);
+}
+
+TEST(HtmlReport, PlaysBackEveryFrame) {
+  const std::string page = pageOf("crossing");
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  // 0 to 6 s every 0.2 s.
+  ASSERT_EQ(data["times"].size(), 31u);
+  ASSERT_EQ(data["frames"].size(), 31u);
+  EXPECT_DOUBLE_EQ(data["times"][30], 6.0);
+  EXPECT_EQ(data["vehicles"].size(), 3u);
+  const auto& last = data["frames"][30];
+  ASSERT_EQ(last.size(), 18u);  // three vehicles of six numbers, the ego last: on top
+  EXPECT_EQ(last[12], 0);
+  EXPECT_EQ(last[13], 0);
+  EXPECT_EQ(last[16], 0);       // heading [deg]
+  EXPECT_EQ(last[17], 80);      // 8 m/s
+  EXPECT_EQ(last[6 + 4], -90);  // northbound: SVG turns clockwise
+  EXPECT_EQ(data["styles"][last[6 + 1].get<std::size_t>()], "cbv c0");
+}
+
+TEST(HtmlReport, ShowsRoadTrailsAndConflict) {
+  const std::string view = between(pageOf("crossing"), "<svg id=\"top-view\"", "</svg>");
+  EXPECT_EQ(countOf(view, "class=\"road\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail ego\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail cbv c0\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"trail bg\""), 2u);  // bg_2, and bg_1 before its selection
+  EXPECT_EQ(countOf(view, "class=\"planned cbv c0\""), 1u);
+  EXPECT_EQ(countOf(view, "class=\"conflict\""), 1u);
+  EXPECT_NE(view.find("C1 bg_1"), std::string::npos);
+}
+
+TEST(HtmlReport, KeepsALongSessionSmall) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  // 60 vehicles that wobble for 1500 s: 450 000 poses, and 3750 front views.
+  constexpr std::uint64_t kLast = 30000;
+  for (std::uint64_t tick = 0; tick <= kLast; tick += 4) {
+    traffic::TrafficSnapshot snapshot = test::sampleSnapshot(0);
+    snapshot.tick = tick;
+    snapshot.time = 0.05 * static_cast<double>(tick);
+    snapshot.status = tick == kLast ? SessionStatus::kTimedOut : SessionStatus::kRunning;
+    snapshot.vehicles[1].role = traffic::VehicleRole::kCbv;
+    snapshot.vehicles[1].cbv_slot = 0;
+    snapshot.vehicles[1].state.position.y() = -60.0 + 0.003 * static_cast<double>(tick);
+    for (int i = 0; i < 60; ++i) {
+      const Eigen::Vector2d position(20.0 + 2.5 * i + std::sin(0.3 * static_cast<double>(tick)),
+                                     2.0);
+      snapshot.vehicles.push_back(test::sampleVehicle(
+          "bg_" + std::to_string(100 + i), traffic::VehicleRole::kBackground, position, 0.0, 1.0));
+    }
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    writer.observe(record);
+  }
+  writer.finish(1.0);
+  EXPECT_LT(std::filesystem::file_size(scratch.path() / "report.html"), 6'000'000u);
+}
+
+}  // namespace
+}  // namespace cdiff::page

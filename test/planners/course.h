@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Small worlds for planner tests: lanes from points (map frame, m), routes along them, and a
+/// closed loop of planner and bicycle model with decisions every 0.1 s and dynamics every 0.05 s.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/map/drivable_area.h"
+#include "planners/pdm_lite/pdm_lite.h"
+
+namespace cdiff::planners::testing {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// A lane of its own edge; the edge has the name of the lane without "_0".
+struct LaneSpec {
+  std::string edge;
+  Points points;
+  double speed = 13.89;
+  bool internal = false;
+};
+
+/// A connection between edges, `light` with its link where one controls it.
+struct LinkSpec {
+  std::string from;
+  std::string to;
+  std::string light;
+};
+
+inline std::string pointText(const Points& points) {
+  std::vector<std::string> words;
+  for (const Eigen::Vector3d& p : points) {
+    words.push_back(core::formatNumber(p.x()) + "," + core::formatNumber(p.y()) + "," +
+                    core::formatNumber(p.z()));
+  }
+  return core::joinText(words, " ");
+}
+
+inline map::RoadNetwork makeNetwork(const std::vector<LaneSpec>& lanes,
+                                    const std::vector<LinkSpec>& links = {}) {
+  std::string xml = "<net>";
+  for (const LaneSpec& lane : lanes) {
+    xml += "<edge id=\"" + lane.edge + "\"><lane id=\"" + lane.edge + "_0\" index=\"0\" speed=\"" +
+           core::formatNumber(lane.speed) + "\" shape=\"" + pointText(lane.points) + "\"/></edge>";
+  }
+  for (const LinkSpec& link : links) {
+    xml += "<connection from=\"" + link.from + "\" to=\"" + link.to +
+           "\" fromLane=\"0\" toLane=\"0\" dir=\"s\"";
+    if (!link.light.empty()) xml += " tl=\"" + link.light + "\" linkIndex=\"0\"";
+    xml += "/>";
+  }
+  return map::RoadNetwork::fromText(xml + "</net>", "course");
+}
+
+inline Points straight(double x0, double y0, double x1, double y1, double z = 0.0) {
+  return {{x0, y0, z}, {x1, y1, z}};
+}
+
+/// Straight along +x for `before` metres, 90 degrees left with `radius`, straight along +y for
+/// `after` metres; 5-degree chords.
+inline Points leftBend(double before, double radius, double after) {
+  Points points = {{0.0, 0.0, 0.0}};
+  for (int i = 0; i <= 18; ++i) {
+    const double angle = core::degreesToRadians(5.0 * i);
+    points.emplace_back(before + radius * std::sin(angle), radius * (1.0 - std::cos(angle)), 0.0);
+  }
+  points.emplace_back(before + radius, radius + after, 0.0);
+  return points;
+}
+
+/// Route along whole lanes, points 1 m apart.
+inline map::Route routeAlong(const map::RoadNetwork& network,
+                             const std::vector<std::string>& edges) {
+  Points points;
+  std::vector<map::LaneIndex> lanes;
+  for (const std::string& edge : edges) {
+    const map::LaneIndex lane = network.findLane(edge + "_0");
+    for (const Eigen::Vector3d& point : network.lane(lane).centerline.resampled(1.0)) {
+      points.push_back(point);
+      lanes.push_back(lane);
+    }
+  }
+  return map::Route(network, points, lanes);
+}
+
+inline traffic::Vehicle vehicleAt(const std::string& id, double x, double y, double heading,
+                                  double speed) {
+  traffic::Vehicle vehicle;
+  vehicle.id = id;
+  vehicle.state.position = {x, y};
+  vehicle.state.heading = heading;
+  vehicle.state.speed = speed;
+  return vehicle;
+}
+
+/// Vehicles with a route are driven by the planner; the others go straight at constant speed.
+class ClosedLoop {
+ public:
+  ClosedLoop(const map::RoadNetwork& network, const PdmLiteOptions& options = {})
+      : area_(network), planner_(options, {}, planning::PlanningContext{network, area_}) {}
+
+  /// The pointers must stay valid. The order of calls is the order of tasks.
+  void drive(const traffic::Vehicle& vehicle, const map::Route& route, int slot = -1) {
+    snapshot_.vehicles.push_back(vehicle);
+    routes_.push_back({snapshot_.vehicles.size() - 1, &route, slot});
+  }
+  /// Of all vehicles that are driven.
+  void setStyle(const planning::DrivingStyle& style) { style_ = style; }
+  void add(const traffic::Vehicle& vehicle) { snapshot_.vehicles.push_back(vehicle); }
+  void setSignal(const std::string& id, const std::string& state) {
+    snapshot_.signals = {{id, state}};
+  }
+
+  /// One decision and the 0.1 s after it.
+  void advance() {
+    std::vector<planning::PlanningTask> tasks;
+    for (const Driven& driven : routes_) {
+      tasks.push_back(
+          {driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0, nullptr, style_});
+    }
+    last_ = planner_.plan(snapshot_, tasks);
+    for (int tick = 0; tick < 2; ++tick) tickOnce();
+    snapshot_.tick += 2;
+  }
+  /// Runs for `seconds` and calls `check` after each decision.
+  void run(
+      double seconds, const std::function<void()>& check = [] {}) {
+    for (int i = 0; i < std::lround(seconds / 0.1); ++i) {
+      advance();
+      check();
+    }
+  }
+
+  const traffic::Vehicle& vehicle(std::size_t index) const { return snapshot_.vehicles[index]; }
+  traffic::Vehicle& vehicle(std::size_t index) { return snapshot_.vehicles[index]; }
+  const std::vector<planning::PlannedAction>& actions() const { return last_; }
+  PdmLite& planner() { return planner_; }
+  traffic::TrafficSnapshot& snapshot() { return snapshot_; }
+  const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
+
+ private:
+  struct Driven {
+    std::size_t index;
+    const map::Route* route;
+    int slot;
+  };
+
+  void tickOnce() {
+    std::vector<bool> driven(snapshot_.vehicles.size(), false);
+    for (std::size_t i = 0; i < routes_.size(); ++i) {
+      traffic::Vehicle& vehicle = snapshot_.vehicles[routes_[i].index];
+      driven[routes_[i].index] = true;
+      vehicle.applied_action = last_[i].action;
+      vehicle.state = model_.step(vehicle.state, last_[i].action, 0.05);
+    }
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      traffic::VehicleState& state = snapshot_.vehicles[i].state;
+      if (!driven[i]) state.position += 0.05 * state.velocity();
+    }
+  }
+
+  map::DrivableArea area_;
+  dynamics::BicycleModel model_;
+  PdmLite planner_;
+  traffic::TrafficSnapshot snapshot_;
+  std::vector<Driven> routes_;
+  planning::DrivingStyle style_;
+  std::vector<planning::PlannedAction> last_;
+};
+
+}  // namespace cdiff::planners::testing

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/model_course.h"
+
+namespace cdiff::planners {
+namespace {
+
+class DiffusionPlannerTest : public testing::ModelCourse {
+ protected:
+  DiffusionPlanner makePlanner() const { return {optionsOf(), guidance_, {}, context_}; }
+  static map::RoadNetwork makeTurn() {
+    return testing::makeNetwork(
+        {{"turn", {{0.0, 0.0, 0.0}, {10.0, 0.0, 0.0}, {10.0, 100.0, 0.0}}}});
+  }
+};
+
+TEST_F(DiffusionPlannerTest, PlansAWholeRolloutForEveryVehicle) {
+  DiffusionPlanner planner = makePlanner();
+  const auto actions = planner.plan(snapshot_, tasks());
+  ASSERT_EQ(actions.size(), 2U);
+  for (const planning::PlannedAction& planned : actions) {
+    EXPECT_EQ(planned.fault, "");
+    EXPECT_TRUE(planned.action.valid());
+    ASSERT_EQ(planned.rollout.size(), 32U);
+    EXPECT_EQ(planned.rollout.front().action, planned.action);
+    ASSERT_EQ(planned.guidance.objectives.size(), 4U);
+    // The random state head planning::knows nothing of the dynamics: its places are metres off.
+    EXPECT_GT(planned.state_mismatch, 0.1);
+  }
+  EXPECT_FALSE(actions[0].action == actions[1].action);
+}
+
+TEST_F(DiffusionPlannerTest, SameCallsSameActionsAndEachVehicleAlone) {
+  DiffusionPlanner first = makePlanner();
+  DiffusionPlanner second = makePlanner();
+  DiffusionPlanner alone = makePlanner();
+  for (const std::uint64_t tick : {0U, 2U, 4U}) {
+    goTo(tick);
+    const auto one = first.plan(snapshot_, tasks());
+    const auto two = second.plan(snapshot_, tasks());
+    const auto single = alone.plan(snapshot_, {tasks()[1]});
+    EXPECT_EQ(one[0].action, two[0].action);
+    EXPECT_EQ(one[1].action, two[1].action);
+    EXPECT_EQ(one[1].action, single[0].action);
+  }
+}
+
+TEST_F(DiffusionPlannerTest, AnotherSeedAnotherPlan) {
+  DiffusionPlanner first = makePlanner();
+  context_.seed = 2;
+  DiffusionPlanner second = makePlanner();
+  EXPECT_FALSE(first.plan(snapshot_, tasks())[0].action ==
+               second.plan(snapshot_, tasks())[0].action);
+}
+
+TEST_F(DiffusionPlannerTest, BadInputBrakesThatVehicleAlone) {
+  struct Case {
+    std::string text;
+    std::function<void(std::vector<planning::PlanningTask>&)> spoil;
+  };
+  traffic::CameraImage wrong_size = images_[0];
+  wrong_size.width = 80;
+  traffic::CameraImage short_bytes = images_[0];
+  short_bytes.rgb.pop_back();
+  traffic::CameraImage old = images_[0];
+  old.tick = 9;
+  traffic::Vehicle lost = snapshot_.vehicles[1];
+  lost.state.speed = std::numeric_limits<double>::quiet_NaN();
+  const map::Route no_route;
+  const std::vector<Case> cases = {
+      {"no image came", [](auto& tasks) { tasks[0].image = nullptr; }},
+      {"the image is 80 x 96", [&](auto& tasks) { tasks[0].image = &wrong_size; }},
+      {"46079 bytes", [&](auto& tasks) { tasks[0].image = &short_bytes; }},
+      {"of tick 9; expected tick 0", [&](auto& tasks) { tasks[0].image = &old; }},
+      {"state is not finite", [&](auto& tasks) { tasks[0].vehicle = &lost; }},
+      {"no route", [&](auto& tasks) { tasks[0].route = &no_route; }},
+      {"no route", [](auto& tasks) { tasks[0].route = nullptr; }},
+  };
+  DiffusionPlanner good = makePlanner();
+  const auto expected = good.plan(snapshot_, tasks())[1].action;
+  for (const Case& bad : cases) {
+    DiffusionPlanner planner = makePlanner();
+    std::vector<planning::PlanningTask> spoilt = tasks();
+    bad.spoil(spoilt);
+    const auto actions = planner.plan(snapshot_, spoilt);
+    EXPECT_EQ(actions[0].action, traffic::ControlAction::failSafe());
+    EXPECT_NE(actions[0].fault.find(bad.text), std::string::npos) << actions[0].fault;
+    EXPECT_EQ(actions[1].action, expected) << bad.text;
+  }
+}
+
+TEST_F(DiffusionPlannerTest, FrozenImageIsAFaultOnlyWhileMoving) {
+  DiffusionPlanner planner = makePlanner();
+  for (std::uint64_t tick = 0; tick <= 20; tick += 2) {
+    goTo(tick);
+    for (traffic::Vehicle& vehicle : snapshot_.vehicles) {
+      if (vehicle.cbv_slot == 0) vehicle.state.position.x() += 0.5;
+    }
+    const auto actions = planner.plan(snapshot_, tasks());
+    // 1 s is 20 ticks; slot 0 has then moved 5 m with one and the same image, slot 1 stands.
+    EXPECT_EQ(actions[0].fault.find("has not changed") != std::string::npos, tick >= 20) << tick;
+    EXPECT_EQ(actions[1].fault, "");
+  }
+}
+
+TEST_F(DiffusionPlannerTest, ImageConditioningNeedsNoRoute) {
+  DiffusionOptions options = optionsOf();
+  options.conditioning = "image";
+  DiffusionPlanner planner(options, guidance_, {}, context_);
+  std::vector<planning::PlanningTask> without = tasks();
+  without[0].route = nullptr;
+  EXPECT_EQ(planner.plan(snapshot_, without)[0].fault, "");
+}
+
+double reported(const planning::PlannedAction& planned, const std::string& objective) {
+  for (const guidance::ObjectiveReport& report : planned.guidance.objectives) {
+    if (report.name == objective) return report.value;
+  }
+  ADD_FAILURE() << "no objective " << objective;
+  return 0.0;
+}
+
+// The ego's route goes east for 10 m, then north; the CBV's goes on eastward. At 5 m/s the ego is
+// 0.5 m farther along its own route at each row of the plan.
+TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
+  const map::RoadNetwork turning = makeTurn();
+  const map::Route ego_route = testing::routeAlong(turning, {"turn"});
+  context_.ego_route = &ego_route;
+  DiffusionPlanner planner = makePlanner();
+  const planning::PlannedAction planned = planner.plan(snapshot_, tasks())[0];
+  ASSERT_EQ(planned.fault, "");
+  const traffic::Vehicle& cbv = snapshot_.vehicles[1];
+  guidance::OtherMotion ego{snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}};
+  traffic::Rollout places = traffic::Rollout::Zero(32, traffic::kRolloutColumns);
+  for (Eigen::Index row = 0; row < 32; ++row) {
+    const double s = 0.5 * static_cast<double>(row + 1);
+    ego.predicted.push_back(ego.now);
+    ego.predicted.back().position =
+        s < 10.0 ? Eigen::Vector2d(s, 0.0) : Eigen::Vector2d(10.0, s - 10.0);
+    const auto& state = planned.rollout[static_cast<std::size_t>(row)].state;
+    places.row(row).head<2>() = cbv.state.pose().toBody(state.position).transpose();
+  }
+  guidance::GuidanceScene scene;
+  scene.state = cbv.state;
+  scene.dimensions = cbv.dimensions;
+  scene.other = &ego;
+  for (const guidance::WeightedObjective& entry : guidance_.objectives) {
+    if (entry.name != "collision_avoidance") continue;
+    traffic::Rollout unused = places;
+    EXPECT_NEAR(reported(planned, entry.name), entry.objective->evaluate(scene, places, unused),
+                1e-6);
+  }
+}
+
+// v* = 8 m/s on a lane with a limit of 5 m/s: J_speed = sum over the rows of (v - 5)^2.
+TEST_F(DiffusionPlannerTest, AimsAtTheLanesLimitWhereItIsLowerThanTheTarget) {
+  const map::RoadNetwork slow =
+      testing::makeNetwork({{"road", testing::straight(-50, 0, 250, 0), 5.0}});
+  const map::Route route = testing::routeAlong(slow, {"road"});
+  DiffusionPlanner planner(optionsOf("real_time", "exact"), guidance_, {}, context_);
+  std::vector<planning::PlanningTask> limited = tasks();
+  limited[0].route = &route;
+  const auto planned = planner.plan(snapshot_, limited);
+  const double limits[] = {5.0, 8.0};  // the other CBV's lane allows 13.89 m/s
+  for (std::size_t i = 0; i < 2; ++i) {
+    double sum = 0.0;
+    for (const planning::RolloutPoint& point : planned[i].rollout)
+      sum += std::pow(point.state.speed - limits[i], 2);
+    EXPECT_NEAR(reported(planned[i], "speed"), sum, 1e-4 * sum) << i;
+  }
+}
+
+TEST_F(DiffusionPlannerTest, UnknownModelNamesWhatIsThere) {
+  DiffusionOptions options;
+  options.model = "no_such_model";
+  EXPECT_THROW(DiffusionPlanner(options, guidance_, {}, context_), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::planners

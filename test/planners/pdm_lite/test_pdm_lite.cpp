@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "planners/course.h"
+#include "planners/pdm_lite/pdm_lite.h"
+
+namespace cdiff::planners {
+namespace {
+
+using testing::ClosedLoop;
+using testing::leftBend;
+using testing::makeNetwork;
+using testing::routeAlong;
+using testing::straight;
+using testing::vehicleAt;
+
+double distanceFromRoute(const map::Route& route, const traffic::Vehicle& vehicle) {
+  return route.path().project(vehicle.state.position).distance;
+}
+
+TEST(PdmLite, ReachesTheTargetSpeedAndKeepsAStraightLane) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 0.1, 0.0, 0.0), route);
+  loop.run(3.0);
+  // Full throttle gives 7.6 to 5.5 m/s^2: 8 m/s within 2 s.
+  EXPECT_NEAR(loop.vehicle(0).state.speed, 8.0, 0.15);
+  double worst_speed = 0.0;
+  double worst_offset = 0.0;
+  loop.run(20.0, [&] {
+    worst_speed = std::max(worst_speed, std::abs(loop.vehicle(0).state.speed - 8.0));
+    worst_offset = std::max(worst_offset, distanceFromRoute(route, loop.vehicle(0)));
+  });
+  EXPECT_LT(worst_speed, 0.25);
+  EXPECT_LT(worst_offset, 0.2);
+  RecordProperty("worst_speed_error_mps", std::to_string(worst_speed));
+  RecordProperty("worst_offset_m", std::to_string(worst_offset));
+}
+
+TEST(PdmLite, KeepsItsLaneInATwelveMetreBend) {
+  const auto network = makeNetwork({{"bend", leftBend(60.0, 12.0, 60.0)}});
+  const map::Route route = routeAlong(network, {"bend"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 0.0), route);
+  double worst = 0.0;
+  loop.run(16.0, [&] { worst = std::max(worst, distanceFromRoute(route, loop.vehicle(0))); });
+  EXPECT_GT(loop.vehicle(0).state.position.y(), 40.0);
+  EXPECT_LT(worst, 0.6);
+  RecordProperty("worst_offset_m", std::to_string(worst));
+}
+
+TEST(PdmLite, ComesBackToItsLaneFromTwoMetresBeside) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 2.0, 0.0, 8.0), route);
+  loop.run(3.0);
+  double worst = 0.0;
+  loop.run(10.0, [&] { worst = std::max(worst, distanceFromRoute(route, loop.vehicle(0))); });
+  EXPECT_LT(worst, 0.2);
+}
+
+TEST(PdmLite, DrivesBeyondTheEndOfItsRouteAndStops) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 60.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route);
+  double hardest = 0.0;
+  loop.run(15.0, [&] { hardest = std::max(hardest, loop.actions()[0].action.brake); });
+  EXPECT_EQ(loop.vehicle(0).state.speed, 0.0);
+  // 8 m/s within 5 + 1 m: 64 / 12 = 5.3 m/s^2, two thirds of the brake, if it starts exactly there;
+  // 0.8 m later 6.2.
+  EXPECT_NEAR(loop.vehicle(0).state.position.x(), 61.0, 0.9);
+  EXPECT_GT(loop.vehicle(0).state.position.x(), 60.0);
+}
+
+TEST(PdmLite, CrawlsToTheEndWhenItStandsShortOfIt) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 60.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 57.0, 0.0, 0.0, 0.0), route);
+  double fastest = 0.0;
+  loop.run(8.0, [&] { fastest = std::max(fastest, loop.vehicle(0).state.speed); });
+  EXPECT_GE(loop.vehicle(0).state.position.x(), 60.0);
+  EXPECT_LT(loop.vehicle(0).state.position.x(), 61.5);
+  EXPECT_LT(fastest, 1.8);
+}
+
+TEST(PdmLite, RolloutIsTheForecastWithoutHazards) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 0.0), route);
+  loop.advance();
+  const planning::PlannedAction planned = loop.actions().front();
+  EXPECT_EQ(planned.vehicle_id, "ego");
+  EXPECT_EQ(planned.slot, -1);
+  ASSERT_EQ(planned.rollout.size(), 20u);
+  // On a free road the first point is what then happens.
+  EXPECT_EQ(planned.rollout.front().action, planned.action);
+  EXPECT_EQ(planned.rollout.front().state.position, loop.vehicle(0).state.position);
+  EXPECT_EQ(planned.rollout.front().state.speed, loop.vehicle(0).state.speed);
+}
+
+TEST(PdmLite, StuckVehicleGetsFullThrottleAfter8AndAHalfSeconds) {
+  // A wall of a car across the road 6 m ahead: the box rule holds the ego; the published rule then
+  // pushes once.
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 0.0), route);
+  loop.add(vehicleAt("wall", 13.0, 0.0, 0.5 * core::kPi, 0.0));
+  for (int decision = 1; decision <= 84; ++decision) {
+    loop.advance();
+    ASSERT_EQ(loop.actions()[0].action.brake, 1.0) << decision;
+  }
+  loop.advance();
+  EXPECT_EQ(loop.actions()[0].action.throttle, 1.0);
+  EXPECT_EQ(loop.actions()[0].action.brake, 0.0);
+  loop.advance();
+  EXPECT_EQ(loop.actions()[0].action.brake, 1.0);
+}
+
+TEST(PdmLite, RefusesTasksWithoutVehicleOrRoute) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.0, 0.0, 0.0);
+  EXPECT_THROW(loop.planner().plan({}, {{0, nullptr, &route, 8.0}}), std::invalid_argument);
+  EXPECT_THROW(loop.planner().plan({}, {{0, &ego, nullptr, 8.0}}), std::invalid_argument);
+  EXPECT_TRUE(loop.planner().plan({}, {}).empty());
+}
+
+TEST(PdmLite, ForgetsVehiclesThatAreNoLongerAsked) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  ClosedLoop loop(network);
+  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.3, 0.0, 5.0);
+  const traffic::TrafficSnapshot snapshot;
+  const std::vector<planning::PlanningTask> tasks = {{-1, &ego, &route, 8.0}};
+  const auto fresh = loop.planner().plan(snapshot, tasks).front().action;
+  const auto second = loop.planner().plan(snapshot, tasks).front().action;
+  EXPECT_NE(fresh.steer, second.steer);  // the derivative term remembers
+  loop.planner().plan(snapshot, {});
+  EXPECT_EQ(loop.planner().plan(snapshot, tasks).front().action, fresh);
+}
+
+}  // namespace
+}  // namespace cdiff::planners

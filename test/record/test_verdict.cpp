@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+
+#include "core/file.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "record/verdict_cases.h"
+
+namespace cdiff::record {
+namespace {
+
+using traffic::SessionStatus;
+
+metrics::SessionMeasures someMeasures() {
+  metrics::SessionMeasures measures;
+  measures.route_completion_percent = 80.0;
+  measures.protocol = "bench2drive";
+  measures.driving_score = 33.6;
+  measures.ego_collisions = 1;
+  measures.infractions["red_lights"] = {1.0, 3, "", ""};
+  measures.infractions["stop_signs"] = {2.0, 2, "", ""};
+  measures.infractions["outside_lanes_percent"] = {1.25, 400, "%", ""};
+  measures.cbv_off_road_rate_percent = {5.0, 100, "%", ""};
+  measures.ego_contacts = {{117, 5.85, "cbv_1", true, "it did", 5.0, 2.0, "front", "rear", 1, 2}};
+  return measures;
+}
+
+Verdict judged(const session::VerdictOptions& rules, SessionStatus status,
+               const metrics::SessionMeasures& measures = someMeasures(),
+               const std::vector<traffic::Fault>& faults = {}) {
+  session::ScenarioOptions options;
+  options.verdict = rules;
+  return judge(options, status, measures, faults);
+}
+
+TEST(Verdict, WithoutAnyRuleEverythingThatEndedByItselfIsNotJudged) {
+  for (const SessionStatus status :
+       {SessionStatus::kCompleted, SessionStatus::kBlocked, SessionStatus::kDeviated,
+        SessionStatus::kTimedOut, SessionStatus::kCollided}) {
+    const Verdict verdict = judged({}, status);
+    EXPECT_EQ(verdict.outcome, Outcome::kNotJudged) << traffic::toText(status);
+    EXPECT_EQ(verdict.checks.size(), 1u);
+  }
+}
+
+TEST(Verdict, ContactsAreToldWhereNothingIsJudged) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts.push_back(
+      {118, 5.9, "cbv_2", false, "it did not", 5.0, 2.0, "rear", "front", 1, 2});
+  session::VerdictOptions rules = session::VerdictOptions::standard();
+  rules.judge = false;
+  const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
+  EXPECT_EQ(verdict.outcome, Outcome::kNotJudged);
+  EXPECT_EQ(verdict.reasons,
+            std::vector<std::string>(
+                {"the scenario is not to be judged (verdict.judge is false)",
+                 "the ego was at fault in 1 contact: with cbv_1 at 5.85 s (it did)",
+                 "the ego was struck without fault in 1 contact, by cbv_2 at 5.90 s (it did "
+                 "not)"}));
+  EXPECT_TRUE(verdict.decided_by.empty());
+}
+
+TEST(Verdict, LimitsCountAsMetAtTheLimit) {
+  session::VerdictOptions rules;
+  rules.minimum_route_completion = 80.0;
+  rules.minimum_driving_score = 33.6;
+  rules.maximum_contacts_at_fault = 1.0;
+  rules.maximum_ego_collisions = 1.0;
+  rules.maximum_red_lights = 1.0;
+  rules.maximum_stop_signs = 2.0;
+  rules.maximum_outside_lanes_percent = 1.25;
+  rules.maximum_cbv_off_road_percent = 5.0;
+  rules.statuses = {"completed", "blocked"};
+  const Verdict verdict = judged(rules, SessionStatus::kBlocked);
+  EXPECT_EQ(verdict.outcome, Outcome::kPassed);
+  EXPECT_EQ(verdict.checks.size(), 10u);  // the session and nine rules
+  EXPECT_TRUE(verdict.reasons.empty());
+}
+
+TEST(Verdict, NamesEveryRuleThatIsNotMet) {
+  session::VerdictOptions rules;
+  rules.minimum_route_completion = 90.0;
+  rules.minimum_driving_score = 50.0;
+  rules.maximum_contacts_at_fault = 0.0;
+  rules.maximum_ego_collisions = 0.0;
+  rules.maximum_red_lights = 0.0;
+  rules.maximum_stop_signs = 1.0;
+  rules.maximum_outside_lanes_percent = 1.0;
+  rules.maximum_cbv_off_road_percent = 4.0;
+  rules.statuses = {"completed"};
+  const Verdict verdict = judged(rules, SessionStatus::kTimedOut);
+  EXPECT_EQ(verdict.outcome, Outcome::kFailed);
+  EXPECT_EQ(
+      verdict.reasons,
+      std::vector<std::string>(
+          {"the session ended with status 'timed_out'; allowed: completed",
+           "the ego completed 80.0 % of its route; at least 90 % is asked",
+           "the ego was at fault in 1 contact; at most 0 allowed: with cbv_1 at 5.85 s (it did)",
+           "the ego's driving score by bench2drive was 33.6 %; at least 50 % is asked",
+           "the ego had 1 collision; at most 0 allowed",
+           "red lights that the ego ran: 1; at most 0 allowed",
+           "stop signs that the ego did not obey: 2; at most 1 allowed",
+           "share of its way that the ego drove outside the lanes: 1.25 %; at most 1 % allowed",
+           "the CBVs were off the road 5.00 % of their time; at most 4 % allowed"}));
+  EXPECT_EQ(verdict.decided_by,
+            std::vector<std::string>({"status", "route_completion", "contacts_at_fault",
+                                      "driving_score", "ego_collisions", "red_lights", "stop_signs",
+                                      "outside_lanes_percent", "cbv_off_road"}));
+}
+
+TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.ego_contacts[0].ego_at_fault = false;
+  session::VerdictOptions rules;
+  rules.minimum_route_completion = 50.0;
+  const auto outcome = [&](const char* meaning) {
+    rules.contact_without_fault = meaning;
+    return judged(rules, SessionStatus::kCompleted, measures).outcome;
+  };
+  EXPECT_EQ(outcome("allowed"), Outcome::kPassed);
+  EXPECT_EQ(outcome("struck"), Outcome::kStruck);
+  EXPECT_EQ(outcome("failed"), Outcome::kFailed);
+  EXPECT_EQ(outcome("by_mode"), Outcome::kFailed);  // naturalistic
+}
+
+TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
+  metrics::SessionMeasures measures = someMeasures();
+  measures.infractions["red_lights"] = {std::nullopt, 0, "", "no road network was given"};
+  session::VerdictOptions rules;
+  rules.maximum_red_lights = 0.0;
+  const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
+  ASSERT_EQ(verdict.checks.size(), 2u);
+  EXPECT_EQ(verdict.checks[1].outcome, CheckOutcome::kSkipped);
+  EXPECT_EQ(verdict.checks[1].text,
+            "red_lights of the ego is not defined: no road network was given");
+  measures.cbv_off_road_rate_percent = {std::nullopt, 0, "%", "no CBV was driven"};
+  rules.maximum_cbv_off_road_percent = 0.0;
+  EXPECT_EQ(judged(rules, SessionStatus::kCompleted, measures).checks[2].outcome,
+            CheckOutcome::kSkipped);
+}
+
+TEST(Verdict, ABrokenSessionIsAnErrorAndItsRulesAreNotJudged) {
+  session::VerdictOptions rules;
+  rules.minimum_route_completion = 100.0;
+  for (const SessionStatus status : {SessionStatus::kError, SessionStatus::kRunning})
+    EXPECT_EQ(judged(rules, status).outcome, Outcome::kError);
+  EXPECT_EQ(judged(rules, SessionStatus::kInterrupted).outcome, Outcome::kInterrupted);
+  const Verdict verdict =
+      judged(rules, SessionStatus::kError, someMeasures(), {{3, "simulator", "SUMO was lost"}});
+  EXPECT_EQ(verdict.checks[1].outcome, CheckOutcome::kSkipped);
+  EXPECT_EQ(verdict.reasons,
+            std::vector<std::string>(
+                {"the session ended with status 'error': simulator: SUMO was lost"}));
+}
+
+TEST(Verdict, OutcomesReadBackFromTheirText) {
+  for (const Outcome outcome : {Outcome::kPassed, Outcome::kStruck, Outcome::kFailed,
+                                Outcome::kNotJudged, Outcome::kError, Outcome::kInterrupted})
+    EXPECT_EQ(outcomeOf(toText(outcome)), outcome);
+  EXPECT_THROW(outcomeOf("true"), core::InputError);
+  EXPECT_EQ(capitalsOf(Outcome::kNotJudged), "NOT JUDGED");
+}
+
+class EveryReader : public testing::TestWithParam<test::VerdictCase> {
+ protected:
+  EveryReader() {
+    writer_.emplace(sample_.setup, test::sampleFacts(), scratch_.path());
+    test::playCase(*writer_, GetParam());
+    writer_->finish(2.0);
+  }
+  std::string textOf(const char* name) const {
+    return core::readFile(scratch_.path() / name, name);
+  }
+  std::string word() const { return toText(GetParam().outcome); }
+  void expectResult(const test::VerdictCase& wanted) const;
+  void expectJunit(const test::VerdictCase& wanted) const;
+  void expectContacts(test::Touch touch) const;
+
+  test::TemporaryFolder scratch_;
+  test::SampleSetup sample_{test::optionsOf(GetParam())};
+  std::optional<page::ResultWriter> writer_;
+};
+
+TEST_P(EveryReader, GivesTheSameVerdict) {
+  expectResult(GetParam());
+  expectJunit(GetParam());
+  expectContacts(GetParam().touch);
+}
+
+void EveryReader::expectResult(const test::VerdictCase& wanted) const {
+  EXPECT_EQ(writer_->result().verdict.outcome, wanted.outcome);
+  EXPECT_EQ(writer_->exitCode(), wanted.exit_code);
+  const auto summary = nlohmann::json::parse(textOf("summary.json"));
+  EXPECT_EQ(summary["verdict"]["outcome"], word());
+  const std::string reasons = summary["verdict"]["reasons"].dump();
+  EXPECT_NE(reasons.find(wanted.reason), std::string::npos) << reasons;
+  EXPECT_EQ(summary["verdict"]["reasons"].empty(), wanted.reason.empty()) << reasons;
+  const std::string page = textOf("report.html");
+  EXPECT_NE(page.find("class=\"banner " + word() + "\""), std::string::npos);
+  EXPECT_NE(page.find(wanted.reason.substr(0, wanted.reason.find('\''))), std::string::npos);
+  const std::string table = writer_->table();
+  EXPECT_NE(table.find(capitalsOf(wanted.outcome)), std::string::npos) << table;
+  EXPECT_NE(table.find(wanted.reason), std::string::npos) << table;
+}
+
+void EveryReader::expectJunit(const test::VerdictCase& wanted) const {
+  pugi::xml_document junit;
+  ASSERT_TRUE(junit.load_string(textOf("junit.xml").c_str()));
+  const pugi::xml_node suite = junit.child("testsuites").child("testsuite");
+  EXPECT_EQ(suite.attribute("failures").as_int() > 0, wanted.outcome == Outcome::kFailed);
+  const bool broke = wanted.outcome == Outcome::kError || wanted.outcome == Outcome::kInterrupted;
+  EXPECT_EQ(suite.attribute("errors").as_int(), broke ? 1 : 0);
+  EXPECT_EQ(
+      suite.select_node("properties/property[@name='verdict']").node().attribute("value").value(),
+      word());
+  std::string notes;
+  for (const auto& note : suite.select_nodes("testcase/system-out"))
+    notes += note.node().text().get();
+  const bool noted = wanted.outcome == Outcome::kStruck || wanted.outcome == Outcome::kNotJudged;
+  EXPECT_EQ(notes.rfind(wordOf(wanted.outcome) + ": ", 0) == 0, noted) << notes;
+  const bool touched = noted && wanted.touch != test::Touch::kNone;
+  EXPECT_EQ(notes.find("bg_9 at 5.00 s") != std::string::npos, touched) << notes;
+  if (wanted.outcome == Outcome::kFailed || broke) {
+    const char* path = broke ? "testcase/error" : "testcase/failure";
+    const std::string message = suite.select_node(path).node().attribute("message").value();
+    EXPECT_NE(message.find(wanted.reason), std::string::npos) << message;
+  }
+}
+
+void EveryReader::expectContacts(test::Touch touch) const {
+  const auto ego = nlohmann::json::parse(textOf("summary.json"))["ego"];
+  const bool at_fault = touch == test::Touch::kEgoAtFault;
+  EXPECT_EQ(ego["contacts_at_fault"], at_fault ? 1 : 0);
+  if (touch == test::Touch::kNone) {
+    EXPECT_TRUE(ego["contacts"].empty());
+    return;
+  }
+  const auto& contact = ego["contacts"][0];
+  EXPECT_EQ(contact["tick"], 100);
+  EXPECT_EQ(contact["with"], "bg_9");
+  EXPECT_EQ(contact["ego_at_fault"], at_fault);
+  EXPECT_EQ(contact["ego_side"], at_fault ? "front" : "rear");
+  EXPECT_EQ(contact["ego_speed_mps"], 8.0);
+  EXPECT_EQ(contact["other_speed_mps"], at_fault ? 0.0 : 12.0);
+  const std::string page = textOf("report.html");
+  EXPECT_NE(page.find(std::string("<td>bg_9</td><td>ego</td><td>") + (at_fault ? "yes" : "no")),
+            std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryReader, testing::ValuesIn(test::verdictCases()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace cdiff::record

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/file.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "session/session_request.h"
+#include "session/session_setup.h"
+
+namespace cdiff::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ShippedScenario : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedScenario, LoadsWithNetworkRouteAndPlanners) {
+  const ScenarioOptions options = loadScenario(GetParam());
+  EXPECT_EQ(options.name, GetParam());
+  const SessionSetup setup(options);
+  EXPECT_GE(setup.egoRoute().length(), 80.0);
+  EXPECT_LE(setup.egoRoute().length(), 250.0);
+  EXPECT_NO_THROW(setup.makeEgoPlanner());
+  EXPECT_NO_THROW(setup.makeCbvPlanner());
+}
+
+TEST_P(ShippedScenario, CarriesTheStandardRules) {
+  EXPECT_EQ(core::dumpOptions(loadScenario(GetParam()).verdict),
+            core::dumpOptions(VerdictOptions::standard()));
+}
+
+TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
+  const std::string text = core::dumpOptions(loadScenario(GetParam()));
+  ScenarioOptions again;
+  core::loadOptions({"dump", text}, again);
+  EXPECT_EQ(core::dumpOptions(again), text);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(shippedScenarios()),
+                         [](const auto& info) { return info.param; });
+
+TEST(ShippedScenarios, ThreeForEachOfFourNetworks) {
+  std::map<std::string, int> counts;
+  for (const std::string& name : shippedScenarios()) ++counts[loadScenario(name).network];
+  EXPECT_EQ(counts.size(), 4u);
+  for (const auto& [network, count] : counts) EXPECT_EQ(count, 3) << network;
+}
+
+TEST(ShippedScenarios, EveryFolderOfNetworksIsUsedAndImportsUnchanged) {
+  for (const auto& entry : fs::directory_iterator(core::shareFolder() / "networks")) {
+    if (!entry.is_directory()) continue;
+    const map::ImportedNetwork imported = map::importNetwork(entry.path().filename().string());
+    EXPECT_TRUE(imported.changes.empty()) << entry.path();
+  }
+}
+
+std::string errorOf(const SessionRequest& request) {
+  try {
+    const SessionSetup setup(resolveRequest(request));
+    setup.makeEgoPlanner();
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool mentions(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(SessionRequest, ABench2DriveRouteCarriesTheStandardRules) {
+  SessionRequest request;
+  request.bench2drive = "routes.xml";
+  request.route = "28035";
+  request.network = "roundabout";
+  EXPECT_EQ(core::dumpOptions(resolveRequest(request).verdict),
+            core::dumpOptions(VerdictOptions::standard()));
+  request.set = {"verdict.minimum_route_completion=50"};
+  EXPECT_EQ(resolveRequest(request).verdict.minimum_route_completion, 50.0);
+}
+
+TEST(SessionRequest, UnknownScenarioNamesTheNearest) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turns";
+  EXPECT_TRUE(mentions(errorOf(request), "nearest shipped one is 'crossing_left_turn'"))
+      << errorOf(request);
+}
+
+TEST(SessionRequest, NothingToRun) { EXPECT_TRUE(mentions(errorOf({}), "nothing to run")); }
+
+TEST(SessionRequest, BadKeysAndValuesNameTheSource) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.set = {"max_cbvs=1"};
+  EXPECT_TRUE(mentions(errorOf(request),
+                       "--set: unknown key 'max_cbvs'; the nearest known key is 'max_cbv'"));
+  request.set = {"max_cbv=-1"};
+  EXPECT_TRUE(mentions(errorOf(request), "[0, 16]")) << errorOf(request);
+  request.set = {"decision_period=0.12"};
+  EXPECT_TRUE(mentions(errorOf(request), "multiple of simulation_step")) << errorOf(request);
+  request.set = {"network=nowhere"};
+  EXPECT_TRUE(mentions(errorOf(request), "nowhere")) << errorOf(request);
+  request.set = {"demand=missing.rou.xml"};
+  EXPECT_TRUE(mentions(errorOf(request), "missing.rou.xml")) << errorOf(request);
+  request.set = {"route.edges=[nothere]"};
+  EXPECT_TRUE(mentions(errorOf(request), "nothere")) << errorOf(request);
+}
+
+TEST(SessionRequest, TheModeIsAboutTheCbvsAlone) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.ego_planner = "diffusion";
+  request.mode = "safety_critical";
+  const ScenarioOptions attacked = resolveRequest(request);
+  EXPECT_TRUE(attacked.cbvPlannerOptions().guidance.isActive("collision_seeking"));
+  EXPECT_FALSE(attacked.egoPlannerOptions().guidance.isActive("collision_seeking"));
+  EXPECT_TRUE(attacked.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+  request.set = {"guidance_profile=none", "ego_guidance_profile=ablation_speed",
+                 "ego_guidance.speed.weight=0.5"};
+  ScenarioOptions named = resolveRequest(request);
+  EXPECT_EQ(named.ego_guidance.find("speed").weight, 0.5);
+  EXPECT_FALSE(named.cbvPlannerOptions().guidance.isActive("speed"));
+  EXPECT_TRUE(named.egoPlannerOptions().guidance.isActive("speed"));
+  EXPECT_FALSE(named.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+}
+
+TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.ego_planner = "diffusion";
+  request.set = {"ego_guidance_profile=naturalistc"};
+  EXPECT_TRUE(mentions(errorOf(request), "key 'ego_guidance_profile'")) << errorOf(request);
+  EXPECT_TRUE(mentions(errorOf(request), "'naturalistic'")) << errorOf(request);
+  request.set = {"ego_guidance.speed.first_step=5", "ego_guidance.speed.last_step=20"};
+  EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.first_step'")) << errorOf(request);
+  request.set = {"ego_guidance.speed.first_step=9"};
+  EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.last_step'")) << errorOf(request);
+}
+
+TEST(SessionRequest, ScenarioFileErrorsNameFileAndLine) {
+  const fs::path file = fs::temp_directory_path() / "cdiff_broken_scenario.yaml";
+  std::ofstream(file) << "network: roundabout\nroute:\n  edgess: [a]\n";
+  SessionRequest request;
+  request.scenario = file.string();
+  const std::string error = errorOf(request);
+  EXPECT_TRUE(mentions(error, file.string() + ":3")) << error;
+  EXPECT_TRUE(mentions(error, "'edges'")) << error;
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace cdiff::session
