@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "diffusion/architecture.h"
 #include "diffusion/normalizer.h"
 #include "inference/safetensors.h"
 

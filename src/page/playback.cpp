@@ -104,13 +104,13 @@ std::vector<std::size_t> cbvStyles(const record::SessionResult& result) {
   return styles;
 }
 
-void addVehicles(record::Json& data, const record::SessionResult& result) {
+void addVehicles(Json& data, const record::SessionResult& result) {
   for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
     data["vehicles"].push_back({vehicle.id, vehicle.length, vehicle.width});
   }
 }
 
-void addFrames(record::Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
+void addFrames(Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
   const std::vector<std::size_t> cbv_styles = cbvStyles(result);
   const auto& frames = result.timeline.frames();
   const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
@@ -138,7 +138,7 @@ std::string safeInScript(const std::string& json) {
 }  // namespace
 
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
-  record::Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
+  Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
                        {"vehicles", record::Json::array()},
                        {"times", record::Json::array()},
                        {"frames", record::Json::array()},

@@ -69,7 +69,7 @@ class TargetOne : public CleanObjective {
     for (Eigen::Index t = 0; t < clean.rows(); ++t) {
       for (Eigen::Index c = 4; c < 7; ++c) {
         value += weight_ * std::pow(clean(t, c) - 1.0, 2);
-        inference::gradient(t, c) = static_cast<float>(2.0 * weight_ * (clean(t, c) - 1.0));
+        gradient(t, c) = static_cast<float>(2.0 * weight_ * (clean(t, c) - 1.0));
       }
     }
     return value;

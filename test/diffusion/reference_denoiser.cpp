@@ -16,7 +16,7 @@ Doubles mishOf(Doubles values) {
 }
 
 Grid mishOf(Grid grid) {
-  grid.values = inference::mishOf(std::move(grid.values));
+  grid.values = mishOf(std::move(grid.values));
   return grid;
 }
 
@@ -138,7 +138,7 @@ Doubles ReferenceDenoiser::timeEmbedding(int k) const {
     sines.push_back(std::sin(k * w));
     cosines.push_back(std::cos(k * w));
   }
-  return linear("time.2", inference::mishOf(linear("time.0", append(sines, cosines))));
+  return linear("time.2", mishOf(linear("time.0", append(sines, cosines))));
 }
 
 Doubles ReferenceDenoiser::contextVector(const Context& context) const {
@@ -146,16 +146,16 @@ Doubles ReferenceDenoiser::contextVector(const Context& context) const {
   append(joined,
          context.route.empty()
              ? toDoubles(tensor("no_route").values)
-             : linear("route.2", inference::mishOf(linear("route.0", toDoubles(context.route)))));
-  append(joined, inference::mishOf(linear("speed.0", {context.speed / 10.0})));
-  return inference::mishOf(linear("context.0", joined));
+             : linear("route.2", mishOf(linear("route.0", toDoubles(context.route)))));
+  append(joined, mishOf(linear("speed.0", {context.speed / 10.0})));
+  return mishOf(linear("context.0", joined));
 }
 
 Grid ReferenceDenoiser::block(const std::string& name, const Grid& input) const {
   const Grid convolved =
       referenceConvolution(input, tensor(name + ".conv.weight"), tensor(name + ".conv.bias"), 1,
                            model_.architecture.kernel / 2);
-  return inference::mishOf(referenceGroupNorm(convolved, model_.architecture.groups,
+  return mishOf(referenceGroupNorm(convolved, model_.architecture.groups,
                                               tensor(name + ".norm.weight"),
                                               tensor(name + ".norm.bias")));
 }
@@ -180,7 +180,7 @@ Grid ReferenceDenoiser::pair(const std::string& name, const Grid& input, const D
 Doubles ReferenceDenoiser::actions(const Doubles& noisy, int k, const Context& context) const {
   const Architecture& a = model_.architecture;
   Doubles z = timeEmbedding(k);
-  z = inference::mishOf(append(z, contextVector(context)));
+  z = mishOf(append(z, contextVector(context)));
   Grid x(7, a.horizon);
   for (std::int64_t t = 0; t < a.horizon; ++t) {
     for (std::int64_t c = 0; c < 7; ++c) x.at(c, t) = noisy[static_cast<std::size_t>(7 * t + c)];
@@ -216,7 +216,7 @@ Doubles ReferenceDenoiser::states(const Doubles& actions, int k, const Context& 
   input.push_back(context.speed / 10.0);
   append(input, timeEmbedding(k));
   return linear("state.4",
-                inference::mishOf(linear("state.2", inference::mishOf(linear("state.0", input)))));
+                mishOf(linear("state.2", mishOf(linear("state.0", input)))));
 }
 
 Model randomModel(const Architecture& architecture) {

@@ -78,8 +78,8 @@ Metadata metadataOf(const std::string& part) {
   return {{"format", "e2e_cdiff." + part + ".1"},
           {"architecture", smallArchitecture().toJson()},
           {"normalizer",
-           "{\"mean\":" + inference::matrix("0.5") + ",\"scale\":" + inference::matrix("2") + "}"},
-          {"spread", inference::matrix("1")}};
+           "{\"mean\":" + matrix("0.5") + ",\"scale\":" + matrix("2") + "}"},
+          {"spread", matrix("1")}};
 }
 
 /// Sets an environment variable for one test.
@@ -198,21 +198,21 @@ TEST_F(ModelFiles, MalformedMetadataIsNamed) {
   expectMentions(errorWith("normalizer", "[]"), "'normalizer' is an array");
   expectMentions(errorWith("normalizer", "{"), "'normalizer' is not JSON");
   expectMentions(
-      errorWith("normalizer", normalizer(inference::matrix("0"), inference::matrix("0"))),
+      errorWith("normalizer", normalizer(matrix("0"), matrix("0"))),
       "scale of row 0, column 0 is 0; a positive one");
   expectMentions(
-      errorWith("normalizer", normalizer(inference::matrix("0"), inference::matrix("-1"))),
+      errorWith("normalizer", normalizer(matrix("0"), matrix("-1"))),
       "is -1; a positive");
   expectMentions(
-      errorWith("normalizer", normalizer(inference::matrix("null"), inference::matrix("1"))),
+      errorWith("normalizer", normalizer(matrix("null"), matrix("1"))),
       "mean, row 0, column 0 is null; a number");
-  expectMentions(errorWith("normalizer", normalizer("[[1,2]]", inference::matrix("1"))),
+  expectMentions(errorWith("normalizer", normalizer("[[1,2]]", matrix("1"))),
                  "mean is an array of 1; T = 2 rows");
-  expectMentions(errorWith("normalizer", normalizer("[[1,2],[1,2]]", inference::matrix("1"))),
+  expectMentions(errorWith("normalizer", normalizer("[[1,2],[1,2]]", matrix("1"))),
                  "mean, row 0: 7 numbers");
   expectMentions(errorWith("spread", "[[1]]"), "'spread' is an array of 1; T = 2 rows");
-  expectMentions(errorWith("spread", inference::matrix("-0.5")), "spread: row 0, column 0 is -0.5");
-  expectMentions(errorWith("spread", inference::matrix("nan")), "'spread' is not JSON");
+  expectMentions(errorWith("spread", matrix("-0.5")), "spread: row 0, column 0 is -0.5");
+  expectMentions(errorWith("spread", matrix("nan")), "'spread' is not JSON");
 }
 
 TEST_F(ModelFiles, AnotherHorizonDoesNotFitTheScales) {

@@ -136,11 +136,11 @@ TEST_F(SafetensorsMemory, DamagedFileIsRefusedBeforeItsTensorsTakeMemory) {
 
 /// A folder whose denoiser file has the sizes that its own metadata asks for: 4096 channels.
 TEST_F(SafetensorsMemory, ModelThatDeclaresHugeNetworks) {
-  diffusion::Architecture sizes;
+  Architecture sizes;
   sizes.channels = {4096, 4096, 4096};
   std::uint64_t end = 0;
   std::string header;
-  for (const inference::TensorShape& tensor : diffusion::denoiserTensors(sizes)) {
+  for (const inference::TensorShape& tensor : denoiserTensors(sizes)) {
     std::uint64_t bytes = 2;
     std::string shape;
     for (const std::int64_t size : tensor.shape) {
