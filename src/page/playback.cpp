@@ -14,7 +14,7 @@
 namespace cdiff::page {
 namespace {
 
-using record::Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPoses = 60000;
 
@@ -34,9 +34,9 @@ double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
 
 /// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
 /// [0.1 m/s].
-record::Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& canvas,
+Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& canvas,
                           const std::vector<std::size_t>& cbv_styles) {
-  record::Json numbers = record::Json::array();
+  Json numbers = Json::array();
   for (auto pose = frame.poses.rbegin(); pose != frame.poses.rend(); ++pose) {
     if (!canvas.shows({pose->x, pose->y})) continue;
     const Eigen::Vector2d pixel = canvas.toPixels({pose->x, pose->y});
@@ -55,8 +55,8 @@ record::Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& c
 
 /// Seven numbers per driven vehicle: index, slot (-1: the ego), throttle, brake, steer [%], gap
 /// [cm] and 2D-TTC [0.01 s], both negative where not defined.
-record::Json momentNumbers(const record::TimelineFrame& frame) {
-  record::Json numbers = record::Json::array();
+Json momentNumbers(const record::TimelineFrame& frame) {
+  Json numbers = Json::array();
   for (const record::TimelinePose& pose : frame.poses) {
     if (pose.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
     numbers.push_back(pose.vehicle);
@@ -70,12 +70,12 @@ record::Json momentNumbers(const record::TimelineFrame& frame) {
 }
 
 /// By slot: [time [s], vehicle index, JPEG].
-record::Json viewLists(const record::SessionResult& result) {
+Json viewLists(const record::SessionResult& result) {
   std::map<std::string, std::size_t> indices;
   for (const record::TimelineVehicle& vehicle : result.timeline.vehicles()) {
     indices.emplace(vehicle.id, indices.size());
   }
-  record::Json lists = record::Json::object();
+  Json lists = Json::object();
   for (const record::FrontView& view : result.front_views.views()) {
     const auto vehicle = indices.find(view.vehicle_id);
     if (vehicle == indices.end()) continue;  // it came and went between two frames
@@ -86,7 +86,7 @@ record::Json viewLists(const record::SessionResult& result) {
 }
 
 /// The frame that the page shows first: the closest approach, else the last.
-std::size_t firstShown(const record::Json& times, const record::Timeline& timeline) {
+std::size_t firstShown(const Json& times, const record::Timeline& timeline) {
   const auto& gap = timeline.smallestGap();
   std::size_t shown = times.empty() ? 0 : times.size() - 1;
   if (!gap) return shown;
@@ -139,16 +139,16 @@ std::string safeInScript(const std::string& json) {
 
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
   Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
-                       {"vehicles", record::Json::array()},
-                       {"times", record::Json::array()},
-                       {"frames", record::Json::array()},
-                       {"moments", record::Json::array()},
+                       {"vehicles", Json::array()},
+                       {"times", Json::array()},
+                       {"frames", Json::array()},
+                       {"moments", Json::array()},
                        {"period", result.front_views.period()},
                        {"views", viewLists(result)}};
   addVehicles(data, result);
   addFrames(data, result, canvas);
   data["start"] = firstShown(data["times"], result.timeline);
-  return safeInScript(data.dump(-1, ' ', false, record::Json::error_handler_t::replace));
+  return safeInScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace cdiff::page

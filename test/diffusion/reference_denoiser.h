@@ -20,8 +20,8 @@ struct Grid {
   Doubles values;
 
   Grid(std::int64_t channels_in, std::int64_t rows_in)
-      : inference::channels(channels_in),
-        inference::rows(rows_in),
+      : channels(channels_in),
+        rows(rows_in),
         values(static_cast<std::size_t>(channels_in * rows_in), 0.0) {}
   double& at(std::int64_t c, std::int64_t t) {
     return values[static_cast<std::size_t>(c * rows + t)];

@@ -22,7 +22,7 @@ struct PlainMap {
   std::vector<double> values;
 
   PlainMap(std::int64_t c, std::int64_t h, std::int64_t w)
-      : inference::channels(c), height(h), width(w), values(static_cast<std::size_t>(c * h * w)) {}
+      : channels(c), height(h), width(w), values(static_cast<std::size_t>(c * h * w)) {}
   double& at(std::int64_t c, std::int64_t y, std::int64_t x) {
     return values[static_cast<std::size_t>((c * height + y) * width + x)];
   }

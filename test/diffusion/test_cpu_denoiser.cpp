@@ -18,7 +18,7 @@ using InstructionSet = CpuDenoiser::InstructionSet;
 /// A model with a batch of contexts, the second without route, and inputs.
 struct Case {
   explicit Case(const Architecture& architecture, std::uint32_t samples)
-      : model(randomModel(architecture)), inference::rows(architecture.horizon) {
+      : model(randomModel(architecture)), rows(architecture.horizon) {
     for (std::uint32_t b = 0; b < samples; ++b) {
       contexts.push_back(randomContext(architecture, b, b != 1));
     }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../../src/diffusion/unet_layers.h"
+#include "inference/unet_layers.h"
 #include "diffusion/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
 

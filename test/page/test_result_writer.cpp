@@ -16,18 +16,18 @@
 namespace cdiff::page {
 namespace {
 
-using record::Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 using traffic::SessionStatus;
 
 std::string textOf(const test::TemporaryFolder& scratch, const std::string& name) {
   return core::readFile(scratch.path() / name, name);
 }
 
-record::Json summaryOf(const test::TemporaryFolder& scratch) {
-  return record::Json::parse(textOf(scratch, "summary.json"));
+Json summaryOf(const test::TemporaryFolder& scratch) {
+  return Json::parse(textOf(scratch, "summary.json"));
 }
 
-std::vector<std::string> keysOf(const record::Json& object) {
+std::vector<std::string> keysOf(const Json& object) {
   std::vector<std::string> keys;
   for (const auto& item : object.items()) keys.push_back(item.key());
   return keys;
@@ -47,7 +47,7 @@ int runSample(const test::TemporaryFolder& scratch, SessionStatus status,
 TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keysOf(summary), Keys({"schema_version",
                                    "scenario",
@@ -97,7 +97,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
 }
 
 /// Places of all numbers (and nulls) of figures below `object`, whose own place is `place`.
-void addPlaces(const record::Json& object, const std::string& place,
+void addPlaces(const Json& object, const std::string& place,
                std::set<std::string>& places) {
   for (const auto& [key, value] : object.items()) {
     const std::string here = place + "/" + key;
@@ -116,14 +116,14 @@ TEST(ResultWriter, EveryFigureOfTheSummaryIsDefinedAndInItsPlace) {
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
   writer.finish(2.0);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   std::set<std::string> places;
   for (const char* section : {"ego", "cbv", "metrics"})
     addPlaces(summary[section], "/" + std::string(section), places);
   std::set<std::string> defined;
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
     defined.insert(figure.place);
-    const record::Json& there = summary.at(record::Json::json_pointer(figure.place));
+    const Json& there = summary.at(Json::json_pointer(figure.place));
     const metrics::Measure measure = figure.measure(writer.result().measures);
     if (measure.value) {
       const double number = there.is_boolean() ? there.get<bool>() : there.get<double>();
@@ -141,13 +141,13 @@ TEST(ResultWriter, SummaryNamesWhatSpeedsAreComparedWith) {
   options.metrics.speed_target = "normal";
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut, options);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   EXPECT_EQ(summary["metrics"]["speed_wasserstein_mps"]["target"],
             "normal distribution of mean 8 m/s and standard deviation 2 m/s");
   EXPECT_NE(textOf(scratch, "report.html")
                 .find("against normal distribution of mean 8 m/s and standard deviation 2 m/s"),
             std::string::npos);
-  const record::Json& encroachments = summary["cbv"]["post_encroachments"];
+  const Json& encroachments = summary["cbv"]["post_encroachments"];
   ASSERT_EQ(encroachments.size(), 1U);
   EXPECT_EQ(encroachments[0]["vehicle_id"], "bg_1");
   EXPECT_EQ(encroachments[0].contains("reason"), encroachments[0]["seconds"].is_null());
@@ -156,7 +156,7 @@ TEST(ResultWriter, SummaryNamesWhatSpeedsAreComparedWith) {
 TEST(ResultWriter, SummaryTellsWhatHappened) {
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   EXPECT_EQ(summary["schema_version"], 1);
   EXPECT_EQ(summary["scenario"], "crossing");
   EXPECT_EQ(summary["seed"], 7);
@@ -166,8 +166,8 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   // The ego drives 48 m of 190 m.
   EXPECT_NEAR(summary["ego"]["route_completion_percent"].get<double>(), 100.0 * 48.0 / 190.0, 1e-6);
   EXPECT_EQ(summary["cbv"]["rejected"],
-            record::Json::parse(R"({"no_way": 61})"));  // ticks 0, 2 ... 120
-  const record::Json& selection = summary["cbv"]["selections"][0];
+            Json::parse(R"({"no_way": 61})"));  // ticks 0, 2 ... 120
+  const Json& selection = summary["cbv"]["selections"][0];
   EXPECT_EQ(selection["vehicle_id"], "bg_1");
   EXPECT_DOUBLE_EQ(selection["selected_seconds"], 2.6);
   EXPECT_EQ(selection["decisions_driven"], 34);  // ticks 54, 56 ... 120
@@ -187,12 +187,12 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
   EXPECT_TRUE(summary["guidance"].is_null());
   EXPECT_TRUE(summary["guidance_trust_region_share"].is_null());
   // 61 decisions, 1 ms + 0.01 ms x tick: rank 31 is tick 60, rank ceil(57.95) = 58 is tick 114.
-  const record::Json& latency = summary["planner_latency_ms"]["ego:pdm_lite"];
+  const Json& latency = summary["planner_latency_ms"]["ego:pdm_lite"];
   EXPECT_DOUBLE_EQ(latency["p50"], 1.6);
   EXPECT_DOUBLE_EQ(latency["p95"], 2.14);
   EXPECT_DOUBLE_EQ(latency["max"], 2.2);
   EXPECT_EQ(latency["n"], 61);
-  EXPECT_EQ(summary["verdict"], record::Json::parse(R"json({"outcome": "not_judged",
+  EXPECT_EQ(summary["verdict"], Json::parse(R"json({"outcome": "not_judged",
                             "reasons": ["the scenario has no rules (group 'verdict')"],
                             "decided_by": [],
                             "rules": [{"rule": "session", "outcome": "passed",
@@ -203,12 +203,12 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
 TEST(ResultWriter, SummaryTellsTheEgosInfractions) {
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kBlocked);
-  const record::Json ego = summaryOf(scratch)["ego"];
+  const Json ego = summaryOf(scratch)["ego"];
   EXPECT_EQ(ego["protocol"], "rift_dev10");
   EXPECT_EQ(ego["penalty"], 1.0);
   EXPECT_EQ(ego["driving_score"], ego["route_completion_percent"]);
   EXPECT_EQ(ego["blocked"], true);
-  const record::Json& found = ego["infractions"];
+  const Json& found = ego["infractions"];
   for (const char* name :
        {"vehicle_collisions", "red_lights", "stop_signs", "outside_lanes_percent"})
     EXPECT_EQ(found[name], 0.0) << name;
@@ -230,13 +230,13 @@ TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSeenSession(writer, sample.setup);
   writer.finish(2.0);
-  const record::Json summary = summaryOf(scratch);
-  const record::Json& plan = summary["cbv"]["plan"];
+  const Json summary = summaryOf(scratch);
+  const Json& plan = summary["cbv"]["plan"];
   // The plan drifts by 0.25 m/s. Decisions at ticks 52, 54 ... 120; driven until tick 120, so 25,
   // 15 and 5 of them were followed for 20, 40 and 60 ticks.
   const std::size_t followed[] = {25, 15, 5};
   for (int seconds = 1; seconds <= 3; ++seconds) {
-    const record::Json& displacement = plan["displacement_" + std::to_string(seconds) + "s_m"];
+    const Json& displacement = plan["displacement_" + std::to_string(seconds) + "s_m"];
     EXPECT_NEAR(displacement["mean"].get<double>(), 0.25 * seconds, 1e-9);
     EXPECT_NEAR(displacement["p95"].get<double>(), 0.25 * seconds, 1e-9);
     EXPECT_EQ(displacement["n"], followed[seconds - 1]);
@@ -247,12 +247,12 @@ TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
   EXPECT_DOUBLE_EQ(plan["state_mismatch_m"]["max"], 0.5);
   EXPECT_EQ(plan["state_mismatch_m"]["n"], 35);
   EXPECT_EQ(summary["guidance"],
-            record::Json::parse(R"({"speed": {"weight": 1.5, "value": 2.0, "gradient_norm": 0.5,
+            Json::parse(R"({"speed": {"weight": 1.5, "value": 2.0, "gradient_norm": 0.5,
                                       "capped_share": 0.25, "dropped": 35, "n": 35},
                             "comfort": {"weight": 1.0, "value": null, "gradient_norm": null,
                                         "capped_share": 0.0, "dropped": 0, "n": 35}})"));
   EXPECT_DOUBLE_EQ(summary["guidance_trust_region_share"], 0.125);
-  EXPECT_EQ(summary["cbv"]["faults"], record::Json::parse(R"({"cbv:diffusion": 1})"));
+  EXPECT_EQ(summary["cbv"]["faults"], Json::parse(R"({"cbv:diffusion": 1})"));
 }
 
 TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {
@@ -275,7 +275,7 @@ TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
   test::playSession(writer, sample.setup, 10, SessionStatus::kBlocked);  // over before any CBV
   writer.finish(0.0);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   EXPECT_TRUE(summary["real_time_factor"].is_null());
   EXPECT_EQ(summary["real_time_factor_reason"], "no wall time was measured");
   EXPECT_TRUE(summary["cbv"]["off_road_rate_percent"].is_null());
@@ -285,7 +285,7 @@ TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
   EXPECT_TRUE(summary["metrics"]["speed_shapiro_wilk"]["value"].is_null());
   EXPECT_EQ(summary["metrics"]["speed_shapiro_wilk"]["n"], 0);
   EXPECT_FALSE(summary["metrics"]["speed_shapiro_wilk"]["reason"].get<std::string>().empty());
-  EXPECT_EQ(summary["cbv"]["selections"], record::Json::array());
+  EXPECT_EQ(summary["cbv"]["selections"], Json::array());
 }
 
 TEST(ResultWriter, ExitCodesFollowStatusAndVerdict) {
@@ -329,7 +329,7 @@ TEST(ResultWriter, JunitTellsFailureFromError) {
 TEST(ResultWriter, ARecordThatStopsWhileRunningIsAnError) {
   const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kRunning), 2);
-  const record::Json summary = summaryOf(scratch);
+  const Json summary = summaryOf(scratch);
   EXPECT_EQ(summary["status"], "error");
   EXPECT_EQ(summary["faults"][0]["source"], "session");
 }

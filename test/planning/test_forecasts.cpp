@@ -10,11 +10,11 @@
 namespace cdiff::planning {
 namespace {
 
-using testing::leftBend;
-using testing::makeNetwork;
-using testing::routeAlong;
-using testing::straight;
-using testing::vehicleAt;
+using planners::testing::leftBend;
+using planners::testing::makeNetwork;
+using planners::testing::routeAlong;
+using planners::testing::straight;
+using planners::testing::vehicleAt;
 
 TEST(MotionForecast, HoldsTheActionOfADrivenVehicle) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});

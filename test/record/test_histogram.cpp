@@ -35,7 +35,7 @@ TEST(Histogram, AnEmptySampleHasNoFigures) {
   EXPECT_FALSE(sample.standardDeviation().has_value());
 }
 
-TEST(page::HistogramChart, DrawsBarsInPercentOfEachSample) {
+TEST(HistogramChart, DrawsBarsInPercentOfEachSample) {
   Histogram first(0.0, 1.0, 10);
   Histogram second(0.0, 1.0, 10);
   first.add(4.5);
@@ -53,7 +53,7 @@ TEST(page::HistogramChart, DrawsBarsInPercentOfEachSample) {
   EXPECT_NE(svg.find("&lt;all&gt;"), std::string::npos);
 }
 
-TEST(page::HistogramChart, EmptySamplesLeaveAnEmptyChart) {
+TEST(HistogramChart, EmptySamplesLeaveAnEmptyChart) {
   const Histogram nothing(-1.0, 1.0, 2);
   const std::string svg = page::histogramSvg({"Speed", "m/s", {{"a", &nothing}}}, "none");
   EXPECT_EQ(svg.find("bars a"), std::string::npos);

@@ -122,7 +122,7 @@ TEST(RouteRules, RedLightIsMeasuredToItsStopLine) {
   EXPECT_FALSE(distanceToRedLight(route, 100.5, snapshot));
 }
 
-TEST(planning::RouteFollower, GoesStraightOnBeyondTheEnds) {
+TEST(RouteFollower, GoesStraightOnBeyondTheEnds) {
   const auto network = makeNetwork({{"bend", leftBend(20.0, 12.0, 20.0)}});
   const map::Route route = routeAlong(network, {"bend"});
   EXPECT_TRUE(planning::extendedPositionAt(route, -5.0).isApprox(Eigen::Vector2d(-5.0, 0.0)));
@@ -135,7 +135,7 @@ TEST(planning::RouteFollower, GoesStraightOnBeyondTheEnds) {
   EXPECT_NEAR(follower.arcLength(), route.length() + 4.0, 1e-9);
 }
 
-TEST(planning::RouteFollower, CatchesUpAfterAGapAsFarAsItMayReach) {
+TEST(RouteFollower, CatchesUpAfterAGapAsFarAsItMayReach) {
   const auto network = makeNetwork({{"road", {{0.0, 0.0, 0.0}, {200.0, 0.0, 0.0}}}});
   const map::Route route = routeAlong(network, {"road"});
   planning::RouteFollower follower;
@@ -146,7 +146,7 @@ TEST(planning::RouteFollower, CatchesUpAfterAGapAsFarAsItMayReach) {
   EXPECT_NEAR(follower.arcLength(), 65.0, 1e-9);
 }
 
-TEST(planning::RouteFollower, FollowsARouteThatCrossesItselfInOrder) {
+TEST(RouteFollower, FollowsARouteThatCrossesItselfInOrder) {
   // Along +x, round a square and back over the start along +y at (40, 0): the crossing lies at 40 m
   // and at 220 m.
   Points points = {{0.0, 0.0, 0.0},    {100.0, 0.0, 0.0},  {100.0, 30.0, 0.0}, {70.0, 30.0, 0.0},
@@ -166,7 +166,7 @@ TEST(planning::RouteFollower, FollowsARouteThatCrossesItselfInOrder) {
   EXPECT_EQ(follower.arcLength(), last);
 }
 
-TEST(planning::RouteFollower, StartsAgainOnAnotherRoute) {
+TEST(RouteFollower, StartsAgainOnAnotherRoute) {
   const auto network = makeNetwork(
       {{"east", straight(0.0, 0.0, 100.0, 0.0)}, {"north", straight(60.0, -10.0, 60.0, 90.0)}});
   const map::Route east = routeAlong(network, {"east"});

@@ -10,7 +10,7 @@
 #include "diffusion/model.h"
 #include "inference/weight_file_text.h"
 
-namespace cdiff::inference {
+namespace cdiff::diffusion {
 namespace {
 
 using test::littleEndian;
@@ -63,7 +63,7 @@ class SafetensorsMemory : public ::testing::Test {
   int outcomeOfFile(const std::string& expected, const std::vector<std::int64_t>& shape = {2}) {
     return outcomeInChild(
         [&] {
-          readSafetensors(file_, [&](const std::map<std::string, std::string>&) {
+          inference::readSafetensors(file_, [&](const std::map<std::string, std::string>&) {
             return std::vector<inference::TensorShape>{{"a", shape}};
           });
         },
@@ -175,4 +175,4 @@ TEST_F(SafetensorsMemory, ModelThatDeclaresHugeNetworks) {
 }
 
 }  // namespace
-}  // namespace cdiff::inference
+}  // namespace cdiff::diffusion
