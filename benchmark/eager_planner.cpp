@@ -11,7 +11,7 @@
 #include "diffusion/noise_schedule.h"
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/traffic/rollout.h"
-#include "networks.h"
+#include "training/networks.h"
 
 namespace cdiff::benchmark {
 namespace {
