@@ -7,8 +7,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/dataset_from_driving_bag.h"
 #include "learning/driving_sample.h"
+#include "ros/dataset_from_driving_bag.h"
 
 namespace cdiff::cli {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/session_bag.h"
 #include "learning/driving_sample.h"
+#include "ros/session_bag.h"
 
 namespace cdiff::cli {
 namespace {

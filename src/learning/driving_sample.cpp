@@ -96,19 +96,6 @@ DrivingSample fromFields(const Sample& stored, const DrivingSchema& schema) {
   return sample;
 }
 
-FieldSpec oneOf(const char* name, FieldType type) {
-  FieldSpec field;
-  field.name = name;
-  field.type = type;
-  return field;
-}
-
-FieldSpec floats(const char* name, const std::vector<std::int64_t>& shape) {
-  FieldSpec field = oneOf(name, FieldType::kF32);
-  field.shape = shape;
-  return field;
-}
-
 const FieldSpec& fieldIn(const SampleSchema& stored, const std::string& name,
                          std::size_t dimensions, const std::string& source) {
   const FieldSpec* field = stored.find(name);
@@ -122,20 +109,26 @@ const FieldSpec& fieldIn(const SampleSchema& stored, const std::string& name,
 }  // namespace
 
 SampleSchema DrivingSchema::fields() const {
-  FieldSpec rollout = floats("rollout", {horizon, traffic::kRolloutColumns});
+  FieldSpec rollout("rollout", FieldType::kF32, {horizon, traffic::kRolloutColumns});
   rollout.columns = {"x", "y", "heading", "speed", "throttle", "steer", "brake"};
-  FieldSpec route = floats("route", {route_points, 2});
+  FieldSpec route("route", FieldType::kF32, {route_points, 2});
   route.numbers = {{"spacing", route_spacing}};
-  FieldSpec targets = floats("auxiliary", {static_cast<std::int64_t>(auxiliary.size())});
+  FieldSpec targets("auxiliary", FieldType::kF32, {static_cast<std::int64_t>(auxiliary.size())});
   targets.columns = auxiliary;
   targets.finite = false;
-  FieldSpec image = oneOf("image", FieldType::kU8);
-  image.shape = {image_height, image_width, 3};
+  FieldSpec image("image", FieldType::kU8, {image_height, image_width, 3});
   image.packed = true;
-  return {{oneOf("session", FieldType::kU64), oneOf("tick", FieldType::kU64),
-           oneOf("speed", FieldType::kF64), oneOf("recovering", FieldType::kU8),
-           oneOf("maneuver", FieldType::kU8), oneOf("stop_reason", FieldType::kU8),
-           oneOf("vehicle", FieldType::kText), rollout, route, targets, image}};
+  return {{{"session", FieldType::kU64},
+           {"tick", FieldType::kU64},
+           {"speed", FieldType::kF64},
+           {"recovering", FieldType::kU8},
+           {"maneuver", FieldType::kU8},
+           {"stop_reason", FieldType::kU8},
+           {"vehicle", FieldType::kText},
+           rollout,
+           route,
+           targets,
+           image}};
 }
 
 DrivingSchema DrivingSchema::fromFields(const SampleSchema& stored, const std::string& source) {

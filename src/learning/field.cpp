@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/text.h"
 
@@ -84,6 +85,10 @@ FieldSpec specIn(const json& entry, const std::string& source) {
 }
 
 }  // namespace
+
+FieldSpec::FieldSpec(std::string field_name, FieldType field_type,
+                     std::vector<std::int64_t> field_shape)
+    : name(std::move(field_name)), type(field_type), shape(std::move(field_shape)) {}
 
 std::size_t FieldSpec::values() const {
   std::size_t count = 1;

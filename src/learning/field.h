@@ -25,6 +25,9 @@ using FieldValue = std::variant<std::vector<std::uint8_t>, std::vector<std::uint
 constexpr std::int64_t kAnyCount = -1;
 
 struct FieldSpec {
+  FieldSpec() = default;
+  FieldSpec(std::string name, FieldType type, std::vector<std::int64_t> shape = {});
+
   std::string name;
   FieldType type = FieldType::kF32;
   std::vector<std::int64_t> shape;   ///< empty: one value, or a text

@@ -254,8 +254,8 @@ learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture) {
 }
 
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
-                                             const DatasetOptions& options,
-                                             DatasetStatistics& statistics) {
+                                                    const DatasetOptions& options,
+                                                    DatasetStatistics& statistics) {
   const BagSession session = readBagSession(bag);
   try {
     return SampleMaker(session, options, statistics).make();

@@ -47,8 +47,8 @@ struct DatasetStatistics {
 /// that is no bag, holds no session of ours, no images, images of another size, or decisions that
 /// are not 0.1 s apart; the texts name the file.
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
-                                             const DatasetOptions& options,
-                                             DatasetStatistics& statistics);
+                                                    const DatasetOptions& options,
+                                                    DatasetStatistics& statistics);
 
 /// The schema that such samples fit.
 learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture);

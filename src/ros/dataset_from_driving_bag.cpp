@@ -177,9 +177,9 @@ void DrivingBagOptions::validate() const {
 }
 
 std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const DrivingBagOptions& topics,
-                                                    const DatasetOptions& options,
-                                                    DatasetStatistics& statistics) {
+                                                           const DrivingBagOptions& topics,
+                                                           const DatasetOptions& options,
+                                                           DatasetStatistics& statistics) {
   topics.validate();
   try {
     const DrivingBag driving = readDrivingBag(bag, topics, options.architecture);

@@ -36,8 +36,8 @@ struct DrivingBagOptions {
 /// bag lacks (and what it has), one of another type, a message that is broken or has no
 /// orientation, a path in another frame, an encoding that is no colour, no sample at all.
 std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const DrivingBagOptions& topics,
-                                                    const DatasetOptions& options,
-                                                    DatasetStatistics& statistics);
+                                                           const DrivingBagOptions& topics,
+                                                           const DatasetOptions& options,
+                                                           DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/route_rules.h"
 #include "learning/sample_balance.h"
+#include "planners/pdm_lite/route_rules.h"
 
 namespace cdiff::ros {
 namespace {

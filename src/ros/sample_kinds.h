@@ -39,6 +39,7 @@ bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& st
 SampleKinds kindsOf(const learning::DrivingSample& sample);
 
 /// Adds a sample to the statistics.
-void count(const learning::DrivingSample& sample, const SampleKinds& kinds, DatasetStatistics& statistics);
+void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
+           DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

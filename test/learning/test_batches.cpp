@@ -14,10 +14,10 @@ namespace {
 class BatchesTest : public testing::Test {
  protected:
   BatchesTest() {
-    ShardWriter writer({{{kSessionField, FieldType::kU64, {}},
-                         {"score", FieldType::kF64, {}},
+    ShardWriter writer({{{kSessionField, FieldType::kU64},
+                         {"score", FieldType::kF64},
                          {"boxes", FieldType::kF32, {kAnyCount, 2}},
-                         {"town", FieldType::kText, {}}}});
+                         {"town", FieldType::kText}}});
     const std::vector<std::vector<float>> boxes = {{1.0F, 2.0F, 3.0F, 4.0F}, {}, {5.0F, 6.0F}};
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       writer.append({{{kSessionField, std::vector<std::uint64_t>{1}},
@@ -57,8 +57,9 @@ TEST_F(BatchesTest, TextsAndUnknownFieldsAreNamed) {
       batch(field);
       FAIL() << field;
     } catch (const core::InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(std::string("have no numbers '") + field +
-                                               "'; they hold session, score, boxes, town"),
+      EXPECT_NE(std::string(error.what())
+                    .find(std::string("have no numbers '") + field +
+                          "'; they hold session, score, boxes, town"),
                 std::string::npos)
           << error.what();
     }

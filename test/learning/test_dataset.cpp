@@ -78,7 +78,7 @@ TEST(Dataset, ShardsWithoutSamplesAreNamed) {
 
 TEST(Dataset, SamplesWithoutASessionAreNamed) {
   const test::TemporaryFolder folder;
-  ShardWriter writer(SampleSchema{{{"speed", FieldType::kF32, {}}}});
+  ShardWriter writer(SampleSchema{{{"speed", FieldType::kF32}}});
   writer.append({{{"speed", std::vector<float>{1.0F}}}});
   writer.write(folder.path() / "a.shard");
   try {

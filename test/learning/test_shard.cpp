@@ -161,9 +161,8 @@ std::string versionOne(const std::string& version_two) {
   const std::size_t end = version_two.size() - 64;
   std::string content = "CDIFFSHD";
   putValue(content, std::uint32_t{1});
-  putText(content,
-          R"({"schema":{"horizon":8,"image_width":64,"image_height":64,"route_points":4,)"
-          R"("route_spacing":3.0,"auxiliary":[]},"samples":3,"facts":{"town":"Town01"}})");
+  putText(content, R"({"schema":{"horizon":8,"image_width":64,"image_height":64,"route_points":4,)"
+                   R"("route_spacing":3.0,"auxiliary":[]},"samples":3,"facts":{"town":"Town01"}})");
   content += version_two.substr(reader.place(), end - reader.place());
   return content + core::sha256(content);
 }
@@ -196,18 +195,18 @@ TEST_F(ShardTest, BodyIsThatOfVersionOne) {
 
 /// Fields that no driving sample has: boxes and lanes, as many as there are, and scores.
 SampleSchema sceneSchema() {
-  FieldSpec boxes{"boxes", FieldType::kF32, {kAnyCount, 5}};
+  FieldSpec boxes("boxes", FieldType::kF32, {kAnyCount, 5});
   boxes.columns = {"x", "y", "heading", "length", "width"};
-  FieldSpec lanes{"lanes", FieldType::kF64, {kAnyCount, 3, 2}};
+  FieldSpec lanes("lanes", FieldType::kF64, {kAnyCount, 3, 2});
   lanes.numbers = {{"spacing", 2.5}};
-  FieldSpec picture{"picture", FieldType::kU8, {2, 2}};
+  FieldSpec picture("picture", FieldType::kU8, {2, 2});
   picture.packed = true;
-  return {{{kSessionField, FieldType::kU64, {}},
+  return {{{kSessionField, FieldType::kU64},
            boxes,
            lanes,
            {"scores", FieldType::kF32, {3}},
            picture,
-           {"town", FieldType::kText, {}}}};
+           {"town", FieldType::kText}}};
 }
 
 Sample scene(std::size_t boxes) {
@@ -248,7 +247,8 @@ TEST_F(ShardTest, WriterNamesTheFieldThatDoesNotFit) {
   EXPECT_EQ(refusal(sample), "sample: field 'scores' holds 2 values, the schema says 3");
   sample = scene(1);
   sample.fields["boxes"] = std::vector<float>(7);
-  EXPECT_EQ(refusal(sample), "sample: field 'boxes' holds 7 values, the schema says a multiple of 5");
+  EXPECT_EQ(refusal(sample),
+            "sample: field 'boxes' holds 7 values, the schema says a multiple of 5");
   sample = scene(1);
   sample.fields["scores"] = std::vector<double>(3);
   EXPECT_EQ(refusal(sample), "sample: field 'scores' has another type than f32");

@@ -152,7 +152,8 @@ TEST_F(ToyTaskTest, AFieldThatTheSamplesLackIsNamed) {
   task.needed = {"inputs", "boxes"};
   const std::string text = trainingText(training_);
   EXPECT_NE(text.find("training task 'toy' needs the field 'boxes' of the samples, which data "
-                      "folder '" + training_.options.data +
+                      "folder '" +
+                      training_.options.data +
                       "' lacks (it holds session, inputs, target); collect samples with that"),
             std::string::npos)
       << text;

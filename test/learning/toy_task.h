@@ -17,7 +17,7 @@ namespace cdiff::test {
 /// `count` samples of sessions 0 to 4; the inputs are drawn from [-1, 1].
 inline void writeToyShard(const std::filesystem::path& path, std::size_t count) {
   using learning::FieldType;
-  learning::ShardWriter writer({{{learning::kSessionField, FieldType::kU64, {}},
+  learning::ShardWriter writer({{{learning::kSessionField, FieldType::kU64},
                                  {"inputs", FieldType::kF32, {2}},
                                  {"target", FieldType::kF32, {1}}}});
   const core::RandomStream random(11, "toy inputs");
@@ -37,8 +37,8 @@ class ToyStage : public learning::Stage {
   ToyStage(const learning::TrainingRun& run, learning::ParameterSet& weights)
       : run_(run),
         weights_(weights),
-        order_(run.dataset.training(),
-               std::vector<double>(run.dataset.training().size(), 1.0), batchSize(),
+        order_(run.dataset.training(), std::vector<double>(run.dataset.training().size(), 1.0),
+               batchSize(),
                core::RandomStream(static_cast<std::uint64_t>(run.options.seed), "fit order")) {}
 
   const std::string& name() const override { return name_; }

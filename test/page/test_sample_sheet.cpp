@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "page/sample_sheet.h"
 #include "learning/small_samples.h"
+#include "page/sample_sheet.h"
 
 namespace cdiff::page {
 namespace {
