@@ -11,7 +11,7 @@
 #include "diffusion/noise_schedule.h"
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/traffic/rollout.h"
-#include "training/networks.h"
+#include "planners/diffusion/training/networks.h"
 
 namespace cdiff::benchmark {
 namespace {
@@ -78,9 +78,9 @@ class EagerPlanner {
   static constexpr int kInnerIterations = 4;
   diffusion::Architecture sizes_;
   diffusion::NoiseSchedule schedule_{static_cast<int>(sizes_.diffusion_steps)};
-  training::ImageEncoderNet encoder_{sizes_, 1};
-  training::DenoiserNet denoiser_{sizes_, 1};
-  training::ContextBatch context_;
+  planners::ImageEncoderNet encoder_{sizes_, 1};
+  planners::DenoiserNet denoiser_{sizes_, 1};
+  planners::ContextBatch context_;
   at::Tensor image_ = at::full({1, 3, sizes_.image_height, sizes_.image_width}, 0.1);
   at::Tensor objective_gradient_ = at::full({1, sizes_.horizon, traffic::kRolloutColumns}, 0.01);
 };

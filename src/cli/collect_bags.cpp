@@ -7,8 +7,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/driving_sample.h"
 #include "ros/dataset_from_driving_bag.h"
-#include "training/shard.h"
 
 namespace cdiff::cli {
 namespace {
@@ -45,8 +45,8 @@ std::map<std::string, ros::DatasetStatistics> collectBags(const BagRequest& requ
   std::map<std::string, ros::DatasetStatistics> all;
   for (const fs::path bag : request.bags) {
     ros::DatasetStatistics& statistics = all[bag.stem().string()];
-    training::ShardWriter writer(ros::schemaOf(options.architecture));
-    for (const training::Sample& sample :
+    learning::DrivingShardWriter writer(ros::schemaOf(options.architecture));
+    for (const learning::DrivingSample& sample :
          ros::samplesFromDrivingBag(bag, topics, options, statistics))
       writer.append(sample);
     const fs::path shard = request.results / "shards" / (bag.stem().string() + ".shard");

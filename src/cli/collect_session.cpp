@@ -12,8 +12,8 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/driving_sample.h"
 #include "ros/session_bag.h"
-#include "training/shard.h"
 
 namespace cdiff::cli {
 namespace {
@@ -43,8 +43,8 @@ ros::DatasetStatistics writeShard(const CollectRequest& request, const CollectSe
   options.offset_lateral = settings.collection.offset_lateral;
   options.offset_heading = settings.collection.offset_heading;
   ros::DatasetStatistics statistics;
-  training::ShardWriter writer(ros::schemaOf(options.architecture));
-  for (const training::Sample& sample : ros::samplesFromBag(bag, options, statistics))
+  learning::DrivingShardWriter writer(ros::schemaOf(options.architecture));
+  for (const learning::DrivingSample& sample : ros::samplesFromBag(bag, options, statistics))
     writer.append(sample);
   fs::create_directories(shard.parent_path());
   // A session without samples leaves no shard, and is driven again when it is asked for again.

@@ -99,7 +99,8 @@ void describeDataset(const fs::path& folder, const ros::DatasetStatistics& stati
   if (statistics.samples == 0) return;
   const fs::path page = folder / "samples.html";
   const std::string title = fs::weakly_canonical(folder).filename().string();
-  const training::Dataset dataset(folder / "shards", 0.0);
+  const learning::Dataset stored(folder / "shards", 0.0);
+  const learning::DrivingDataset dataset(stored);
   core::writeFileAtomically(page, page::sampleSheet(title, rows, dataset, kSamplesAKind));
   std::cerr << "pictures: " << page.string() << "\n";
 }

@@ -25,10 +25,8 @@ namespace fs = std::filesystem;
 fs::path findTrainer() {
   std::error_code error;
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  // Installed side by side; in a plain build folder each lies in the folder of its sources.
-  for (const fs::path& place : {here / "cdiff_train", here / ".." / "training" / "cdiff_train"}) {
-    if (::access(place.c_str(), X_OK) == 0) return place;
-  }
+  const fs::path trainer = here / "cdiff_train";
+  if (::access(trainer.c_str(), X_OK) == 0) return trainer;
   throw core::InputError("no cdiff_train beside " + here.string() +
                          ": this build is without the trainer (E2E_CDIFF_TRAINING)");
 }
@@ -75,7 +73,7 @@ int trainAndDraw(const std::vector<std::string>& arguments) {
 
 void addTrainCommand(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
-      "train", "Train the diffusion planner ('cdiff train --help' lists its options)");
+      "train", "Train a learned planner ('cdiff train --help' lists the options)");
   command->set_help_flag();
   command->prefix_command();
   command->callback([command, &exit_code] { exit_code = trainAndDraw(command->remaining()); });

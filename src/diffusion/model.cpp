@@ -17,9 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kEncoderFile = "encoder.safetensors";
-constexpr const char* kDenoiserFile = "denoiser.safetensors";
-
 inference::SafetensorsFile readDenoiser(const fs::path& file, Model& model) {
   const std::string source = "weight file '" + file.string() + "'";
   return inference::readSafetensors(file, [&](const Metadata& metadata) {
@@ -119,11 +116,16 @@ std::string modelFilesSha256(const std::string& name_or_folder) {
                       core::sha256(core::readFile(folder / kDenoiserFile, "weight file")));
 }
 
-void saveModel(const Model& model, const fs::path& folder, inference::TensorType type,
-               const std::map<std::string, std::string>& training_facts) {
+ModelFiles modelFiles(const Model& model) {
   validateDescription(model);
   requireTensors(model.encoder, encoderTensors(model.architecture), "encoder");
   requireTensors(model.denoiser, denoiserTensors(model.architecture), "denoiser");
+  return {{describeEncoder(model), model.encoder}, {describeDenoiser(model), model.denoiser}};
+}
+
+void saveModel(const Model& model, const fs::path& folder, inference::TensorType type,
+               const std::map<std::string, std::string>& training_facts) {
+  ModelFiles files = modelFiles(model);
   for (const auto& fact : training_facts) {
     if (!isReservedKey(fact.first)) continue;
     throw core::InputError("training fact '" + fact.first + "' has the name of a reserved key");
@@ -133,11 +135,10 @@ void saveModel(const Model& model, const fs::path& folder, inference::TensorType
   if (error) {
     throw core::InputError("cannot make the folder '" + folder.string() + "': " + error.message());
   }
-  Metadata metadata = describeDenoiser(model);
+  Metadata& metadata = files.denoiser.metadata;
   metadata.insert(training_facts.begin(), training_facts.end());
-  metadata[kEncoderKey] = inference::writeSafetensors(
-      folder / kEncoderFile, {describeEncoder(model), model.encoder}, type);
-  inference::writeSafetensors(folder / kDenoiserFile, {metadata, model.denoiser}, type);
+  metadata[kEncoderKey] = inference::writeSafetensors(folder / kEncoderFile, files.encoder, type);
+  inference::writeSafetensors(folder / kDenoiserFile, files.denoiser, type);
 }
 
 }  // namespace cdiff::diffusion

@@ -35,6 +35,18 @@ Model loadModel(const std::string& name_or_folder);
 /// and denoiser file, one after the other. Throws InputError for an unknown model or missing file.
 std::string modelFilesSha256(const std::string& name_or_folder);
 
+/// Names of the two files.
+inline constexpr const char* kEncoderFile = "encoder.safetensors";
+inline constexpr const char* kDenoiserFile = "denoiser.safetensors";
+
+/// The content of the two files, the denoiser's without the hash of the encoder's.
+struct ModelFiles {
+  inference::SafetensorsFile encoder;
+  inference::SafetensorsFile denoiser;
+};
+/// Throws InputError naming the tensor or description that is missing or malformed.
+ModelFiles modelFiles(const Model& model);
+
 /// Writes both files into `folder`; `training_facts` go into the denoiser's.
 void saveModel(const Model& model, const std::filesystem::path& folder, inference::TensorType type,
                const std::map<std::string, std::string>& training_facts);

@@ -7,9 +7,9 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "diffusion/route_tokens.h"
+#include "learning/sample_balance.h"
 #include "page/page_head.h"
 #include "record/image_data_uri.h"
-#include "training/sample_balance.h"
 
 namespace cdiff::page {
 namespace {
@@ -44,7 +44,7 @@ std::string pathOf(const char* style, const std::vector<std::pair<double, double
   return "<path class=\"" + std::string(style) + "\" d=\"" + data + "\"/>";
 }
 
-std::string fromAbove(const training::Sample& sample) {
+std::string fromAbove(const learning::DrivingSample& sample) {
   std::vector<std::pair<double, double>> way;
   for (std::size_t i = 0; i + 1 < sample.route.size(); i += 2)
     way.emplace_back(diffusion::kRouteTokenScale * sample.route[i],
@@ -65,7 +65,7 @@ std::string fromAbove(const training::Sample& sample) {
          dots + "</svg>";
 }
 
-std::string captionOf(const training::Sample& sample) {
+std::string captionOf(const learning::DrivingSample& sample) {
   const auto mean = [&](int column) {
     return core::formatFixed(sample.rollout.col(column).mean(), 2);
   };
@@ -76,7 +76,7 @@ std::string captionOf(const training::Sample& sample) {
          (sample.recovering ? "; recovering" : "");
 }
 
-std::string figureOf(const training::Sample& sample) {
+std::string figureOf(const learning::DrivingSample& sample) {
   return "<figure class=\"sample\"><img alt=\"front view\" src=\"" +
          record::pngDataUri(sample.image) + "\">" + fromAbove(sample) + "<figcaption>" +
          core::escapeMarkup(captionOf(sample)) + "</figcaption></figure>\n";
@@ -95,10 +95,10 @@ std::string tableOf(const std::vector<CountRow>& counts) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
-    const training::Dataset& dataset, std::size_t count) {
+    const learning::DrivingDataset& dataset, std::size_t count) {
   std::map<std::string, std::vector<std::size_t>> all;
   for (std::size_t i = 0; i < dataset.size(); ++i)
-    all[training::balanceClass(dataset.withoutImage(i))].push_back(i);
+    all[learning::balanceClass(dataset.withoutImage(i))].push_back(i);
   std::vector<std::pair<std::string, std::vector<std::size_t>>> chosen;
   for (const auto& [kind, indices] : all) {
     const std::size_t shown = std::min(count, indices.size());
@@ -110,7 +110,7 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
 }
 
 std::string sampleSheet(const std::string& title, const std::vector<CountRow>& counts,
-                        const training::Dataset& dataset, std::size_t count) {
+                        const learning::DrivingDataset& dataset, std::size_t count) {
   std::string html =
       pageHead(title + " – samples", kPageStyle) + "<body>\n<main>\n<header>\n<h1>" +
       core::escapeMarkup(title) +

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "training/dataset.h"
+#include "learning/driving_sample.h"
 
 namespace cdiff::page {
 
@@ -19,13 +19,13 @@ struct CountRow {
   std::string share;
 };
 
-/// Indices of up to `count` samples of each kind (training/sample_balance.h), evenly over the data
+/// Indices of up to `count` samples of each kind (learning/sample_balance.h), evenly over the data
 /// set, by name of the kind.
 std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
-    const training::Dataset& dataset, std::size_t count);
+    const learning::DrivingDataset& dataset, std::size_t count);
 
 /// The page: `counts` and a row of pictures for each kind. Self-contained.
 std::string sampleSheet(const std::string& title, const std::vector<CountRow>& counts,
-                        const training::Dataset& dataset, std::size_t count);
+                        const learning::DrivingDataset& dataset, std::size_t count);
 
 }  // namespace cdiff::page

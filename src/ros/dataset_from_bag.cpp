@@ -44,8 +44,8 @@ class SampleMaker {
     followAll();
   }
 
-  std::vector<training::Sample> make() {
-    std::vector<training::Sample> samples;
+  std::vector<learning::DrivingSample> make() {
+    std::vector<learning::DrivingSample> samples;
     for (const BagImage& image : session_.images) {
       ++statistics_.images;
       const char* reason = tryImage(image, samples);
@@ -78,7 +78,7 @@ class SampleMaker {
     }
   }
 
-  const char* tryImage(const BagImage& image, std::vector<training::Sample>& samples) {
+  const char* tryImage(const BagImage& image, std::vector<learning::DrivingSample>& samples) {
     const auto at = index_.find(image.image.tick);
     const auto place = places_.find({image.image.tick, image.slot});
     if (at == index_.end() || place == places_.end()) return "no_vehicle";
@@ -86,7 +86,7 @@ class SampleMaker {
     if (at->second + horizon_ >= session_.decisions.size()) return "session_end";
     const char* reason = unfit(at->second, image.slot, place->second.drive);
     if (reason != nullptr) return reason;
-    training::Sample sample = sampleAt(at->second, place->second);
+    learning::DrivingSample sample = sampleAt(at->second, place->second);
     sample.image = image.image;
     const SampleSurroundings surroundings{*session_.setup, session_.decisions[at->second],
                                           session_.routes.at(place->second.drive),
@@ -103,9 +103,9 @@ class SampleMaker {
 
   /// Beside the last sample, for a share of those that move, what it would be beside its way.
   void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
-                    std::vector<training::Sample>& samples) {
+                    std::vector<learning::DrivingSample>& samples) {
     constexpr double kSlow = 2.0;  // [m/s]
-    const training::Sample& sample = samples.back();
+    const learning::DrivingSample& sample = samples.back();
     const core::RandomKey key{core::hashText(sample.vehicle),
                               static_cast<std::uint32_t>(sample.tick), 0};
     if (sample.speed < kSlow || offsets_.uniform(key, 0) >= options_.offset_share) return;
@@ -164,11 +164,11 @@ class SampleMaker {
                        [&](std::uint64_t tick) { return tick >= first && tick <= last; });
   }
 
-  training::Sample sampleAt(std::size_t begin, const Place& place) const {
+  learning::DrivingSample sampleAt(std::size_t begin, const Place& place) const {
     const traffic::TrafficSnapshot& snapshot = session_.decisions[begin];
     const std::string& id = place.drive.first;
     const traffic::VehicleState& start = snapshot.find(id)->state;
-    training::Sample sample;
+    learning::DrivingSample sample;
     sample.speed = start.speed;
     sample.session = core::hashText(session_.name);
     sample.vehicle = id;
@@ -205,7 +205,7 @@ class SampleMaker {
     return false;
   }
 
-  bool keepsStanding(const training::Sample& sample) const {
+  bool keepsStanding(const learning::DrivingSample& sample) const {
     const core::RandomKey key{core::hashText(sample.vehicle),
                               static_cast<std::uint32_t>(sample.tick), 0};
     return thinning_.uniform(key, 0) < options_.standing_share;
@@ -243,8 +243,8 @@ void DatasetStatistics::add(const DatasetStatistics& other) {
   seconds += other.seconds;
 }
 
-training::SampleSchema schemaOf(const diffusion::Architecture& architecture) {
-  training::SampleSchema schema;
+learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture) {
+  learning::DrivingSchema schema;
   schema.horizon = architecture.horizon;
   schema.image_width = architecture.image_width;
   schema.image_height = architecture.image_height;
@@ -253,9 +253,9 @@ training::SampleSchema schemaOf(const diffusion::Architecture& architecture) {
   return schema;
 }
 
-std::vector<training::Sample> samplesFromBag(const std::filesystem::path& bag,
-                                             const DatasetOptions& options,
-                                             DatasetStatistics& statistics) {
+std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
+                                                    const DatasetOptions& options,
+                                                    DatasetStatistics& statistics) {
   const BagSession session = readBagSession(bag);
   try {
     return SampleMaker(session, options, statistics).make();

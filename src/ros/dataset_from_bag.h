@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "diffusion/architecture.h"
-#include "training/sample.h"
+#include "learning/driving_sample.h"
 
 namespace cdiff::ros {
 
@@ -46,11 +46,11 @@ struct DatasetStatistics {
 /// contact or jump, from the tick before it to the end of the horizon. Throws InputError for a file
 /// that is no bag, holds no session of ours, no images, images of another size, or decisions that
 /// are not 0.1 s apart; the texts name the file.
-std::vector<training::Sample> samplesFromBag(const std::filesystem::path& bag,
-                                             const DatasetOptions& options,
-                                             DatasetStatistics& statistics);
+std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
+                                                    const DatasetOptions& options,
+                                                    DatasetStatistics& statistics);
 
 /// The schema that such samples fit.
-training::SampleSchema schemaOf(const diffusion::Architecture& architecture);
+learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture);
 
 }  // namespace cdiff::ros

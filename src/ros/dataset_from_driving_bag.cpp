@@ -28,13 +28,13 @@ class DrivingSamples {
                  const DatasetOptions& options, std::string name)
       : bag_(bag), topics_(topics), options_(options), name_(std::move(name)) {}
 
-  std::vector<training::Sample> make(DatasetStatistics& statistics) const {
-    std::vector<training::Sample> samples;
+  std::vector<learning::DrivingSample> make(DatasetStatistics& statistics) const {
+    std::vector<learning::DrivingSample> samples;
     double next = 0.0;
     for (const auto& [time, image] : bag_.images) {
       if (!samples.empty() && time < next) continue;
       ++statistics.images;
-      std::optional<training::Sample> sample = sampleAt(time);
+      std::optional<learning::DrivingSample> sample = sampleAt(time);
       if (!sample || reverses(*sample)) {
         ++statistics.dropped[sample ? "reversing" : "gap"];
         continue;
@@ -50,21 +50,21 @@ class DrivingSamples {
   }
 
  private:
-  static bool reverses(const training::Sample& sample) {
+  static bool reverses(const learning::DrivingSample& sample) {
     return std::min(sample.speed, sample.rollout.col(traffic::kRolloutSpeed).minCoeff()) <
            -kReversing;
   }
 
-  static void stopAtZero(training::Sample& sample) {
+  static void stopAtZero(learning::DrivingSample& sample) {
     sample.speed = std::max(0.0, sample.speed);
     auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
     speeds = speeds.cwiseMax(0.0);
   }
 
-  std::optional<training::Sample> sampleAt(double time) const {
+  std::optional<learning::DrivingSample> sampleAt(double time) const {
     const auto start = bag_.stateAt(time, topics_.largest_gap);
     if (!start) return std::nullopt;
-    training::Sample sample;
+    learning::DrivingSample sample;
     sample.speed = start->speed;  // below 0 until make() has looked at it
     const double since = time - bag_.images.begin()->first;
     sample.session = core::hashText(name_ + "_" + std::to_string(static_cast<int>(since / kPart)));
@@ -140,7 +140,7 @@ class DrivingSamples {
     return geometry::Polyline(points);
   }
 
-  void countUp(training::Sample& sample, DatasetStatistics& statistics) const {
+  void countUp(learning::DrivingSample& sample, DatasetStatistics& statistics) const {
     const SampleKinds kinds = kindsOf(sample);
     sample.maneuver = kinds.maneuver;
     sample.stop_reason = kinds.stop_reason;
@@ -176,15 +176,15 @@ void DrivingBagOptions::validate() const {
   require("odometry", odometry);
 }
 
-std::vector<training::Sample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const DrivingBagOptions& topics,
-                                                    const DatasetOptions& options,
-                                                    DatasetStatistics& statistics) {
+std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
+                                                           const DrivingBagOptions& topics,
+                                                           const DatasetOptions& options,
+                                                           DatasetStatistics& statistics) {
   topics.validate();
   try {
     const DrivingBag driving = readDrivingBag(bag, topics, options.architecture);
     if (driving.images.empty()) throw InputError("holds no image on '" + topics.image + "'");
-    std::vector<training::Sample> samples =
+    std::vector<learning::DrivingSample> samples =
         DrivingSamples(driving, topics, options, bag.stem().string()).make(statistics);
     if (samples.empty())
       throw InputError("gives no sample: none of its " + std::to_string(driving.images.size()) +

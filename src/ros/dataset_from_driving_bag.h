@@ -35,9 +35,9 @@ struct DrivingBagOptions {
 /// dynamics (dynamics/action_inference.h). Throws InputError naming the file and: a topic that the
 /// bag lacks (and what it has), one of another type, a message that is broken or has no
 /// orientation, a path in another frame, an encoding that is no colour, no sample at all.
-std::vector<training::Sample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const DrivingBagOptions& topics,
-                                                    const DatasetOptions& options,
-                                                    DatasetStatistics& statistics);
+std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
+                                                           const DrivingBagOptions& topics,
+                                                           const DatasetOptions& options,
+                                                           DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

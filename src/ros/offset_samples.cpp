@@ -61,7 +61,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
 }
 
 std::optional<DisplacedSample> OffsetSamples::displace(
-    const training::Sample& sample, const SampleSurroundings& around,
+    const learning::DrivingSample& sample, const SampleSurroundings& around,
     const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
   traffic::Vehicle vehicle = *around.snapshot.find(sample.vehicle);
   vehicle.state.position +=
@@ -69,7 +69,7 @@ std::optional<DisplacedSample> OffsetSamples::displace(
   vehicle.state.heading = core::wrapAngle(vehicle.state.heading + offset.heading);
   if (!free(vehicle, around.snapshot)) return std::nullopt;
   DisplacedSample found{sample, offCourse(around, vehicle.state)};
-  training::Sample& displaced = found.sample;
+  learning::DrivingSample& displaced = found.sample;
   if (!driveBack(vehicle, around, future, displaced.rollout)) return std::nullopt;
   displaced.recovering = true;
   displaced.image = camera_.render(around.snapshot, vehicle);

@@ -22,7 +22,7 @@ struct SampleOffset {
 
 /// What displace() makes.
 struct DisplacedSample {
-  training::Sample sample;
+  learning::DrivingSample sample;
   bool off_course = false;  ///< at its displaced place, as SampleKinds
 };
 
@@ -34,7 +34,7 @@ class OffsetSamples {
   /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
   /// the vehicle would touch another one or leave the road at any time, or begins off it.
   std::optional<DisplacedSample> displace(
-      const training::Sample& sample, const SampleSurroundings& around,
+      const learning::DrivingSample& sample, const SampleSurroundings& around,
       const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);
 
  private:

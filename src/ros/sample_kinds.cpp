@@ -7,22 +7,22 @@
 #include <iterator>
 
 #include "e2e_cdiff/core/angle.h"
+#include "learning/sample_balance.h"
 #include "planners/pdm_lite/route_rules.h"
-#include "training/sample_balance.h"
 
 namespace cdiff::ros {
 namespace {
 
-using training::kMoving;
-using training::kStanding;
+using learning::kMoving;
+using learning::kStanding;
 
 constexpr double kTurn = 15.0 * core::kPi / 180.0;  // of heading over the horizon [rad]
 
 constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
 constexpr const char* kStopReasons[] = {"none", "light", "leader", "yielding", "other"};
-static_assert(std::size(kStopReasons) == training::kStopOther + 1);
+static_assert(std::size(kStopReasons) == learning::kStopOther + 1);
 
-std::uint8_t maneuverOf(const training::Sample& sample, bool standing) {
+std::uint8_t maneuverOf(const learning::DrivingSample& sample, bool standing) {
   const double turned = sample.rollout(sample.rollout.rows() - 1, traffic::kRolloutHeading);
   if (standing) return 3;
   if (turned > kTurn) return 1;
@@ -40,20 +40,20 @@ std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& i
     if (other.id == id || distance > kLeaderDistance || traffic::onDifferentLevels(self, other))
       continue;
     if (planners::isLeading(around.route, around.arc_length, other.state))
-      return training::kStopLeader;
+      return learning::kStopLeader;
   }
   const auto light = planners::distanceToRedLight(around.route, around.arc_length, around.snapshot);
-  if (light && *light < kLightDistance) return training::kStopLight;
+  if (light && *light < kLightDistance) return learning::kStopLight;
   for (const auto& [from, to] : around.route.junctionStretches()) {
     if (to >= around.arc_length && from <= around.arc_length + kJunctionDistance)
-      return training::kStopYielding;
+      return learning::kStopYielding;
   }
-  return training::kStopOther;
+  return learning::kStopOther;
 }
 
 }  // namespace
 
-SampleKinds kindsOf(const training::Sample& sample) {
+SampleKinds kindsOf(const learning::DrivingSample& sample) {
   SampleKinds kinds;
   const auto speeds = sample.rollout.col(traffic::kRolloutSpeed);
   const double last = speeds(speeds.size() - 1);
@@ -62,14 +62,14 @@ SampleKinds kindsOf(const training::Sample& sample) {
   kinds.stopping = sample.speed > kMoving && speeds.minCoeff() < kStanding;
   kinds.maneuver = maneuverOf(sample, kinds.standing);
   const bool stops = std::min(sample.speed, speeds.minCoeff()) < kStanding && !kinds.starting;
-  kinds.stop_reason = stops ? training::kStopOther : training::kStopNone;
+  kinds.stop_reason = stops ? learning::kStopOther : learning::kStopNone;
   return kinds;
 }
 
-SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& around) {
+SampleKinds kindsOf(const learning::DrivingSample& sample, const SampleSurroundings& around) {
   SampleKinds kinds = kindsOf(sample);
   const traffic::VehicleState& state = around.snapshot.find(sample.vehicle)->state;
-  if (kinds.stop_reason != training::kStopNone)
+  if (kinds.stop_reason != learning::kStopNone)
     kinds.stop_reason = stopReasonOf(around, sample.vehicle);
   kinds.off_road = !around.setup.drivableArea().contains(state.position, state.elevation);
   kinds.in_junction = around.route.inJunctionAt(around.arc_length);
@@ -85,7 +85,7 @@ bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& st
   return lateral > kOffCourse || turned > kOffTurn;
 }
 
-void count(const training::Sample& sample, const SampleKinds& kinds,
+void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
            DatasetStatistics& statistics) {
   ++statistics.maneuvers[kManeuvers[kinds.maneuver]];
   ++statistics.stop_reasons[kStopReasons[kinds.stop_reason]];

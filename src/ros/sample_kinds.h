@@ -22,7 +22,7 @@ constexpr double kOffTurn = 5.0 * core::kPi / 180.0;  // [rad]
 
 struct SampleKinds {
   std::uint8_t maneuver = 0;                       ///< as Sample::maneuver
-  std::uint8_t stop_reason = training::kStopNone;  ///< as Sample::stop_reason
+  std::uint8_t stop_reason = learning::kStopNone;  ///< as Sample::stop_reason
   bool standing = false;                           ///< all the time
   bool starting = false;                           ///< from standing to more than 2 m/s
   bool stopping = false;                           ///< from more than 2 m/s to standing
@@ -32,13 +32,14 @@ struct SampleKinds {
   bool displaced = false;   ///< put beside its way (OffsetSamples)
 };
 
-SampleKinds kindsOf(const training::Sample& sample, const SampleSurroundings& surroundings);
+SampleKinds kindsOf(const learning::DrivingSample& sample, const SampleSurroundings& surroundings);
 /// Whether `state` is more than kOffCourse or kOffTurn off the route at `around.arc_length`.
 bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& state);
 /// What its motion alone tells; the reason of a stop is "other".
-SampleKinds kindsOf(const training::Sample& sample);
+SampleKinds kindsOf(const learning::DrivingSample& sample);
 
 /// Adds a sample to the statistics.
-void count(const training::Sample& sample, const SampleKinds& kinds, DatasetStatistics& statistics);
+void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
+           DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

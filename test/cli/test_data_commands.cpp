@@ -6,7 +6,8 @@
 #include <sstream>
 
 #include "cli/cdiff_command.h"
-#include "training/trainer.h"
+#include "learning/task_registry.h"
+#include "planners/diffusion/training/training.h"
 
 namespace cdiff::cli {
 namespace {
@@ -94,7 +95,9 @@ TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
     EXPECT_NE(line[40], ' ') << line;
   }
   // A field a line, and no line but those.
-  const std::string fields = core::dumpOptions(training::TrainingOptions{});
+  learning::TaskRegistry tasks;
+  tasks.add(planners::diffusionTraining());
+  const std::string fields = core::dumpOptions(tasks.training());
   EXPECT_EQ(options, static_cast<std::size_t>(std::count(fields.begin(), fields.end(), '\n')))
       << output();
 }

@@ -15,14 +15,15 @@ from xml.sax.saxutils import quoteattr
 RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
-    "torch": (r"^/usr/include/(torch|ATen|c10)/", {"training"}),
+    "torch": (r"^/usr/include/(torch|ATen|c10)/", {"learning", "planner_training"}),
+    "a planner's training": (r"/src/planners/[a-z_]+/training/", {"planner_training", "cli"}),
     "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"inference", "diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
     "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "ros"}),
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
-ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion", "planning",
-         "planners training", "session", "collection suite record", "page", "video", "evaluation ros", "nodes cli"]
+ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion learning", "planning",
+         "planners", "planner_training", "session", "collection suite record", "page", "video", "evaluation ros", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 
@@ -43,12 +44,17 @@ def records_of_make(build):
         yield str(path.relative_to(build))[:-2], words[1:]
 
 
+def layer_of_folder(folder):
+    """Layer of a folder below src: its first part, and planner_training for planners/NAME/training."""
+    return "planner_training" if re.fullmatch(r"planners/[a-z_]+/training", folder) else folder.split("/")[0]
+
+
 def layer_of(record):
     """Layer of an object file; in a catkin workspace its path begins with the package's folder."""
     if "examples/" in record:
         return "examples"
-    found = re.search(r"(?:^|/)src/([a-z_]+)/CMakeFiles/", record)
-    return found.group(1) if found else None
+    found = re.search(r"(?:^|/)src/([a-z_/]+)/CMakeFiles/", record)
+    return layer_of_folder(found.group(1)) if found else None
 
 
 def violations(layer, headers, source, build):
@@ -57,8 +63,8 @@ def violations(layer, headers, source, build):
         for name, (pattern, allowed) in RESTRICTED.items():
             if layer not in allowed and re.search(pattern, path):
                 yield f"reads {name}'s header {path}"
-        inside = re.search(re.escape(source) + r"/(?:include/e2e_cdiff|src)/([a-z_]+)/", path)
-        if inside and RANK.get(inside.group(1), -1) > RANK.get(layer, 99):
+        inside = re.search(re.escape(source) + r"/(?:include/e2e_cdiff|src)/([a-z_/]+)/", path)
+        if inside and RANK.get(layer_of_folder(inside.group(1)), -1) > RANK.get(layer, 99):
             yield f"reads {path}, which is of a higher layer"
 
 

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "learning/small_samples.h"
 #include "page/sample_sheet.h"
-#include "training/small_samples.h"
 
 namespace cdiff::page {
 namespace {
@@ -19,7 +19,7 @@ class SampleSheet : public testing::Test {
  protected:
   /// 40 samples: maneuvers 0 to 3 in turn, those of 5 to 7 m/s middle, from 9 m/s on fast.
   SampleSheet() {
-    training::ShardWriter writer(test::smallSchema());
+    learning::DrivingShardWriter writer(test::smallSchema());
     for (std::size_t i = 0; i < 40; ++i) writer.append(test::smallSample(i % 8, i));
     writer.write(folder_.path() / "a.shard");
   }
@@ -27,7 +27,8 @@ class SampleSheet : public testing::Test {
 };
 
 TEST_F(SampleSheet, ChoosesSomeOfEveryKind) {
-  const training::Dataset dataset(folder_.path(), 0.0);
+  const learning::Dataset stored(folder_.path(), 0.0);
+  const learning::DrivingDataset dataset(stored);
   std::size_t all = 0;
   for (const auto& [kind, indices] : samplesByKind(dataset, 2)) {
     EXPECT_LE(indices.size(), 2U) << kind;
@@ -42,7 +43,8 @@ TEST_F(SampleSheet, ChoosesSomeOfEveryKind) {
 }
 
 TEST_F(SampleSheet, ShowsImageAndWayOfEach) {
-  const training::Dataset dataset(folder_.path(), 0.0);
+  const learning::Dataset stored(folder_.path(), 0.0);
+  const learning::DrivingDataset dataset(stored);
   const std::string page = sampleSheet("data <a>", {{"samples", "40", ""}}, dataset, 1);
   const std::size_t kinds = samplesByKind(dataset, 1).size();
   EXPECT_EQ(count(page, "<figure"), kinds);

@@ -54,7 +54,7 @@ DatasetOptions allDisplaced() {
 }
 
 /// From where the vehicle gets to the line of its route tokens [m]; nullopt before the first token.
-std::optional<double> distanceAtTheEnd(const training::Sample& sample) {
+std::optional<double> distanceAtTheEnd(const learning::DrivingSample& sample) {
   constexpr double kTokenScale = diffusion::kRouteTokenScale;
   const auto last = sample.rollout.row(sample.rollout.rows() - 1);
   if (last(traffic::kRolloutX) < 3.5) return std::nullopt;
@@ -120,7 +120,7 @@ TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
   ASSERT_GT(samples.size(), 10u);
   ASSERT_GT(statistics.kinds["displaced"], 10u);
   const dynamics::BicycleModel model;
-  for (const training::Sample& sample : samples) {
+  for (const learning::DrivingSample& sample : samples) {
     schemaOf({}).check(sample);
     traffic::VehicleState state;
     state.speed = sample.speed;
@@ -139,7 +139,7 @@ TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
   DatasetStatistics statistics;
   const auto samples = samplesFromBag(bag(), noneDisplaced(), statistics);
   EXPECT_GT(statistics.dropped["disturbed"], 0u);
-  for (const training::Sample& sample : samples) {
+  for (const learning::DrivingSample& sample : samples) {
     for (std::uint64_t t = 0; t < 32; ++t) {
       EXPECT_EQ(witness_->perturbed.count({sample.vehicle, sample.tick + 2 * t}), 0u)
           << sample.vehicle << " tick " << sample.tick;
@@ -155,8 +155,8 @@ TEST_F(DatasetFromBag, DisplacedSamplesLookFromBesideTheWayAndReturnToIt) {
   std::size_t displaced = 0;
   std::size_t arrived = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    const training::Sample& own = samples[i - 1];
-    const training::Sample& beside = samples[i];
+    const learning::DrivingSample& own = samples[i - 1];
+    const learning::DrivingSample& beside = samples[i];
     if (own.vehicle != beside.vehicle || own.tick != beside.tick) continue;
     ++displaced;
     EXPECT_TRUE(beside.recovering);

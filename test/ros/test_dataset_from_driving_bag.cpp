@@ -77,7 +77,7 @@ class DrivingBagTest : public testing::Test {
     topics_.odometry = "/my/odom";
   }
 
-  std::vector<training::Sample> samples() {
+  std::vector<learning::DrivingSample> samples() {
     statistics_ = {};
     return samplesFromDrivingBag(file_, topics_, {}, statistics_);
   }
@@ -103,7 +103,7 @@ TEST_F(DrivingBagTest, SamplesAreTheDriveInTheVehiclesFrame) {
   // An image every half second that has 3.2 s before the last odometry at 9.95 s.
   ASSERT_EQ(all.size(), 14U);
   EXPECT_EQ(statistics_.samples, 14U);
-  for (const training::Sample& sample : all) {
+  for (const learning::DrivingSample& sample : all) {
     schemaOf({}).check(sample);
     // With a step a row and the heading turning: never behind where it was.
     EXPECT_NEAR(sample.rollout(0, traffic::kRolloutX), 0.1 * sample.speed, 0.1);
@@ -120,7 +120,7 @@ TEST_F(DrivingBagTest, SamplesAreTheDriveInTheVehiclesFrame) {
 TEST_F(DrivingBagTest, InferredActionsMakeTheMotionThatWasObserved) {
   writeDrive(file_);
   const dynamics::ActionRollout dynamics;
-  for (const training::Sample& sample : samples()) {
+  for (const learning::DrivingSample& sample : samples()) {
     traffic::Rollout again = sample.rollout;
     dynamics.rollOut(sample.speed, again);
     const double off = (again.leftCols(2) - sample.rollout.leftCols(2)).rowwise().norm().maxCoeff();
@@ -131,7 +131,7 @@ TEST_F(DrivingBagTest, InferredActionsMakeTheMotionThatWasObserved) {
 TEST_F(DrivingBagTest, ControlsAreTakenAsRecordedWhereTheyAreNamed) {
   writeDrive(file_);
   topics_.control = "/my/control";
-  for (const training::Sample& sample : samples()) {
+  for (const learning::DrivingSample& sample : samples()) {
     const traffic::ControlAction action = actionAt(static_cast<int>(sample.tick));
     EXPECT_DOUBLE_EQ(sample.rollout(0, traffic::kRolloutThrottle), action.throttle);
     EXPECT_DOUBLE_EQ(sample.rollout(0, traffic::kRolloutSteer), action.steer);
@@ -144,7 +144,7 @@ TEST_F(DrivingBagTest, NoSampleReachesOverAGap) {
   const auto all = samples();
   EXPECT_GT(statistics_.dropped["gap"], 10U);
   ASSERT_FALSE(all.empty());
-  for (const training::Sample& sample : all) {
+  for (const learning::DrivingSample& sample : all) {
     const double begin = 0.05 * static_cast<double>(sample.tick);
     EXPECT_TRUE(begin + 3.2 < 5.0 || begin > 6.0) << begin;
   }
@@ -202,7 +202,7 @@ TEST_F(DrivingBagTest, DrivingBackwardsGivesNoSampleButNoiseAtStandstillDoes) {
   bag.open(file_.string(), rosbag::bagmode::Write);
   writeOdometry(bag, -0.02, 1.0);
   bag.close();
-  for (const training::Sample& sample : samples()) {
+  for (const learning::DrivingSample& sample : samples()) {
     EXPECT_EQ(sample.speed, 0.0);
     EXPECT_EQ(sample.rollout.col(traffic::kRolloutSpeed).minCoeff(), 0.0);
   }
@@ -215,7 +215,7 @@ TEST_F(DrivingBagTest, TheWayDrivenGoesStraightOnWhereTheVehicleReverses) {
   bag.close();
   const auto all = samples();
   ASSERT_FALSE(all.empty());
-  for (const training::Sample& sample : all) {
+  for (const learning::DrivingSample& sample : all) {
     for (std::size_t i = 0; i < sample.route.size() / 2; ++i)
       EXPECT_NEAR(sample.route[2 * i], 3.0 * static_cast<double>(i + 1) / 20.0, 1e-5);
   }

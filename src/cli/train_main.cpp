@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <iostream>
+#include <string>
+
+#include "core/failure.h"
+#include "core/program.h"
+#include "learning/command_line.h"
+#include "learning/task_registry.h"
+#include "learning/trainer.h"
+#include "planners/diffusion/training/training.h"
+
+namespace {
+
+enum ExitCode : int { kPassed = 0, kBadInput = 3 };
+
+constexpr const char* kCommand = "cdiff train";  // which starts this program
+constexpr std::size_t kNameColumn = 40;          // of --help, wide enough for names and defaults
+
+/// The table of what can be trained: a new task is one more line. The first is the default.
+cdiff::learning::TaskRegistry knownTasks() {
+  cdiff::learning::TaskRegistry tasks;
+  tasks.add(cdiff::planners::diffusionTraining());
+  return tasks;
+}
+
+/// The value of --task, which decides what the other options are; empty: not given.
+std::string taskNamed(int argc, char** argv) {
+  const std::string name = "--task";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == name && i + 1 < argc) return argv[i + 1];
+    if (argument.rfind(name + "=", 0) == 0) return argument.substr(name.size() + 1);
+  }
+  return {};
+}
+
+int trainAsAsked(int argc, char** argv) {
+  const cdiff::learning::TaskRegistry tasks = knownTasks();
+  cdiff::learning::Training training = tasks.training(taskNamed(argc, argv));
+  CLI::App program{tasks.descriptor(training.options.task).help, kCommand};
+  program.get_formatter()->column_width(kNameColumn);
+  cdiff::learning::addOptions(program, training);
+  for (const char* name : {"--data", "--output"}) program.get_option(name)->required();
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kPassed : kBadInput;
+  }
+  cdiff::learning::train(training, cdiff::core::catchStopSignals(), std::cout);
+  return kPassed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cdiff::core::prepareProgram();
+  try {
+    return trainAsAsked(argc, argv);
+  } catch (const std::exception& error) {
+    const cdiff::core::Failure failure = cdiff::core::failureOf(error);
+    std::cerr << kCommand << ": " << failure.text << "\n";
+    return failure.exit_code;
+  }
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Samples as sets of named, typed fields, and the schema that says which fields the samples of a
+/// shard have. Whoever collects or trains decides on the fields; what stores them knows none.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::learning {
+
+/// Type of each value; the order is that of the alternatives of FieldValue.
+enum class FieldType { kU8, kU64, kF32, kF64, kText };
+
+/// Values row by row; of a text, its bytes.
+using FieldValue = std::variant<std::vector<std::uint8_t>, std::vector<std::uint64_t>,
+                                std::vector<float>, std::vector<double>, std::string>;
+
+/// First size of a shape where each sample has its own number of rows (boxes, lanes).
+constexpr std::int64_t kAnyCount = -1;
+
+struct FieldSpec {
+  FieldSpec() = default;
+  FieldSpec(std::string name, FieldType type, std::vector<std::int64_t> shape = {});
+
+  std::string name;
+  FieldType type = FieldType::kF32;
+  std::vector<std::int64_t> shape;   ///< empty: one value, or a text
+  bool packed = false;               ///< compressed, and read only where it is asked for (images)
+  bool finite = true;                ///< refuses values that are not finite
+  std::vector<std::string> columns;  ///< names along the last axis; empty: none
+  std::map<std::string, double> numbers;  ///< what readers need to know, such as "spacing" [m]
+
+  bool anyCount() const { return !shape.empty() && shape.front() == kAnyCount; }
+  /// Values of one row where each sample has its own number of rows, else of the whole field.
+  std::size_t values() const;
+};
+
+/// One sample: its fields by name.
+struct Sample {
+  std::map<std::string, FieldValue> fields;
+
+  /// The values of a field; throws InputError where there is none of this name and type.
+  template <class Values>
+  const Values& get(const std::string& name) const {
+    const auto found = fields.find(name);
+    const Values* values = found == fields.end() ? nullptr : std::get_if<Values>(&found->second);
+    if (values == nullptr)
+      throw core::InputError("sample: has no field '" + name + "' of the type asked for");
+    return *values;
+  }
+};
+
+/// The fields of every sample of a shard, in the order in which they are stored.
+struct SampleSchema {
+  std::vector<FieldSpec> fields;
+
+  /// nullptr: none of this name.
+  const FieldSpec* find(const std::string& name) const;
+  /// "a, b, c".
+  std::string names() const;
+  /// Throws InputError naming the first field of `sample` that is missing, unknown, of another type
+  /// or count, or not finite.
+  void check(const Sample& sample) const;
+  /// As a JSON list and back; throws InputError naming `source`, the field and what is wrong.
+  std::string toJson() const;
+  static SampleSchema fromJson(const std::string& text, const std::string& source);
+};
+
+bool operator==(const FieldSpec& left, const FieldSpec& right);
+bool operator==(const SampleSchema& left, const SampleSchema& right);
+
+/// Throws InputError naming `source` and the field that is not finite, though its schema asks that.
+void requireFinite(const FieldSpec& spec, const FieldValue& value, const std::string& source);
+
+}  // namespace cdiff::learning

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Named tensors of a network in the order of their declaration, and what a layer does with them.
+#pragma once
+
+#include <ATen/ATen.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/core/random.h"
+#include "inference/safetensors.h"
+
+namespace cdiff::learning {
+
+/// How a tensor starts.
+struct Start {
+  enum class Kind { kConstant, kUniform };
+  Kind kind = Kind::kConstant;
+  double value = 0.0;  ///< the constant, or the bound of the absolute value
+};
+
+class ParameterSet {
+ public:
+  explicit ParameterSet(const core::RandomStream& start) : start_(start) {}
+
+  void declare(const std::string& name, const std::vector<std::int64_t>& shape, const Start& start);
+  /// NAME.weight [out, in, kernel...] and, if asked, NAME.bias [out], uniform within 1/sqrt(fan
+  /// in).
+  void declareLayer(const std::string& name, const std::vector<std::int64_t>& shape,
+                    bool transposed = false);
+  /// NAME.weight [out, in, kernel, kernel], uniform with variance 2 / fan out, no bias.
+  void declareConvolution(const std::string& name, const std::vector<std::int64_t>& shape);
+  /// NAME.weight = `weight` and NAME.bias = 0.
+  void declareNorm(const std::string& name, std::int64_t channels, double weight = 1.0);
+
+  bool has(const std::string& name) const { return places_.count(name) != 0; }
+  const at::Tensor& operator()(const std::string& name) const;
+  const std::vector<std::string>& names() const { return names_; }
+  std::vector<at::Tensor>& tensors() { return tensors_; }
+  const std::vector<at::Tensor>& tensors() const { return tensors_; }
+
+  void setTrained(bool trained);
+  void moveTo(const at::Device& device);
+  /// Values in and out, as the weight files hold them. Throws InputError naming the tensor that is
+  /// missing, unknown or of another shape.
+  void load(const std::map<std::string, inference::Tensor>& values, const std::string& source);
+  std::map<std::string, inference::Tensor> values() const;
+
+ private:
+  core::RandomStream start_;
+  std::vector<std::string> names_;
+  std::vector<at::Tensor> tensors_;
+  std::map<std::string, std::size_t> places_;
+};
+
+/// x [B, in] -> [B, out], as a convolution: Debian's libtorch has fast code for those only.
+at::Tensor linear(const ParameterSet& parameters, const std::string& name, const at::Tensor& x);
+
+at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
+                    const at::Device& device);
+std::vector<float> toVector(const at::Tensor& tensor);
+
+}  // namespace cdiff::learning

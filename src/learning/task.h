@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What there is to learn: the interface between this library, which runs stages, and a planner's
+/// training, which knows its samples, networks and losses.
+#pragma once
+
+#include <ATen/ATen.h>
+
+#include <atomic>
+#include <iosfwd>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/core/options.h"
+#include "inference/safetensors.h"
+#include "learning/dataset.h"
+#include "learning/stage.h"
+#include "learning/training_options.h"
+
+namespace cdiff::learning {
+
+/// Which checkpoints give a part of the weights.
+struct PartSource {
+  std::string part;                 ///< TrainedPart::name
+  std::string what;                 ///< for messages, "an encoder"
+  std::vector<std::string> stages;  ///< whose checkpoints hold it, the best first
+  std::string first;  ///< stage to train first where none is there; empty: the part begins anew
+};
+
+struct StageInfo {
+  std::string name;
+  std::vector<PartSource> starts;  ///< what the stage begins with
+  bool makes_model = true;         ///< false: it leaves a checkpoint only
+  std::vector<PartSource> rest;    ///< of the model, what the stage neither trains nor begins with
+  std::string next;                ///< what to do next where no model is written
+};
+
+/// A run of the trainer, as its task sees it.
+struct TrainingRun {
+  const Dataset& dataset;
+  const TrainingOptions& options;
+  at::Device device;
+  std::vector<std::size_t> held_out;  ///< validation samples that judge
+  const std::atomic<bool>& stop;
+  std::ostream& log;
+};
+
+/// A file of the trained model.
+struct WeightFile {
+  std::string name;  ///< in the output folder
+  inference::SafetensorsFile content;
+  bool has_record = true;  ///< metadata "training" holds the record of the training
+  std::string hash_key;    ///< metadata key by which later files name this one's hash; empty: none
+};
+
+/// What a task leaves behind.
+struct TrainedModel {
+  std::vector<WeightFile> files;  ///< written as F16
+  Figures held_out;
+  nlohmann::json settings = nlohmann::json::object();  ///< of the task, for the record
+  std::string title;                                   ///< of the model card
+  std::string figures;                                 ///< of the model card, Markdown
+};
+
+/// Texts of the task in `cdiff train --help`.
+struct TaskTexts {
+  std::string all;    ///< the stages that `all` trains
+  std::string batch;  ///< samples a step where none are given
+};
+
+class Task {
+ public:
+  virtual ~Task() = default;
+
+  virtual TaskTexts texts() const = 0;
+  /// In the order in which they are trained; `export` and `all` are no names of stages.
+  virtual std::vector<StageInfo> stages() const = 0;
+  /// Names of the stages that `all` trains under the task's options.
+  virtual std::vector<std::string> allStages() const = 0;
+  /// Every part of the model, for `export`.
+  virtual std::vector<PartSource> model() const = 0;
+  /// Names of the weight files in the output folder, and of what else the task keeps there.
+  virtual std::vector<std::string> weightFiles() const = 0;
+  virtual std::vector<std::string> otherFiles() const { return {}; }
+  /// Names of the fields that it needs of each sample.
+  virtual std::vector<std::string> fields() const = 0;
+
+  /// The task's own options; `validate` throws InputError naming the key.
+  virtual void describe(core::OptionsVisitor&) {}
+  virtual void validate() const {}
+
+  /// Makes the networks, with the weights of the initial model where the options name one; before
+  /// all that follows, whose calls `run` outlives. Throws InputError.
+  virtual void begin(const TrainingRun& run) = 0;
+  /// What goes into every checkpoint, and must be the same in one that is resumed.
+  virtual nlohmann::json facts() const = 0;
+  virtual std::vector<TrainedPart> parts() = 0;
+  /// A stage, once the parts that it begins with are loaded.
+  virtual std::unique_ptr<Stage> makeStage(const std::string& name) = 0;
+  virtual TrainedModel finish() = 0;
+};
+
+}  // namespace cdiff::learning

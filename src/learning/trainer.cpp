@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "learning/trainer.h"
+
+#include <ATen/Context.h>
+#include <ATen/Parallel.h>
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+
+#include "core/file.h"
+#include "core/output_folder.h"
+#include "learning/export.h"
+#include "learning/training_folder.h"
+
+namespace cdiff::learning {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+at::Device chooseDevice(const std::string& name) {
+  if (name == "cuda" && !at::hasCUDA())
+    throw InputError("training: device is 'cuda', but libtorch finds none");
+  return at::Device(name != "cpu" && at::hasCUDA() ? at::kCUDA : at::kCPU);
+}
+
+/// Up to `count` of the validation samples, evenly spaced.
+std::vector<std::size_t> chooseHeldOut(const Dataset& dataset, std::size_t count) {
+  const std::vector<std::size_t>& all = dataset.validation();
+  if (all.size() <= count) return all;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
+}
+
+/// Throws InputError naming the task and what to do where the data folder holds no shard.
+void requireShards(const Training& training) {
+  try {
+    findShards(training.options.data);
+  } catch (const InputError& error) {
+    throw InputError("training task '" + training.options.task + "' has no samples: " +
+                     error.what() + "; collect them (cdiff collect) or give another --data");
+  }
+}
+
+void requireFields(const Training& training, const Dataset& dataset) {
+  const std::string who = "training task '" + training.options.task + "'";
+  const std::vector<std::string> fields = training.task->fields();
+  if (fields.empty()) {
+    throw InputError(who +
+                     " learns from no field of the samples; its fields() in "
+                     "planners/NAME/training must name them");
+  }
+  for (const std::string& field : fields) {
+    if (dataset.schema().find(field) != nullptr) continue;
+    throw InputError(who + " needs the field '" + field + "' of the samples, which " +
+                     dataset.name() + " lacks (it holds " + dataset.schema().names() +
+                     "); collect samples with that field, or give another --task");
+  }
+}
+
+class Trainer {
+ public:
+  Trainer(const Training& training, const Dataset& dataset, const std::atomic<bool>& stop,
+          std::ostream& log)
+      : training_(training),
+        options_(training_.options),
+        task_(*training_.task),
+        run_{dataset,
+             options_,
+             chooseDevice(options_.device),
+             chooseHeldOut(dataset, static_cast<std::size_t>(options_.validation_samples)),
+             stop,
+             log} {}
+
+  void run() {
+    task_.begin(run_);
+    removeEarlier(training_);
+    std::vector<std::string> stages = {options_.stage};
+    if (options_.stage == "all") stages = task_.allStages();
+    StageInfo last = {"export", {}, true, {}, ""};
+    for (const std::string& name : stages) {
+      for (const PartSource& source : sourcesOf(task_, name)) load(source);
+      if (name == "export") continue;
+      last = infoOf(name);
+      trainStage(name);
+    }
+    if (!isWhole(last)) {
+      run_.log << "no model is written yet: " << last.next << std::endl;
+      return;
+    }
+    gatherResults();
+    writeModel(run_, task_.finish(), results_);
+    run_.log << "model written to " << options_.output << std::endl;
+  }
+
+ private:
+  StageInfo infoOf(const std::string& name) const {
+    for (const StageInfo& stage : task_.stages()) {
+      if (stage.name == name) return stage;
+    }
+    throw std::logic_error("no stage " + name);
+  }
+
+  TrainedPart partNamed(const std::string& name) const {
+    for (const TrainedPart& part : task_.parts()) {
+      if (part.name == name) return part;
+    }
+    throw std::logic_error("no part " + name);
+  }
+
+  /// Loads a part from the first of the stages' checkpoints that exists; false if none does.
+  bool load(const PartSource& source) {
+    for (const std::string& stage : source.stages) {
+      const fs::path path = checkpointPath(options_.output, stage);
+      if (!fs::exists(path)) continue;
+      StageRunner::loadAverage(path, partNamed(source.part));
+      run_.log << source.part << " starts from " << path.string() << std::endl;
+      return true;
+    }
+    return false;
+  }
+
+  /// Whether there is a model after the stage; loads the rest of it.
+  bool isWhole(const StageInfo& last) {
+    if (!last.makes_model) return false;
+    return std::all_of(last.rest.begin(), last.rest.end(), [&](const PartSource& source) {
+      return load(source) || !options_.init.empty();
+    });
+  }
+
+  void trainStage(const std::string& name) {
+    nlohmann::json facts = {{"data", run_.dataset.sha256()}, {"task", options_.task}};
+    facts.update(task_.facts());
+    const std::unique_ptr<Stage> stage = task_.makeStage(name);
+    StageRunner runner(*stage, options_, facts, run_.stop, run_.log);
+    results_[name] = runner.run();
+  }
+
+  /// What earlier runs left in checkpoints.
+  void gatherResults() {
+    for (const StageInfo& stage : task_.stages()) {
+      const fs::path path = checkpointPath(options_.output, stage.name);
+      if (results_.count(stage.name) != 0 || !fs::exists(path)) continue;
+      const nlohmann::json facts = readCheckpoint(path).facts;
+      results_[stage.name] = {facts.at("steps"), facts.at("seconds"), facts.at("loss"),
+                              facts.at("held_out").get<Figures>()};
+    }
+  }
+
+  const Training training_;
+  const TrainingOptions& options_;
+  Task& task_;
+  TrainingRun run_;
+  std::map<std::string, StageResult> results_;
+};
+
+}  // namespace
+
+void train(const Training& training, const std::atomic<bool>& stop, std::ostream& log) {
+  training.validate();
+  const TrainingOptions& options = training.options;
+  at::set_num_threads(static_cast<int>(options.threads));
+  const core::FolderLock lock(options.output, "cdiff train");
+  requireFreeOutput(training);
+  requireSources(training);
+  core::removeTemporaries(options.output);
+  requireShards(training);
+  const Dataset dataset(options.data, options.validation_share);
+  requireFields(training, dataset);
+  log << "data: " << dataset.training().size() << " training samples, "
+      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"
+      << std::endl;
+  Trainer(training, dataset, stop, log).run();
+}
+
+}  // namespace cdiff::learning

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "learning/training_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::learning {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+using Names = std::vector<std::string>;
+
+/// What every task leaves, beside its own files.
+const Names kRecords = {"training.json", "model_card.md", "curves.csv", "training.html"};
+
+Names allStages(const Task& task) {
+  Names names;
+  for (const StageInfo& stage : task.stages()) names.push_back(stage.name);
+  return names;
+}
+
+bool hasCheckpoint(const TrainingOptions& options, const std::string& stage) {
+  return fs::exists(checkpointPath(options.output, stage));
+}
+
+bool hasAny(const TrainingOptions& options, const Names& stages) {
+  return std::any_of(stages.begin(), stages.end(),
+                     [&](const std::string& stage) { return hasCheckpoint(options, stage); });
+}
+
+/// Stages that the run trains anew. Those of an earlier training that `all` leaves out count, too:
+/// its later stages would start from them.
+Names trainedStages(const Training& training) {
+  const std::string& stage = training.options.stage;
+  if (stage == "all") return allStages(*training.task);
+  return stage == "export" ? Names{} : Names{stage};
+}
+
+void removeFile(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw InputError("cannot replace '" + file.string() + "': " + error.message());
+}
+
+}  // namespace
+
+fs::path checkpointPath(const std::string& output, const std::string& stage) {
+  return fs::path(output) / (stage + ".checkpoint");
+}
+
+std::vector<PartSource> sourcesOf(const Task& task, const std::string& stage) {
+  if (stage == "export") return task.model();
+  for (const StageInfo& info : task.stages()) {
+    if (info.name == stage) return info.starts;
+  }
+  return {};
+}
+
+void requireSources(const Training& training) {
+  const TrainingOptions& options = training.options;
+  if (!options.init.empty()) return;
+  for (const PartSource& source : sourcesOf(*training.task, options.stage)) {
+    if (source.first.empty() || hasAny(options, source.stages)) continue;
+    throw InputError("training: '" + options.output + "' holds no checkpoint of " + source.what +
+                     "; train stage '" + source.first + "' first, or give a model with init");
+  }
+}
+
+void requireFreeOutput(const Training& training) {
+  const TrainingOptions& options = training.options;
+  if (options.overwrite) return;
+  const std::string folder = "'" + options.output + "'";
+  for (const std::string& stage : trainedStages(training)) {
+    if (options.resume || !hasCheckpoint(options, stage)) continue;
+    throw InputError(folder + " holds a training of stage '" + stage + "' (" + stage +
+                     ".checkpoint); go on with it (--resume), replace it (--overwrite), or give "
+                     "another --output");
+  }
+  if (hasAny(options, allStages(*training.task))) return;
+  for (const std::string& file : training.task->weightFiles()) {
+    if (!fs::exists(fs::path(options.output) / file)) continue;
+    throw InputError(folder + " holds a model (" + file +
+                     ") without the checkpoints of its training; replace it (--overwrite), or "
+                     "give another --output");
+  }
+}
+
+void removeEarlier(const Training& training) {
+  const TrainingOptions& options = training.options;
+  if (!options.overwrite) return;
+  for (const std::string& stage : trainedStages(training))
+    removeFile(checkpointPath(options.output, stage));
+  if (options.stage != "all") return;
+  for (const Names& files : {training.task->weightFiles(), training.task->otherFiles(), kRecords}) {
+    for (const std::string& file : files) removeFile(fs::path(options.output) / file);
+  }
+}
+
+}  // namespace cdiff::learning

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Options of every training, whatever is learned.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/core/options.h"
+
+namespace cdiff::learning {
+
+class Task;
+
+struct TrainingOptions {
+  std::string task;            ///< name in the table of tasks
+  std::string stage = "all";   ///< one of the task's | export | all
+  std::string data;            ///< folder with *.shard
+  std::string output;          ///< folder for checkpoints and the model
+  std::string init;            ///< model to start from where no checkpoint is; empty: none
+  std::int64_t steps = 20000;  ///< of the stage
+  std::int64_t batch = 0;      ///< samples per step; 0: what the stage takes by itself
+  std::int64_t threads = 1;
+  std::int64_t seed = 1;
+  double time_limit = 0.0;      ///< of the stage's steps, over all resumptions [s]; 0: none
+  bool anneal_by_time = false;  ///< learning rate falls with time instead of steps
+  bool resume = false;          ///< the stage goes on from its checkpoint if there is one
+  bool overwrite = false;       ///< the stage replaces an earlier training
+  std::string device = "auto";  ///< auto | cpu | cuda
+  double learning_rate = 2e-4;
+  double weight_decay = 1e-4;
+  std::int64_t warm_up = 500;     ///< steps
+  double clip = 1.0;              ///< norm of the gradient
+  double average_decay = 0.999;   ///< of the moving average of the weights, at most
+  double validation_share = 0.1;  ///< of the sessions
+  std::int64_t validation_samples = 256;
+  std::int64_t validation_every = 1000;  ///< steps
+  double checkpoint_every = 300.0;       ///< [s]
+  double report_every = 10.0;            ///< [s]
+};
+
+/// A task with all options of its training; a copy shares the task.
+struct Training {
+  TrainingOptions options;
+  std::shared_ptr<Task> task;
+  std::vector<std::string> tasks;  ///< names that `options.task` may have
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError naming the key.
+  void validate() const;
+};
+
+}  // namespace cdiff::learning

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/diffusion/training/diffusion_loss.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdiff::planners {
+namespace {
+
+using learning::Figures;
+using learning::Loss;
+using learning::toTensor;
+using learning::toVector;
+
+constexpr std::int64_t kJudgeSteps = 10;
+/// Least spread, so that a proximal step stays possible everywhere.
+constexpr double kLeastSpread = 1e-3;
+
+at::Tensor states(const at::Tensor& rollouts) {
+  return rollouts.narrow(2, 0, traffic::kStateColumns);
+}
+
+at::Tensor actions(const at::Tensor& rollouts) {
+  return rollouts.narrow(2, traffic::kRolloutThrottle, traffic::kActionColumns);
+}
+
+at::Tensor steps(std::int64_t count, std::int64_t k, const at::Device& device) {
+  return at::full({count}, k, at::TensorOptions(device).dtype(at::kLong));
+}
+
+}  // namespace
+
+DiffusionLoss::DiffusionLoss(const diffusion::Architecture& architecture,
+                             const diffusion::Normalizer& normalizer, const at::Device& device)
+    : architecture_(architecture),
+      schedule_(static_cast<int>(architecture.diffusion_steps)),
+      device_(device) {
+  std::vector<float> signal, noise, weights;
+  for (int k = 0; k <= schedule_.steps(); ++k) {
+    signal.push_back(static_cast<float>(std::sqrt(schedule_.alphaBar(k))));
+    noise.push_back(static_cast<float>(std::sqrt(1.0 - schedule_.alphaBar(k))));
+  }
+  for (std::int64_t t = 0; t < architecture.horizon; ++t)
+    weights.push_back(static_cast<float>(1.0 + 4.0 * std::exp(-static_cast<double>(t) / 4.0)));
+  signal_ = toTensor(signal, {schedule_.steps() + 1}, device);
+  noise_ = toTensor(noise, {schedule_.steps() + 1}, device);
+  weights_ = toTensor(weights, {1, architecture.horizon, 1}, device);
+  const Eigen::Matrix<float, Eigen::Dynamic, traffic::kRolloutColumns, Eigen::RowMajor> scale =
+      normalizer.scale.cast<float>();
+  scale_ = toTensor({scale.data(), scale.data() + scale.size()},
+                    {architecture.horizon, traffic::kRolloutColumns}, device);
+}
+
+at::Tensor DiffusionLoss::addNoise(const at::Tensor& clean, const at::Tensor& k,
+                                   const at::Tensor& noise) const {
+  return signal_.index_select(0, k).view({-1, 1, 1}) * clean +
+         noise_.index_select(0, k).view({-1, 1, 1}) * noise;
+}
+
+Loss DiffusionLoss::loss(const DenoiserNet& denoiser, const TrainingBatch& batch) const {
+  const at::Tensor noisy = addNoise(batch.rollouts, batch.k, batch.noise);
+  const at::Tensor predicted = denoiser.predictActions(noisy, batch.k, batch.context);
+  const at::Tensor predicted_states =
+      denoiser.predictStates(predicted, batch.k, batch.context, true);
+  const at::Tensor action_loss = (weights_ * (predicted - actions(batch.rollouts)).pow(2)).mean();
+  const at::Tensor state_loss = (predicted_states - states(batch.rollouts)).pow(2).mean();
+  return {action_loss + state_loss, {{"actions", action_loss}, {"states", state_loss}}};
+}
+
+at::Tensor DiffusionLoss::predictClean(const DenoiserNet& denoiser, const at::Tensor& noisy,
+                                       std::int64_t k, const ContextBatch& context) const {
+  const at::Tensor all_k = steps(noisy.size(0), k, device_);
+  const at::Tensor predicted = denoiser.predictActions(noisy, all_k, context);
+  return at::cat({denoiser.predictStates(predicted, all_k, context, false), predicted}, 2);
+}
+
+at::Tensor DiffusionLoss::sample(const DenoiserNet& denoiser, const at::Tensor& noise,
+                                 const ContextBatch& context, std::int64_t count) const {
+  const std::int64_t last = schedule_.steps();
+  at::Tensor noisy = noise;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t k = last - i * last / count;
+    const std::int64_t next = last - (i + 1) * last / count;
+    const at::Tensor clean = predictClean(denoiser, noisy, k, context);
+    const double now = schedule_.alphaBar(static_cast<int>(k));
+    const double then = schedule_.alphaBar(static_cast<int>(next));
+    const at::Tensor rest = (noisy - clean * std::sqrt(now)) / std::sqrt(1.0 - now);
+    noisy = clean * std::sqrt(then) + rest * std::sqrt(1.0 - then);
+  }
+  return noisy;
+}
+
+void DiffusionLoss::addFigures(const std::string& prefix, const at::Tensor& predicted,
+                               const at::Tensor& clean, Figures& figures) const {
+  const at::Tensor error = ((predicted - clean) * scale_).abs();
+  const at::Tensor distance =
+      (error.select(2, traffic::kRolloutX).pow(2) + error.select(2, traffic::kRolloutY).pow(2))
+          .sqrt();
+  const auto mean = [&](int column) { return error.select(2, column).mean().item<double>(); };
+  figures[prefix + "ade_m"] = distance.mean().item<double>();
+  figures[prefix + "fde_m"] = distance.select(1, architecture_.horizon - 1).mean().item<double>();
+  figures[prefix + "heading_rad"] = mean(traffic::kRolloutHeading);
+  figures[prefix + "speed_mps"] = mean(traffic::kRolloutSpeed);
+  figures[prefix + "throttle"] = mean(traffic::kRolloutThrottle);
+  figures[prefix + "steer"] = mean(traffic::kRolloutSteer);
+  figures[prefix + "brake"] = mean(traffic::kRolloutBrake);
+}
+
+at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& name) const {
+  const core::RandomStream stream(0, name);
+  std::vector<float> values(static_cast<std::size_t>(like.numel()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<float>(stream.normal({}, static_cast<std::uint32_t>(i)));
+  return toTensor(values, like.sizes(), device_);
+}
+
+Figures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
+                             const at::Tensor& grey_features) const {
+  const at::NoGradGuard no_gradient;
+  const at::Tensor& clean = held_out.rollouts;
+  const at::Tensor noise = fixedNoise(clean, "validation noise");
+  Figures figures;
+  const std::int64_t last = schedule_.steps();
+  for (const auto& [prefix, k] :
+       {std::pair<std::string, std::int64_t>{"one_step_half_", (last + 1) / 2},
+        {"one_step_noise_", last}}) {
+    const at::Tensor noisy = addNoise(clean, steps(clean.size(0), k, device_), noise);
+    addFigures(prefix, predictClean(denoiser, noisy, k, held_out.context), clean, figures);
+  }
+  const std::int64_t count = std::min(kJudgeSteps, last);
+  addFigures("sample_", sample(denoiser, noise, held_out.context, count), clean, figures);
+  ContextBatch context = held_out.context;
+  context.has_route = at::zeros_like(context.has_route);
+  addFigures("sample_no_route_", sample(denoiser, noise, context, count), clean, figures);
+  context.features = grey_features.view({1, -1}).expand_as(context.features).contiguous();
+  addFigures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, figures);
+  context.has_route = held_out.context.has_route;
+  addFigures("sample_grey_", sample(denoiser, noise, context, count), clean, figures);
+  return figures;
+}
+
+traffic::Rollout DiffusionLoss::spread(const DenoiserNet& denoiser,
+                                       const TrainingBatch& held_out) const {
+  const at::NoGradGuard no_gradient;
+  const at::Tensor& clean = held_out.rollouts;
+  const std::int64_t last = schedule_.steps();
+  const at::Tensor noisy =
+      addNoise(clean, steps(clean.size(0), last, device_), fixedNoise(clean, "spread noise"));
+  const at::Tensor error = predictClean(denoiser, noisy, last, held_out.context) - clean;
+  const std::vector<float> deviation = toVector(error.pow(2).mean(0).sqrt());
+  traffic::Rollout spread(architecture_.horizon, traffic::kRolloutColumns);
+  for (Eigen::Index i = 0; i < spread.size(); ++i)
+    spread.data()[i] =
+        std::max(kLeastSpread, static_cast<double>(deviation[static_cast<std::size_t>(i)]));
+  return spread;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/diffusion/training/diffusion_stages.h"
+
+#include <algorithm>
+
+#include "learning/batches.h"
+
+namespace cdiff::planners {
+namespace {
+
+using learning::Figures;
+using learning::Loss;
+using learning::TrainedPart;
+
+constexpr std::int64_t kImageBatch = 32;
+constexpr std::int64_t kFeatureBatch = 128;
+/// The regression head must also do without a route, so that features tell where the road goes.
+constexpr double kHeadRouteDrop = 0.5;
+constexpr std::size_t kEncodeBatch = 32;
+
+BatchOptions batchOptions(const TrainingState& state, const std::string& stage,
+                          std::int64_t default_batch) {
+  const DiffusionTrainingSettings& settings = state.settings;
+  BatchOptions result;
+  result.stage = stage;
+  result.batch = state.run.options.batch > 0 ? state.run.options.batch : default_batch;
+  result.route_drop = settings.route_drop;
+  result.balance = settings.balance;
+  result.yielding_share = settings.yielding_share;
+  result.mirror = settings.mirror;
+  result.change_light = settings.change_light;
+  result.diffusion_steps = state.architecture.diffusion_steps;
+  result.seed = static_cast<std::uint64_t>(state.run.options.seed);
+  return result;
+}
+
+class EncoderStage : public learning::Stage {
+ public:
+  EncoderStage(TrainingState& state, const std::string& name, double image_scale)
+      : state_(state),
+        name_(name),
+        options_(makeOptions(state, name, image_scale)),
+        batches_(state.dataset, state.normalizer, options_, state.run.device) {}
+
+  const std::string& name() const override { return name_; }
+  std::int64_t batchSize() const override { return options_.batch; }
+  std::vector<TrainedPart> parts() override {
+    return {{"encoder", &state_.encoder.parameters()}, {"head", &state_.head.parameters()}};
+  }
+  std::vector<std::size_t> samplesOf(std::int64_t step) override { return batches_.order(step); }
+
+  Loss loss(std::int64_t step) override {
+    TrainingBatch batch = batches_.training(step);
+    state_.encoder.setHalfPrecision(state_.half_precision);
+    const at::Tensor predicted = predict(batch);
+    state_.encoder.setHalfPrecision(false);
+    const std::int64_t cells = batch.rollouts.size(1) * batch.rollouts.size(2);
+    const at::Tensor rollout_loss =
+        (predicted.narrow(1, 0, cells) - batch.rollouts.flatten(1)).pow(2).mean();
+    Loss loss{rollout_loss, {{"rollout", rollout_loss}}};
+    if (batch.auxiliary.size(1) == 0) return loss;
+    const at::Tensor error = predicted.narrow(1, cells, batch.auxiliary.size(1)) - batch.auxiliary;
+    const at::Tensor auxiliary_loss =
+        (error.pow(2) * batch.auxiliary_known).sum() / batch.auxiliary_known.sum().clamp_min(1.0);
+    loss.total = rollout_loss + auxiliary_loss;
+    loss.terms.emplace_back("auxiliary", auxiliary_loss);
+    return loss;
+  }
+
+  Figures judge() override {
+    const at::NoGradGuard no_gradient;
+    std::vector<at::Tensor> clean, with_route, without;
+    for (std::size_t begin = 0; begin < state_.run.held_out.size(); begin += kEncodeBatch) {
+      const std::size_t end = std::min(begin + kEncodeBatch, state_.run.held_out.size());
+      TrainingBatch batch =
+          batches_.plain({state_.run.held_out.begin() + static_cast<std::ptrdiff_t>(begin),
+                          state_.run.held_out.begin() + static_cast<std::ptrdiff_t>(end)},
+                         true);
+      clean.push_back(batch.rollouts);
+      with_route.push_back(rolloutOf(predict(batch), batch.rollouts));
+      batch.context.has_route = at::zeros_like(batch.context.has_route);
+      without.push_back(rolloutOf(state_.head.forward(batch.context), batch.rollouts));
+    }
+    Figures figures;
+    state_.loss.addFigures("regression_", at::cat(with_route), at::cat(clean), figures);
+    state_.loss.addFigures("regression_no_route_", at::cat(without), at::cat(clean), figures);
+    return figures;
+  }
+
+ private:
+  static BatchOptions makeOptions(const TrainingState& state, const std::string& name,
+                                  double image_scale) {
+    BatchOptions options = batchOptions(state, name, kImageBatch);
+    options.image_scale = image_scale;
+    options.route_drop = kHeadRouteDrop;
+    return options;
+  }
+
+  at::Tensor predict(TrainingBatch& batch) const {
+    batch.context.features = state_.encoder.forward(batch.images);
+    return state_.head.forward(batch.context);
+  }
+
+  static at::Tensor rolloutOf(const at::Tensor& predicted, const at::Tensor& like) {
+    return predicted.narrow(1, 0, like.size(1) * like.size(2)).reshape(like.sizes());
+  }
+
+  TrainingState& state_;
+  std::string name_;
+  BatchOptions options_;
+  BatchMaker batches_;
+};
+
+class DiffusionStage : public learning::Stage {
+ public:
+  DiffusionStage(TrainingState& state, const std::string& name, const FeatureCache* cache)
+      : state_(state),
+        name_(name),
+        cache_(cache),
+        options_(batchOptions(state, name, cache == nullptr ? kImageBatch : kFeatureBatch)),
+        batches_(state.dataset, state.normalizer, options_, state.run.device) {
+    if (cache_ != nullptr) held_out_ = encodeHeldOut(state_);
+  }
+
+  const std::string& name() const override { return name_; }
+  std::int64_t batchSize() const override { return options_.batch; }
+  std::vector<TrainedPart> parts() override {
+    std::vector<TrainedPart> parts = {{"denoiser", &state_.denoiser.parameters()}};
+    if (cache_ == nullptr) parts.push_back({"encoder", &state_.encoder.parameters()});
+    return parts;
+  }
+  std::vector<std::size_t> samplesOf(std::int64_t step) override { return batches_.order(step); }
+
+  Loss loss(std::int64_t step) override {
+    TrainingBatch batch = batches_.training(step, cache_);
+    if (cache_ == nullptr) {
+      state_.encoder.setHalfPrecision(state_.half_precision);
+      batch.context.features = state_.encoder.forward(batch.images);
+      state_.encoder.setHalfPrecision(false);
+    }
+    return state_.loss.loss(state_.denoiser, batch);
+  }
+
+  Figures judge() override {
+    if (cache_ == nullptr) held_out_ = encodeHeldOut(state_);
+    return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.grey_features);
+  }
+
+ private:
+  TrainingState& state_;
+  std::string name_;
+  const FeatureCache* cache_;
+  BatchOptions options_;
+  BatchMaker batches_;
+  HeldOut held_out_;
+};
+
+}  // namespace
+
+std::unique_ptr<learning::Stage> makeEncoderStage(TrainingState& state, const std::string& name,
+                                                  double image_scale) {
+  return std::make_unique<EncoderStage>(state, name, image_scale);
+}
+
+std::unique_ptr<learning::Stage> makeDiffusionStage(TrainingState& state, const std::string& name,
+                                                    const FeatureCache* cache) {
+  return std::make_unique<DiffusionStage>(state, name, cache);
+}
+
+HeldOut encodeHeldOut(const TrainingState& state) {
+  const at::NoGradGuard no_gradient;
+  const BatchMaker batches(state.dataset, state.normalizer,
+                           batchOptions(state, "held out", kImageBatch), state.run.device);
+  HeldOut held_out{batches.plain(state.run.held_out, false), {}};
+  std::vector<at::Tensor> features;
+  for (std::size_t begin = 0; begin < state.run.held_out.size(); begin += kEncodeBatch) {
+    const std::size_t end = std::min(begin + kEncodeBatch, state.run.held_out.size());
+    std::vector<traffic::CameraImage> images;
+    for (std::size_t i = begin; i < end; ++i)
+      images.push_back(state.dataset.sample(state.run.held_out[i]).image);
+    std::vector<const traffic::CameraImage*> views;
+    for (const traffic::CameraImage& image : images) views.push_back(&image);
+    features.push_back(state.encoder.forward(learning::imageTensor(views, 1.0, state.run.device)));
+  }
+  held_out.batch.context.features = at::cat(features);
+  traffic::CameraImage grey;
+  grey.width = static_cast<int>(state.architecture.image_width);
+  grey.height = static_cast<int>(state.architecture.image_height);
+  grey.rgb.assign(static_cast<std::size_t>(grey.width * grey.height * 3), 128);
+  held_out.grey_features =
+      state.encoder.forward(learning::imageTensor({&grey}, 1.0, state.run.device));
+  return held_out;
+}
+
+}  // namespace cdiff::planners

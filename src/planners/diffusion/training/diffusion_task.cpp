@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/diffusion/training/diffusion_task.h"
+
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "core/text.h"
+#include "diffusion/model.h"
+#include "diffusion/model_metadata.h"
+#include "planners/diffusion/training/feature_cache.h"
+#include "planners/diffusion/training/stored_normalizer.h"
+#include "planners/diffusion/training/training.h"
+
+namespace cdiff::planners {
+namespace {
+
+using core::InputError;
+using learning::Figures;
+using learning::PartSource;
+
+constexpr const char* kNoDenoiser = "train stage denoiser on this encoder next";
+
+PartSource encoderOf(const std::vector<std::string>& stages) {
+  return {"encoder", "an encoder", stages, "encoder"};
+}
+
+/// `first`: empty where a new denoiser will do.
+PartSource denoiserOf(const std::vector<std::string>& stages, const std::string& first) {
+  return {"denoiser", "a denoiser", stages, first};
+}
+
+/// bfloat16 pays only where the processor multiplies it itself.
+bool halfPrecision(const std::string& precision) {
+  if (precision != "auto") return precision == "bf16";
+  std::ifstream file("/proc/cpuinfo");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return text.find("avx512_bf16") != std::string::npos;
+}
+
+diffusion::Architecture architectureOf(const DiffusionTrainingSettings& settings,
+                                       const learning::DrivingSchema& schema) {
+  diffusion::Architecture architecture = settings.architecture;
+  architecture.horizon = schema.horizon;
+  architecture.image_width = schema.image_width;
+  architecture.image_height = schema.image_height;
+  architecture.route_points = schema.route_points;
+  architecture.route_spacing = schema.route_spacing;
+  architecture.validate();
+  return architecture;
+}
+
+/// The model of --init, if one is given.
+std::optional<diffusion::Model> initialModel(const std::string& name,
+                                             const diffusion::Architecture& architecture) {
+  if (name.empty()) return std::nullopt;
+  diffusion::Model model = diffusion::loadModel(name);
+  if (model.architecture == architecture) return model;
+  throw InputError("training: the architecture of '" + name + "' is " +
+                   model.architecture.toJson() + ", this run has " + architecture.toJson());
+}
+
+std::string figureRow(const std::string& label, const std::string& prefix, const Figures& figures) {
+  std::string row = "| " + label + " |";
+  for (const char* name : {"ade_m", "fde_m", "speed_mps", "throttle", "steer", "brake"}) {
+    const auto found = figures.find(prefix + name);
+    row += " " + (found == figures.end() ? "-" : core::formatFixed(found->second, 3)) + " |";
+  }
+  return row + "\n";
+}
+
+std::string figureTable(const Figures& held_out) {
+  return "Mean absolute errors against the recorded rollouts: ADE and FDE [m], speed [m/s], "
+         "actions "
+         "as they are.\n\n"
+         "| Prediction | ADE | FDE | speed | throttle | steer | brake "
+         "|\n|---|---|---|---|---|---|---|\n" +
+         figureRow("one step from k = K/2", "one_step_half_", held_out) +
+         figureRow("one step from noise, k = K", "one_step_noise_", held_out) +
+         figureRow("DDIM sample", "sample_", held_out) +
+         figureRow("DDIM sample, grey image", "sample_grey_", held_out) +
+         figureRow("DDIM sample, no route", "sample_no_route_", held_out) +
+         figureRow("DDIM sample, grey image, no route", "sample_grey_no_route_", held_out);
+}
+
+}  // namespace
+
+learning::TaskTexts DiffusionTask::texts() const {
+  return {"encoder, fine_tune where needed, denoiser", "32 on images, 128 on features"};
+}
+
+std::vector<learning::StageInfo> DiffusionTask::stages() const {
+  const PartSource tuned = encoderOf({"fine_tune", "encoder"});
+  const PartSource head = {"head", "a regression head", {"encoder"}, ""};
+  return {{"encoder", {}, false, {}, kNoDenoiser},
+          {"fine_tune",
+           {encoderOf({"encoder"}), head},
+           true,
+           {denoiserOf({"joint", "denoiser"}, "")},
+           kNoDenoiser},
+          {"denoiser", {tuned}, true, {}, ""},
+          {"joint", {tuned, denoiserOf({"denoiser"}, "")}, true, {}, ""}};
+}
+
+std::vector<std::string> DiffusionTask::allStages() const {
+  if (settings.image_scale == 1.0) return {"encoder", "denoiser"};
+  return {"encoder", "fine_tune", "denoiser"};
+}
+
+std::vector<PartSource> DiffusionTask::model() const {
+  return {encoderOf({"joint", "fine_tune", "encoder"}),
+          denoiserOf({"joint", "denoiser"}, "denoiser")};
+}
+
+std::vector<std::string> DiffusionTask::weightFiles() const {
+  return {diffusion::kEncoderFile, diffusion::kDenoiserFile};
+}
+
+std::vector<std::string> DiffusionTask::otherFiles() const { return {kFeatureFile}; }
+
+void DiffusionTask::begin(const learning::TrainingRun& run) {
+  const learning::DrivingDataset dataset(run.dataset);
+  const diffusion::Architecture architecture = architectureOf(settings, dataset.schema());
+  const auto initial = initialModel(run.options.init, architecture);
+  const diffusion::Normalizer normalizer =
+      chooseNormalizer(run.options, settings.mirror, dataset, initial ? &*initial : nullptr);
+  const auto seed = static_cast<std::uint64_t>(run.options.seed);
+  const auto auxiliary = static_cast<std::int64_t>(dataset.schema().auxiliary.size());
+  state_.reset(new TrainingState{
+      run, dataset, settings, architecture, normalizer, ImageEncoderNet(architecture, seed),
+      RegressionHead(architecture, auxiliary, seed), DenoiserNet(architecture, seed),
+      DiffusionLoss(architecture, normalizer, run.device), halfPrecision(settings.precision)});
+  if (initial) {
+    state_->encoder.parameters().load(initial->encoder, run.options.init);
+    state_->denoiser.parameters().load(initial->denoiser, run.options.init);
+  }
+  state_->encoder.parameters().moveTo(run.device);
+  state_->head.parameters().moveTo(run.device);
+  state_->denoiser.moveTo(run.device);
+}
+
+nlohmann::json DiffusionTask::facts() const {
+  return {{"normalizer", state_->normalizer.toJson()},
+          {"balance", settings.balance},
+          {"yielding_share", settings.yielding_share}};
+}
+
+std::vector<learning::TrainedPart> DiffusionTask::parts() {
+  return {{"encoder", &state_->encoder.parameters()},
+          {"head", &state_->head.parameters()},
+          {"denoiser", &state_->denoiser.parameters()}};
+}
+
+std::unique_ptr<learning::Stage> DiffusionTask::makeStage(const std::string& name) {
+  if (name == "encoder") return makeEncoderStage(*state_, name, settings.image_scale);
+  if (name == "fine_tune") return makeEncoderStage(*state_, name, 1.0);
+  if (name == "joint") return makeDiffusionStage(*state_, name, nullptr);
+  cache_ = computeFeatures(*state_);
+  return makeDiffusionStage(*state_, name, &cache_);
+}
+
+learning::TrainedModel DiffusionTask::finish() {
+  const HeldOut held_out = encodeHeldOut(*state_);
+  diffusion::Model model;
+  model.architecture = state_->architecture;
+  model.normalizer = state_->normalizer;
+  model.spread = state_->loss.spread(state_->denoiser, held_out.batch);
+  model.encoder = state_->encoder.parameters().values();
+  model.denoiser = state_->denoiser.parameters().values();
+  diffusion::ModelFiles files = diffusion::modelFiles(model);
+  learning::TrainedModel trained;
+  trained.files = {
+      {diffusion::kEncoderFile, std::move(files.encoder), false, diffusion::kEncoderKey},
+      {diffusion::kDenoiserFile, std::move(files.denoiser), true, ""}};
+  trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.grey_features);
+  trained.settings = {{"balance", settings.balance},
+                      {"yielding_share", settings.yielding_share},
+                      {"route_drop", settings.route_drop},
+                      {"mirror", settings.mirror},
+                      {"precision", state_->half_precision ? "bf16" : "f32"}};
+  trained.title = "Diffusion planner";
+  trained.figures = figureTable(trained.held_out);
+  return trained;
+}
+
+learning::TaskDescriptor diffusionTraining() {
+  return {"diffusion", "Train the diffusion planner on collected shards",
+          []() -> std::shared_ptr<learning::Task> { return std::make_shared<DiffusionTask>(); }};
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// A task goes all the way: trained, judged, interrupted, resumed, exported. The library knows
+// nothing of it but its interface.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/file.h"
+#include "learning/checkpoint.h"
+#include "learning/task_registry.h"
+#include "learning/toy_task.h"
+#include "learning/trainer.h"
+#include "support/temporary_folder.h"
+
+namespace cdiff::learning {
+namespace {
+
+class ToyTaskTest : public testing::Test {
+ protected:
+  ToyTaskTest() {
+    std::filesystem::create_directories(folder_.path() / "data");
+    test::writeToyShard(folder_.path() / "data" / "a.shard", 100);
+    training_ = start("model");
+  }
+
+  Training start(const std::string& output) const {
+    TaskRegistry tasks;
+    tasks.add(test::toyTraining());
+    Training training = tasks.training("toy");
+    training.options.data = (folder_.path() / "data").string();
+    training.options.output = (folder_.path() / output).string();
+    training.options.device = "cpu";
+    training.options.steps = 300;
+    training.options.warm_up = 5;
+    training.options.learning_rate = 0.05;
+    training.options.weight_decay = 0.0;
+    training.options.average_decay = 0.9;
+    training.options.validation_share = 0.2;
+    training.options.validation_every = 100;
+    training.options.report_every = 0.0;
+    return training;
+  }
+  std::string trainingText(const Training& training) {
+    try {
+      train(training, stop_, log_);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "trained";
+  }
+  std::filesystem::path output(const std::string& file) const {
+    return std::filesystem::path(training_.options.output) / file;
+  }
+  inference::SafetensorsFile model(const std::string& folder) const {
+    return inference::readSafetensors(folder_.path() / folder / "line.safetensors",
+                                      [](const auto&) -> std::vector<inference::TensorShape> {
+                                        return {{"line.bias", {1}}, {"line.weight", {1, 2}}};
+                                      });
+  }
+
+  test::TemporaryFolder folder_;
+  Training training_;
+  std::atomic<bool> stop_{false};
+  std::ostringstream log_;
+};
+
+TEST_F(ToyTaskTest, LearnsTheLineJudgesItAndExportsIt) {
+  train(training_, stop_, log_);
+  const inference::SafetensorsFile found = model("model");
+  // The line that the samples lie on; F16 holds its coefficients to 1e-3.
+  EXPECT_NEAR(found.tensors.at("line.weight").values[0], 2.0F, 0.02F);
+  EXPECT_NEAR(found.tensors.at("line.weight").values[1], -3.0F, 0.02F);
+  EXPECT_NEAR(found.tensors.at("line.bias").values[0], 1.0F, 0.02F);
+  EXPECT_EQ(found.metadata.at("format"), "toy");
+  const auto record = nlohmann::json::parse(core::readFile(output("training.json"), "record"));
+  EXPECT_EQ(nlohmann::json::parse(found.metadata.at("training")), record);
+  EXPECT_EQ(record.at("stages").at("fit").at("steps"), 300);
+  EXPECT_EQ(record.at("slope"), 1.0);
+  EXPECT_EQ(record.at("data").at("samples"), 100);
+  EXPECT_LT(record.at("held_out").at("square").get<double>(), 1e-3);
+  const std::string curves = core::readFile(output("curves.csv"), "curves");
+  for (const char* row : {"fit,100,", "fit,300,", "held_out_square", "loss_square"})
+    EXPECT_NE(curves.find(row), std::string::npos) << row;
+  const std::string card = core::readFile(output("model_card.md"), "card");
+  EXPECT_EQ(card.rfind("# A line\n", 0), 0U) << card;
+  EXPECT_NE(card.find("| fit | 300 |"), std::string::npos) << card;
+}
+
+/// Sets a flag when a line with `text` is logged.
+class StoppingBuffer : public std::stringbuf {
+ public:
+  StoppingBuffer(std::atomic<bool>& stop, std::string text) : stop_(stop), text_(std::move(text)) {}
+
+ protected:
+  int sync() override {
+    if (str().find(text_) != std::string::npos) stop_ = true;
+    return 0;
+  }
+
+ private:
+  std::atomic<bool>& stop_;
+  std::string text_;
+};
+
+TEST_F(ToyTaskTest, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
+  train(training_, stop_, log_);
+  Training other = start("resumed");
+  StoppingBuffer buffer(stop_, "fit step 123/300");
+  std::ostream log(&buffer);
+  EXPECT_THROW(train(other, stop_, log), core::Interrupted);
+  const auto path = folder_.path() / "resumed" / "fit.checkpoint";
+  EXPECT_EQ(readCheckpoint(path).facts.at("steps"), 123);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "resumed" / "line.safetensors"));
+  stop_ = false;
+  other.options.resume = true;
+  train(other, stop_, log_);
+  const Checkpoint expected = readCheckpoint(output("fit.checkpoint"));
+  const Checkpoint found = readCheckpoint(path);
+  ASSERT_EQ(found.tensors.size(), 8U);  // weight, two moments and average of two tensors
+  for (const auto& [name, tensor] : expected.tensors)
+    EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
+  EXPECT_EQ(model("resumed").metadata.at("sha256"), model("model").metadata.at("sha256"));
+}
+
+TEST_F(ToyTaskTest, ExportWritesTheModelAnew) {
+  train(training_, stop_, log_);
+  const std::string hash = model("model").metadata.at("sha256");
+  std::filesystem::remove(output("line.safetensors"));
+  training_.options.stage = "export";
+  train(training_, stop_, log_);
+  EXPECT_EQ(model("model").metadata.at("sha256"), hash);
+  Training empty = start("empty");
+  empty.options.stage = "export";
+  EXPECT_NE(trainingText(empty).find("holds no checkpoint of a line; train stage 'fit' first"),
+            std::string::npos);
+}
+
+TEST_F(ToyTaskTest, AnotherSettingOfTheTaskIsNoResumption) {
+  train(training_, stop_, log_);
+  Training other = start("model");
+  other.options.resume = true;
+  EXPECT_EQ(trainingText(other), "trained");
+  core::overrideOption("slope=2", "option", other);
+  EXPECT_NE(trainingText(other).find("was trained with slope 1.0, this run has 2.0"),
+            std::string::npos);
+}
+
+TEST_F(ToyTaskTest, AFieldThatTheSamplesLackIsNamed) {
+  auto& task = dynamic_cast<test::ToyTask&>(*training_.task);
+  task.needed = {"inputs", "boxes"};
+  const std::string text = trainingText(training_);
+  EXPECT_NE(text.find("training task 'toy' needs the field 'boxes' of the samples, which data "
+                      "folder '" +
+                      training_.options.data +
+                      "' lacks (it holds session, inputs, target); collect samples with that"),
+            std::string::npos)
+      << text;
+  task.needed.clear();
+  EXPECT_NE(trainingText(training_).find("training task 'toy' learns from no field"),
+            std::string::npos);
+}
+
+TEST_F(ToyTaskTest, ATaskWithoutSamplesSaysWhoMustCollect) {
+  training_.options.data = (folder_.path() / "none").string();
+  std::filesystem::create_directories(training_.options.data);
+  EXPECT_NE(trainingText(training_).find("training task 'toy' has no samples: data folder '" +
+                                         training_.options.data + "' holds no *.shard; collect"),
+            std::string::npos)
+      << trainingText(training_);
+  test::writeToyShard(std::filesystem::path(training_.options.data) / "empty.shard", 0);
+  EXPECT_NE(trainingText(training_).find("its shards hold no samples; collect longer sessions"),
+            std::string::npos)
+      << trainingText(training_);
+}
+
+TEST_F(ToyTaskTest, AStageOfAnotherTaskIsRefused) {
+  training_.options.stage = "encoder";
+  EXPECT_NE(trainingText(training_).find("'encoder'; expected one of"), std::string::npos)
+      << trainingText(training_);
+}
+
+}  // namespace
+}  // namespace cdiff::learning

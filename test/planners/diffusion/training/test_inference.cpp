@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// What trains and what drives are two implementations of docs/network.md: with the same weights
+// they must give the same figures. Tolerances: float32 sums of up to 4,608 products in another
+// order.
+#include <gtest/gtest.h>
+
+#include "diffusion/cpu_denoiser.h"
+#include "diffusion/image_encoder.h"
+#include "planners/diffusion/training/networks.h"
+#include "support/random_model.h"
+
+namespace cdiff::planners {
+namespace {
+
+using learning::toTensor;
+using learning::toVector;
+
+using diffusion::Architecture;
+using diffusion::Model;
+
+constexpr std::int64_t kBatch = 3;
+
+std::vector<float> draws(std::size_t count, const char* name) {
+  const core::RandomStream random(3, name);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i)
+    values.push_back(static_cast<float>(random.normal({}, static_cast<std::uint32_t>(i))));
+  return values;
+}
+
+/// Largest difference relative to the largest value.
+double difference(const std::vector<float>& ours, const std::vector<float>& reference) {
+  EXPECT_EQ(ours.size(), reference.size());
+  double largest = 0.0;
+  double apart = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    largest = std::max(largest, std::abs(static_cast<double>(reference[i])));
+    apart = std::max(apart, std::abs(static_cast<double>(ours[i]) - reference[i]));
+  }
+  return apart / largest;
+}
+
+class Inference : public ::testing::Test {
+ protected:
+  Inference() : net_(sizes_, 1), ours_(model_) {
+    net_.parameters().load(model_.denoiser, "random");
+    net_.parameters().setTrained(false);
+    const auto b = static_cast<std::size_t>(kBatch);
+    const std::vector<float> features = draws(b * 256, "features");
+    const std::vector<float> route = draws(b * 32, "route");
+    std::vector<diffusion::Context> contexts(b);
+    for (std::size_t i = 0; i < b; ++i) {
+      contexts[i].image_features.assign(features.begin() + static_cast<long>(i * 256),
+                                        features.begin() + static_cast<long>(i * 256 + 256));
+      // The last one has no route.
+      if (i + 1 < b)
+        contexts[i].route.assign(route.begin() + static_cast<long>(i * 32),
+                                 route.begin() + static_cast<long>(i * 32 + 32));
+      contexts[i].speed = 2.0 + 3.0 * static_cast<double>(i);
+    }
+    ours_.setContexts(contexts);
+    context_.features = toTensor(features, {kBatch, 256}, at::kCPU);
+    context_.route = toTensor(route, {kBatch, 32}, at::kCPU);
+    context_.has_route = toTensor({1.0F, 1.0F, 0.0F}, {kBatch, 1}, at::kCPU);
+    context_.speed = toTensor({0.2F, 0.5F, 0.8F}, {kBatch, 1}, at::kCPU);
+  }
+
+  at::Tensor steps(std::int64_t k) const { return at::full({kBatch}, k, at::kLong); }
+
+  Architecture sizes_;
+  Model model_ = cdiff::testing::randomModel();
+  DenoiserNet net_;
+  diffusion::CpuDenoiser ours_;
+  ContextBatch context_;
+};
+
+TEST_F(Inference, ActionHeadAndItsPullBackAgree) {
+  const std::vector<float> noisy = draws(kBatch * 32 * 7, "noisy");
+  const std::vector<float> gradient = draws(kBatch * 32 * 3, "gradient");
+  for (const int k : {1, 50, 100}) {
+    at::Tensor input = toTensor(noisy, {kBatch, 32, 7}, at::kCPU).clone().set_requires_grad(true);
+    const at::Tensor expected = net_.predictActions(input, steps(k), context_);
+    expected.backward(toTensor(gradient, {kBatch, 32, 3}, at::kCPU));
+    std::vector<float> actions(gradient.size());
+    std::vector<float> pulled(noisy.size());
+    ours_.predictActions(noisy.data(), k, actions.data());
+    ours_.pullBackActions(gradient.data(), pulled.data());
+    EXPECT_LT(difference(actions, toVector(expected.detach())), 1e-5) << k;
+    EXPECT_LT(difference(pulled, toVector(input.grad())), 1e-4) << k;
+  }
+}
+
+TEST_F(Inference, StateHeadAndItsPullBackAgree) {
+  const std::vector<float> actions = draws(kBatch * 32 * 3, "actions");
+  const std::vector<float> gradient = draws(kBatch * 32 * 4, "state gradient");
+  at::Tensor input = toTensor(actions, {kBatch, 32, 3}, at::kCPU).clone().set_requires_grad(true);
+  const at::Tensor expected = net_.predictStates(input, steps(30), context_, false);
+  expected.backward(toTensor(gradient, {kBatch, 32, 4}, at::kCPU));
+  std::vector<float> states(gradient.size());
+  std::vector<float> pulled(actions.size());
+  ours_.predictStates(actions.data(), 30, states.data());
+  ours_.pullBackStates(gradient.data(), pulled.data());
+  EXPECT_LT(difference(states, toVector(expected.detach())), 1e-5);
+  EXPECT_LT(difference(pulled, toVector(input.grad())), 1e-5);
+}
+
+TEST_F(Inference, ImageEncoderAgrees) {
+  ImageEncoderNet net(sizes_, 1);
+  net.parameters().load(model_.encoder, "random");
+  net.parameters().setTrained(false);
+  traffic::CameraImage image;
+  image.width = 160;
+  image.height = 96;
+  std::vector<float> planes(3 * 96 * 160);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const auto value = static_cast<std::uint8_t>((i * 7919 + i / 311 * 13) % 256);
+    image.rgb.push_back(value);
+    // Pixel-interleaved to planes, scaled as in docs/network.md.
+    planes[i % 3 * 96 * 160 + i / 3] = (static_cast<float>(value) / 255.0F - 0.5F) / 0.25F;
+  }
+  diffusion::ImageEncoder ours(model_);
+  const at::Tensor expected = net.forward(toTensor(planes, {1, 3, 96, 160}, at::kCPU));
+  EXPECT_LT(difference(ours.encode(image), toVector(expected)), 1e-4);
+}
+
+}  // namespace
+}  // namespace cdiff::planners

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/file.h"
+#include "diffusion/model.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "learning/checkpoint.h"
+#include "learning/small_samples.h"
+#include "learning/trainer.h"
+#include "planners/diffusion/training/diffusion_task.h"
+#include "planners/diffusion/training/training.h"
+
+namespace cdiff::planners {
+namespace {
+
+/// Eight samples, small networks, every sample in every batch.
+class DiffusionTrainingTest : public testing::Test {
+ protected:
+  DiffusionTrainingTest() : training_(makeTraining()) {
+    std::filesystem::create_directories(folder_.path() / "data");
+    test::writeShard(folder_.path() / "data" / "a.shard", 8);
+    training_.options.data = (folder_.path() / "data").string();
+    training_.options.output = (folder_.path() / "model").string();
+    settings().architecture = test::smallArchitecture();
+    training_.options.validation_share = 0.0;
+    training_.options.batch = 8;
+    training_.options.device = "cpu";
+    training_.options.warm_up = 5;
+    training_.options.learning_rate = 2e-3;
+    training_.options.validation_every = 100000;
+    training_.options.report_every = 0.0;
+  }
+
+  static learning::Training makeTraining() {
+    learning::TaskRegistry tasks;
+    tasks.add(diffusionTraining());
+    return tasks.training();
+  }
+  DiffusionTrainingSettings& settings() {
+    return dynamic_cast<DiffusionTask&>(*training_.task).settings;
+  }
+  void run(const std::string& stage, std::int64_t steps) {
+    training_.options.stage = stage;
+    training_.options.steps = steps;
+    learning::train(training_, stop_, log_);
+  }
+  /// What a run that is refused says.
+  std::string refusal(const std::string& stage) {
+    try {
+      run(stage, 1);
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "trained";
+  }
+  std::filesystem::path output(const std::string& name) const {
+    return std::filesystem::path(training_.options.output) / name;
+  }
+  std::int64_t stepsOf(const std::string& stage) const {
+    return learning::readCheckpoint(output(stage + ".checkpoint")).facts.at("steps");
+  }
+
+  test::TemporaryFolder folder_;
+  learning::Training training_;
+  std::atomic<bool> stop_{false};
+  std::ostringstream log_;
+};
+
+TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
+  settings().image_scale = 0.5;
+  settings().mirror = false;
+  run("encoder", 3);
+  run("fine_tune", 1);
+  run("denoiser", 300);
+  const auto training =
+      nlohmann::json::parse(core::readFile(folder_.path() / "model" / "training.json", "record"));
+  EXPECT_EQ(training.at("data").at("samples"), 8);
+  EXPECT_EQ(training.at("stages").at("denoiser").at("steps"), 300);
+  EXPECT_EQ(training.at("stages").at("encoder").at("steps"), 3);
+  // Predicting the mean alone costs 1 on the two state columns that vary, so 0.5, and the mean of
+  // w_t / 12 = 0.26 on the steer; fitted samples cost far less.
+  EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.2);
+  EXPECT_LT(training.at("held_out").at("sample_ade_m").get<double>(), 0.5);
+  const diffusion::Model model = diffusion::loadModel((folder_.path() / "model").string());
+  EXPECT_EQ(model.spread.rows(), 8);
+  EXPECT_GT(model.spread.minCoeff(), 0.0);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "model" / "model_card.md"));
+}
+
+/// Sets a flag when a line with `text` is logged.
+class StoppingBuffer : public std::stringbuf {
+ public:
+  StoppingBuffer(std::atomic<bool>& stop, std::string text) : stop_(stop), text_(std::move(text)) {}
+
+ protected:
+  int sync() override {
+    if (str().find(text_) != std::string::npos) stop_ = true;
+    return 0;
+  }
+
+ private:
+  std::atomic<bool>& stop_;
+  std::string text_;
+};
+
+TEST_F(DiffusionTrainingTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
+  run("encoder", 4);
+  const std::filesystem::path path = folder_.path() / "model" / "encoder.checkpoint";
+  const learning::Checkpoint expected = learning::readCheckpoint(path);
+  StoppingBuffer buffer(stop_, "encoder step 2/4");
+  std::ostream log(&buffer);
+  training_.options.stage = "encoder";
+  training_.options.overwrite = true;
+  EXPECT_THROW(learning::train(training_, stop_, log), core::Interrupted);
+  EXPECT_EQ(learning::readCheckpoint(path).facts.at("steps"), 2);
+  stop_ = false;
+  training_.options.overwrite = false;
+  training_.options.resume = true;
+  run("encoder", 4);
+  const learning::Checkpoint found = learning::readCheckpoint(path);
+  ASSERT_EQ(found.tensors.size(), expected.tensors.size());
+  for (const auto& [name, tensor] : expected.tensors)
+    EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
+}
+
+TEST_F(DiffusionTrainingTest, AnInitialModelBringsItsNormalizerAndMustFit) {
+  run("encoder", 1);
+  run("denoiser", 1);
+  const diffusion::Normalizer expected = diffusion::loadModel(training_.options.output).normalizer;
+  test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
+  training_.options.init = training_.options.output;
+  training_.options.output = (folder_.path() / "second").string();
+  run("denoiser", 1);
+  EXPECT_EQ(diffusion::loadModel(training_.options.output).normalizer.mean, expected.mean);
+  EXPECT_EQ(diffusion::loadModel(training_.options.output).normalizer.scale, expected.scale);
+  settings().architecture.state_hidden += 1;
+  training_.options.overwrite = true;
+  try {
+    run("denoiser", 1);
+    FAIL() << "trained";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("the architecture of '" + training_.options.init),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(DiffusionTrainingTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
+  run("encoder", 1);
+  EXPECT_NE(log_.str().find("no model is written yet: train stage denoiser"), std::string::npos);
+  EXPECT_THROW(diffusion::loadModel(training_.options.output), core::InputError);
+  run("denoiser", 1);
+  const diffusion::Model initial = diffusion::loadModel(training_.options.output);
+  training_.options.init = training_.options.output;
+  training_.options.output = (folder_.path() / "tuned").string();
+  run("fine_tune", 2);
+  const diffusion::Model tuned = diffusion::loadModel(training_.options.output);
+  const auto sameValues = [](const auto& left, const auto& right) {
+    return std::equal(
+        left.begin(), left.end(), right.begin(), right.end(),
+        [](const auto& a, const auto& b) { return a.second.values == b.second.values; });
+  };
+  EXPECT_TRUE(sameValues(tuned.denoiser, initial.denoiser));
+  EXPECT_FALSE(sameValues(tuned.encoder, initial.encoder));
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(DiffusionTrainingTest, AnEarlierTrainingIsReplacedOnlyWhenAsked) {
+  run("encoder", 2);
+  const std::string before = core::readFile(output("encoder.checkpoint"), "checkpoint");
+  for (const char* stage : {"encoder", "all"}) {
+    const std::string text = refusal(stage);
+    EXPECT_TRUE(holds(text, "holds a training of stage 'encoder' (encoder.checkpoint)")) << text;
+    EXPECT_TRUE(holds(text, "--resume") && holds(text, "--overwrite")) << text;
+  }
+  EXPECT_EQ(core::readFile(output("encoder.checkpoint"), "checkpoint"), before);
+  training_.options.resume = training_.options.overwrite = true;
+  EXPECT_TRUE(holds(refusal("encoder"), "resume and overwrite are both set"));
+  training_.options.resume = false;
+  run("encoder", 1);
+  EXPECT_EQ(stepsOf("encoder"), 1);
+}
+
+TEST_F(DiffusionTrainingTest, AStageThatIsReplacedLeavesTheOthersAndAllReplacesEach) {
+  run("encoder", 1);
+  run("fine_tune", 2);
+  training_.options.overwrite = true;
+  run("encoder", 3);
+  EXPECT_EQ(stepsOf("encoder"), 3);
+  EXPECT_EQ(stepsOf("fine_tune"), 2);
+  run("all", 1);
+  EXPECT_EQ(stepsOf("encoder"), 1);
+  EXPECT_EQ(stepsOf("denoiser"), 1);
+  // Else the denoiser would have been trained on the encoder of the earlier training.
+  EXPECT_FALSE(std::filesystem::exists(output("fine_tune.checkpoint")));
+}
+
+TEST_F(DiffusionTrainingTest, AModelWithoutCheckpointsIsNotReplacedUnasked) {
+  std::filesystem::create_directories(training_.options.output);
+  core::writeFileAtomically(output("encoder.safetensors"), "weights");
+  EXPECT_TRUE(holds(refusal("encoder"), "holds a model (encoder.safetensors) without"));
+  training_.options.overwrite = true;
+  EXPECT_EQ(refusal("encoder"), "trained");
+}
+
+TEST_F(DiffusionTrainingTest, ARefusedRunLeavesNoFolder) {
+  EXPECT_TRUE(holds(refusal("denoiser"), "holds no checkpoint of an encoder; train stage"));
+  EXPECT_FALSE(std::filesystem::exists(training_.options.output));
+}
+
+TEST_F(DiffusionTrainingTest, ExportNeedsADenoiser) {
+  run("encoder", 1);
+  EXPECT_TRUE(holds(refusal("export"), "holds no checkpoint of a denoiser; train stage"));
+  EXPECT_FALSE(std::filesystem::exists(output("denoiser.safetensors")));
+}
+
+TEST_F(DiffusionTrainingTest, OptionsOutOfRangeAreNamed) {
+  settings().image_scale = 0.7;
+  EXPECT_TRUE(holds(refusal("encoder"), "image_scale is 0.7; expected 1 or 0.5"));
+  settings().image_scale = 1.0;
+  training_.options.threads = 0;
+  EXPECT_TRUE(holds(refusal("encoder"), "key 'threads' is '0'; expected a whole number in [1, "));
+}
+
+TEST_F(DiffusionTrainingTest, SaysWhatIsMissing) {
+  EXPECT_THROW(run("denoiser", 1), core::InputError);
+  EXPECT_THROW(run("export", 1), core::InputError);
+  EXPECT_THROW(run("decoder", 1), core::InputError);
+  training_.options.data = folder_.path() / "nothing";
+  EXPECT_THROW(run("encoder", 1), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::planners
