@@ -104,7 +104,9 @@ void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask
   }
 }
 
-ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
+ClosedLoop::ClosedLoop(const SessionSetup& setup) : ClosedLoop(setup, nullptr) {}
+
+ClosedLoop::ClosedLoop(const SessionSetup& setup, std::unique_ptr<World> world) : setup_(setup) {
   const ScenarioOptions& options = setup.options();
   requireLockstep(options);
   ego_planner_ = setup.makeEgoPlanner();
@@ -113,7 +115,7 @@ ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
     camera_.emplace(options.camera, setup.network());
   selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
                                                  setup.graph(), setup.egoRoute());
-  world_ = std::make_unique<World>(setup);
+  world_ = world ? std::move(world) : std::make_unique<World>(setup);
 }
 
 ClosedLoop::~ClosedLoop() = default;

@@ -43,6 +43,8 @@ class ClosedLoop {
   /// `setup` must outlive the loop. Throws InputError for unknown planners, and for the external
   /// ego and a real_time_factor, which need the node graph.
   explicit ClosedLoop(const SessionSetup& setup);
+  /// The same in a world of its own; nullptr: over SUMO.
+  ClosedLoop(const SessionSetup& setup, std::unique_ptr<World> world);
   ~ClosedLoop();
 
   /// Observers are called in the order added and must outlive the run.
