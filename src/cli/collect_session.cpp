@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "collection/collection_loop.h"
+#include "collection/collection_scenario.h"
 #include "core/file.h"
 #include "core/program.h"
 #include "core/text.h"

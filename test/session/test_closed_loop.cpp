@@ -163,7 +163,9 @@ double secondsUntilErrorAfter(int signal, const std::vector<std::string>& set) {
   const SessionSetup setup(scenarioWith("crossing_left_turn", set));
   auto simulator = setup.makeSimulator();
   Saboteur saboteur(simulator->processId(), signal);
-  ClosedLoop loop(setup, std::make_unique<World>(setup, std::move(simulator)));
+  LoopParts parts = makeParts(setup);
+  parts.world = std::make_unique<World>(setup, std::move(simulator));
+  ClosedLoop loop(setup, std::move(parts));
   Course course;
   loop.addObserver(course);
   loop.addObserver(saboteur);
