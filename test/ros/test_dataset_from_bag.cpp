@@ -20,6 +20,9 @@
 namespace cdiff::ros {
 namespace {
 
+using collection::DatasetOptions;
+using collection::DatasetStatistics;
+
 /// What a session's samples are compared with.
 class Witness : public session::SessionObserver {
  public:
@@ -122,7 +125,7 @@ TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
   ASSERT_GT(statistics.kinds["displaced"], 10u);
   const dynamics::BicycleModel model;
   for (const training::Sample& sample : samples) {
-    schemaOf({}).check(sample);
+    collection::schemaOf({}).check(sample);
     traffic::VehicleState state;
     state.speed = sample.speed;
     for (Eigen::Index t = 0; t < sample.rollout.rows(); ++t) {
