@@ -15,15 +15,14 @@
 #include "cbv/conflict_search.h"
 #include "cbv/held_cbv.h"
 #include "cbv/rejection_reason.h"
-#include "e2e_cdiff/cbv/cbv_selection.h"
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "cbv/vehicle_selector.h"
 #include "map/lane_graph.h"
 
 namespace cdiff::cbv {
 
 /// Not copyable; one per session; called once per tick in order: `update` at decision ticks,
 /// `observe` at all others.
-class CbvSelector {
+class CbvSelector : public VehicleSelector {
  public:
   /// Keeps references: the graph's network and the route must outlive the selector. Throws
   /// InputError for bad options or a negative count.
@@ -33,9 +32,9 @@ class CbvSelector {
   CbvSelector& operator=(const CbvSelector&) = delete;
 
   /// A tick without decision: remembers contacts, so that a release names its reason.
-  void observe(const traffic::TrafficSnapshot& snapshot);
-  /// The selection of this decision. A pure function of the snapshots seen so far.
-  CbvSelection update(const traffic::TrafficSnapshot& snapshot);
+  void observe(const traffic::TrafficSnapshot& snapshot) override;
+  /// A pure function of the snapshots seen so far.
+  CbvSelection update(const traffic::TrafficSnapshot& snapshot) override;
 
  private:
   /// A vehicle with a conflict that may get a slot.

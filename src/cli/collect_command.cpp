@@ -3,25 +3,24 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
 
-#include "cli/collect_bags.h"
-#include "cli/collect_session.h"
 #include "cli/commands.h"
-#include "cli/dataset_page.h"
+#include "collection/dataset_page.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/process_pool.h"
+#include "ros/bag_collection.h"
 #include "suite/suite.h"
 
 namespace cdiff::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using collection::CollectRequest;
 
 constexpr const char* kSessionCommand = "collect_session";
 constexpr const char* kLockedBy = "cdiff collect";
@@ -30,7 +29,7 @@ struct CollectArguments {
   CollectRequest request;
   std::vector<std::string> scenarios;
   std::string suite;  ///< name or folder
-  BagRequest bags;
+  ros::BagRequest bags;
   int seeds = 1;
   int first_seed = 1;
   int jobs = 1;
@@ -91,15 +90,15 @@ std::vector<CollectRequest> planSessions(const CollectArguments& arguments) {
 }
 
 /// Sums up every session whose files are there.
-std::map<std::string, ros::DatasetStatistics> conclude(
-    const CollectArguments& arguments, const std::vector<CollectRequest>& sessions) {
-  std::map<std::string, ros::DatasetStatistics> statistics;
+collection::StatisticsByName conclude(const CollectArguments& arguments,
+                                      const std::vector<CollectRequest>& sessions) {
+  collection::StatisticsByName statistics;
   for (const CollectRequest& request : sessions) {
-    const std::string name = sessionName(resolveCollection(request));
-    const fs::path file = statisticsFile(request, name);
-    if (fs::exists(file)) statistics[name] = readStatistics(file);
+    const std::string name = collection::sessionName(collection::resolveCollection(request));
+    const fs::path file = collection::statisticsFile(request, name);
+    if (fs::exists(file)) statistics[name] = collection::readStatistics(file);
   }
-  describeDataset(arguments.request.results, sumOf(statistics));
+  collection::describeDataset(arguments.request.results, collection::sumOf(statistics));
   return statistics;
 }
 
@@ -126,20 +125,20 @@ void removeHalves(const fs::path& results) {
 
 int convertBags(const CollectArguments& arguments) {
   const core::FolderLock lock(arguments.request.results, kLockedBy);
-  BagRequest request = arguments.bags;
+  ros::BagRequest request = arguments.bags;
   request.results = arguments.request.results;
-  const auto statistics = collectBags(request);
-  describeDataset(request.results, sumOf(statistics));
-  requireSamples(statistics, "bag", "longer bags");
+  const auto statistics = ros::collectBags(request);
+  collection::describeDataset(request.results, collection::sumOf(statistics));
+  collection::requireSamples(statistics, "bag", "longer bags");
   return kPassed;
 }
 
 std::vector<evaluation::ProcessJob> jobsOf(const std::vector<CollectRequest>& sessions) {
   std::vector<evaluation::ProcessJob> jobs;
   for (const CollectRequest& request : sessions) {
-    const std::string name = sessionName(resolveCollection(request));
-    const bool done =
-        fs::exists(shardFile(request, name)) && fs::exists(statisticsFile(request, name));
+    const std::string name = collection::sessionName(collection::resolveCollection(request));
+    const bool done = fs::exists(collection::shardFile(request, name)) &&
+                      fs::exists(collection::statisticsFile(request, name));
     if (!done) jobs.push_back({name, wordsOf(request)});
   }
   std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
@@ -165,7 +164,8 @@ int collect(const CollectArguments& arguments) {
   const int code = stop ? kInterrupted : exitCode(jobs);
   if (!arguments.request.images) return code;
   const auto statistics = conclude(arguments, sessions);
-  if (code == kPassed) requireSamples(statistics, "session", "longer sessions (--duration)");
+  if (code == kPassed)
+    collection::requireSamples(statistics, "session", "longer sessions (--duration)");
   return code;
 }
 
@@ -183,7 +183,7 @@ void addCommonOptions(CLI::App& command, CollectRequest& request) {
 }
 
 /// Bags are converted as they are: what says how to drive is refused beside them.
-void addBagOptions(CLI::App& command, BagRequest& request) {
+void addBagOptions(CLI::App& command, ros::BagRequest& request) {
   CLI::Option* bags =
       command.add_option("--bags", request.bags, "Instead of driving: bags of a vehicle of yours")
           ->delimiter(',');
@@ -226,7 +226,10 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   session->add_option("scenario", request->scenario)->required();
   session->add_option("--seed", request->seed)->required();
   addCommonOptions(*session, *request);
-  session->callback([request, &exit_code] { exit_code = collectSession(*request); });
+  session->callback([request, &exit_code] {
+    ros::collectSession(*request, core::catchStopSignals());
+    exit_code = kPassed;
+  });
 }
 
 }  // namespace cdiff::cli

@@ -26,7 +26,6 @@ void addReportCommand(CLI::App& program, int& exit_code);
 void addSuiteCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.
 void addReplayCommand(CLI::App& program, int& exit_code);
-/// Where the program is built with ROS and the data set library.
 void addCollectCommand(CLI::App& program, int& exit_code);
 
 }  // namespace cdiff::cli

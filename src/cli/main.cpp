@@ -25,8 +25,6 @@ void addCommands(CLI::App& program, int& exit_code) {
   addSuiteCommand(program, exit_code);
 #ifdef E2E_CDIFF_WITH_ROS
   addReplayCommand(program, exit_code);
-#endif
-#ifdef E2E_CDIFF_WITH_COLLECT
   addCollectCommand(program, exit_code);
 #endif
 }

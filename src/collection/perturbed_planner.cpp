@@ -33,11 +33,13 @@ constexpr double kLeastThrottle = 0.3;  // less does nothing (BicycleModel)
 }  // namespace
 
 PerturbedPlanner::PerturbedPlanner(std::unique_ptr<planning::Planner> planner,
-                                   const CollectionOptions& options, std::uint64_t seed)
+                                   const CollectionOptions& options, std::uint64_t seed,
+                                   double decision_period)
     : planner_(std::move(planner)),
       options_(options),
       noise_(seed, "collection_noise"),
-      styles_(seed, "collection_target_speed") {}
+      styles_(seed, "collection_target_speed"),
+      decision_period_(decision_period) {}
 
 PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std::uint32_t count,
                                                 double after) const {
@@ -111,6 +113,8 @@ std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     task.style = styleOf(key);
   }
   std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
+  if (snapshot.time > last_time_ + 1.5 * decision_period_) bursts_.clear();
+  last_time_ = snapshot.time;
   std::map<std::string, Burst> kept;
   perturbed_.clear();
   for (std::size_t i = 0; i < std::min(actions.size(), tasks.size()); ++i) {

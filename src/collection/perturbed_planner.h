@@ -18,11 +18,12 @@ namespace cdiff::collection {
 
 class PerturbedPlanner : public planning::Planner {
  public:
-  /// Draws are keyed by vehicle id and count of its bursts.
+  /// Draws are keyed by vehicle id and count of its bursts. `decision_period` [s] tells whether a
+  /// decision was left out.
   PerturbedPlanner(std::unique_ptr<planning::Planner> planner, const CollectionOptions& options,
-                   std::uint64_t seed);
+                   std::uint64_t seed, double decision_period);
 
-  /// The noise of a vehicle is forgotten when it is not among the tasks.
+  /// The noise of a vehicle that was not among the tasks of the last decision begins anew.
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
@@ -50,6 +51,8 @@ class PerturbedPlanner : public planning::Planner {
   CollectionOptions options_;
   core::RandomStream noise_;
   core::RandomStream styles_;
+  double decision_period_;
+  double last_time_ = 0.0;  ///< of the last call [s]
   std::map<std::string, Burst> bursts_;
   std::set<std::string> perturbed_;
 };

@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "cbv/vehicle_selector.h"
 #include "collection/collection_options.h"
-#include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/map/drivable_area.h"
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "map/lane_graph.h"
 #include "planning/route_follower.h"
 
@@ -24,16 +23,16 @@ namespace cdiff::collection {
 inline constexpr const char* kStoodTooLong = "stood_too_long";
 inline constexpr const char* kLeftRoad = "left_road";
 
-class TrafficDriver {
+class TrafficDriver : public cbv::VehicleSelector {
  public:
   /// References must outlive the object.
   TrafficDriver(const CollectionOptions& options, const map::LaneGraph& graph,
                 const map::DrivableArea& area, std::uint64_t seed);
 
-  /// For ticks between decisions: remembers contacts.
-  void observe(const traffic::TrafficSnapshot& snapshot);
-  /// Who is driven at this decision. The conflict point of an assignment is the end of its route.
-  cbv::CbvSelection update(const traffic::TrafficSnapshot& snapshot);
+  /// Remembers contacts.
+  void observe(const traffic::TrafficSnapshot& snapshot) override;
+  /// The conflict point of an assignment is the end of its route.
+  cbv::CbvSelection update(const traffic::TrafficSnapshot& snapshot) override;
 
  private:
   struct Held {

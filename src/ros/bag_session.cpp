@@ -17,6 +17,7 @@
 namespace cdiff::ros {
 namespace {
 
+using collection::DriveKey;
 using core::InputError;
 
 traffic::CameraImage toImage(const sensor_msgs::Image& message, std::uint64_t tick) {
@@ -39,7 +40,7 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : recording_(file, RecordedImages::kAll) {}
 
-  BagSession read() {
+  collection::DrivenSession read() {
     const session::ScenarioOptions& options = recording_.setup().options();
     session_.name = options.name + "_seed" + std::to_string(options.seed);
     while (const auto snapshot = recording_.next()) take(*snapshot);
@@ -108,12 +109,12 @@ class Reader {
 
   static constexpr double kDecisionPeriod = 0.1;  ///< of a rollout [s]
   RecordedSession recording_;
-  BagSession session_;
+  collection::DrivenSession session_;
 };
 
 }  // namespace
 
-BagSession readBagSession(const std::filesystem::path& file) {
+collection::DrivenSession readBagSession(const std::filesystem::path& file) {
   Reader reader(file);
   try {
     return reader.read();

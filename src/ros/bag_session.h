@@ -1,45 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A recorded session in memory: what the samples are made of.
+/// A recorded session, read from its bag.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/camera_image.h"
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "session/session_setup.h"
+#include "collection/driven_session.h"
 
 namespace cdiff::ros {
 
-/// A stretch during which one vehicle follows one route: vehicle and the tick it was selected at.
-using DriveKey = std::pair<std::string, std::uint64_t>;
-
-struct BagImage {
-  int slot = -1;  ///< -1: the ego
-  traffic::CameraImage image;
-};
-
-struct BagSession {
-  std::string name;  ///< scenario and seed
-  std::unique_ptr<session::SessionSetup> setup;
-  std::vector<traffic::TrafficSnapshot> decisions;          ///< at decision ticks, in order
-  std::map<std::uint64_t, std::map<int, DriveKey>> drives;  ///< by tick, then slot
-  std::map<DriveKey, map::Route> routes;
-  std::set<std::pair<std::string, std::uint64_t>> disturbed;   ///< noise or fault: vehicle, tick
-  std::map<std::string, std::vector<std::uint64_t>> contacts;  ///< ticks by vehicle
-  std::vector<BagImage> images;                                ///< by tick, then slot
-  double seconds = 0.0;                                        ///< simulated
-};
-
 /// Throws InputError naming the file and what is wrong with it.
-BagSession readBagSession(const std::filesystem::path& bag);
+collection::DrivenSession readBagSession(const std::filesystem::path& bag);
 
 }  // namespace cdiff::ros

@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "cv_bridge/cv_bridge.h"
 #include "e2e_cdiff/ControlAction.h"
-#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "nav_msgs/Odometry.h"
 #include "nav_msgs/Path.h"
 #include "ros/bag_reader.h"
@@ -64,7 +64,7 @@ traffic::CameraImage toImage(const cv::Mat& picture, const diffusion::Architectu
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const DrivingBagOptions& topics,
+  Reader(const std::filesystem::path& file, const collection::DriveOptions& topics,
          const diffusion::Architecture& architecture)
       : reader_(file), topics_(topics), architecture_(architecture) {
     require(topics.image, {kImage, kCompressed});
@@ -73,7 +73,7 @@ class Reader {
     if (!topics.path.empty()) require(topics.path, {"nav_msgs/Path"});
   }
 
-  DrivingBag read() {
+  collection::RecordedDrive read() {
     BagMessage message;
     while (reader_.next(message)) take(message);
     if (!reader_.damage().empty()) throw InputError(core::joinText(reader_.damage(), "; "));
@@ -159,44 +159,19 @@ class Reader {
   }
 
   BagReader reader_;
-  const DrivingBagOptions& topics_;
+  const collection::DriveOptions& topics_;
   const diffusion::Architecture& architecture_;
-  DrivingBag bag_;
+  collection::RecordedDrive bag_;
   std::string frame_;        ///< of all positions
   std::string frame_topic_;  ///< that named it
 };
 
 }  // namespace
 
-std::optional<traffic::VehicleState> DrivingBag::stateAt(double time, double largest_gap) const {
-  const auto after = states.lower_bound(time);
-  if (after == states.end()) return std::nullopt;
-  if (after->first == time) return after->second;
-  if (after == states.begin()) return std::nullopt;
-  const auto before = std::prev(after);
-  if (after->first - before->first > largest_gap) return std::nullopt;
-  const double share = (time - before->first) / (after->first - before->first);
-  const traffic::VehicleState& a = before->second;
-  const traffic::VehicleState& b = after->second;
-  traffic::VehicleState state = a;
-  state.position += share * (b.position - a.position);
-  state.elevation += share * (b.elevation - a.elevation);
-  state.heading = core::wrapAngle(a.heading + share * core::angleDifference(b.heading, a.heading));
-  state.speed += share * (b.speed - a.speed);
-  return state;
-}
-
-std::optional<traffic::ControlAction> DrivingBag::controlAt(double time, double largest_gap) const {
-  const auto after = controls.upper_bound(time);
-  if (after == controls.begin()) return std::nullopt;
-  const auto before = std::prev(after);
-  if (time - before->first > largest_gap) return std::nullopt;
-  return before->second;
-}
-
-DrivingBag readDrivingBag(const std::filesystem::path& file, const DrivingBagOptions& topics,
-                          const diffusion::Architecture& architecture) {
-  return Reader(file, topics, architecture).read();
+collection::RecordedDrive readDrivingBag(const std::filesystem::path& file,
+                                         const collection::DriveOptions& options,
+                                         const diffusion::Architecture& architecture) {
+  return Reader(file, options, architecture).read();
 }
 
 }  // namespace cdiff::ros

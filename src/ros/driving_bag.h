@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A foreign bag of one vehicle in memory, by time.
+/// A drive of one vehicle, read from a bag that somebody else recorded, whatever its topics are
+/// called.
 #pragma once
 
-#include <map>
-#include <optional>
-#include <string>
+#include <filesystem>
 
-#include "e2e_cdiff/geometry/polyline.h"
-#include "e2e_cdiff/traffic/vehicle.h"
-#include "ros/dataset_from_driving_bag.h"
+#include "collection/recorded_drive.h"
+#include "diffusion/architecture.h"
 
 namespace cdiff::ros {
 
-struct DrivingBag {
-  std::map<double, traffic::CameraImage> images;  ///< by stamp [s], of the architecture's size
-  std::map<double, traffic::VehicleState> states;
-  std::map<double, traffic::ControlAction> controls;
-  std::map<double, geometry::Polyline> paths;
-
-  /// State between the two nearest around `time`; nullopt outside, or where they lie farther apart
-  /// than `largest_gap`.
-  std::optional<traffic::VehicleState> stateAt(double time, double largest_gap) const;
-  /// The last control up to `time`, at most `largest_gap` old.
-  std::optional<traffic::ControlAction> controlAt(double time, double largest_gap) const;
-};
-
-/// Throws InputError as samplesFromDrivingBag does, without the file's name.
-DrivingBag readDrivingBag(const std::filesystem::path& file, const DrivingBagOptions& topics,
-                          const diffusion::Architecture& architecture);
+/// Images are cut to the aspect of the architecture's and made as small; they should see some 90
+/// degrees. Stamps are those of the headers. Throws InputError, without the file's name, for: a
+/// topic that the bag lacks (and what it has), one of another type, a message that is broken or has
+/// no orientation, a path in another frame, an encoding that is no colour.
+collection::RecordedDrive readDrivingBag(const std::filesystem::path& file,
+                                         const collection::DriveOptions& options,
+                                         const diffusion::Architecture& architecture);
 
 }  // namespace cdiff::ros

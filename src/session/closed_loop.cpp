@@ -104,16 +104,24 @@ void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask
   }
 }
 
-ClosedLoop::ClosedLoop(const SessionSetup& setup) : setup_(setup) {
+LoopParts makeParts(const SessionSetup& setup) {
   const ScenarioOptions& options = setup.options();
-  requireLockstep(options);
-  ego_planner_ = setup.makeEgoPlanner();
-  cbv_planner_ = setup.makeCbvPlanner();
-  if (ego_planner_->needsImages() || cbv_planner_->needsImages())
-    camera_.emplace(options.camera, setup.network());
-  selector_ = std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
-                                                 setup.graph(), setup.egoRoute());
-  world_ = std::make_unique<World>(setup);
+  LoopParts parts;
+  parts.ego_planner = setup.makeEgoPlanner();
+  parts.cbv_planner = setup.makeCbvPlanner();
+  if (parts.ego_planner->needsImages() || parts.cbv_planner->needsImages())
+    parts.camera.emplace(options.camera, setup.network());
+  parts.selector = std::make_unique<cbv::CbvSelector>(
+      options.cbv, static_cast<int>(options.max_cbv), setup.graph(), setup.egoRoute());
+  return parts;
+}
+
+ClosedLoop::ClosedLoop(const SessionSetup& setup) : ClosedLoop(setup, makeParts(setup)) {}
+
+ClosedLoop::ClosedLoop(const SessionSetup& setup, LoopParts parts)
+    : setup_(setup), parts_(std::move(parts)) {
+  requireLockstep(setup.options());
+  if (parts_.world == nullptr) parts_.world = std::make_unique<World>(setup);
 }
 
 ClosedLoop::~ClosedLoop() = default;
@@ -125,47 +133,59 @@ struct ClosedLoop::Decision {
   std::vector<PlannerLatency> latencies;
 };
 
-void ClosedLoop::render(const std::vector<PlanningTask>& tasks, std::vector<SlotImage>& images) {
-  for (const PlanningTask& task : tasks)
-    images.push_back({task.slot, camera_->render(world_->snapshot(), *task.vehicle)});
+void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& decision) {
+  decision.images.push_back({slot, parts_.camera->render(world().snapshot(), vehicle)});
 }
 
 void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
                      std::vector<PlanningTask> tasks, Decision& decision) {
   if (tasks.empty()) return;
   if (planner.needsImages()) {
-    render(tasks, decision.images);
+    for (const PlanningTask& task : tasks) render(*task.vehicle, task.slot, decision);
     attachImages(decision.images, tasks);
   }
   PlannerLatency latency{name, 0.0};
   std::string fault;
   std::set<std::string> recorded;  // vehicles may share a cause
   for (PlannedAction& action :
-       planTimed(planner, world_->snapshot(), tasks, latency.milliseconds, fault)) {
+       planTimed(planner, world().snapshot(), tasks, latency.milliseconds, fault)) {
+    if (!fault.empty()) action.fault = fault;
     if (!action.fault.empty() && recorded.insert(action.fault).second)
-      world_->recordFault(name, action.fault);
+      parts_.world->recordFault(name, action.fault);
     decision.actions.push_back(std::move(action));
   }
-  if (!fault.empty()) world_->recordFault(name, fault);
   decision.latencies.push_back(latency);
 }
 
+void ClosedLoop::renderWishes(Decision& decision) {
+  const traffic::TrafficSnapshot& snapshot = world().snapshot();
+  for (const PlannedAction& action : decision.actions) {
+    const traffic::Vehicle& vehicle = *snapshot.find(action.vehicle_id);
+    const bool there =
+        std::any_of(decision.images.begin(), decision.images.end(),
+                    [&](const SlotImage& image) { return image.slot == action.slot; });
+    if (!there && parts_.image_wish(snapshot, vehicle, action.slot))
+      render(vehicle, action.slot, decision);
+  }
+}
+
 ClosedLoop::Decision ClosedLoop::decide() {
-  const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+  const traffic::TrafficSnapshot& snapshot = world().snapshot();
   const ScenarioOptions& options = setup_.options();
   Decision decision;
-  decision.selection = selector_->update(snapshot);
-  ask(*ego_planner_, "ego:" + options.ego_planner,
+  decision.selection = parts_.selector->update(snapshot);
+  ask(*parts_.ego_planner, "ego:" + options.ego_planner,
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
-  ask(*cbv_planner_, "cbv:" + options.cbv_planner,
+  ask(*parts_.cbv_planner, "cbv:" + options.cbv_planner,
       cbvTasks(snapshot, decision.selection, options.target_speed), decision);
+  if (parts_.image_wish) renderWishes(decision);
   return decision;
 }
 
 SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
   const Clock::time_point begin = Clock::now();
   while (true) {
-    const traffic::TrafficSnapshot& snapshot = world_->snapshot();
+    const traffic::TrafficSnapshot& snapshot = parts_.world->snapshot();
     TickRecord record;
     record.snapshot = &snapshot;
     Decision decision;
@@ -173,7 +193,8 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       try {
         decision = decide();
       } catch (const std::exception& error) {
-        world_->end(SessionStatus::kError, {snapshot.tick, "cbv_identification", error.what()});
+        parts_.world->end(SessionStatus::kError,
+                          {snapshot.tick, "cbv_identification", error.what()});
         continue;
       }
       record.selection = &decision.selection;
@@ -181,16 +202,16 @@ SessionStatus ClosedLoop::run(const std::atomic<bool>& stop) {
       record.images = &decision.images;
       record.latencies = decision.latencies;
     } else {
-      selector_->observe(snapshot);
+      parts_.selector->observe(snapshot);
     }
     for (SessionObserver* observer : observers_) observer->observe(record);
     if (snapshot.status != SessionStatus::kRunning) return snapshot.status;
     if (stop) {
-      world_->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
+      parts_.world->end(SessionStatus::kInterrupted, {snapshot.tick, "user", "interrupted"});
       continue;
     }
     pace(begin, snapshot.time, setup_.options().at_most, stop);
-    world_->advance(record.selection, decision.actions);
+    parts_.world->advance(record.selection, decision.actions);
   }
 }
 

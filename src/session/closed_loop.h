@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The decision cycle of a session in one process, without ROS: it defines what the node graph
-/// does. At each decision tick: CBV identification, planners of ego and CBVs on the same snapshot,
-/// then the world advances.
+/// does. At each decision tick: selection of the vehicles to drive, planners of ego and CBVs on the
+/// same snapshot, then the world advances.
 #pragma once
 
 #include <atomic>
@@ -38,31 +38,50 @@ std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
                                                const std::vector<planning::PlanningTask>& tasks,
                                                double& milliseconds, std::string& fault);
 
+/// Whether the record of a decision also shows what the vehicle of a slot (-1: the ego) sees, whose
+/// planner does not ask for it; asked once for each action of a decision, in order.
+using ImageWish = std::function<bool(const traffic::TrafficSnapshot& snapshot,
+                                     const traffic::Vehicle& vehicle, int slot)>;
+
+/// What drives a session.
+struct LoopParts {
+  std::unique_ptr<World> world;  ///< nullptr: over SUMO, as the setup starts it
+  std::unique_ptr<cbv::VehicleSelector> selector;
+  std::unique_ptr<planning::Planner> ego_planner;
+  std::unique_ptr<planning::Planner> cbv_planner;  ///< of every vehicle that is selected
+  std::optional<rendering::FrontCamera> camera;    ///< for planners that see and for `image_wish`
+  ImageWish image_wish;                            ///< empty: no other images
+};
+
+/// The parts that the scenario names, without a world: CBV identification, its planners, a camera
+/// where one of them sees. Throws InputError for unknown planners and the external ego, which needs
+/// the node graph.
+LoopParts makeParts(const SessionSetup& setup);
+
 class ClosedLoop {
  public:
-  /// `setup` must outlive the loop. Throws InputError for unknown planners, and for the external
-  /// ego and a real_time_factor, which need the node graph.
+  /// With makeParts(setup). `setup` must outlive the loop. Throws InputError as makeParts does, and
+  /// for a real_time_factor, which needs the node graph.
   explicit ClosedLoop(const SessionSetup& setup);
+  ClosedLoop(const SessionSetup& setup, LoopParts parts);
   ~ClosedLoop();
 
   /// Observers are called in the order added and must outlive the run.
   void addObserver(SessionObserver& observer) { observers_.push_back(&observer); }
   /// Runs to the end; `stop` (from a signal handler) ends the session as interrupted.
   traffic::SessionStatus run(const std::atomic<bool>& stop);
-  const World& world() const { return *world_; }
+  const World& world() const { return *parts_.world; }
 
  private:
   struct Decision;
   Decision decide();
   void ask(planning::Planner& planner, const std::string& name,
            std::vector<planning::PlanningTask> tasks, Decision& decision);
-  void render(const std::vector<planning::PlanningTask>& tasks, std::vector<SlotImage>& images);
+  void render(const traffic::Vehicle& vehicle, int slot, Decision& decision);
+  void renderWishes(Decision& decision);
+
   const SessionSetup& setup_;
-  std::unique_ptr<World> world_;
-  std::unique_ptr<cbv::CbvSelector> selector_;
-  std::unique_ptr<planning::Planner> ego_planner_;
-  std::unique_ptr<planning::Planner> cbv_planner_;
-  std::optional<rendering::FrontCamera> camera_;  ///< where a planner sees
+  LoopParts parts_;
   std::vector<SessionObserver*> observers_;
 };
 

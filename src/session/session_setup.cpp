@@ -53,6 +53,19 @@ std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
                                planningContext());
 }
 
+std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {
+  simulation::SumoSession session;
+  session.network_file = import_.file;
+  session.network_source = import_.source;
+  if (options_.demand != "generated" && options_.demand != "none")
+    session.demand_file = options_.demand;
+  session.begin_time = options_.begin_time;
+  session.simulation_step = options_.simulation_step;
+  session.seed = static_cast<std::uint64_t>(options_.seed);
+  session.lights_green = options_.lights == "green";
+  return std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network_);
+}
+
 metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   metrics::SessionMetricsOptions options;
   options.simulation_step = options_.simulation_step;

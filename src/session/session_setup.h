@@ -38,6 +38,9 @@ class SessionSetup {
   /// The planners that the scenario names; they refer to this setup. Throw InputError.
   std::unique_ptr<planning::Planner> makeEgoPlanner() const;
   std::unique_ptr<planning::Planner> makeCbvPlanner() const;
+  /// SUMO with the network, the demand file and the lights of the scenario. Throws InputError and
+  /// SimulatorError as it does.
+  std::unique_ptr<simulation::SumoSimulator> makeSimulator() const;
   /// What the session is measured by, in every deployment.
   metrics::SessionMetricsOptions metricsOptions() const;
   /// Ticks from one decision to the next.

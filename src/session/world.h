@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The world of a session: SUMO's traffic, the vehicles that we drive through our own dynamics,
-/// hand-over between the two, contacts, and the protocol's end rules. Advances tick by tick;
-/// decides nothing.
+/// The world of a session: the simulator's traffic, the vehicles that we drive through our own
+/// dynamics, hand-over between the two, contacts, and the protocol's end rules. Advances tick by
+/// tick; decides nothing.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "e2e_cdiff/cbv/cbv_selection.h"
-#include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "session/background_traffic.h"
+#include "session/driven_vehicles.h"
 #include "session/session_setup.h"
-#include "simulation/demand_generator.h"
 
 namespace cdiff::session {
 
@@ -25,10 +23,11 @@ inline constexpr const char* kEgoId = "ego";
 
 class World {
  public:
-  /// Starts SUMO, drives the warm-up and places the ego: afterwards `snapshot()` is tick 0. `setup`
-  /// must outlive the world.
+  /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterwards
+  /// `snapshot()` is tick 0. `setup` must outlive the world.
   explicit World(const SessionSetup& setup);
-  ~World();
+  /// The same in another simulator, which knows the setup's network.
+  World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimulator> simulator);
 
   /// The world at the present tick.
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
@@ -43,7 +42,8 @@ class World {
   /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
   /// present one with this status and fault.
   void end(traffic::SessionStatus status, const traffic::Fault& fault);
-  /// Where a vehicle that we take over begins to be driven, given its id and where SUMO had it.
+  /// Where a vehicle that we take over begins to be driven, given its id and where the simulator
+  /// had it.
   using TakeOverDisturbance =
       std::function<traffic::VehicleState(const std::string&, const traffic::VehicleState&)>;
   /// For data collection: shifts every vehicle as it is taken over. Without it they begin where
@@ -60,40 +60,28 @@ class World {
   void withholdBlocked(bool withheld) { monitor_.withholdBlocked(withheld); }
 
   /// Version text of the simulator.
-  std::string simulatorVersion() const;
+  std::string simulatorVersion() const { return simulator_->version(); }
   double routeCompletionPercent() const { return monitor_.routeCompletionPercent(); }
-  int simulatorProcessId() const;
 
  private:
-  struct Driven;
-  void warmUp();
-  void keepDensity(bool warm_up);
-  bool isOurs(const std::string& id) const;
-  std::vector<traffic::Vehicle> presentTraffic(const Eigen::Vector2d& ego_position);
   void placeEgo();
+  void removeContacted(const std::vector<std::string>& removed);
   void applySelection(const cbv::CbvSelection& selection, const std::vector<std::string>& removed);
   void takeOver(const cbv::CbvAssignment& assignment);
   void release(const std::string& id);
-  void applyActions(const std::vector<planning::PlannedAction>& actions);
-  void moveDriven();
   void stepSimulator();
-  void removeContacted(const std::vector<std::string>& removed);
-  traffic::Vehicle snapshotOf(const Driven& driven) const;
   void collectVehicles(const std::vector<traffic::Vehicle>& before);
   void takeSnapshot();
-  void checkContact(const traffic::Vehicle& ours, const traffic::Vehicle& other);
-  void findContacts();
 
   const SessionSetup& setup_;
-  dynamics::BicycleModel dynamics_;
-  std::unique_ptr<simulation::SumoSimulator> simulator_;
-  std::unique_ptr<simulation::DemandGenerator> demand_;
+  std::unique_ptr<simulation::TrafficSimulator> simulator_;
+  BackgroundTraffic background_;
+  DrivenVehicles driven_;
   ProtocolMonitor monitor_;
   traffic::TrafficSnapshot snapshot_;
-  std::vector<std::unique_ptr<Driven>> driven_;  ///< ego first, then CBVs by slot
   std::vector<traffic::Fault> pending_faults_;
-  std::vector<std::string> to_remove_;  ///< in contact at the present tick
-  TakeOverDisturbance disturbance_;     ///< may be empty
+  std::vector<std::string> leaving_;  ///< in contact at the present tick
+  TakeOverDisturbance disturbance_;   ///< may be empty
 };
 
 }  // namespace cdiff::session

@@ -49,6 +49,9 @@ class SumoSimulator : public TrafficSimulator {
                  const DrivenVehicle& start) override;
   void takeOver(const std::string& id) override;
   bool release(const DrivenVehicle& vehicle) override;
+  bool addBackground(const std::string& id, const std::vector<std::string>& edges,
+                     double depart_position, int depart_lane, double depart_speed,
+                     const traffic::VehicleDimensions& dimensions) override;
   void remove(const std::string& id) override;
   void step(const std::vector<DrivenVehicle>& driven) override;
   const std::vector<SimulatedVehicle>& vehicles() const override;
@@ -57,12 +60,6 @@ class SumoSimulator : public TrafficSimulator {
 
   /// Process id of SUMO, for tests of its loss.
   int processId() const;
-  /// Adds a background vehicle that SUMO drives along edges, departing now; used by generated
-  /// demand. Answers false when SUMO refuses it; one that finds no room in the next step is
-  /// dropped.
-  bool addBackground(const std::string& id, const std::vector<std::string>& edges,
-                     double depart_position, int depart_lane, double depart_speed,
-                     const traffic::VehicleDimensions& dimensions);
 
  private:
   class Connection;

@@ -16,19 +16,24 @@ namespace cdiff::simulation {
 struct DrivenVehicle {
   std::string id;
   traffic::VehicleState state;  ///< at the end of the step
-  const map::Route* route =
-      nullptr;  ///< way it follows, so that its SUMO route reaches beyond the next junction
+  /// Way it follows, so that its SUMO route reaches beyond the next junction.
+  const map::Route* route = nullptr;
 };
 
 /// A vehicle as the simulator reports it.
 struct SimulatedVehicle {
   std::string id;
-  traffic::VehicleState
-      state;  ///< of vehicles that SUMO drives; a driven vehicle's is only SUMO's echo
+  traffic::VehicleState state;  ///< of a vehicle that we drive only SUMO's echo
   traffic::VehicleDimensions dimensions;
   double acceleration = 0.0;  ///< [m/s^2]
   std::string lane_id;        ///< empty off the road
 };
+
+/// The vehicle with this id among vehicles in order of their ids, or nullptr.
+const SimulatedVehicle* findVehicle(const std::vector<SimulatedVehicle>& vehicles,
+                                    const std::string& id);
+/// A background vehicle of a snapshot; the simulator knows no yaw rate.
+traffic::Vehicle asBackground(const SimulatedVehicle& simulated);
 
 /// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator
 /// died, froze or refused.
@@ -44,6 +49,12 @@ class TrafficSimulator {
   /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed
   /// where it is on no lane of its direction (answers false).
   virtual bool release(const DrivenVehicle& vehicle) = 0;
+  /// Adds a background vehicle that the simulator drives along `edges`, departing now with its
+  /// front bumper at `depart_position` [m] of the first edge and `depart_speed` [m/s]. Answers
+  /// false when it is refused; one that finds no room in the next step is dropped.
+  virtual bool addBackground(const std::string& id, const std::vector<std::string>& edges,
+                             double depart_position, int depart_lane, double depart_speed,
+                             const traffic::VehicleDimensions& dimensions) = 0;
   /// Takes a vehicle out of the simulation (contact).
   virtual void remove(const std::string& id) = 0;
 

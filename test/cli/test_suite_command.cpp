@@ -39,14 +39,14 @@ TEST_F(SuiteCommand, UnknownSuitesAreNamedBeforeAnythingRuns) {
   std::ofstream(path("matrix.yaml")) << "suite: tets\n";
   EXPECT_EQ(cdiff({"evaluate", path("matrix.yaml"), "--results", path("runs")}), 3);
   expectOutput("nearest shipped one is 'test'");
-#ifdef E2E_CDIFF_WITH_COLLECT
+#ifdef E2E_CDIFF_WITH_ROS
   EXPECT_EQ(cdiff({"collect", "--suite", "tets", "--results", path("data")}), 3);
   expectOutput("nearest shipped one is 'test'");
   EXPECT_FALSE(fs::exists(path("data")));
 #endif
 }
 
-#ifdef E2E_CDIFF_WITH_COLLECT
+#ifdef E2E_CDIFF_WITH_ROS
 /// The merge route's traffic is high: 16 vehicles.
 TEST_F(SuiteCommand, CollectDrivesTheRoutesWithTheirTraffic) {
   ASSERT_EQ(cdiff({"collect", "--suite", "test", "--results", path("data"), "--duration", "5",

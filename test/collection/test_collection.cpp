@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collection/collection_loop.h"
-#include "collection/random_route.h"
+#include "collection/collection_scenario.h"
+#include "collection/image_schedule.h"
+#include "collection/perturbed_planner.h"
+#include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
@@ -136,7 +138,7 @@ struct Noise {
 Noise noiseOf(std::uint64_t seed, double speed, int decisions, double stall_share = 0.0) {
   CollectionOptions options;
   options.noise.stall_share = stall_share;
-  PerturbedPlanner planner(std::make_unique<Steady>(), options, seed);
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, seed, 0.1);
   Noise noise;
   for (int i = 0; i < decisions; ++i) {
     const auto snapshot = snapshotWith(0.1 * i, {test::vehicle("b", {0.0, 0.0, 0.0, speed})});
@@ -166,7 +168,7 @@ TEST(PerturbedPlanner, MarksExactlyTheActionsThatItChanges) {
 TEST(PerturbedPlanner, AStallBrakesToItsEndEvenWhereTheVehicleStands) {
   CollectionOptions options;
   options.noise.stall_share = 1.0;
-  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1);
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1, 0.1);
   double speed = 8.0;
   std::vector<int> stops = {0};  // decisions each
   for (int i = 0; i < 3000; ++i) {
@@ -192,7 +194,7 @@ TEST(PerturbedPlanner, AStallThatFindsAStandingVehicleIsLeftOut) {
   options.noise.stall_share = 1.0;
   options.noise.interval = 5.0;
   options.noise.stall_minimum_time = options.noise.stall_maximum_time = 60.0;
-  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1);
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1, 0.1);
   int marked = 0;
   for (int i = 0; i <= 100; ++i) {
     // Several stalls would have begun while it stands; they are over when it moves.
@@ -219,10 +221,58 @@ TEST(PerturbedPlanner, IsDeterministicAndLeavesStandingVehiclesAlone) {
   EXPECT_EQ(std::count(standing.marks.begin(), standing.marks.end(), true), 0);
 }
 
+// One of two drives on without a break, the other is not driven from 1 s to 60 s, and nobody asks
+// in between: it begins as a vehicle does that was never driven.
+TEST(PerturbedPlanner, NoiseBeginsAnewAfterDecisionsWithoutTheVehicle) {
+  PerturbedPlanner planner(std::make_unique<Steady>(), {}, 1, 0.1);
+  PerturbedPlanner fresh(std::make_unique<Steady>(), {}, 1, 0.1);
+  const auto plan = [](PerturbedPlanner& with, int decision) {
+    const auto snapshot = snapshotWith(0.1 * decision, {test::vehicle("b", {0.0, 0.0, 0.0, 8.0})});
+    return with.plan(snapshot, {{0, &snapshot.vehicles[1], nullptr, 8.0}}).front().action;
+  };
+  for (int i = 0; i < 10; ++i) plan(planner, i);
+  int noisy = 0;
+  for (int i = 600; i < 1200; ++i) {
+    EXPECT_EQ(plan(planner, i), plan(fresh, i)) << i;
+    noisy += !fresh.perturbed().empty();
+  }
+  EXPECT_GT(noisy, 0);
+}
+
+// Every fifth decision, one slot after the other: decision + slot + 1 is a multiple of 5.
+TEST(ImageSchedule, TakesTurnsAndLooksAfterDisturbances) {
+  traffic::Vehicle driven = test::vehicle("a", {});
+  driven.applied_action = traffic::ControlAction();
+  const auto turns = [&](int slot, std::int64_t noisy_at) {
+    ImageSchedule schedule(5);
+    std::vector<std::int64_t> due;
+    for (std::int64_t i = 0; i < 12; ++i) {
+      if (schedule.due(driven, slot, i, i == noisy_at)) due.push_back(i);
+    }
+    return due;
+  };
+  using Turns = std::vector<std::int64_t>;
+  EXPECT_EQ(turns(-1, -1), (Turns{0, 5, 10}));
+  EXPECT_EQ(turns(0, -1), (Turns{4, 9}));
+  EXPECT_EQ(turns(1, -1), (Turns{3, 8}));
+  // One and four decisions after the noise of decision 5.
+  EXPECT_EQ(turns(0, 5), (Turns{4, 6, 9}));
+  EXPECT_EQ(turns(1, 5), (Turns{3, 6, 8, 9}));
+}
+
+TEST(ImageSchedule, TakesNoneAtTheTakeOverAndOneAfterIt) {
+  traffic::Vehicle vehicle = test::vehicle("a", {});
+  ImageSchedule schedule(100);
+  EXPECT_FALSE(schedule.due(vehicle, 0, 99, false)) << "its turn, but nothing drives it yet";
+  vehicle.applied_action = traffic::ControlAction();
+  EXPECT_TRUE(schedule.due(vehicle, 0, 100, false));
+  EXPECT_FALSE(schedule.due(vehicle, 0, 101, false));
+}
+
 /// What two vehicles are asked in two decisions.
 std::vector<planning::PlanningTask> askedWith(const CollectionOptions& options) {
   std::vector<planning::PlanningTask> asked;
-  PerturbedPlanner planner(std::make_unique<Steady>(&asked), options, 1);
+  PerturbedPlanner planner(std::make_unique<Steady>(&asked), options, 1, 0.1);
   const auto snapshot = snapshotWith(0.0, {test::vehicle("a", {}), test::vehicle("b", {})});
   for (int i = 0; i < 2; ++i) {
     planner.plan(snapshot, {{0, &snapshot.vehicles[1], nullptr, 8.0},
@@ -279,6 +329,16 @@ TEST(CollectionOptions, ContradictionsAreInputErrors) {
   options = {};
   options.minimum_acceleration = 4.0;
   EXPECT_THROW(options.validate(), core::InputError);
+}
+
+TEST(CollectionScenario, TheExpertDrivesInPlaceOfPlannersThatSee) {
+  session::ScenarioOptions scenario;
+  scenario.ego_planner = "two_stage_pid";
+  scenario.cbv_planner = "diffusion";
+  const session::ScenarioOptions collected = collectionScenario(scenario, {});
+  ASSERT_FALSE(planners::seesImages(session::ScenarioOptions().ego_planner));
+  EXPECT_EQ(collected.cbv_planner, session::ScenarioOptions().ego_planner);
+  EXPECT_EQ(collected.ego_planner, session::ScenarioOptions().ego_planner);
 }
 
 TEST(CollectionScenario, EndsByTheDurationUnderEveryProtocol) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "collection/collection_loop.h"
+#include "collection/collection_scenario.h"
 #include "core/file.h"
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -18,6 +19,9 @@
 
 namespace cdiff::ros {
 namespace {
+
+using collection::DatasetOptions;
+using collection::DatasetStatistics;
 
 /// What a session's samples are compared with.
 class Witness : public session::SessionObserver {
@@ -121,7 +125,7 @@ TEST_F(DatasetFromBag, RolloutsAreWhatTheDynamicsDoesWithTheirActions) {
   ASSERT_GT(statistics.kinds["displaced"], 10u);
   const dynamics::BicycleModel model;
   for (const learning::DrivingSample& sample : samples) {
-    schemaOf({}).check(sample);
+    collection::schemaOf({}).check(sample);
     traffic::VehicleState state;
     state.speed = sample.speed;
     for (Eigen::Index t = 0; t < sample.rollout.rows(); ++t) {

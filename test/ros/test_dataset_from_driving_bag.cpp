@@ -9,7 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "nav_msgs/Odometry.h"
 #include "nav_msgs/Path.h"
-#include "ros/dataset_from_driving_bag.h"
+#include "ros/dataset_from_bag.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Image.h"
 #include "std_msgs/String.h"
@@ -93,8 +93,8 @@ class DrivingBagTest : public testing::Test {
 
   test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "drive.bag";
-  DrivingBagOptions topics_;
-  DatasetStatistics statistics_;
+  collection::DriveOptions topics_;
+  collection::DatasetStatistics statistics_;
 };
 
 TEST_F(DrivingBagTest, SamplesAreTheDriveInTheVehiclesFrame) {
@@ -104,7 +104,7 @@ TEST_F(DrivingBagTest, SamplesAreTheDriveInTheVehiclesFrame) {
   ASSERT_EQ(all.size(), 14U);
   EXPECT_EQ(statistics_.samples, 14U);
   for (const learning::DrivingSample& sample : all) {
-    schemaOf({}).check(sample);
+    collection::schemaOf({}).check(sample);
     // With a step a row and the heading turning: never behind where it was.
     EXPECT_NEAR(sample.rollout(0, traffic::kRolloutX), 0.1 * sample.speed, 0.1);
     EXPECT_NEAR(sample.rollout(0, traffic::kRolloutY), 0.0, 0.1);

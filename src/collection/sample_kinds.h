@@ -3,11 +3,12 @@
 /// What happens in a sample, for the statistics and the sample's own labels.
 #pragma once
 
+#include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/angle.h"
-#include "ros/dataset_from_bag.h"
 #include "session/session_setup.h"
+#include "learning/driving_sample.h"
 
-namespace cdiff::ros {
+namespace cdiff::collection {
 
 /// What surrounds the vehicle of a sample at planning time.
 struct SampleSurroundings {
@@ -42,4 +43,4 @@ SampleKinds kindsOf(const learning::DrivingSample& sample);
 void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
            DatasetStatistics& statistics);
 
-}  // namespace cdiff::ros
+}  // namespace cdiff::collection

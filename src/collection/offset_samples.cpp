@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "ros/offset_samples.h"
+#include "collection/offset_samples.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 #include "planners/pdm_lite/lateral_controller.h"
 #include "planning/route_follower.h"
 
-namespace cdiff::ros {
+namespace cdiff::collection {
 
 OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options)
     : setup_(setup),
@@ -78,4 +78,4 @@ std::optional<DisplacedSample> OffsetSamples::displace(
   return found;
 }
 
-}  // namespace cdiff::ros
+}  // namespace cdiff::collection

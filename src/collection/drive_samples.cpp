@@ -1,37 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "ros/dataset_from_driving_bag.h"
+#include "collection/drive_samples.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "collection/sample_kinds.h"
 #include "diffusion/route_tokens.h"
 #include "dynamics/action_inference.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "ros/driving_bag.h"
-#include "ros/sample_kinds.h"
 
-namespace cdiff::ros {
+namespace cdiff::collection {
 namespace {
 
 using core::InputError;
 
 constexpr double kLeastPath = 0.5;  // [m] less is no way
-constexpr double kPart = 60.0;      // [s] of a bag that count as one session
+constexpr double kPart = 60.0;      // [s] of a drive that count as one session
 constexpr double kReversing = 0.1;  // [m/s] backwards that is more than noise at standstill
 
-class DrivingSamples {
+class DriveSamples {
  public:
-  DrivingSamples(const DrivingBag& bag, const DrivingBagOptions& topics,
-                 const DatasetOptions& options, std::string name)
-      : bag_(bag), topics_(topics), options_(options), name_(std::move(name)) {}
+  DriveSamples(const RecordedDrive& drive, const DriveOptions& drive_options,
+               const DatasetOptions& options, std::string name)
+      : drive_(drive), drive_options_(drive_options), options_(options), name_(std::move(name)) {}
 
   std::vector<learning::DrivingSample> make(DatasetStatistics& statistics) const {
     std::vector<learning::DrivingSample> samples;
     double next = 0.0;
-    for (const auto& [time, image] : bag_.images) {
+    for (const auto& [time, image] : drive_.images) {
       if (!samples.empty() && time < next) continue;
       ++statistics.images;
       std::optional<learning::DrivingSample> sample = sampleAt(time);
@@ -40,7 +39,7 @@ class DrivingSamples {
         continue;
       }
       stopAtZero(*sample);
-      next = time + topics_.period - 1e-6;
+      next = time + drive_options_.period - 1e-6;
       sample->image = image;
       sample->image.tick = sample->tick;
       countUp(*sample, statistics);
@@ -62,11 +61,11 @@ class DrivingSamples {
   }
 
   std::optional<learning::DrivingSample> sampleAt(double time) const {
-    const auto start = bag_.stateAt(time, topics_.largest_gap);
+    const auto start = drive_.stateAt(time, drive_options_.largest_gap);
     if (!start) return std::nullopt;
     learning::DrivingSample sample;
     sample.speed = start->speed;  // below 0 until make() has looked at it
-    const double since = time - bag_.images.begin()->first;
+    const double since = time - drive_.images.begin()->first;
     sample.session = core::hashText(name_ + "_" + std::to_string(static_cast<int>(since / kPart)));
     sample.vehicle = name_;
     sample.tick = static_cast<std::uint64_t>(std::llround(since / (0.5 * traffic::kRolloutStep)));
@@ -84,7 +83,7 @@ class DrivingSamples {
     double heading = 0.0;
     for (Eigen::Index t = 0; t < rollout.rows(); ++t) {
       const double begin = time + traffic::kRolloutStep * static_cast<double>(t);
-      const auto state = bag_.stateAt(begin + traffic::kRolloutStep, topics_.largest_gap);
+      const auto state = drive_.stateAt(begin + traffic::kRolloutStep, drive_options_.largest_gap);
       if (!state) return false;
       const double turn = core::angleDifference(state->heading, before.heading);
       const auto action =
@@ -101,8 +100,8 @@ class DrivingSamples {
 
   std::optional<traffic::ControlAction> actionAt(double time,
                                                  const dynamics::ObservedMotion& motion) const {
-    if (topics_.control.empty()) return dynamics::inferAction(model_, motion);
-    return bag_.controlAt(time, topics_.largest_gap);
+    if (drive_options_.control.empty()) return dynamics::inferAction(model_, motion);
+    return drive_.controlAt(time, drive_options_.largest_gap);
   }
 
   /// Along the path given last, or along the way that is driven from `time` on.
@@ -111,9 +110,9 @@ class DrivingSamples {
       const double arc_length = path.project(start.position).arc_length;
       return diffusion::routeTokens(options_.architecture, path, arc_length, start.pose());
     };
-    if (topics_.path.empty()) return tokens(wayFrom(time, start));
-    const auto after = bag_.paths.upper_bound(time);
-    if (after == bag_.paths.begin()) return std::nullopt;
+    if (drive_options_.path.empty()) return tokens(wayFrom(time, start));
+    const auto after = drive_.paths.upper_bound(time);
+    if (after == drive_.paths.begin()) return std::nullopt;
     return tokens(std::prev(after)->second);
   }
 
@@ -125,8 +124,8 @@ class DrivingSamples {
                           options_.architecture.route_spacing;
     std::vector<Eigen::Vector3d> points = {point(start)};
     double driven = 0.0;
-    for (auto state = bag_.states.upper_bound(time); state != bag_.states.end() && driven < length;
-         ++state) {
+    for (auto state = drive_.states.upper_bound(time);
+         state != drive_.states.end() && driven < length; ++state) {
       if (state->second.speed < -kReversing) break;
       const double step = (point(state->second) - points.back()).head<2>().norm();
       if (step < kLeastPath) continue;
@@ -148,8 +147,8 @@ class DrivingSamples {
     ++statistics.samples;
   }
 
-  const DrivingBag& bag_;
-  const DrivingBagOptions& topics_;
+  const RecordedDrive& drive_;
+  const DriveOptions& drive_options_;
   const DatasetOptions& options_;
   std::string name_;
   dynamics::BicycleModel model_;
@@ -157,45 +156,19 @@ class DrivingSamples {
 
 }  // namespace
 
-void DrivingBagOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.text({"image", "", "Topic of the front camera's images."}, image, {});
-  visitor.text({"odometry", "", "Topic of the vehicle's nav_msgs/Odometry."}, odometry, {});
-  visitor.text({"control", "", "Topic of e2e_cdiff/ControlAction; empty: inferred."}, control, {});
-  visitor.text({"path", "", "Topic of the route as nav_msgs/Path; empty: the way driven."}, path,
-               {});
-  visitor.number({"period", "s", "Time between samples."}, period, 0.05, 60.0);
-  visitor.number({"largest_gap", "s", "Longest gap of odometry and controls in a sample."},
-                 largest_gap, 0.01, 10.0);
+std::vector<learning::DrivingSample> samplesOf(const RecordedDrive& drive, const std::string& name,
+                                        const DriveOptions& drive_options,
+                                        const DatasetOptions& options,
+                                        DatasetStatistics& statistics) {
+  if (drive.images.empty()) throw InputError("holds no image on '" + drive_options.image + "'");
+  std::vector<learning::DrivingSample> samples =
+      DriveSamples(drive, drive_options, options, name).make(statistics);
+  if (samples.empty())
+    throw InputError("gives no sample: none of its " + std::to_string(drive.images.size()) +
+                     " images is followed by " + std::to_string(options.architecture.horizon) +
+                     " steps of 0.1 s of odometry without a gap, driving forwards");
+  statistics.seconds += drive.states.rbegin()->first - drive.states.begin()->first;
+  return samples;
 }
 
-void DrivingBagOptions::validate() const {
-  const auto require = [](const char* key, const std::string& topic) {
-    if (topic.empty()) throw InputError(std::string("topics: ") + key + " is not given");
-  };
-  require("image", image);
-  require("odometry", odometry);
-}
-
-std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                           const DrivingBagOptions& topics,
-                                                           const DatasetOptions& options,
-                                                           DatasetStatistics& statistics) {
-  topics.validate();
-  try {
-    const DrivingBag driving = readDrivingBag(bag, topics, options.architecture);
-    if (driving.images.empty()) throw InputError("holds no image on '" + topics.image + "'");
-    std::vector<learning::DrivingSample> samples =
-        DrivingSamples(driving, topics, options, bag.stem().string()).make(statistics);
-    if (samples.empty())
-      throw InputError("gives no sample: none of its " + std::to_string(driving.images.size()) +
-                       " images is followed by " + std::to_string(options.architecture.horizon) +
-                       " steps of 0.1 s of odometry without a gap, driving forwards");
-    if (!driving.states.empty())
-      statistics.seconds += driving.states.rbegin()->first - driving.states.begin()->first;
-    return samples;
-  } catch (const InputError& error) {
-    throw InputError("bag '" + bag.string() + "': " + error.what());
-  }
-}
-
-}  // namespace cdiff::ros
+}  // namespace cdiff::collection

@@ -4,20 +4,15 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 
-#include "ros/dataset_from_bag.h"
+#include "collection/dataset_statistics.h"
 
-namespace cdiff::cli {
+namespace cdiff::collection {
 
 /// Writes statistics.json and, where there are shards, samples.html into the data set's folder, and
 /// the statistics as a table to the output.
-void describeDataset(const std::filesystem::path& folder, const ros::DatasetStatistics& statistics);
-
-/// Of several sessions or bags, by name.
-using StatisticsByName = std::map<std::string, ros::DatasetStatistics>;
-ros::DatasetStatistics sumOf(const StatisticsByName& statistics);
+void describeDataset(const std::filesystem::path& folder, const DatasetStatistics& statistics);
 
 /// Names on standard error each "session" or "bag" (`kind`) that gave no sample, with what became
 /// of its images and, where they lie too near its end, the `remedy` ("longer bags"). Throws
@@ -25,4 +20,4 @@ ros::DatasetStatistics sumOf(const StatisticsByName& statistics);
 void requireSamples(const StatisticsByName& statistics, const std::string& kind,
                     const std::string& remedy);
 
-}  // namespace cdiff::cli
+}  // namespace cdiff::collection

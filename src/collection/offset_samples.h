@@ -8,11 +8,12 @@
 #include <optional>
 #include <vector>
 
+#include "collection/dataset_options.h"
+#include "collection/sample_kinds.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "rendering/front_camera.h"
-#include "ros/sample_kinds.h"
 
-namespace cdiff::ros {
+namespace cdiff::collection {
 
 /// A displacement to the left [m] and counter-clockwise [rad].
 struct SampleOffset {
@@ -49,4 +50,4 @@ class OffsetSamples {
   rendering::FrontCamera camera_;
 };
 
-}  // namespace cdiff::ros
+}  // namespace cdiff::collection

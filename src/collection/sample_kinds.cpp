@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "ros/sample_kinds.h"
+#include "collection/sample_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "learning/sample_balance.h"
 #include "planners/pdm_lite/route_rules.h"
 
-namespace cdiff::ros {
+namespace cdiff::collection {
 namespace {
 
 using learning::kMoving;
@@ -100,4 +100,4 @@ void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
   statistics.steer_sum += sample.rollout.col(traffic::kRolloutSteer).cwiseAbs().mean();
 }
 
-}  // namespace cdiff::ros
+}  // namespace cdiff::collection

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "cli/dataset_page.h"
+#include "collection/dataset_page.h"
 
 #include <algorithm>
 #include <iostream>
 
-#include "cli/collect_session.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "diffusion/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/rollout.h"
 #include "page/sample_sheet.h"
 
-namespace cdiff::cli {
+namespace cdiff::collection {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ void addRows(std::vector<CountRow>& rows, const std::string& kind,
     rows.push_back({kind + name, std::to_string(count), percent(count, whole)});
 }
 
-std::vector<CountRow> rowsOf(const ros::DatasetStatistics& statistics) {
+std::vector<CountRow> rowsOf(const DatasetStatistics& statistics) {
   const std::uint64_t samples = statistics.samples;
   std::vector<CountRow> rows = {{"images", std::to_string(statistics.images), ""}};
   addRows(rows, "dropped: ", statistics.dropped, statistics.images);
@@ -54,7 +54,7 @@ std::vector<CountRow> rowsOf(const ros::DatasetStatistics& statistics) {
 }
 
 /// "12 images, left out: session_end 12", and what helps where most lie too near the end.
-std::string lossText(const ros::DatasetStatistics& statistics, const std::string& remedy) {
+std::string lossText(const DatasetStatistics& statistics, const std::string& remedy) {
   std::string text = std::to_string(statistics.images) + " images";
   std::string main_reason;
   std::uint64_t most = 0;
@@ -72,15 +72,9 @@ std::string lossText(const ros::DatasetStatistics& statistics, const std::string
 
 }  // namespace
 
-ros::DatasetStatistics sumOf(const StatisticsByName& statistics) {
-  ros::DatasetStatistics sum;
-  for (const auto& item : statistics) sum.add(item.second);
-  return sum;
-}
-
 void requireSamples(const StatisticsByName& statistics, const std::string& kind,
                     const std::string& remedy) {
-  const ros::DatasetStatistics sum = sumOf(statistics);
+  const DatasetStatistics sum = sumOf(statistics);
   if (sum.samples == 0)
     throw core::InputError("no " + kind + " gave a sample: " + lossText(sum, remedy));
   for (const auto& [name, of_one] : statistics) {
@@ -89,7 +83,7 @@ void requireSamples(const StatisticsByName& statistics, const std::string& kind,
   }
 }
 
-void describeDataset(const fs::path& folder, const ros::DatasetStatistics& statistics) {
+void describeDataset(const fs::path& folder, const DatasetStatistics& statistics) {
   core::writeFileAtomically(folder / "statistics.json", toJson(statistics));
   const std::vector<CountRow> rows = rowsOf(statistics);
   std::cout << "| | number | % |\n|---|---|---|\n";
@@ -105,4 +99,4 @@ void describeDataset(const fs::path& folder, const ros::DatasetStatistics& stati
   std::cerr << "pictures: " << page.string() << "\n";
 }
 
-}  // namespace cdiff::cli
+}  // namespace cdiff::collection

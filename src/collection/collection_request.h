@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One session of data collection in this process: bag, shard, statistics.
+/// What `cdiff collect` is asked for: options of a session, and where its files lie in the data
+/// set's folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "collection/collection_options.h"
-#include "ros/dataset_from_bag.h"
 #include "session/scenario_options.h"
 
-namespace cdiff::cli {
+namespace cdiff::collection {
 
-/// What `cdiff collect` asks of one of its processes.
+/// One session.
 struct CollectRequest {
   std::string scenario;  ///< shipped name or file
   std::int64_t seed = 1;
@@ -27,7 +28,7 @@ struct CollectRequest {
 /// Options of a session, collection's own in the group "collection".
 struct CollectSettings {
   session::ScenarioOptions scenario;
-  collection::CollectionOptions collection;
+  CollectionOptions collection;
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -36,14 +37,8 @@ struct CollectSettings {
 CollectSettings resolveCollection(const CollectRequest& request);
 /// "SCENARIO_seedN": the name of its files.
 std::string sessionName(const CollectSettings& settings);
+std::filesystem::path bagFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path shardFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path statisticsFile(const CollectRequest& request, const std::string& name);
 
-/// Runs the session and writes its files; answers the exit code.
-int collectSession(const CollectRequest& request);
-
-/// As JSON text and back; throws InputError naming the file.
-std::string toJson(const ros::DatasetStatistics& statistics);
-ros::DatasetStatistics readStatistics(const std::filesystem::path& file);
-
-}  // namespace cdiff::cli
+}  // namespace cdiff::collection

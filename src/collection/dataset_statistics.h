@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What the sessions or bags of a data set gave: images, samples and kinds of driving, counted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace cdiff::collection {
+
+/// What is in a data set; sums, so that those of several bags add up.
+struct DatasetStatistics {
+  std::uint64_t images = 0;
+  std::uint64_t samples = 0;
+  std::map<std::string, std::uint64_t> dropped;       ///< images that gave no sample, by reason
+  std::map<std::string, std::uint64_t> maneuvers;     ///< samples: straight, left, right, other
+  std::map<std::string, std::uint64_t> stop_reasons;  ///< samples: none, light, leader, ...
+  /// Samples: standing, starting, stopping, recovering, displaced, off_road, off_course,
+  /// in_junction.
+  std::map<std::string, std::uint64_t> kinds;
+  std::array<std::uint64_t, 8> speeds{};  ///< samples by speed, 2 m/s a bin, the last open
+  double steer_sum = 0.0;                 ///< of mean |steer| of each sample
+  std::uint64_t contacts = 0;             ///< of driven vehicles
+  double seconds = 0.0;                   ///< simulated
+
+  void add(const DatasetStatistics& other);
+};
+
+/// As JSON text and back; throws InputError naming the file.
+std::string toJson(const DatasetStatistics& statistics);
+DatasetStatistics readStatistics(const std::filesystem::path& file);
+
+/// Of several sessions or bags, by name.
+using StatisticsByName = std::map<std::string, DatasetStatistics>;
+DatasetStatistics sumOf(const StatisticsByName& statistics);
+
+}  // namespace cdiff::collection

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A session in memory: what drove along which routes, and what it saw; samples are made of it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "session/session_setup.h"
+
+namespace cdiff::collection {
+
+/// A stretch during which one vehicle follows one route: vehicle and the tick it was selected at.
+using DriveKey = std::pair<std::string, std::uint64_t>;
+
+struct DrivenImage {
+  int slot = -1;  ///< -1: the ego
+  traffic::CameraImage image;
+};
+
+struct DrivenSession {
+  std::string name;  ///< scenario and seed
+  std::unique_ptr<session::SessionSetup> setup;
+  std::vector<traffic::TrafficSnapshot> decisions;          ///< at decision ticks, in order
+  std::map<std::uint64_t, std::map<int, DriveKey>> drives;  ///< by tick, then slot
+  std::map<DriveKey, map::Route> routes;
+  std::set<std::pair<std::string, std::uint64_t>> disturbed;   ///< noise or fault: vehicle, tick
+  std::map<std::string, std::vector<std::uint64_t>> contacts;  ///< ticks by vehicle
+  std::vector<DrivenImage> images;                             ///< by tick, then slot
+  double seconds = 0.0;                                        ///< simulated
+};
+
+}  // namespace cdiff::collection

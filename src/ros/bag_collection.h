@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Collecting data through bags: a session is driven and recorded, or bags of others are taken, and
+/// each bag becomes a shard of samples in the data set's folder.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "collection/collection_request.h"
+#include "collection/dataset_statistics.h"
+
+namespace cdiff::ros {
+
+/// Drives the session and writes its bag, and, where it has images, its shard and statistics. A
+/// session without samples leaves no shard, and is driven again when it is asked for again. Throws
+/// core::Interrupted after `stop`, SimulatorError for a session that ends with an error.
+void collectSession(const collection::CollectRequest& request, const std::atomic<bool>& stop);
+
+/// Bags of drives that somebody else recorded.
+struct BagRequest {
+  std::vector<std::string> bags;
+  std::string topics;             ///< YAML file: collection::DriveOptions
+  std::filesystem::path results;  ///< folder of the data set
+};
+
+/// Writes shards/NAME.shard for each bag and returns what is in each, by NAME. Throws InputError,
+/// also for two bags of one name; shards written before stay.
+collection::StatisticsByName collectBags(const BagRequest& request);
+
+}  // namespace cdiff::ros

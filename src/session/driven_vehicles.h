@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The vehicles of a session that our own dynamics moves: the ego first, then CBVs by slot (map
+/// frame, SI units). Each holds its last action until it gets another one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "simulation/traffic_simulator.h"
+
+namespace cdiff::session {
+
+class DrivenVehicles {
+ public:
+  explicit DrivenVehicles(const dynamics::BicycleModelOptions& options);
+  ~DrivenVehicles();
+
+  std::size_t size() const { return vehicles_.size(); }
+  bool contain(const std::string& id) const;
+  /// As the simulator is to move it; nullopt when it is none of ours.
+  std::optional<simulation::DrivenVehicle> find(const std::string& id) const;
+
+  void addEgo(const std::string& id, const map::Route& route, const traffic::VehicleState& start);
+  /// A vehicle that was the simulator's, from `start` on.
+  void addCbv(const cbv::CbvAssignment& assignment, const simulation::SimulatedVehicle& simulated,
+              const traffic::VehicleState& start);
+  /// Does nothing for a vehicle that is none of ours.
+  void remove(const std::string& id);
+
+  /// Takes the actions of a decision. Full braking takes the place of an invalid one; answers a
+  /// text for each of these.
+  std::vector<std::string> command(const std::vector<planning::PlannedAction>& actions);
+  /// Moves all of them by one simulation step [s]; who has no action yet brakes fully.
+  void move(double step);
+
+  /// As the simulator is to move them.
+  std::vector<simulation::DrivenVehicle> moves() const;
+  /// As a snapshot shows them; `simulated` names their lanes.
+  std::vector<traffic::Vehicle> snapshot(
+      const std::vector<simulation::SimulatedVehicle>& simulated) const;
+
+ private:
+  struct Driven;
+  using Iterator = std::vector<std::unique_ptr<Driven>>::const_iterator;
+  Iterator position(const std::string& id) const;
+
+  dynamics::BicycleModel dynamics_;
+  std::vector<std::unique_ptr<Driven>> vehicles_;  ///< by slot; that of the ego is -1
+};
+
+}  // namespace cdiff::session

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// The decision cycle with parts of a test: who is asked, what becomes of a planner's failure, which
+// images a record holds. The ego stands at x = 100 m, the CBV "car" 100 m ahead of it.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+
+#include "session/closed_loop.h"
+#include "session/scripted_session.h"
+
+namespace cdiff::session {
+namespace {
+
+using planning::PlannedAction;
+using planning::PlanningTask;
+using test::ScriptedSession;
+
+/// Names the same selection at every decision, and counts its calls.
+class Always : public cbv::VehicleSelector {
+ public:
+  explicit Always(cbv::CbvSelection selection) : selection_(std::move(selection)) {}
+  void observe(const traffic::TrafficSnapshot&) override { ++observed; }
+  cbv::CbvSelection update(const traffic::TrafficSnapshot&) override {
+    ++updated;
+    return selection_;
+  }
+  int observed = 0;
+  int updated = 0;
+
+ private:
+  cbv::CbvSelection selection_;
+};
+
+/// Brakes gently, after `check` has seen the task.
+class Braking : public planning::Planner {
+ public:
+  using Check = std::function<void(const PlanningTask&)>;
+  explicit Braking(Check check = {}, bool sees = false) : check_(std::move(check)), sees_(sees) {}
+  std::vector<PlannedAction> plan(const traffic::TrafficSnapshot&,
+                                  const std::vector<PlanningTask>& tasks) override {
+    std::vector<PlannedAction> actions;
+    for (const PlanningTask& task : tasks) {
+      if (check_) check_(task);
+      actions.push_back({task.slot, task.vehicle->id, {0.0, 0.0, 0.25}, {}});
+    }
+    return actions;
+  }
+  bool needsImages() const override { return sees_; }
+
+ private:
+  Check check_;
+  bool sees_;
+};
+
+/// What records show: actions and slots of images by decision, and all faults.
+class Record : public SessionObserver {
+ public:
+  void observe(const TickRecord& record) override {
+    for (const traffic::Fault& fault : record.snapshot->faults) faults.push_back(fault.source);
+    if (record.actions == nullptr) return;
+    actions.push_back(*record.actions);
+    images.emplace_back();
+    for (const SlotImage& image : *record.images) images.back().push_back(image.slot);
+  }
+  std::vector<std::vector<PlannedAction>> actions;
+  std::vector<std::vector<int>> images;
+  std::vector<std::string> faults;
+};
+
+/// Runs three ticks of a session, decisions at 0 and 2, then is stopped at tick 3.
+class Cycle {
+ public:
+  Cycle() {
+    scripted_.simulator().place("car", {200.0, 0.0, 0.0, 5.0});
+    auto selector = std::make_unique<Always>(scripted_.selectionOf("car"));
+    selector_ = selector.get();
+    parts.selector = std::move(selector);
+    parts.ego_planner = std::make_unique<Braking>();
+    parts.cbv_planner = std::make_unique<Braking>();
+  }
+  Record run() {
+    class Stop : public SessionObserver {
+     public:
+      void observe(const TickRecord& record) override { stop = record.snapshot->tick == 3; }
+      std::atomic<bool> stop{false};
+    } stop;
+    parts.world = scripted_.makeWorld();
+    ClosedLoop loop(scripted_.setup(), std::move(parts));
+    Record record;
+    loop.addObserver(record);
+    loop.addObserver(stop);
+    EXPECT_EQ(loop.run(stop.stop), traffic::SessionStatus::kInterrupted);
+    updated = selector_->updated;
+    observed = selector_->observed;
+    return record;
+  }
+  const rendering::CameraOptions& camera() const { return scripted_.setup().options().camera; }
+  const map::RoadNetwork& network() const { return scripted_.setup().network(); }
+
+  LoopParts parts;
+  int updated = 0;
+  int observed = 0;
+
+ private:
+  ScriptedSession scripted_;
+  Always* selector_;
+};
+
+TEST(DecisionCycle, AsksEgoAndCbvAtEverySecondTick) {
+  Cycle cycle;
+  const Record record = cycle.run();
+  EXPECT_EQ(cycle.updated, 2);
+  EXPECT_EQ(cycle.observed, 3) << "ticks 1, 3 and the last one";
+  ASSERT_EQ(record.actions.size(), 2U);
+  for (const auto& actions : record.actions) {
+    ASSERT_EQ(actions.size(), 2U);
+    EXPECT_EQ(actions[0].vehicle_id, "ego");
+    EXPECT_EQ(actions[1].vehicle_id, "car");
+  }
+  EXPECT_EQ(record.images, (std::vector<std::vector<int>>{{}, {}}));
+  EXPECT_EQ(record.faults, std::vector<std::string>{"user"});
+}
+
+TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
+  Cycle cycle;
+  cycle.parts.cbv_planner =
+      std::make_unique<Braking>([](const PlanningTask&) { throw std::runtime_error("no idea"); });
+  const Record record = cycle.run();
+  EXPECT_EQ(record.actions[0][0].action.brake, 0.25) << "the ego's planner goes on";
+  EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
+  EXPECT_EQ(record.actions[0][1].fault, "no idea");
+  const std::string planner = "cbv:" + ScenarioOptions().ego_planner;  // that of the scenario
+  EXPECT_EQ(record.faults, (std::vector<std::string>{planner, planner, "user"}));
+}
+
+TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {
+  Cycle cycle;
+  int seen = 0;
+  cycle.parts.camera.emplace(cycle.camera(), cycle.network());
+  cycle.parts.cbv_planner = std::make_unique<Braking>(
+      [&](const PlanningTask& task) { seen += task.image != nullptr; }, true);
+  cycle.parts.image_wish = [](const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle&,
+                              int slot) { return slot == 0 || snapshot.tick == 2; };
+  const Record record = cycle.run();
+  EXPECT_EQ(seen, 2);
+  EXPECT_EQ(record.images, (std::vector<std::vector<int>>{{0}, {0, -1}}));
+}
+
+}  // namespace
+}  // namespace cdiff::session
