@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/text.h"
+#include "metrics/known_figures.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -125,10 +126,17 @@ std::string rowText(const std::vector<std::string>& fields) {
 }
 
 const std::vector<std::string>& tableFigures() {
-  static const std::vector<std::string> names = {
-      "ego_completion_percent", "ego_driving_score",  "ego_collisions",     "cbv_decisions",
-      "cbv_off_road_percent",   "cbv_ego_collisions", "cbv_passed_percent", "cbv_speed_error_mps",
-      "cbv_closest_distance_m", "ttc_mean_s"};
+  namespace figures = metrics::figures;
+  static const std::vector<std::string> names = {figures::kRouteCompletion.name,
+                                                 figures::kDrivingScore.name,
+                                                 figures::kEgoCollisions.name,
+                                                 figures::kCbvDecisions.name,
+                                                 figures::kCbvOffRoad.name,
+                                                 figures::kCbvEgoCollisions.name,
+                                                 "cbv_passed_percent",
+                                                 figures::kCbvSpeedError.name,
+                                                 figures::kCbvClosestDistance.name,
+                                                 figures::kTtcMean.name};
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/batch_report.h"
+#include "metrics/known_figures.h"
 #include "page/page_head.h"
 
 namespace cdiff::evaluation {
@@ -95,10 +96,12 @@ std::string runRow(const BatchRun& run) {
   std::string html = "<tr class=\"" + std::string(record::toText(outcomeOf(record))) + "\"><td>" +
                      name + "</td><td>" + record.status +
                      (record.complete() ? ", " + record::wordOf(record.verdict) : "") + "</td>";
-  const std::pair<const char*, int> figures[] = {
-      {"ego_completion_percent", 1}, {"ego_driving_score", 1},  {"ego_collisions", 0},
-      {"cbv_decisions", 0},          {"cbv_ego_collisions", 0}, {"cbv_minimum_distance_m", 1}};
-  for (const auto& [key, decimals] : figures)
+  namespace figures = metrics::figures;
+  const std::pair<const char*, int> shown[] = {
+      {figures::kRouteCompletion.name, 1},  {figures::kDrivingScore.name, 1},
+      {figures::kEgoCollisions.name, 0},    {figures::kCbvDecisions.name, 0},
+      {figures::kCbvEgoCollisions.name, 0}, {figures::kCbvMinimumDistance.name, 1}};
+  for (const auto& [key, decimals] : shown)
     html += "<td class=\"number\">" + figureText(run, key, decimals) + "</td>";
   return html + "<td>" + escapeMarkup(why) + "</td></tr>\n";
 }

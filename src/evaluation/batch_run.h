@@ -13,7 +13,7 @@
 
 namespace cdiff::evaluation {
 
-/// Numbers of a summary.json by JSON pointer ("/ego/driving_score"); lists are left out.
+/// Numbers of a summary.json by JSON pointer (`FigureDefinition::place`); lists are left out.
 using SummaryNumbers = std::map<std::string, double>;
 
 /// Throws InputError naming `source` for a text that is no JSON object.

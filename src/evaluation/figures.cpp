@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/known_figures.h"
+#include "metrics/metric_registry.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -65,7 +66,7 @@ const std::vector<std::string>& figureNames() {
     std::vector<std::string> all;
     for (const auto& [name, place] : places()) {
       all.emplace_back(name);
-      if (all.back() != "cbv_minimum_distance_m") continue;
+      if (all.back() != metrics::figures::kCbvMinimumDistance.name) continue;
       all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent"});
     }
     return all;

@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper_figures.h"
+#include "metrics/known_figures.h"
 #include "page/top_view.h"
 #include "record/trace_file.h"
 
@@ -25,9 +26,11 @@ constexpr double kWidth = 340.0;                              // of a frame [pix
 constexpr double kHeight = 260.0;                             // [pixels]
 const Eigen::Vector2d kReach(34.0, 26.0);                     // shown around the approach [m]
 constexpr double kInteraction = 25.0;  // of centres up to which a circle is drawn [m]
-constexpr const char* kDistanceKey = "/cbv/minimum_distance_m";
 constexpr const char* kHeader =
     "system,scenario,seed,frame,seconds,tick,vehicle_id,role,x,y,heading,speed,circled,note\n";
+
+/// Of the smallest distance between ego and CBVs in a summary.
+std::string distanceKey() { return metrics::figures::kCbvMinimumDistance.place; }
 
 /// What a row of frames has in common with the others.
 using Situation = std::array<std::string, 3>;  // scenario, seed, repetition
@@ -39,7 +42,7 @@ RunsBySystem chosenRuns(const std::vector<ShownSystem>& systems,
   std::map<Situation, RunsBySystem> situations;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const BatchRun* run : completeRuns(runs, systems[i].levels)) {
-      if (!run->number(kDistanceKey)) continue;
+      if (!run->number(distanceKey())) continue;
       const Factors& factors = run->record.factors;
       RunsBySystem& row =
           situations[{factors.at("scenario"), factors.at("seed"), factors.at("repetition")}];
@@ -52,7 +55,7 @@ RunsBySystem chosenRuns(const std::vector<ShownSystem>& systems,
     std::ptrdiff_t missing = 0;
     for (const BatchRun* run : row) {
       missing += run == nullptr;
-      if (run != nullptr) nearest = std::min(nearest, *run->number(kDistanceKey));
+      if (run != nullptr) nearest = std::min(nearest, *run->number(distanceKey()));
     }
     return std::make_pair(missing, nearest);
   };

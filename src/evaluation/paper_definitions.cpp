@@ -5,9 +5,18 @@
 #include <iterator>
 
 #include "evaluation/paper_systems.h"
+#include "metrics/known_figures.h"
 
 namespace cdiff::evaluation {
 namespace {
+
+namespace figures = metrics::figures;
+
+/// The n beside the mean of a distribution.
+std::string countBeside(const metrics::FigureDefinition& mean) {
+  const std::string place = mean.place;
+  return place.substr(0, place.rfind('/')) + "/n";
+}
 
 // Columns. Times and speeds are means of the sessions' figures; rates are weighted by what they are
 // rates of, so that they are the rate over all runs of a seed.
@@ -15,49 +24,45 @@ namespace {
 TableColumn timeToCollision() {
   return {"2D-TTC",
           "s",
-          "/metrics/ttc_2d_s/mean",
-          "/metrics/ttc_2d_s/n",
-          "/metrics/rift_compat/ttc_2d_s/value",
+          figures::kTtcMean.place,
+          countBeside(figures::kTtcMean),
+          figures::kRiftTtc.place,
           {}};
 }
 
 TableColumn offRoadRate() {
   return {"ORR",
           "%",
-          "/cbv/off_road_rate_percent",
-          "/cbv/decisions",
-          "/metrics/rift_compat/off_road_rate_percent/value",
+          figures::kCbvOffRoad.place,
+          figures::kCbvDecisions.place,
+          figures::kRiftOffRoad.place,
           {}};
 }
 
 TableColumn collisionsPerKilometre() {
   return {"CPK",
           "1/km",
-          "/cbv/collisions_per_km",
-          "/cbv/distance_m",
-          "/metrics/rift_compat/collisions_per_km/value",
+          figures::kCollisionsPerKm.place,
+          figures::kCbvDistance.place,
+          figures::kRiftCollisionsPerKm.place,
           {}};
 }
 
 std::vector<TableColumn> realism() {
-  return {{"S-SW",
-           "",
-           "/metrics/speed_shapiro_wilk/value",
-           "",
-           "/metrics/rift_compat/speed_shapiro_wilk/value",
-           {}},
-          {"A-SW",
-           "",
-           "/metrics/acceleration_shapiro_wilk/value",
-           "",
-           "/metrics/rift_compat/acceleration_shapiro_wilk/value",
-           {}},
-          {"S-WD",
-           "m/s",
-           "/metrics/speed_wasserstein_mps/value",
-           "",
-           "/metrics/rift_compat/speed_wasserstein_mps/value",
-           {}}};
+  return {
+      {"S-SW", "", figures::kSpeedShapiroWilk.place, "", figures::kRiftSpeedShapiroWilk.place, {}},
+      {"A-SW",
+       "",
+       figures::kAccelerationShapiroWilk.place,
+       "",
+       figures::kRiftAccelerationShapiroWilk.place,
+       {}},
+      {"S-WD",
+       "m/s",
+       figures::kSpeedWasserstein.place,
+       "",
+       figures::kRiftSpeedWasserstein.place,
+       {}}};
 }
 
 std::vector<TableColumn> controllabilityAndRealism() {
@@ -67,9 +72,9 @@ std::vector<TableColumn> controllabilityAndRealism() {
   return columns;
 }
 
-TableColumn drivingScore() { return {"DS", "", "/ego/driving_score", "", "", {}}; }
+TableColumn drivingScore() { return {"DS", "", figures::kDrivingScore.place, "", "", {}}; }
 
-TableColumn routeCompletion() { return {"RC", "%", "/ego/route_completion_percent", "", "", {}}; }
+TableColumn routeCompletion() { return {"RC", "%", figures::kRouteCompletion.place, "", "", {}}; }
 
 TableRow cbvRow(const PaperSystem& system, std::vector<PaperFigure> paper) {
   return {system.name, merged(naturalisticLevels(), cbvLevel(system)), std::move(paper), ""};

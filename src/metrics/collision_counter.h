@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "e2e_cdiff/metrics/infraction_options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 

@@ -2,14 +2,15 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "metrics/collisions_per_km.h"
 
+#include "metrics/measures.h"
+
 namespace cdiff::metrics {
 
 Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles) {
   Measure measure;
-  measure.unit = "1/km";
   measure.n = vehicles;
   if (vehicles == 0) {
-    measure.reason = "no CBV was driven";
+    measure.reason = kNoCbv;
   } else if (!(distance > 0.0)) {
     measure.reason = "no CBV moved";
   } else {

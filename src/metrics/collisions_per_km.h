@@ -3,7 +3,7 @@
 /// Collisions per kilometre (paper's CPK) [1/km]: 1000 x collisions / metres driven.
 #pragma once
 
-#include "metrics/session_measures.h"
+#include "e2e_cdiff/metrics/figure.h"
 
 namespace cdiff::metrics {
 

@@ -24,8 +24,7 @@
 #include <vector>
 
 #include "e2e_cdiff/map/road_network.h"
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/session_measures.h"
+#include "e2e_cdiff/metrics/metric_tick.h"
 
 namespace cdiff::metrics {
 

@@ -7,13 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace cdiff::metrics {
+#include "e2e_cdiff/metrics/infraction_options.h"
 
-/// Defaults: those of RIFT and Bench2Drive.
-struct ScoreRules {
-  bool charges = false;       ///< 1 / (1 + sum of charges) instead of a product of factors
-  bool speed_counts = false;  ///< whether the minimum speed enters
-};
+namespace cdiff::metrics {
 
 /// What happened on a route.
 struct Infractions {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/infraction_options.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 

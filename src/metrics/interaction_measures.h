@@ -4,22 +4,9 @@
 /// between boxes [m].
 #pragma once
 
-#include <optional>
-#include <vector>
-
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "e2e_cdiff/metrics/metric_tick.h"
 
 namespace cdiff::metrics {
-
-/// Minima over the vehicles on the ego's level where defined.
-struct Interaction {
-  std::optional<double> ttc_2d;            ///< vehicles within the radius
-  std::optional<double> ttc_2d_cbv;        ///< the same, CBVs alone
-  std::optional<double> ttc_lon_lat;       ///< by the paper's wording; only when asked for
-  std::optional<double> rift_ttc;          ///< by RIFT's ray cast; only when asked for
-  std::optional<double> rift_act;          ///< by RIFT's ACT; only when asked for
-  std::optional<double> nearest_distance;  ///< any distance
-};
 
 struct InteractionOptions {
   double radius = 60.0;        ///< of centres, for times to collision [m]

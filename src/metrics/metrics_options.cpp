@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/metrics_options.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "metrics/session_measures.h"
+#include "e2e_cdiff/metrics/figure.h"
 
 namespace cdiff::metrics {
 

@@ -6,8 +6,8 @@
 #pragma once
 
 #include "e2e_cdiff/map/road_network.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 

@@ -16,10 +16,8 @@ void SampleStatistics::add(double sample) {
   squares_ += step * (sample - mean_);
 }
 
-DistributionMeasure SampleStatistics::measure(const std::string& unit,
-                                              const std::string& reason_when_empty) const {
+DistributionMeasure SampleStatistics::measure(const std::string& reason_when_empty) const {
   Measure empty;
-  empty.unit = unit;
   empty.n = count_;
   empty.reason = reason_when_empty;
   DistributionMeasure measure{empty, empty, empty};

@@ -7,9 +7,16 @@
 #include <cstddef>
 #include <string>
 
-#include "metrics/session_measures.h"
+#include "e2e_cdiff/metrics/figure.h"
 
 namespace cdiff::metrics {
+
+/// Mean, standard deviation (n - 1) and minimum of defined samples.
+struct DistributionMeasure {
+  Measure mean;
+  Measure standard_deviation;
+  Measure minimum;
+};
 
 class SampleStatistics {
  public:
@@ -17,7 +24,7 @@ class SampleStatistics {
   std::size_t count() const { return count_; }
   /// Absent with a reason: mean and minimum without samples (`reason_when_empty`), the deviation
   /// below two.
-  DistributionMeasure measure(const std::string& unit, const std::string& reason_when_empty) const;
+  DistributionMeasure measure(const std::string& reason_when_empty) const;
 
  private:
   std::size_t count_ = 0;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 

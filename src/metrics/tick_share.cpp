@@ -11,7 +11,6 @@ void TickShare::add(bool held) {
 
 Measure TickShare::measure(const std::string& reason_when_empty) const {
   Measure measure;
-  measure.unit = "%";
   measure.n = ticks_;
   if (ticks_ == 0) {
     measure.reason = reason_when_empty;

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include "metrics/session_measures.h"
+#include "e2e_cdiff/metrics/figure.h"
 
 namespace cdiff::metrics {
 
@@ -14,7 +14,7 @@ class TickShare {
  public:
   void add(bool held);
   std::size_t ticks() const { return ticks_; }
-  /// In percent with n = ticks; without any tick absent with `reason_when_empty`.
+  /// In percent, with n = ticks; without any tick absent with `reason_when_empty`.
   Measure measure(const std::string& reason_when_empty) const;
 
  private:

@@ -6,6 +6,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
+#include "metrics/known_figures.h"
 #include "page/histogram_chart.h"
 #include "record/session_table.h"
 
@@ -51,11 +52,15 @@ std::string drivingSection(const record::SessionResult& result) {
          "</div>\n<p class=\"note\">One value per vehicle and decision; ± is the standard "
          "deviation "
          "over them. Shapiro-Wilk W of CBVs: speed " +
-         core::escapeMarkup(record::measureText(measures.speed_shapiro_wilk, 3)) +
+         core::escapeMarkup(
+             record::measureText(measures.at(metrics::figures::kSpeedShapiroWilk), 3)) +
          ", acceleration " +
-         core::escapeMarkup(record::measureText(measures.acceleration_shapiro_wilk, 3)) +
+         core::escapeMarkup(
+             record::measureText(measures.at(metrics::figures::kAccelerationShapiroWilk), 3)) +
          ". Wasserstein distance of CBV speeds to background vehicles within 150 m of the ego: " +
-         core::escapeMarkup(record::measureText(measures.speed_wasserstein, 3)) + ".</p>\n";
+         core::escapeMarkup(
+             record::measureText(measures.at(metrics::figures::kSpeedWasserstein), 3)) +
+         ".</p>\n";
 }
 
 }  // namespace cdiff::page

@@ -6,6 +6,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
+#include "metrics/known_figures.h"
 #include "page/approach_section.h"
 #include "page/driving_section.h"
 #include "page/guidance_section.h"
@@ -92,32 +93,42 @@ std::string figure(const std::string& name, const metrics::Measure& measure, int
                 "n = " + std::to_string(measure.n));
 }
 
+std::string paceText(const record::SessionResult& result) {
+  if (!(result.wall_seconds > 0.0)) return "wall time not measured";
+  return core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) + " times real time";
+}
+
+std::string egoFigures(const record::SessionResult& result) {
+  namespace figures = metrics::figures;
+  const metrics::SessionMeasures& measures = result.measures;
+  return figure("Route completion",
+                core::formatFixed(measures.number(figures::kRouteCompletion), 1), "%",
+                traffic::toText(result.status)) +
+         figure("Driving score", core::formatFixed(measures.number(figures::kDrivingScore), 1), "",
+                "of 100, by " + measures.protocol) +
+         figure("Ego collisions", std::to_string(measures.count(figures::kEgoCollisions)), "",
+                std::to_string(measures.count(figures::kContactsAtFault)) + " its fault, " +
+                    std::to_string(measures.count(figures::kCbvEgoCollisions)) + " with CBVs");
+}
+
+std::string cbvFigures(const metrics::SessionMeasures& measures) {
+  namespace figures = metrics::figures;
+  const metrics::Measure rate = measures.at(figures::kCollisionsPerKm);
+  return figure("CBVs", std::to_string(measures.count(figures::kCbvCount)), "",
+                std::to_string(measures.count(figures::kCbvDecisions)) + " decisions, " +
+                    core::formatFixed(measures.number(figures::kCbvDistance), 0) + " m") +
+         figure("CBV collisions", std::to_string(measures.count(figures::kCbvCollisions)), "",
+                rate.value ? core::formatFixed(*rate.value, 2) + " per km" : rate.reason) +
+         figure("CBV off-road rate", measures.at(figures::kCbvOffRoad), 2);
+}
+
 std::string figures(const record::SessionResult& result) {
   const metrics::SessionMeasures& measures = result.measures;
-  const std::string pace =
-      result.wall_seconds > 0.0
-          ? core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) +
-                " times real time"
-          : "wall time not measured";
-  return "<div class=\"figures\">\n" +
-         figure("Route completion", core::formatFixed(measures.route_completion_percent, 1), "%",
-                traffic::toText(result.status)) +
-         figure("Driving score", core::formatFixed(measures.driving_score, 1), "",
-                "of 100, by " + measures.protocol) +
-         figure("Ego collisions", std::to_string(measures.ego_collisions), "",
-                std::to_string(measures.contactsAtFault()) + " its fault, " +
-                    std::to_string(measures.cbv_ego_collisions) + " with CBVs") +
-         figure("CBVs", std::to_string(measures.cbv_count), "",
-                std::to_string(measures.cbv_decisions) + " decisions, " +
-                    core::formatFixed(measures.cbv_distance_m, 0) + " m") +
-         figure("CBV collisions", std::to_string(measures.cbv_collisions), "",
-                measures.collisions_per_km.value
-                    ? core::formatFixed(*measures.collisions_per_km.value, 2) + " per km"
-                    : measures.collisions_per_km.reason) +
-         figure("CBV off-road rate", measures.cbv_off_road_rate_percent, 2) +
-         figure("2D-TTC, minimum", measures.ttc_2d.minimum, 2) +
-         figure("2D-TTC, mean", measures.ttc_2d.mean, 2) +
-         figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", pace) +
+  return "<div class=\"figures\">\n" + egoFigures(result) + cbvFigures(measures) +
+         figure("2D-TTC, minimum", measures.at(metrics::figures::kTtcMinimum), 2) +
+         figure("2D-TTC, mean", measures.at(metrics::figures::kTtcMean), 2) +
+         figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s",
+                paceText(result)) +
          "</div>\n";
 }
 

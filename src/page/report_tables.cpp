@@ -6,7 +6,8 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/known_figures.h"
+#include "metrics/metric_registry.h"
 #include "record/build_info.h"
 #include "record/reason_text.h"
 #include "record/summary.h"
@@ -68,10 +69,11 @@ std::string noteOf(const metrics::Measure& measure) {
   return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
 }
 
-void measureRow(Table& table, const std::string& name, const metrics::Measure& measure) {
-  const int decimals = measure.unit == "count" ? 0 : 3;
+void measureRow(Table& table, const std::string& name, const metrics::FigureDefinition& figure,
+                const metrics::SessionMeasures& measures) {
+  const metrics::Measure measure = measures.at(figure);
   table.row(
-      {name, measure.value ? fixed(*measure.value, decimals) : "–",
+      {name, measure.value ? fixed(*measure.value, figure.decimals) : "–",
        measure.unit == "count" ? "" : measure.unit, std::to_string(measure.n), noteOf(measure)},
       measure.value ? "" : "absent");
 }
@@ -90,14 +92,18 @@ std::string ruleTable(const record::SessionResult& result) {
 std::string metricTable(const metrics::SessionMeasures& measures) {
   Table table({"Metric", "#Value", "Unit", "#n", "Note"});
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
-    measureRow(table, figure.label, figure.measure(measures));
+    measureRow(table, figure.label, figure, measures);
   return table.html();
 }
 
 std::string infractionTable(const metrics::SessionMeasures& measures) {
   Table table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
-  for (const auto& [name, measure] : measures.infractions) measureRow(table, name, measure);
-  measureRow(table, "Penalty", measures.penalty);
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+    if (keys.size() == 3 && keys[1] == "infractions")
+      measureRow(table, keys.back(), figure, measures);
+  }
+  measureRow(table, "Penalty", metrics::figures::kPenalty, measures);
   return table.html();
 }
 

@@ -79,18 +79,6 @@ Json cbvFaults(const std::vector<traffic::Fault>& faults) {
   return object;
 }
 
-/// Of every CBV, by id.
-Json encroachmentList(const std::vector<metrics::PostEncroachment>& times) {
-  Json list = Json::array();
-  for (const metrics::PostEncroachment& time : times) {
-    Json object = {{"vehicle_id", time.vehicle_id}, {"seconds", number(time.seconds)}};
-    object["first"] = time.seconds ? Json(time.ego_first ? "ego" : "cbv") : Json(nullptr);
-    if (!time.reason.empty()) object["reason"] = time.reason;
-    list.push_back(object);
-  }
-  return list;
-}
-
 }  // namespace
 
 bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
@@ -109,7 +97,6 @@ std::optional<std::string> contactPartner(const CbvRecord& record, const Session
 Json cbvObject(const SessionResult& result) {
   Json object = Json::object();
   addFigures(object, "cbv", result.measures);
-  object["post_encroachments"] = encroachmentList(result.measures.post_encroachments);
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {
     object["selections"].push_back(selectionObject(record, result));

@@ -8,7 +8,7 @@
 
 namespace cdiff::record {
 
-/// A section a figure, in the order of summary.json: name, label, unit, direction, place,
+/// A section a figure, in the order of summary.json: name, label, unit, subject, direction, place,
 /// definition and how RIFT's code differs.
 std::string figureList();
 

@@ -5,13 +5,15 @@
 #include <set>
 
 #include "core/text.h"
+#include "metrics/known_figures.h"
 
 namespace cdiff::record {
 namespace {
 
 std::string way(const SessionResult& result) {
   if (result.timeline.frames().empty()) return "The session ended before its first tick.";
-  return "The ego drove " + core::formatFixed(result.measures.route_completion_percent, 1) +
+  return "The ego drove " +
+         core::formatFixed(result.measures.number(metrics::figures::kRouteCompletion), 1) +
          " % of its route in " + core::formatFixed(result.simulated_seconds, 1) + " s.";
 }
 

@@ -3,6 +3,7 @@
 #include "record/session_table.h"
 
 #include "core/text.h"
+#include "metrics/known_figures.h"
 
 namespace cdiff::record {
 namespace {
@@ -30,19 +31,28 @@ std::string headRows(const SessionResult& result) {
 }
 
 std::string figureRows(const metrics::SessionMeasures& measures) {
-  return row("route completion", core::formatFixed(measures.route_completion_percent, 1) + " %") +
-         row("driving score", core::formatFixed(measures.driving_score, 1) + " by " +
-                                  measures.protocol + ", penalty " +
-                                  measureText(measures.penalty, 3)) +
-         row("ego collisions", std::to_string(measures.ego_collisions)) +
-         row("CBVs", std::to_string(measures.cbv_count) + " over " +
-                         std::to_string(measures.cbv_decisions) + " decisions") +
-         row("CBV collisions", std::to_string(measures.cbv_collisions) + " (" +
-                                   std::to_string(measures.cbv_ego_collisions) + " with the ego)") +
-         row("CBV off-road rate", measureText(measures.cbv_off_road_rate_percent, 2)) +
-         row("collisions per km", measureText(measures.collisions_per_km, 2)) +
-         row("2D-TTC mean", measureText(measures.ttc_2d.mean, 2)) +
-         row("2D-TTC minimum", measureText(measures.ttc_2d.minimum, 2));
+  namespace figures = metrics::figures;
+  const auto count = [&](const metrics::FigureDefinition& figure) {
+    return std::to_string(measures.count(figure));
+  };
+  const auto text = [&](const metrics::FigureDefinition& figure) {
+    return measureText(measures.at(figure), 2);
+  };
+  const auto fixed = [&](const metrics::FigureDefinition& figure) {
+    return core::formatFixed(measures.number(figure), 1);
+  };
+  return row("route completion", fixed(figures::kRouteCompletion) + " %") +
+         row("driving score", fixed(figures::kDrivingScore) + " by " + measures.protocol +
+                                  ", penalty " + measureText(measures.at(figures::kPenalty), 3)) +
+         row("ego collisions", count(figures::kEgoCollisions)) +
+         row("CBVs",
+             count(figures::kCbvCount) + " over " + count(figures::kCbvDecisions) + " decisions") +
+         row("CBV collisions", count(figures::kCbvCollisions) + " (" +
+                                   count(figures::kCbvEgoCollisions) + " with the ego)") +
+         row("CBV off-road rate", text(figures::kCbvOffRoad)) +
+         row("collisions per km", text(figures::kCollisionsPerKm)) +
+         row("2D-TTC mean", text(figures::kTtcMean)) +
+         row("2D-TTC minimum", text(figures::kTtcMinimum));
 }
 
 /// Wall time from image (or snapshot) to command.

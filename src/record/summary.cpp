@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/summary.h"
 
+#include "core/text.h"
+#include "metrics/known_figures.h"
+#include "metrics/metric_registry.h"
 #include "record/cbv_summary.h"
 #include "record/summary_figures.h"
 
@@ -27,22 +30,26 @@ Json contactList(const std::vector<metrics::EgoContact>& contacts) {
   return list;
 }
 
+/// Each figure of the ego under its key; infractions in an object, with their counts in another.
 Json egoObject(const metrics::SessionMeasures& measures) {
-  Json object = {{"route_completion_percent", measures.route_completion_percent},
-                 {"driving_score", measures.driving_score},
-                 {"protocol", measures.protocol}};
-  addMeasure(object, "penalty", measures.penalty);
-  object["infractions"] = Json::object();
-  object["infractions_n"] = Json::object();
-  for (const auto& [name, measure] : measures.infractions) {
-    addMeasure(object["infractions"], name, measure);
-    object["infractions_n"][name] = measure.n;
+  Json object = Json::object();
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+    if (keys.front() != "ego") continue;
+    const metrics::Measure measure = measures.at(figure);
+    const std::string name = figure.name;
+    if (keys.size() > 2) {
+      addMeasure(object[keys[1]], keys.back(), measure);
+      object[keys[1] + "_n"][keys.back()] = measure.n;
+    } else if (name == metrics::figures::kBlocked.name) {
+      object[keys.back()] = measure.value == 1.0;
+    } else {
+      addPlainFigure(object, keys.back(), measure);
+    }
+    if (name == metrics::figures::kDrivingScore.name) object["protocol"] = measures.protocol;
+    if (name == metrics::figures::kContactsAtFault.name)
+      object["contacts"] = contactList(measures.ego_contacts);
   }
-  object["blocked"] = measures.blocked;
-  object["collisions"] = measures.ego_collisions;
-  object["contacts_at_fault"] = measures.contactsAtFault();
-  object["contacts"] = contactList(measures.ego_contacts);
-  addMeasure(object, "off_road_percent", measures.ego_off_road_percent);
   return object;
 }
 

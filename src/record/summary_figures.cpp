@@ -3,7 +3,7 @@
 #include "record/summary_figures.h"
 
 #include "core/text.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 
 namespace cdiff::record {
 namespace {
@@ -28,6 +28,16 @@ void addToDistribution(Json& object, const std::string& leaf, const metrics::Mea
   if (!reason.empty()) object["reason"] = reason;
 }
 
+Json entryList(const std::vector<metrics::MetricEntry>& entries) {
+  Json list = Json::array();
+  for (const metrics::MetricEntry& entry : entries) {
+    list.push_back(Json::object());
+    for (const auto& [key, value] : entry)
+      std::visit([&, &name = key](const auto& content) { list.back()[name] = content; }, value);
+  }
+  return list;
+}
+
 }  // namespace
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
@@ -37,15 +47,20 @@ void addMeasure(Json& object, const std::string& key, const metrics::Measure& me
   if (!measure.reason.empty()) object[key + "_reason"] = measure.reason;
 }
 
+void addPlainFigure(Json& object, const std::string& key, const metrics::Measure& measure) {
+  addMeasure(object, key, measure);
+  if (measure.unit == "count" && measure.value)
+    object[key] = static_cast<std::uint64_t>(*measure.value);
+}
+
 void addFigures(Json& object, const std::string& section,
                 const metrics::SessionMeasures& measures) {
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
     const std::vector<std::string> keys = core::splitText(figure.place, '/');
     if (keys.front() != section) continue;
-    const metrics::Measure measure = figure.measure(measures);
+    const metrics::Measure measure = measures.at(figure);
     if (keys.size() == 2) {
-      addMeasure(object, keys[1], measure);
-      if (measure.unit == "count") object[keys[1]] = static_cast<std::uint64_t>(*measure.value);
+      addPlainFigure(object, keys[1], measure);
       continue;
     }
     Json* parent = &object;
@@ -55,6 +70,10 @@ void addFigures(Json& object, const std::string& section,
     } else {
       addToDistribution(*parent, keys.back(), measure);
     }
+  }
+  for (const auto& [place, entries] : measures.lists) {
+    const std::vector<std::string> keys = core::splitText(place, '/');
+    if (keys.front() == section) object[keys.back()] = entryList(entries);
   }
 }
 

@@ -19,7 +19,10 @@ Json number(const std::optional<double>& value);
 /// `key: value`, and `key_reason` beside it where there is one.
 void addMeasure(Json& object, const std::string& key, const metrics::Measure& measure);
 
-/// Adds the defined figures whose place in the summary begins with "/section/".
+/// The same with a whole number for a count.
+void addPlainFigure(Json& object, const std::string& key, const metrics::Measure& measure);
+
+/// Adds the figures, then the lists, whose place in the summary begins with "/section/".
 void addFigures(Json& object, const std::string& section, const metrics::SessionMeasures& measures);
 
 }  // namespace cdiff::record

@@ -8,10 +8,12 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/known_figures.h"
 
 namespace cdiff::record {
 namespace {
 
+namespace figures = metrics::figures;
 using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
@@ -73,10 +75,12 @@ class RuleBook {
     addContacts();
     addScore();
     addCollisions();
-    addInfraction("red_lights", "red lights that the ego ran", rules_.maximum_red_lights, kNoLimit);
-    addInfraction("stop_signs", "stop signs that the ego did not obey", rules_.maximum_stop_signs,
-                  kNoLimit);
-    addInfraction("outside_lanes_percent", "share of its way that the ego drove outside the lanes",
+    addInfraction({"red_lights", figures::kRedLights, "red lights that the ego ran"},
+                  rules_.maximum_red_lights, kNoLimit);
+    addInfraction({"stop_signs", figures::kStopSigns, "stop signs that the ego did not obey"},
+                  rules_.maximum_stop_signs, kNoLimit);
+    addInfraction({"outside_lanes_percent", figures::kOutsideLanes,
+                   "share of its way that the ego drove outside the lanes"},
                   rules_.maximum_outside_lanes_percent, 100.0);
     addOffRoad();
     return std::move(checks_);
@@ -95,7 +99,7 @@ class RuleBook {
 
   void addCompletion() {
     const double least = rules_.minimum_route_completion;
-    const double percent = measures_.route_completion_percent;
+    const double percent = measures_.number(figures::kRouteCompletion);
     if (least <= 0.0) return;
     checks_.push_back(judged("route_completion", percent >= least,
                              "the ego completed " + core::formatFixed(percent, 1) +
@@ -132,43 +136,48 @@ class RuleBook {
 
   void addScore() {
     if (rules_.minimum_driving_score <= 0.0) return;
-    checks_.push_back(judged("driving_score",
-                             measures_.driving_score >= rules_.minimum_driving_score,
+    const double score = measures_.number(figures::kDrivingScore);
+    checks_.push_back(judged("driving_score", score >= rules_.minimum_driving_score,
                              "the ego's driving score by " + measures_.protocol + " was " +
-                                 core::formatFixed(measures_.driving_score, 1) + " %; at least " +
+                                 core::formatFixed(score, 1) + " %; at least " +
                                  core::formatNumber(rules_.minimum_driving_score) + " % is asked"));
   }
 
   void addCollisions() {
     const double limit = rules_.maximum_ego_collisions;
     if (limit >= kNoLimit) return;
-    const std::size_t count = measures_.ego_collisions;
-    checks_.push_back(judged("ego_collisions", static_cast<double>(count) <= limit,
+    const std::size_t count = measures_.count(figures::kEgoCollisions);
+    checks_.push_back(judged(figures::kEgoCollisions.name, static_cast<double>(count) <= limit,
                              "the ego had " + countText(count, "collision") + "; at most " +
                                  core::formatNumber(limit) + " allowed"));
   }
 
-  /// A limit on one of the ego's infractions; `none` is the limit that allows all.
-  void addInfraction(const std::string& name, const std::string& what, double limit, double none) {
+  /// A rule on one of the ego's infractions.
+  struct InfractionRule {
+    const char* name;
+    const metrics::FigureDefinition& figure;
+    const char* what;
+  };
+
+  /// `none` is the limit that allows all.
+  void addInfraction(const InfractionRule& rule, double limit, double none) {
     if (limit >= none) return;
-    const auto found = measures_.infractions.find(name);
-    if (found == measures_.infractions.end() || !found->second.value) {
-      const std::string reason =
-          found == measures_.infractions.end() ? "it was not measured" : found->second.reason;
-      checks_.push_back(
-          {name, CheckOutcome::kSkipped, name + " of the ego is not defined: " + reason});
+    const metrics::Measure found = measures_.at(rule.figure);
+    if (!found.value) {
+      checks_.push_back({rule.name, CheckOutcome::kSkipped,
+                         std::string(rule.name) + " of the ego is not defined: " + found.reason});
       return;
     }
-    const double value = *found->second.value;
-    const std::string unit = found->second.unit.empty() ? "" : " " + found->second.unit;
-    checks_.push_back(judged(name, value <= limit,
-                             what + ": " + core::formatFixed(value, unit.empty() ? 0 : 2) + unit +
+    const std::string unit = found.unit.empty() ? "" : " " + found.unit;
+    checks_.push_back(judged(rule.name, *found.value <= limit,
+                             std::string(rule.what) + ": " +
+                                 core::formatFixed(*found.value, unit.empty() ? 0 : 2) + unit +
                                  "; at most " + core::formatNumber(limit) + unit + " allowed"));
   }
 
   void addOffRoad() {
     const double limit = rules_.maximum_cbv_off_road_percent;
-    const metrics::Measure& rate = measures_.cbv_off_road_rate_percent;
+    const metrics::Measure rate = measures_.at(figures::kCbvOffRoad);
     if (limit >= 100.0) return;
     if (!rate.value) {
       checks_.push_back({"cbv_off_road", CheckOutcome::kSkipped,

@@ -5,7 +5,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/options.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 #include "ros/conversions.h"
 
 namespace cdiff::ros {
@@ -115,7 +115,7 @@ msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
 std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
   std::vector<msgs::Measure> all;
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
-    all.push_back(toMsg(figure.name, figure.measure(measures)));
+    all.push_back(toMsg(figure.name, measures.at(figure)));
   return all;
 }
 

@@ -11,7 +11,7 @@
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/map/route_progress.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/infraction_options.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 
 namespace cdiff::session {
 

@@ -10,7 +10,7 @@
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "map/route_source.h"
-#include "metrics/metrics_options.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "planners/planner_factory.h"
 #include "rendering/camera_options.h"
 #include "session/protocol.h"

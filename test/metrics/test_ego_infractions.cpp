@@ -5,8 +5,10 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/ego_infractions.h"
-#include "metrics/straight_road.h"
+#include "metrics/collision_counter.h"
+#include "metrics/metric_under_test.h"
+#include "metrics/minimum_speed.h"
+#include "metrics/outside_lanes.h"
 #include "support/network_text.h"
 
 namespace cdiff::metrics {
@@ -144,32 +146,42 @@ TEST(MinimumSpeed, WithoutCheckpointsMeasuresNothing) {
   EXPECT_TRUE(speed.percents().empty());
 }
 
+/// Shows a tick to a metric, with the ego `arc_length` [m] along its route.
+void show(test::MetricUnderTest& metric, const traffic::TrafficSnapshot& snapshot,
+          double arc_length) {
+  MetricTick tick{snapshot, nullptr, snapshot.ego()};
+  tick.ego_arc_length = arc_length;
+  metric.observe(tick);
+}
+
 TEST(EgoInfractions, NamesWhatCannotOccurAndWhatIsUnknown) {
-  const test::StraightRoad road;
-  EgoInfractions infractions(nullptr, road.route, {});
-  EXPECT_EQ(infractions.penalty().reason, "the ego was never seen");
-  EXPECT_EQ(infractions.drivingScore(0.0), 0.0);
-  infractions.observe(ego(10, 0, 5), snapshot(0, {ego(10, 0, 5)}), 10.0);
-  const auto measures = infractions.measures();
+  test::MetricUnderTest score("ego_driving_score");
+  EXPECT_EQ(score.at("ego_penalty").reason, "the ego was never seen");
+  EXPECT_EQ(*score.at("ego_driving_score").value, 0.0);
+  show(score, snapshot(0, {ego(10, 0, 5)}), 10.0);
   for (const char* name : {"pedestrian_collisions", "static_collisions", "scenario_timeouts",
                            "yields_failed", "red_lights", "stop_signs", "outside_lanes_percent",
                            "minimum_speed_missed", "minimum_speed_percent"}) {
-    EXPECT_FALSE(measures.at(name).value.has_value()) << name;
-    EXPECT_FALSE(measures.at(name).reason.empty()) << name;
+    const Measure measure = score.at("ego_infraction_" + std::string(name));
+    EXPECT_FALSE(measure.value.has_value()) << name;
+    EXPECT_FALSE(measure.reason.empty()) << name;
   }
-  EXPECT_EQ(*measures.at("vehicle_collisions").value, 0.0);
-  EXPECT_EQ(measures.at("red_lights").reason, "no road network was given");
-  EXPECT_EQ(*infractions.penalty().value, 1.0);
+  EXPECT_EQ(*score.at("ego_infraction_vehicle_collisions").value, 0.0);
+  EXPECT_EQ(score.at("ego_infraction_red_lights").reason, "no road network was given");
+  EXPECT_EQ(*score.at("ego_penalty").value, 1.0);
 }
 
 TEST(EgoInfractions, SurvivesValuesThatAreNotFinite) {
   const test::StraightRoad road;
-  EgoInfractions infractions(&road.network, road.route, {});
+  SessionMetricsOptions options;
+  options.network = &road.network;
+  test::MetricUnderTest score("ego_driving_score", options, &road.route);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  infractions.observe(ego(nan, 0, nan), snapshot(0, {background("a", 0, 0, nan)}), 0.0);
-  infractions.observe(ego(10, 0, 5), snapshot(1, {background("a", 0, 0, 5)}), 10.0);
-  EXPECT_EQ(*infractions.penalty().value, 1.0);
-  EXPECT_EQ(*infractions.measures().at("outside_lanes_percent").value, 0.0);
+  show(score, snapshot(0, {ego(nan, 0, nan), background("a", 0, 0, nan)}), 0.0);
+  show(score, snapshot(1, {ego(10, 0, 5), background("a", 0, 0, 5)}), 10.0);
+  EXPECT_EQ(*score.at("ego_penalty").value, 1.0);
+  EXPECT_EQ(score.at("ego_penalty").n, 1U);
+  EXPECT_EQ(*score.at("ego_infraction_outside_lanes_percent").value, 0.0);
 }
 
 }  // namespace

@@ -5,20 +5,19 @@
 #include <limits>
 
 #include "metrics/collisions_per_km.h"
-#include "metrics/off_road_rate.h"
 #include "metrics/sample_statistics.h"
+#include "metrics/tick_share.h"
 
 namespace cdiff::metrics {
 namespace {
 
-TEST(OffRoadRate, IsAShareOfTicks) {
-  OffRoadRate rate;
+TEST(TickShare, IsAShareOfTicks) {
+  TickShare rate;
   EXPECT_FALSE(rate.measure("none").value.has_value());
   EXPECT_EQ(rate.measure("none").reason, "none");
   for (const bool off : {true, false, false, false}) rate.add(off);
   EXPECT_DOUBLE_EQ(*rate.measure("none").value, 25.0);
   EXPECT_EQ(rate.measure("none").n, 4U);
-  EXPECT_EQ(rate.measure("none").unit, "%");
 }
 
 TEST(CollisionsPerKilometre, DividesByTheDistance) {
@@ -41,7 +40,7 @@ TEST(SampleStatistics, GivesMeanDeviationAndMinimum) {
   statistics.add(std::numeric_limits<double>::quiet_NaN());
   statistics.add(std::numeric_limits<double>::infinity());
   // Mean 4, squared differences 0 + 9 + 9, divided by 2: deviation 3.
-  const DistributionMeasure measure = statistics.measure("s", "none");
+  const DistributionMeasure measure = statistics.measure("none");
   EXPECT_DOUBLE_EQ(*measure.mean.value, 4.0);
   EXPECT_DOUBLE_EQ(*measure.standard_deviation.value, 3.0);
   EXPECT_DOUBLE_EQ(*measure.minimum.value, 1.0);
@@ -51,9 +50,9 @@ TEST(SampleStatistics, GivesMeanDeviationAndMinimum) {
 
 TEST(SampleStatistics, NamesTheReasonForAbsence) {
   SampleStatistics statistics;
-  EXPECT_EQ(statistics.measure("s", "none").minimum.reason, "none");
+  EXPECT_EQ(statistics.measure("none").minimum.reason, "none");
   statistics.add(2.0);
-  const DistributionMeasure one = statistics.measure("s", "none");
+  const DistributionMeasure one = statistics.measure("none");
   EXPECT_DOUBLE_EQ(*one.mean.value, 2.0);
   EXPECT_FALSE(one.standard_deviation.value.has_value());
   EXPECT_EQ(one.standard_deviation.reason, "n = 1, needs at least 2");

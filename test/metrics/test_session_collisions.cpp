@@ -35,35 +35,35 @@ class SessionCollisions : public ::testing::Test {
 TEST_F(SessionCollisions, BetweenEgoAndCbvCountForBoth) {
   // CBVs drove 100 m: 1 collision is 10 per km. Ego completed 10 % with one collision: 6.
   const SessionMeasures measures = after({{"a", "ego"}}, present_);
-  EXPECT_EQ(measures.ego_collisions, 1U);
-  EXPECT_EQ(measures.cbv_collisions, 1U);
-  EXPECT_EQ(measures.cbv_ego_collisions, 1U);
-  EXPECT_NEAR(*measures.collisions_per_km.value, 10.0, 1e-9);
-  EXPECT_EQ(measures.collisions_per_km.n, 2U);
-  EXPECT_NEAR(*measures.ego_collisions_per_km.value, 10.0, 1e-9);
-  EXPECT_NEAR(measures.driving_score, 6.0, 1e-9);
+  EXPECT_EQ(*measures.at("ego_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_ego_collisions").value, 1U);
+  EXPECT_NEAR(*measures.at("cbv_collisions_per_km").value, 10.0, 1e-9);
+  EXPECT_EQ(measures.at("cbv_collisions_per_km").n, 2U);
+  EXPECT_NEAR(*measures.at("cbv_ego_collisions_per_km").value, 10.0, 1e-9);
+  EXPECT_NEAR(*measures.at("ego_driving_score").value, 6.0, 1e-9);
 }
 
 TEST_F(SessionCollisions, BetweenCbvAndBackgroundLeaveTheEgoAlone) {
   const SessionMeasures measures = after({{"a", "c"}}, present_);
-  EXPECT_EQ(measures.ego_collisions, 0U);
-  EXPECT_EQ(measures.cbv_collisions, 1U);
-  EXPECT_EQ(measures.cbv_ego_collisions, 0U);
-  EXPECT_NEAR(*measures.collisions_per_km.value, 10.0, 1e-9);
-  EXPECT_EQ(*measures.ego_collisions_per_km.value, 0.0);
+  EXPECT_EQ(*measures.at("ego_collisions").value, 0U);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_ego_collisions").value, 0U);
+  EXPECT_NEAR(*measures.at("cbv_collisions_per_km").value, 10.0, 1e-9);
+  EXPECT_EQ(*measures.at("cbv_ego_collisions_per_km").value, 0.0);
 }
 
 TEST_F(SessionCollisions, BetweenEgoAndBackgroundLeaveTheCbvsAlone) {
   const SessionMeasures measures = after({{"c", "ego"}}, present_);
-  EXPECT_EQ(measures.ego_collisions, 1U);
-  EXPECT_EQ(measures.cbv_collisions, 0U);
+  EXPECT_EQ(*measures.at("ego_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 0U);
 }
 
 TEST_F(SessionCollisions, BetweenTwoCbvsCountOnceButTwiceForRift) {
   // Decision ticks 0 and 2 lie 100 m of CBV way apart: 2 collided lives are 20 per km.
   const SessionMeasures measures = after({{"a", "b"}}, present_);
-  EXPECT_EQ(measures.cbv_collisions, 1U);
-  EXPECT_NEAR(*measures.rift_compat.at("collisions_per_km").value, 20.0, 1e-9);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
+  EXPECT_NEAR(*measures.at("rift_compat_collisions_per_km").value, 20.0, 1e-9);
 }
 
 // The ego's partner stands first or second in a pair, by its id. The second contact is 20 m on and
@@ -80,20 +80,21 @@ TEST_F(SessionCollisions, OfTheEgoWithTwoPartnersAreTwo) {
     snapshot = test::snapshot(1, {ego(30, 0, 5)});
     snapshot.contacts = {second};
     metrics.observe(snapshot, nullptr);
-    EXPECT_EQ(metrics.measures().ego_collisions, 2U);
-    EXPECT_EQ(*metrics.measures().infractions.at("vehicle_collisions").value, 2.0) << first.first;
+    EXPECT_EQ(*metrics.measures().at("ego_collisions").value, 2U);
+    EXPECT_EQ(*metrics.measures().at("ego_infraction_vehicle_collisions").value, 2.0)
+        << first.first;
   }
 }
 
 TEST_F(SessionCollisions, CountForACbvThatTheContactRemoved) {
   const SessionMeasures measures = after({{"a", "c"}}, {ego(10, 0, 5), background("c", 120, 0, 5)});
-  EXPECT_EQ(measures.cbv_collisions, 1U);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
 }
 
 TEST_F(SessionCollisions, OfAReleasedCbvAreNotIts) {
   const SessionMeasures measures =
       after({{"a", "c"}}, {ego(10, 0, 5), background("a", 100, 0, 5), background("c", 104, 0, 5)});
-  EXPECT_EQ(measures.cbv_collisions, 0U);
+  EXPECT_EQ(*measures.at("cbv_collisions").value, 0U);
 }
 
 }  // namespace

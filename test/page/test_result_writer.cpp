@@ -9,7 +9,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 #include "page/result_writer.h"
 #include "record/seen_session.h"
 
@@ -124,7 +124,7 @@ TEST(ResultWriter, EveryFigureOfTheSummaryIsDefinedAndInItsPlace) {
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
     defined.insert(figure.place);
     const Json& there = summary.at(Json::json_pointer(figure.place));
-    const metrics::Measure measure = figure.measure(writer.result().measures);
+    const metrics::Measure measure = writer.result().measures.at(figure);
     if (measure.value) {
       const double number = there.is_boolean() ? there.get<bool>() : there.get<double>();
       EXPECT_EQ(number, *measure.value) << figure.place;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 #include "record/figure_list.h"
 
 namespace cdiff::record {
@@ -22,7 +22,7 @@ TEST(FigureList, IsInTheDocumentationWordByWord) {
 TEST(FigureList, HasASectionAFigure) {
   const std::string list = figureList();
   const std::string section =
-      "### `cbv_collisions`\n\nCollisions of CBVs; count; no direction; `/cbv/collisions`\n\n";
+      "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; `/cbv/collisions`\n\n";
   EXPECT_NE(list.find(section), std::string::npos);
 }
 

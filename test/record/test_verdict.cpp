@@ -7,23 +7,25 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/known_figures.h"
 #include "record/verdict_cases.h"
 
 namespace cdiff::record {
 namespace {
 
+namespace figures = metrics::figures;
 using traffic::SessionStatus;
 
 metrics::SessionMeasures someMeasures() {
   metrics::SessionMeasures measures;
-  measures.route_completion_percent = 80.0;
+  measures.set(figures::kRouteCompletion, {80.0, 1, "", ""});
   measures.protocol = "bench2drive";
-  measures.driving_score = 33.6;
-  measures.ego_collisions = 1;
-  measures.infractions["red_lights"] = {1.0, 3, "", ""};
-  measures.infractions["stop_signs"] = {2.0, 2, "", ""};
-  measures.infractions["outside_lanes_percent"] = {1.25, 400, "%", ""};
-  measures.cbv_off_road_rate_percent = {5.0, 100, "%", ""};
+  measures.set(figures::kDrivingScore, {33.6, 1, "", ""});
+  measures.set(figures::kEgoCollisions, {1.0, 1, "", ""});
+  measures.set(figures::kRedLights, {1.0, 3, "", ""});
+  measures.set(figures::kStopSigns, {2.0, 2, "", ""});
+  measures.set(figures::kOutsideLanes, {1.25, 400, "%", ""});
+  measures.set(figures::kCbvOffRoad, {5.0, 100, "%", ""});
   measures.ego_contacts = {{117, 5.85, "cbv_1", true, "it did", 5.0, 2.0, "front", "rear", 1, 2}};
   return measures;
 }
@@ -128,7 +130,7 @@ TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
 
 TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   metrics::SessionMeasures measures = someMeasures();
-  measures.infractions["red_lights"] = {std::nullopt, 0, "", "no road network was given"};
+  measures.set(figures::kRedLights, {std::nullopt, 0, "", "no road network was given"});
   session::VerdictOptions rules;
   rules.maximum_red_lights = 0.0;
   const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
@@ -136,7 +138,7 @@ TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   EXPECT_EQ(verdict.checks[1].outcome, CheckOutcome::kSkipped);
   EXPECT_EQ(verdict.checks[1].text,
             "red_lights of the ego is not defined: no road network was given");
-  measures.cbv_off_road_rate_percent = {std::nullopt, 0, "%", "no CBV was driven"};
+  measures.set(figures::kCbvOffRoad, {std::nullopt, 0, "%", "no CBV was driven"});
   rules.maximum_cbv_off_road_percent = 0.0;
   EXPECT_EQ(judged(rules, SessionStatus::kCompleted, measures).checks[2].outcome,
             CheckOutcome::kSkipped);

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 #include "rendering/front_camera.h"
 #include "ros/fake_simulator.h"
 #include "ros/image_conversions.h"

@@ -7,7 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
-#include "metrics/figure_definitions.h"
+#include "metrics/metric_registry.h"
 #include "ros/conversions.h"
 #include "ros/metric_diagnostics.h"
 #include "ros/sample_messages.h"
@@ -193,12 +193,16 @@ TEST(Conversions, SessionInfoRebuildsTheSameSetup) {
   EXPECT_EQ(fromMsg(overTheWire(toPathMsg(setup.egoRoute()))), setup.egoRoute().path().points());
 }
 
+void set(metrics::SessionMeasures& measures, const char* name, const metrics::Measure& measure) {
+  measures.set(*metrics::findFigure(name), measure);
+}
+
 TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
   metrics::SessionMeasures measures;
-  measures.blocked = true;
-  measures.penalty = {0.42, 7, "", ""};
-  measures.infractions["red_lights"] = {1.0, 2, "", ""};
-  measures.infractions["static_collisions"] = {std::nullopt, 0, "", "none"};
+  set(measures, "ego_blocked", {1.0, 1, "", ""});
+  set(measures, "ego_penalty", {0.42, 7, "", ""});
+  set(measures, "ego_infraction_red_lights", {1.0, 2, "", ""});
+  set(measures, "ego_infraction_static_collisions", {std::nullopt, 0, "", "none"});
   std::map<std::string, msgs::Measure> found;
   for (const msgs::Measure& measure : toMsg(measures)) found[measure.name] = measure;
   EXPECT_EQ(found.at("ego_penalty").value, 0.42);
@@ -211,16 +215,16 @@ TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
 
 TEST(Conversions, EveryDefinedFigureGoesOut) {
   metrics::SessionMeasures measures;
-  measures.ego_collisions = 2;
-  measures.speed_wasserstein = {1.0 / 3.0, 7, "m/s", "", "a target"};
-  measures.post_encroachment.mean.reason = "no CBV was driven";
+  set(measures, "ego_collisions", {2.0, 1, "", ""});
+  set(measures, "speed_wasserstein_mps", {1.0 / 3.0, 7, "", "", "a target"});
+  set(measures, "post_encroachment_mean_s", {std::nullopt, 0, "", "no CBV was driven"});
   const std::vector<msgs::Measure> all = toMsg(measures);
   ASSERT_EQ(all.size(), metrics::figureDefinitions().size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const metrics::FigureDefinition& figure = metrics::figureDefinitions()[i];
     EXPECT_EQ(all[i].name, figure.name);
     EXPECT_EQ(std::isnan(all[i].value), !all[i].defined) << figure.name;
-    EXPECT_EQ(all[i].defined, figure.measure(measures).value.has_value()) << figure.name;
+    EXPECT_EQ(all[i].defined, measures.at(figure).value.has_value()) << figure.name;
     if (all[i].name == "ego_collisions") {
       EXPECT_EQ(all[i].value, 2.0);
     }
@@ -237,10 +241,10 @@ TEST(Conversions, EveryDefinedFigureGoesOut) {
 
 TEST(MetricDiagnostics, ShowMainFiguresAndWhatIsUndefined) {
   metrics::SessionMeasures measures;
-  measures.cbv_count = 3;
-  measures.ttc_2d.minimum = {0.5, 12, "s", "", ""};
-  measures.post_encroachment.minimum.reason = "no CBV was driven";
-  measures.cbv_off_road_rate_percent.reason = "no CBV was driven";
+  set(measures, "cbv_count", {3.0, 1, "", ""});
+  set(measures, "ttc_min_s", {0.5, 12, "", "", ""});
+  set(measures, "post_encroachment_min_s", {std::nullopt, 0, "", "no CBV was driven"});
+  set(measures, "cbv_off_road_percent", {std::nullopt, 0, "", "no CBV was driven"});
   std::map<std::string, std::string> values;
   for (const auto& [name, value] : metricDiagnostics(measures)) values[name] = value;
   EXPECT_EQ(values.at("CBVs"), "3");

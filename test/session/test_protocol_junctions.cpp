@@ -78,11 +78,11 @@ TEST(ProtocolLights, CountsTheRedOnesThatAnEgoWithoutEyesRuns) {
     const BlindDrive drive(litScenario(begin_time));
     const std::string& letters = drive.passed.letters;
     const auto red = std::count(letters.begin(), letters.end(), 'r');
-    const metrics::Measure& counted = drive.measures.infractions.at("red_lights");
+    const metrics::Measure counted = drive.measures.at("ego_infraction_red_lights");
     EXPECT_EQ(*counted.value, static_cast<double>(red)) << letters;
     EXPECT_EQ(counted.n, letters.size());
-    EXPECT_EQ(drive.measures.route_completion_percent, 100.0);
-    EXPECT_NEAR(drive.measures.driving_score, 100.0 * std::pow(0.7, red), 1e-9);
+    EXPECT_EQ(*drive.measures.at("ego_completion_percent").value, 100.0);
+    EXPECT_NEAR(*drive.measures.at("ego_driving_score").value, 100.0 * std::pow(0.7, red), 1e-9);
     all += letters;
   }
   EXPECT_NE(all.find('r'), std::string::npos) << "the test needs a red light, saw " << all;
@@ -109,8 +109,8 @@ metrics::Measure stopSigns(const std::string& type, const std::string& from) {
   options.route.start_speed = 5.0;
   options.max_cbv = 0;
   const BlindDrive drive(options);
-  EXPECT_EQ(drive.measures.route_completion_percent, 100.0) << type << " from " << from;
-  return drive.measures.infractions.at("stop_signs");
+  EXPECT_EQ(*drive.measures.at("ego_completion_percent").value, 100.0) << type << " from " << from;
+  return drive.measures.at("ego_infraction_stop_signs");
 }
 
 // The ego's planner knows no stop signs and drives on.

@@ -74,34 +74,35 @@ class ProtocolScores : public testing::Test {
 TEST_F(ProtocolScores, WithoutInfractionsAreTheCompletion) {
   for (const std::string& preset : shippedProtocols()) {
     const metrics::SessionMeasures measures = drive(preset, 400);
-    EXPECT_NEAR(measures.driving_score, 100.0, 1e-9) << preset;
+    EXPECT_NEAR(*measures.at("ego_driving_score").value, 100.0, 1e-9) << preset;
     EXPECT_EQ(measures.protocol, preset);
-    EXPECT_EQ(*measures.penalty.value, 1.0);
-    EXPECT_EQ(*measures.infractions.at("red_lights").value, 0.0);
-    EXPECT_EQ(measures.infractions.at("red_lights").n, 1U);  // one light passed on green
-    EXPECT_FALSE(measures.blocked);
+    EXPECT_EQ(*measures.at("ego_penalty").value, 1.0);
+    EXPECT_EQ(*measures.at("ego_infraction_red_lights").value, 0.0);
+    EXPECT_EQ(measures.at("ego_infraction_red_lights").n, 1U);  // one light passed on green
+    EXPECT_EQ(*measures.at("ego_blocked").value, 0.0);
   }
 }
 
 TEST_F(ProtocolScores, OneVehicleCollisionLeavesSixty) {
   for (const char* preset : {"rift_dev10", "bench2drive", "leaderboard_2_0"})
-    EXPECT_NEAR(drive(preset, 400, collide).driving_score, 60.0, 1e-9) << preset;
-  EXPECT_NEAR(drive("leaderboard_2_1", 400, collide).driving_score, 100.0 / 1.7, 1e-9);
+    EXPECT_NEAR(*drive(preset, 400, collide).at("ego_driving_score").value, 60.0, 1e-9) << preset;
+  EXPECT_NEAR(*drive("leaderboard_2_1", 400, collide).at("ego_driving_score").value, 100.0 / 1.7,
+              1e-9);
 }
 
 TEST_F(ProtocolScores, CollisionAndRedLightMultiplyOnEightyPercent) {
   // 320 of 400 m, 0.6 x 0.7.
   const metrics::SessionMeasures measures = drive("leaderboard_2_0", 320, collideAndRunRed);
-  EXPECT_NEAR(measures.route_completion_percent, 80.0, 1e-9);
-  EXPECT_NEAR(*measures.penalty.value, 0.42, 1e-12);
-  EXPECT_NEAR(measures.driving_score, 33.6, 1e-9);
+  EXPECT_NEAR(*measures.at("ego_completion_percent").value, 80.0, 1e-9);
+  EXPECT_NEAR(*measures.at("ego_penalty").value, 0.42, 1e-12);
+  EXPECT_NEAR(*measures.at("ego_driving_score").value, 33.6, 1e-9);
 }
 
 TEST_F(ProtocolScores, CollisionAndRedLightAddUpInVersion21) {
   const metrics::SessionMeasures measures = drive("leaderboard_2_1", 400, collideAndRunRed);
-  EXPECT_NEAR(measures.driving_score, 47.62, 5e-3);  // 100 / (1 + 0.7 + 0.4)
-  EXPECT_EQ(*measures.infractions.at("vehicle_collisions").value, 1.0);
-  EXPECT_EQ(*measures.infractions.at("red_lights").value, 1.0);
+  EXPECT_NEAR(*measures.at("ego_driving_score").value, 47.62, 5e-3);  // 100 / (1 + 0.7 + 0.4)
+  EXPECT_EQ(*measures.at("ego_infraction_vehicle_collisions").value, 1.0);
+  EXPECT_EQ(*measures.at("ego_infraction_red_lights").value, 1.0);
 }
 
 TEST_F(ProtocolScores, ATenthOutsideTheLanesLeavesNinety) {
@@ -111,8 +112,8 @@ TEST_F(ProtocolScores, ATenthOutsideTheLanesLeavesNinety) {
   };
   for (const std::string& preset : shippedProtocols()) {
     const metrics::SessionMeasures measures = drive(preset, 400, outside);
-    EXPECT_NEAR(*measures.infractions.at("outside_lanes_percent").value, 10.0, 1e-9);
-    EXPECT_NEAR(measures.driving_score, 90.0, 1e-9) << preset;
+    EXPECT_NEAR(*measures.at("ego_infraction_outside_lanes_percent").value, 10.0, 1e-9);
+    EXPECT_NEAR(*measures.at("ego_driving_score").value, 90.0, 1e-9) << preset;
   }
 }
 
@@ -122,17 +123,18 @@ TEST_F(ProtocolScores, MinimumSpeedIsChargedByTheLeaderboardAlone) {
     snapshot.vehicles.front().state.speed = x <= 100 ? 5.0 : x <= 300 ? 10.0 : 8.0;
   };
   const metrics::SessionMeasures measures = drive("leaderboard_2_0", 400, slow);
-  EXPECT_NEAR(measures.driving_score, 79.9, 1e-9);  // 0.85 x 0.94
-  EXPECT_EQ(*measures.infractions.at("minimum_speed_missed").value, 2.0);
-  EXPECT_EQ(measures.infractions.at("minimum_speed_missed").n, 4U);
-  EXPECT_NEAR(*measures.infractions.at("minimum_speed_percent").value, 82.5, 1e-9);
-  EXPECT_NEAR(drive("leaderboard_2_1", 400, slow).driving_score, 100.0 / 1.28, 1e-9);
+  EXPECT_NEAR(*measures.at("ego_driving_score").value, 79.9, 1e-9);  // 0.85 x 0.94
+  EXPECT_EQ(*measures.at("ego_infraction_minimum_speed_missed").value, 2.0);
+  EXPECT_EQ(measures.at("ego_infraction_minimum_speed_missed").n, 4U);
+  EXPECT_NEAR(*measures.at("ego_infraction_minimum_speed_percent").value, 82.5, 1e-9);
+  EXPECT_NEAR(*drive("leaderboard_2_1", 400, slow).at("ego_driving_score").value, 100.0 / 1.28,
+              1e-9);
   for (const char* preset : {"rift_dev10", "bench2drive"}) {
     const metrics::SessionMeasures measured = drive(preset, 400, slow);
-    EXPECT_NEAR(measured.driving_score, 100.0, 1e-9) << preset;
+    EXPECT_NEAR(*measured.at("ego_driving_score").value, 100.0, 1e-9) << preset;
     // 5 + 5 of 20 stretches are slow; their mean is the same.
-    EXPECT_EQ(*measured.infractions.at("minimum_speed_missed").value, 10.0);
-    EXPECT_NEAR(*measured.infractions.at("minimum_speed_percent").value, 82.5, 1e-9);
+    EXPECT_EQ(*measured.at("ego_infraction_minimum_speed_missed").value, 10.0);
+    EXPECT_NEAR(*measured.at("ego_infraction_minimum_speed_percent").value, 82.5, 1e-9);
   }
 }
 
@@ -142,10 +144,10 @@ TEST_F(ProtocolScores, AContactOfAStandingEgoIsSeenAndNotCharged) {
         collide(x, snapshot);
         if (x == 50) snapshot.vehicles.front().state.speed = 0.0;
       });
-  EXPECT_EQ(measures.ego_collisions, 1U);
-  EXPECT_EQ(*measures.infractions.at("vehicle_collisions").value, 0.0);
-  EXPECT_EQ(measures.infractions.at("vehicle_collisions").n, 1U);
-  EXPECT_NEAR(measures.driving_score, 100.0, 1e-9);
+  EXPECT_EQ(*measures.at("ego_collisions").value, 1U);
+  EXPECT_EQ(*measures.at("ego_infraction_vehicle_collisions").value, 0.0);
+  EXPECT_EQ(measures.at("ego_infraction_vehicle_collisions").n, 1U);
+  EXPECT_NEAR(*measures.at("ego_driving_score").value, 100.0, 1e-9);
 }
 
 TEST_F(ProtocolScores, SayWhenTheEgoWasBlocked) {
@@ -153,7 +155,7 @@ TEST_F(ProtocolScores, SayWhenTheEgoWasBlocked) {
       drive("rift_dev10", 100, [](int x, traffic::TrafficSnapshot& snapshot) {
         if (x == 100) snapshot.status = traffic::SessionStatus::kBlocked;
       });
-  EXPECT_TRUE(measures.blocked);
+  EXPECT_EQ(*measures.at("ego_blocked").value, 1.0);
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/metric.h"
+#include "metrics/cbv_way.h"
+#include "metrics/collisions_per_km.h"
+#include "metrics/known_figures.h"
+#include "metrics/measures.h"
+
+namespace cdiff::metrics {
+
+const FigureDefinition figures::kCbvCollisions = {
+    "cbv_collisions",
+    "/cbv/collisions",
+    "Collisions of CBVs",
+    "count",
+    Direction::kNeither,
+    Subject::kCbvs,
+    "Contacts of a CBV's box with any other vehicle's box on the same level; a contact of two CBVs "
+    "counts once.",
+    "RIFT counts at most one collision per CBV, and one for each of two CBVs that collide.",
+    0,
+};
+const FigureDefinition figures::kCbvEgoCollisions = {
+    "cbv_ego_collisions",
+    "/cbv/collisions_with_ego",
+    "Collisions of CBVs with the ego",
+    "count",
+    Direction::kNeither,
+    Subject::kEgoAndOthers,
+    "Those collisions of CBVs whose other vehicle is the ego.",
+    "",
+    0,
+};
+const FigureDefinition figures::kCollisionsPerKm = {
+    "cbv_collisions_per_km",
+    "/cbv/collisions_per_km",
+    "Collisions of CBVs per km (CPK)",
+    "1/km",
+    Direction::kNeither,
+    Subject::kCbvs,
+    "1000 x collisions of CBVs with anyone / distance driven as CBV in metres; n counts CBVs "
+    "(paper's CPK: lower is better in naturalistic mode, higher in safety-critical mode).",
+    "RIFT divides collided CBVs by the distance summed over decision ticks.",
+    3,
+    true,
+};
+
+namespace {
+
+constexpr FigureDefinition kEgoCollisionsPerKm = {
+    "cbv_ego_collisions_per_km",
+    "/cbv/collisions_with_ego_per_km",
+    "Collisions of CBVs with the ego per km",
+    "1/km",
+    Direction::kNeither,
+    Subject::kEgoAndOthers,
+    "1000 x collisions of CBVs with the ego / distance driven as CBV in metres; n counts CBVs.",
+    "RIFT does not tell the partner.",
+};
+
+/// Contacts of CBVs with anyone and with the ego alone; a contact of two CBVs counts once.
+class CbvCollisions final : public Metric {
+ public:
+  void observe(const MetricTick& tick) override {
+    for (const ContactSighting& contact : tick.contacts) {
+      if (contact.cbvs.empty()) continue;
+      ++collisions_;
+      if (!contact.ego_partner.empty()) ++ego_collisions_;
+    }
+    way_.observe(tick);
+  }
+  void report(MetricSink& sink) const override {
+    sink.set(figures::kCbvCollisions, countMeasure(collisions_));
+    sink.set(figures::kCbvEgoCollisions, countMeasure(ego_collisions_));
+    sink.set(figures::kCollisionsPerKm,
+             collisionsPerKilometre(collisions_, way_.distance(), way_.vehicles()));
+    sink.set(kEgoCollisionsPerKm,
+             collisionsPerKilometre(ego_collisions_, way_.distance(), way_.vehicles()));
+  }
+
+ private:
+  CbvWay way_;
+  std::size_t collisions_ = 0;
+  std::size_t ego_collisions_ = 0;
+};
+
+}  // namespace
+
+MetricDescriptor cbvCollisionsMetric() {
+  return {"cbv_collisions",
+          "Collisions of CBVs, as counts and per kilometre.",
+          {figures::kCbvCollisions, figures::kCbvEgoCollisions, figures::kCollisionsPerKm,
+           kEgoCollisionsPerKm},
+          [](const MetricContext&) { return std::make_unique<CbvCollisions>(); }};
+}
+
+}  // namespace cdiff::metrics

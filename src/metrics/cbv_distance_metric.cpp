@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "e2e_cdiff/metrics/metric.h"
+#include "metrics/cbv_way.h"
+#include "metrics/known_figures.h"
+#include "metrics/measures.h"
+
+namespace cdiff::metrics {
+
+const FigureDefinition figures::kCbvDistance = {
+    "cbv_distance_m",
+    "/cbv/distance_m",
+    "Distance driven as CBV",
+    "m",
+    Direction::kHigherIsBetter,
+    Subject::kCbvs,
+    "Sum over CBVs of the chords between successive ticks at which they were CBV.",
+    "RIFT's reached progress (RP) sums the chords between decision ticks.",
+};
+
+namespace {
+
+class CbvDistance final : public Metric {
+ public:
+  void observe(const MetricTick& tick) override { way_.observe(tick); }
+  void report(MetricSink& sink) const override {
+    sink.set(figures::kCbvDistance, numberMeasure(way_.distance()));
+  }
+
+ private:
+  CbvWay way_;
+};
+
+}  // namespace
+
+MetricDescriptor cbvDistanceMetric() {
+  return {"cbv_distance",
+          "How far vehicles drove as CBVs.",
+          {figures::kCbvDistance},
+          [](const MetricContext&) { return std::make_unique<CbvDistance>(); }};
+}
+
+}  // namespace cdiff::metrics

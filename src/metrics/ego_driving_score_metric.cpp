@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "e2e_cdiff/metrics/metric.h"
+#include "metrics/collision_counter.h"
+#include "metrics/driving_score.h"
+#include "metrics/known_figures.h"
+#include "metrics/measures.h"
+#include "metrics/minimum_speed.h"
+#include "metrics/outside_lanes.h"
+#include "metrics/stop_lines.h"
+
+namespace cdiff::metrics {
+
+const FigureDefinition figures::kDrivingScore = {
+    "ego_driving_score",
+    "/ego/driving_score",
+    "Driving score",
+    "",
+    Direction::kHigherIsBetter,
+    Subject::kEgo,
+    "Route completion x infraction penalty by the rules of the protocol (CARLA leaderboard).",
+    "",
+    3,
+    true,
+};
+const FigureDefinition figures::kPenalty = {
+    "ego_penalty",
+    "/ego/penalty",
+    "Penalty of the infractions",
+    "",
+    Direction::kHigherIsBetter,
+    Subject::kEgo,
+    "Infraction penalty by the rules of the protocol, 0 to 1: a product of factors (CARLA "
+    "leaderboard 2.0, Bench2Drive, RIFT) or 1 / (1 + sum of charges) (leaderboard 2.1); n counts "
+    "ticks with the ego.",
+    "",
+};
+const FigureDefinition figures::kOutsideLanes = {
+    "ego_infraction_outside_lanes_percent",
+    "/ego/infractions/outside_lanes_percent",
+    "Way outside the lanes",
+    "%",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Share of the completed route outside the lanes or on a wrong lane (docs/protocols.md).",
+    "",
+};
+const FigureDefinition figures::kRedLights = {
+    "ego_infraction_red_lights",
+    "/ego/infractions/red_lights",
+    "Red lights run",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Stop lines crossed at red; n counts lines with a light crossed (docs/protocols.md).",
+    "",
+};
+const FigureDefinition figures::kStopSigns = {
+    "ego_infraction_stop_signs",
+    "/ego/infractions/stop_signs",
+    "Stop signs run",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Lines with a stop sign crossed without a stop; n counts lines with a stop sign crossed "
+    "(docs/protocols.md).",
+    "",
+};
+
+namespace {
+
+constexpr FigureDefinition kSpeedMissed = {
+    "ego_infraction_minimum_speed_missed",
+    "/ego/infractions/minimum_speed_missed",
+    "Stretches below the traffic's speed",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Stretches of the route on which the ego was slower than the traffic; n counts stretches "
+    "(docs/protocols.md).",
+    "",
+};
+constexpr FigureDefinition kSpeedPercent = {
+    "ego_infraction_minimum_speed_percent",
+    "/ego/infractions/minimum_speed_percent",
+    "Speed against the traffic's",
+    "%",
+    Direction::kHigherIsBetter,
+    Subject::kEgo,
+    "Mean over stretches of the route of 100 x mean speed of the ego / mean speed of the "
+    "background vehicles (docs/protocols.md).",
+    "",
+};
+constexpr FigureDefinition kPedestrians = {
+    "ego_infraction_pedestrian_collisions",
+    "/ego/infractions/pedestrian_collisions",
+    "Collisions with pedestrians",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Always absent: these sessions have no pedestrians.",
+    "",
+};
+constexpr FigureDefinition kTimeouts = {
+    "ego_infraction_scenario_timeouts",
+    "/ego/infractions/scenario_timeouts",
+    "Scenario time-outs",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Always absent: these sessions have no scripted scenarios.",
+    "",
+};
+constexpr FigureDefinition kStaticCollisions = {
+    "ego_infraction_static_collisions",
+    "/ego/infractions/static_collisions",
+    "Collisions with static objects",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Always absent: these sessions have no static objects to hit.",
+    "",
+};
+constexpr FigureDefinition kVehicleCollisions = {
+    "ego_infraction_vehicle_collisions",
+    "/ego/infractions/vehicle_collisions",
+    "Collisions that the protocol charges",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Contacts of the ego that the protocol counts as collisions; n counts all contacts "
+    "(docs/protocols.md).",
+    "",
+};
+constexpr FigureDefinition kYieldsFailed = {
+    "ego_infraction_yields_failed",
+    "/ego/infractions/yields_failed",
+    "Failures to yield to emergency vehicles",
+    "",
+    Direction::kLowerIsBetter,
+    Subject::kEgo,
+    "Always absent: these sessions have no emergency vehicles.",
+    "",
+};
+
+Measure counted(std::size_t count, std::size_t n) {
+  return {static_cast<double>(count), n, {}, {}};
+}
+
+/// The ego's infractions by the protocol's rules and what they make of the driving score.
+class DrivingScore final : public Metric {
+ public:
+  explicit DrivingScore(const MetricContext& context)
+      : options_(context.options.infractions),
+        collisions_(options_),
+        minimum_speed_(
+            context.ego_route.length(),
+            context.ego_route.empty() ? 0 : static_cast<std::size_t>(options_.speed_checkpoints)) {
+    const map::RoadNetwork* network = context.options.network;
+    if (network == nullptr) return;
+    outside_.emplace(*network, options_);
+    stop_lines_.emplace(*network, context.ego_route, options_);
+  }
+
+  void observe(const MetricTick& tick) override {
+    completion_percent_ = tick.route_completion_percent;
+    if (tick.ego == nullptr) return;
+    if (tick.ego->state.position.allFinite()) observeEgo(*tick.ego, tick);
+    for (const ContactSighting& contact : tick.contacts) {
+      if (contact.ego_partner.empty()) continue;
+      collisions_.observe(tick.snapshot.time, tick.ego->state, contact.ego_partner);
+    }
+  }
+
+  void report(MetricSink& sink) const override {
+    const Infractions found = infractions();
+    const ScoreRules rules = options_.scoreRules();
+    sink.set(figures::kDrivingScore,
+             numberMeasure(ticks_ == 0 ? 0.0 : drivingScore(completion_percent_, found, rules)));
+    sink.set(figures::kPenalty, ticks_ == 0
+                                    ? absentMeasure(kNoEgo)
+                                    : Measure{infractionPenalty(found, rules), ticks_, {}, {}});
+    sink.set(kVehicleCollisions, counted(collisions_.count(), collisions_.contacts()));
+    reportRoad(sink);
+    reportSpeed(sink);
+    reportNotOccurring(sink);
+  }
+
+ private:
+  void observeEgo(const traffic::Vehicle& ego, const MetricTick& tick) {
+    ++ticks_;
+    const double advance = std::max(0.0, tick.ego_arc_length - arc_length_);
+    arc_length_ = std::max(arc_length_, tick.ego_arc_length);
+    minimum_speed_.observe(arc_length_, ego.state.speed, tick.snapshot);
+    if (outside_) outside_->observe(ego.state, advance);
+    if (stop_lines_) stop_lines_->observe(ego, tick.snapshot.signals);
+  }
+
+  Infractions infractions() const {
+    Infractions infractions;
+    infractions.vehicle_collisions = collisions_.count();
+    infractions.minimum_speed_percent = minimum_speed_.percents();
+    if (outside_) infractions.outside_lanes_percent = outside_->percent();
+    if (stop_lines_) {
+      infractions.red_lights = stop_lines_->redLights();
+      infractions.stop_signs = stop_lines_->stopSigns();
+    }
+    return infractions;
+  }
+
+  void reportRoad(MetricSink& sink) const {
+    const Measure no_network = absentMeasure("no road network was given");
+    sink.set(
+        figures::kRedLights,
+        stop_lines_ ? counted(stop_lines_->redLights(), stop_lines_->lightsCrossed()) : no_network);
+    sink.set(figures::kStopSigns,
+             stop_lines_ ? counted(stop_lines_->stopSigns(), stop_lines_->stopSignsCrossed())
+                         : no_network);
+    Measure outside = no_network;
+    if (outside_ && arc_length_ > 0.0) outside = {outside_->percent(), outside_->ticks(), {}, {}};
+    if (outside_ && !(arc_length_ > 0.0))
+      outside = absentMeasure("the ego made no way along its route");
+    sink.set(figures::kOutsideLanes, outside);
+  }
+
+  void reportSpeed(MetricSink& sink) const {
+    const std::vector<double> percents = minimum_speed_.percents();
+    if (percents.empty()) {
+      const Measure absent = absentMeasure(
+          options_.speed_checkpoints == 0
+              ? "the protocol has no speed checkpoints"
+              : "no stretch of the route was driven to its end beside moving background traffic");
+      sink.set(kSpeedMissed, absent);
+      sink.set(kSpeedPercent, absent);
+      return;
+    }
+    const auto missed = std::count_if(percents.begin(), percents.end(),
+                                      [](double percent) { return percent < 100.0; });
+    const double sum = std::accumulate(percents.begin(), percents.end(), 0.0);
+    sink.set(kSpeedMissed, counted(static_cast<std::size_t>(missed), percents.size()));
+    sink.set(kSpeedPercent, {sum / static_cast<double>(percents.size()), percents.size(), {}, {}});
+  }
+
+  /// What the leaderboard charges and these sessions do not have.
+  static void reportNotOccurring(MetricSink& sink) {
+    sink.set(kPedestrians, absentMeasure("these sessions have no pedestrians"));
+    sink.set(kStaticCollisions, absentMeasure("these sessions have no static objects to hit"));
+    sink.set(kTimeouts, absentMeasure("these sessions have no scripted scenarios"));
+    sink.set(kYieldsFailed, absentMeasure("these sessions have no emergency vehicles"));
+  }
+
+  InfractionOptions options_;
+  CollisionCounter collisions_;
+  MinimumSpeed minimum_speed_;
+  std::optional<OutsideLanes> outside_;
+  std::optional<StopLines> stop_lines_;
+  double completion_percent_ = 0.0;
+  double arc_length_ = 0.0;
+  std::size_t ticks_ = 0;
+};
+
+}  // namespace
+
+MetricDescriptor egoDrivingScoreMetric() {
+  return {"ego_driving_score",
+          "Driving score, penalty and infractions of the ego by the rules of the protocol.",
+          {figures::kDrivingScore, figures::kPenalty, kSpeedMissed, kSpeedPercent,
+           figures::kOutsideLanes, kPedestrians, figures::kRedLights, kTimeouts, kStaticCollisions,
+           figures::kStopSigns, kVehicleCollisions, kYieldsFailed},
+          [](const MetricContext& context) { return std::make_unique<DrivingScore>(context); }};
+}
+
+}  // namespace cdiff::metrics

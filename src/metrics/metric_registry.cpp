@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "metrics/metric_registry.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "metrics/shipped_metrics.h"
+
+namespace cdiff::metrics {
+namespace {
+
+class Registry {
+ public:
+  Registry() {
+    for (MetricDescriptor& descriptor : shippedMetrics()) add(std::move(descriptor));
+  }
+
+  void add(MetricDescriptor descriptor) {
+    check(descriptor);
+    for (FigureDefinition& figure : descriptor.figures) {
+      if (*figure.place == '\0') figure.place = defaultPlace(figure);
+    }
+    for (const FigureDefinition& figure : descriptor.figures) insert(figure);
+    metrics_.push_back(std::move(descriptor));
+  }
+
+  const std::deque<MetricDescriptor>& metrics() const { return metrics_; }
+  const std::vector<FigureDefinition>& figures() const { return figures_; }
+
+ private:
+  /// At the end; in a group of figures, by name.
+  void insert(const FigureDefinition& figure) {
+    const std::string group = groupOf(figure);
+    auto place = figures_.end();
+    if (!group.empty()) {
+      const auto after = [&](const FigureDefinition& other) {
+        return groupOf(other) == group && std::string(other.name) > figure.name;
+      };
+      place = std::find_if(figures_.begin(), figures_.end(), after);
+    }
+    figures_.insert(place, figure);
+  }
+
+  /// The group that "/metrics/GROUP/NAME/value" says; empty for any other place.
+  static std::string groupOf(const FigureDefinition& figure) {
+    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+    return keys.size() == 4 ? keys[1] : std::string();
+  }
+
+  const char* defaultPlace(const FigureDefinition& figure) {
+    places_.push_back("/metrics/" + std::string(figure.name) + "/value");
+    return places_.back().c_str();
+  }
+
+  void check(const MetricDescriptor& descriptor) const {
+    if (descriptor.name.empty() || descriptor.figures.empty() || !descriptor.make) {
+      throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
+                             " lacks a name, figures or 'make'");
+    }
+    for (const MetricDescriptor& other : metrics_) {
+      if (other.name == descriptor.name) refuse("metric '" + other.name + "'", other, descriptor);
+      for (const FigureDefinition& known : other.figures) {
+        for (const FigureDefinition& figure : descriptor.figures) {
+          if (std::string(known.name) == figure.name || std::string(known.place) == figure.place)
+            refuse("figure '" + std::string(figure.name) + "'", other, descriptor);
+        }
+      }
+    }
+  }
+
+  [[noreturn]] static void refuse(const std::string& what, const MetricDescriptor& first,
+                                  const MetricDescriptor& second) {
+    throw core::InputError(what + " is registered twice, by " + first.source + " (metric '" +
+                           first.name + "') and by " + second.source + " (metric '" + second.name +
+                           "')");
+  }
+
+  std::deque<MetricDescriptor> metrics_;
+  std::vector<FigureDefinition> figures_;
+  std::deque<std::string> places_;  ///< texts of places that were filled in
+};
+
+Registry& registry() {
+  static Registry instance;
+  return instance;
+}
+
+}  // namespace
+
+void registerMetric(MetricDescriptor descriptor) { registry().add(std::move(descriptor)); }
+
+const std::deque<MetricDescriptor>& metricDescriptors() { return registry().metrics(); }
+
+const std::vector<FigureDefinition>& figureDefinitions() { return registry().figures(); }
+
+const FigureDefinition* findFigure(const std::string& name) {
+  const auto& all = figureDefinitions();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const FigureDefinition& row) { return name == row.name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+const char* toText(Direction direction) {
+  switch (direction) {
+    case Direction::kHigherIsBetter:
+      return "higher is better";
+    case Direction::kLowerIsBetter:
+      return "lower is better";
+    case Direction::kNeither:
+      break;
+  }
+  return "no direction";
+}
+
+const char* toText(Subject subject) {
+  switch (subject) {
+    case Subject::kEgo:
+      return "of the ego";
+    case Subject::kCbvs:
+      return "of CBVs";
+    case Subject::kEgoAndOthers:
+      break;
+  }
+  return "of the ego and others";
+}
+
+}  // namespace cdiff::metrics

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The one table of metrics and of their figures: summary, messages, report, batch columns and
+/// docs/metrics.md all follow from it.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/metrics/metric.h"
+
+namespace cdiff::metrics {
+
+/// The shipped metrics in the order of src/metrics/CMakeLists.txt, then those that were registered.
+/// References stay valid.
+const std::deque<MetricDescriptor>& metricDescriptors();
+
+/// Figures of all metrics, in the order of summary.json: by metric, but in a group of figures
+/// ("/metrics/GROUP/NAME/value") by name. Every place is filled in. A registration
+/// invalidates references.
+const std::vector<FigureDefinition>& figureDefinitions();
+/// nullptr for an unknown name.
+const FigureDefinition* findFigure(const std::string& name);
+
+/// "higher is better", "lower is better" or "no direction".
+const char* toText(Direction direction);
+/// "of the ego", "of CBVs" or "of the ego and others".
+const char* toText(Subject subject);
+
+}  // namespace cdiff::metrics

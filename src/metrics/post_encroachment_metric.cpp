@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+
+#include "e2e_cdiff/metrics/metric.h"
+#include "metrics/measures.h"
+#include "metrics/post_encroachment.h"
+#include "metrics/sample_statistics.h"
+
+namespace cdiff::metrics {
+
+namespace {
+
+constexpr FigureDefinition kMean = {
+    "post_encroachment_mean_s",
+    "/metrics/post_encroachment_s/mean",
+    "Post-encroachment time, mean over CBVs",
+    "s",
+    Direction::kHigherIsBetter,
+    Subject::kEgoAndOthers,
+    "Mean over CBVs of the post-encroachment time with the ego: the time between the first one's "
+    "box leaving and the second one's box entering a place, the shortest over all places that both "
+    "boxes sweep; 0 for a contact, the net time gap for one behind the other, absent above 10 s "
+    "(as in FHWA's SSAM, Gettman et al. 2008).",
+    "RIFT does not compute it.",
+};
+constexpr FigureDefinition kDeviation = {
+    "post_encroachment_std_s",
+    "/metrics/post_encroachment_s/std",
+    "Post-encroachment time, standard deviation over CBVs",
+    "s",
+    Direction::kNeither,
+    Subject::kEgoAndOthers,
+    "Standard deviation (n - 1) of the post-encroachment times of the CBVs.",
+    "",
+};
+constexpr FigureDefinition kMinimum = {
+    "post_encroachment_min_s",
+    "/metrics/post_encroachment_s/min",
+    "Post-encroachment time, minimum",
+    "s",
+    Direction::kHigherIsBetter,
+    Subject::kEgoAndOthers,
+    "The smallest post-encroachment time of the CBVs.",
+    "",
+    3,
+    true,
+};
+
+using traffic::Vehicle;
+
+bool usable(const Vehicle* vehicle) {
+  return vehicle != nullptr && vehicle->state.position.allFinite() &&
+         std::isfinite(vehicle->state.heading);
+}
+
+/// A CBV counts while its role is CBV, the ego always; vehicles on different levels share no place.
+class PostEncroachment final : public Metric {
+ public:
+  /// A longer time counts as never sharing a place [s].
+  explicit PostEncroachment(double limit) : limit_(limit) {}
+
+  void observe(const MetricTick& tick) override {
+    const SweptBox* ego_way = extend(ego_, tick.ego, tick.snapshot.time);
+    for (const CbvSighting& cbv : tick.cbvs) cbvs_.try_emplace(cbv.vehicle->id);
+    for (auto& [id, cbv] : cbvs_) {
+      const Vehicle* vehicle = tick.snapshot.find(id);
+      if (vehicle != nullptr && vehicle->role != traffic::VehicleRole::kCbv) vehicle = nullptr;
+      const SweptBox* cbv_way = extend(cbv, vehicle, tick.snapshot.time);
+      if (cbv_way != nullptr) {
+        for (const SweptBox& way : ego_.ways) compare(cbv, way, *cbv_way);
+      }
+      if (ego_way == nullptr) continue;
+      for (const SweptBox& way : cbv.ways) {
+        if (&way != cbv_way) compare(cbv, *ego_way, way);
+      }
+    }
+    last_time_ = tick.snapshot.time;
+  }
+
+  void report(MetricSink& sink) const override {
+    const std::string within = std::to_string(std::lround(limit_)) + " s";
+    SampleStatistics times;
+    std::vector<MetricEntry> entries;
+    for (const auto& [id, cbv] : cbvs_) {
+      if (cbv.seconds) {
+        times.add(*cbv.seconds);
+        entries.push_back({{"vehicle_id", id},
+                           {"seconds", *cbv.seconds},
+                           {"first", std::string(cbv.ego_first ? "ego" : "cbv")}});
+      } else {
+        entries.push_back({{"vehicle_id", id},
+                           {"seconds", nullptr},
+                           {"first", nullptr},
+                           {"reason", "ego and CBV were never at one place within " + within}});
+      }
+    }
+    const DistributionMeasure measure =
+        times.measure(cbvs_.empty() ? std::string(kNoCbv)
+                                    : "no CBV was ever at one place with the ego within " + within);
+    sink.set(kMean, measure.mean);
+    sink.set(kDeviation, measure.standard_deviation);
+    sink.set(kMinimum, measure.minimum);
+    sink.setList("/cbv/post_encroachments", std::move(entries));
+  }
+
+ private:
+  /// A vehicle's way of the last `limit_` seconds.
+  struct Track {
+    std::deque<SweptBox> ways;
+    std::optional<Vehicle> last;    ///< at the last tick, where it was there
+    std::optional<double> seconds;  ///< shortest so far
+    bool ego_first = false;         ///< whether the ego left the place before the CBV entered it
+  };
+
+  /// The way since the last tick; nullptr when the vehicle was not there then or is not finite.
+  const SweptBox* extend(Track& track, const Vehicle* vehicle, double time) const {
+    while (!track.ways.empty() && track.ways.front().begin < time - limit_ - 1.0)
+      track.ways.pop_front();
+    const bool moved = track.last && last_time_ && usable(vehicle);
+    if (moved) {
+      SweptBox way;
+      way.box = vehicle->box();
+      way.box.center = track.last->state.position;
+      way.offset = vehicle->state.position - track.last->state.position;
+      way.elevation = vehicle->state.elevation;
+      way.begin = *last_time_;
+      way.duration = time - *last_time_;
+      track.ways.push_back(way);
+    }
+    track.last = usable(vehicle) ? std::optional<Vehicle>(*vehicle) : std::nullopt;
+    return moved ? &track.ways.back() : nullptr;
+  }
+
+  void compare(Track& cbv, const SweptBox& ego_way, const SweptBox& cbv_way) const {
+    const double best = cbv.seconds.value_or(limit_);
+    const double apart =
+        std::abs(cbv_way.begin - ego_way.begin) - std::max(ego_way.duration, cbv_way.duration);
+    if (apart > best || farApart(ego_way, cbv_way) ||
+        traffic::onDifferentLevels(ego_way.elevation, cbv_way.elevation)) {
+      return;
+    }
+    const auto range = timesBetween(ego_way, cbv_way);
+    if (!range) return;
+    const bool at_once = range->shortest <= 0.0 && range->longest >= 0.0;
+    const double seconds =
+        at_once ? 0.0 : std::min(std::abs(range->shortest), std::abs(range->longest));
+    if (seconds > limit_ || (cbv.seconds && seconds >= *cbv.seconds)) return;
+    cbv.seconds = seconds;
+    cbv.ego_first = range->shortest > 0.0;
+  }
+
+  double limit_;
+  std::optional<double> last_time_;
+  Track ego_;
+  std::map<std::string, Track> cbvs_;
+};
+
+}  // namespace
+
+MetricDescriptor postEncroachmentMetric() {
+  return {"post_encroachment",
+          "Post-encroachment time of the ego and each CBV.",
+          {kMean, kDeviation, kMinimum},
+          [](const MetricContext& context) {
+            return std::make_unique<PostEncroachment>(context.options.post_encroachment_limit);
+          }};
+}
+
+}  // namespace cdiff::metrics

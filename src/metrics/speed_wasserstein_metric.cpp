@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <cmath>
+
+#include "core/text.h"
+#include "e2e_cdiff/metrics/metric.h"
+#include "metrics/known_figures.h"
+#include "metrics/measures.h"
+#include "metrics/wasserstein.h"
+
+namespace cdiff::metrics {
+
+const FigureDefinition figures::kSpeedWasserstein = {
+    "speed_wasserstein_mps",
+    "/metrics/speed_wasserstein_mps/value",
+    "Wasserstein distance of CBV speeds to the target",
+    "m/s",
+    Direction::kLowerIsBetter,
+    Subject::kCbvs,
+    "1-Wasserstein distance between the speeds of CBVs at CBV decisions and the target that is "
+    "named beside it: speeds of background vehicles within 150 m of the ego at decisions of the "
+    "same session (default), a normal distribution (exact integral), or the samples of a file "
+    "(paper's S-WD).",
+    "RIFT computes the 2-Wasserstein distance of two normal distributions, sqrt((mean - 8.5)^2 + "
+    "deviation^2), from its histogram; 8.5 m/s stands for CARLA's default limit of 30 km/h.",
+    3,
+    true,
+};
+
+namespace {
+
+constexpr double kBackgroundRadius = 150.0;  // [m] speeds of background vehicles are sampled within
+
+/// Speeds of CBVs against a target: background vehicles of the session, a normal distribution, or
+/// given samples.
+class SpeedWasserstein final : public Metric {
+ public:
+  /// Throws InputError for samples that are no numbers.
+  explicit SpeedWasserstein(const MetricsOptions& options) : options_(options) {
+    if (options.speed_target == "file") target_ = options.samples();
+  }
+
+  void observe(const MetricTick& tick) override {
+    if (!tick.snapshot.decision_tick) return;
+    if (tick.ego != nullptr && options_.speed_target == "background")
+      sampleBackground(*tick.ego, tick.snapshot);
+    for (const CbvSighting& cbv : tick.cbvs) {
+      if (cbv.placed() && std::isfinite(cbv.vehicle->state.speed))
+        speeds_.push_back(cbv.vehicle->state.speed);
+    }
+  }
+
+  void report(MetricSink& sink) const override {
+    Measure measure;
+    measure.n = speeds_.size();
+    measure.target = targetName();
+    if (speeds_.empty()) {
+      measure.reason = kNoCbv;
+    } else if (options_.speed_target == "normal") {
+      measure.value = wassersteinDistanceToNormal(speeds_, options_.speed_target_mean,
+                                                  options_.speed_target_deviation);
+    } else if (target_.empty()) {
+      measure.reason = "no background vehicle within 150 m of the ego";
+    } else {
+      measure.value = wassersteinDistance(speeds_, target_);
+    }
+    sink.set(figures::kSpeedWasserstein, measure);
+  }
+
+ private:
+  void sampleBackground(const traffic::Vehicle& ego, const traffic::TrafficSnapshot& snapshot) {
+    for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+      if (vehicle.role != traffic::VehicleRole::kBackground) continue;
+      if (!std::isfinite(vehicle.state.speed)) continue;
+      const double distance = (vehicle.state.position - ego.state.position).norm();
+      if (distance <= kBackgroundRadius) target_.push_back(vehicle.state.speed);
+    }
+  }
+
+  std::string targetName() const {
+    if (options_.speed_target == "normal") {
+      return "normal distribution of mean " + core::formatNumber(options_.speed_target_mean) +
+             " m/s and standard deviation " + core::formatNumber(options_.speed_target_deviation) +
+             " m/s";
+    }
+    const std::string count = " (n = " + std::to_string(target_.size()) + ")";
+    if (options_.speed_target == "file") return "file " + options_.speed_target_file + count;
+    return "background vehicles within 150 m of the ego" + count;
+  }
+
+  MetricsOptions options_;
+  std::vector<double> target_;  ///< samples [m/s]
+  std::vector<double> speeds_;  ///< of CBVs [m/s]
+};
+
+}  // namespace
+
+MetricDescriptor speedWassersteinMetric() {
+  return {"speed_wasserstein",
+          "Distance of the speeds of CBVs to a target distribution.",
+          {figures::kSpeedWasserstein},
+          [](const MetricContext& context) {
+            return std::make_unique<SpeedWasserstein>(context.options.metrics);
+          }};
+}
+
+}  // namespace cdiff::metrics

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "metrics/tick_observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "metrics/interaction_measures.h"
+
+namespace cdiff::metrics {
+namespace {
+
+using traffic::TrafficSnapshot;
+using traffic::Vehicle;
+using traffic::VehicleRole;
+
+/// Limit of the lane that a vehicle is on; off the road, of the nearest one.
+std::optional<double> speedLimit(const Vehicle& vehicle, const map::RoadNetwork& network) {
+  constexpr double kRadius = 5.0;  // [m] from a lane's centre line
+  map::LaneIndex lane = network.findLane(vehicle.lane_id);
+  if (lane == map::kNoLane) {
+    const auto near = network.lanesNear(vehicle.state.position, vehicle.state.elevation, kRadius);
+    if (!near.empty()) lane = near.front().lane;
+  }
+  if (lane == map::kNoLane) return std::nullopt;
+  return network.lane(lane).speed_limit;
+}
+
+/// Of the centres; absent without ego, and where one passes under the other.
+std::optional<double> distanceToEgo(const Vehicle& vehicle, const Vehicle* ego) {
+  if (ego == nullptr || traffic::onDifferentLevels(vehicle, *ego)) return std::nullopt;
+  return (vehicle.state.position - ego->state.position).norm();
+}
+
+}  // namespace
+
+TickObserver::TickObserver(const MetricContext& context)
+    : options_(context.options),
+      drivable_area_(context.drivable_area),
+      ego_contacts_(options_.network, options_.infractions.collision_minimum_speed) {
+  if (context.ego_route.empty()) return;
+  progress_.emplace(context.ego_route, options_.completion_percent, options_.completion_distance);
+}
+
+MetricTick TickObserver::observe(const TrafficSnapshot& snapshot,
+                                 const cbv::CbvSelection* selection) {
+  MetricTick tick{snapshot, selection, snapshot.ego()};
+  if (tick.ego != nullptr) addEgo(*tick.ego, tick);
+  if (progress_) {
+    tick.ego_arc_length = progress_->arcLength();
+    tick.route_completion_percent = progress_->percent();
+  }
+  addContacts(tick);
+  addCbvs(tick);
+  return tick;
+}
+
+bool TickObserver::offRoad(const Vehicle& vehicle) const {
+  const auto& state = vehicle.state;
+  if (!state.position.allFinite()) return false;
+  return drivable_area_.signedDistance(state.position, state.elevation) < 0.0;
+}
+
+/// All corners are looked for on the level of the vehicle.
+bool TickObserver::cornerOffRoad(const Vehicle& vehicle) const {
+  const auto& state = vehicle.state;
+  if (!state.position.allFinite() || !std::isfinite(state.heading)) return false;
+  const auto corners = vehicle.box().corners();
+  return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+    return drivable_area_.signedDistance(corner, state.elevation) < 0.0;
+  });
+}
+
+double TickObserver::wantedSpeed(const Vehicle& vehicle) const {
+  if (options_.network == nullptr || !vehicle.state.position.allFinite())
+    return options_.target_speed;
+  const std::optional<double> limit = speedLimit(vehicle, *options_.network);
+  return std::min(options_.target_speed, limit.value_or(options_.target_speed));
+}
+
+/// By the role now, or at the last tick for a vehicle that this contact removed. Call before
+/// addCbvs.
+bool TickObserver::isCbv(const TrafficSnapshot& snapshot, const std::string& id) const {
+  const Vehicle* vehicle = snapshot.find(id);
+  return vehicle != nullptr ? vehicle->role == VehicleRole::kCbv : last_positions_.count(id) != 0;
+}
+
+void TickObserver::addEgo(const Vehicle& ego, MetricTick& tick) {
+  ego_id_ = ego.id;
+  tick.ego_off_road = offRoad(ego);
+  if (progress_ && ego.state.position.allFinite()) progress_->update(ego.state.position);
+  tick.interaction = interactionOf(
+      ego, tick.snapshot, {options_.ttc_radius, options_.ttc_limit, tick.snapshot.decision_tick});
+}
+
+void TickObserver::addContacts(MetricTick& tick) {
+  for (const traffic::Contact& contact : tick.snapshot.contacts) {
+    ContactSighting sighting;
+    if (contact.first == ego_id_ || contact.second == ego_id_)
+      sighting.ego_partner = contact.first == ego_id_ ? contact.second : contact.first;
+    for (const std::string* id : {&contact.first, &contact.second}) {
+      if (isCbv(tick.snapshot, *id)) sighting.cbvs.push_back(*id);
+    }
+    tick.contacts.push_back(std::move(sighting));
+  }
+  const auto known = static_cast<std::ptrdiff_t>(ego_contacts_.contacts().size());
+  ego_contacts_.observe(tick.snapshot);
+  tick.ego_contacts.assign(ego_contacts_.contacts().begin() + known,
+                           ego_contacts_.contacts().end());
+}
+
+void TickObserver::addCbvs(MetricTick& tick) {
+  std::map<std::string, Eigen::Vector2d> positions;
+  for (const Vehicle& vehicle : tick.snapshot.vehicles) {
+    if (vehicle.role != VehicleRole::kCbv) continue;
+    tick.cbvs.push_back({&vehicle, offRoad(vehicle), wantedSpeed(vehicle),
+                         distanceToEgo(vehicle, tick.ego), cornerOffRoad(vehicle), 0.0});
+    if (!tick.cbvs.back().placed()) continue;
+    const auto last = last_positions_.find(vehicle.id);
+    if (last != last_positions_.end())
+      tick.cbvs.back().chord = (vehicle.state.position - last->second).norm();
+    positions[vehicle.id] = vehicle.state.position;
+  }
+  last_positions_.swap(positions);
+}
+
+}  // namespace cdiff::metrics

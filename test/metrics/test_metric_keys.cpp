@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A figure's name and place stand as strings in its metric's file alone, so that a metric is one
+/// file.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "core/file.h"
+#include "metrics/metric_registry.h"
+
+namespace cdiff::metrics {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Strings that mean another thing than the figure of the same name, by file.
+const std::set<std::pair<std::string, std::string>> kOtherMeanings = {
+    {"record/cbv_summary.cpp", "cbv_distance_m"}};  // of a CBV to its conflict point
+
+/// Texts of sources by path below their folder.
+using Sources = std::map<std::string, std::string>;
+
+Sources sourcesBelow(const fs::path& folder) {
+  Sources sources;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string kind = entry.path().extension().string();
+    if (kind != ".cpp" && kind != ".h") continue;
+    sources[fs::relative(entry.path(), folder).string()] = core::readFile(entry.path(), "source");
+  }
+  return sources;
+}
+
+/// The files with a string of exactly this text.
+std::vector<std::string> filesWith(const Sources& sources, const std::string& text) {
+  std::vector<std::string> files;
+  for (const auto& [path, content] : sources) {
+    if (content.find('"' + text + '"') == std::string::npos) continue;
+    if (kOtherMeanings.count({path, text}) == 0) files.push_back(path);
+  }
+  return files;
+}
+
+TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
+  const Sources sources = sourcesBelow(fs::path(CDIFF_SOURCE_FOLDER) / "src");
+  ASSERT_GT(sources.size(), 100U);
+  for (const MetricDescriptor& metric : metricDescriptors()) {
+    for (const FigureDefinition& figure : metric.figures) {
+      for (const std::string key : {figure.name, figure.place}) {
+        const std::vector<std::string> files = filesWith(sources, key);
+        EXPECT_EQ(files.size(), 1U) << key << " stands in " << ::testing::PrintToString(files);
+        if (files.empty()) continue;
+        EXPECT_EQ(files.front().rfind("metrics/", 0), 0U) << files.front();
+        EXPECT_NE(files.front().find("_metric.cpp"), std::string::npos) << files.front();
+      }
+    }
+  }
+}
+
+TEST(MetricKeys, AreFoundInEveryFileThatSpellsThem) {
+  const Sources sources = {{"a.cpp", "x = \"cbv_count\";"},
+                           {"b.cpp", "// as cbv_count\ny = \"cbv_counts\";"},
+                           {"record/cbv_summary.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
+  EXPECT_EQ(filesWith(sources, "cbv_count"),
+            (std::vector<std::string>{"a.cpp", "record/cbv_summary.cpp"}));
+  EXPECT_TRUE(filesWith(sources, "cbv_distance_m").empty());
+}
+
+}  // namespace
+}  // namespace cdiff::metrics
