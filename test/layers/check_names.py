@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
-INCLUDE = re.compile(r"^\s*#\s*include.*$", re.MULTILINE)
+INCLUDE = re.compile(r"^[ \t]*#[ \t]*include.*$", re.MULTILINE)
 
 
 def literals_of(text):
