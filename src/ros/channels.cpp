@@ -24,7 +24,7 @@ constexpr Condition kNoRecords = {"where there is no decision record",
                                   [](const Graph& graph) { return !graph.recordsDecisions(); }};
 constexpr Condition kGuided = {"where the CBVs' planner is guided",
                                [](const Graph& graph) { return graph.cbvs_guided; }};
-constexpr Condition kMeasured = {"where it takes part",
+constexpr Condition kMeasured = {"where `metrics_node` takes part",
                                  [](const Graph& graph) { return graph.has(kMetricsNode); }};
 constexpr Condition kEgoShown = {"where the ego's planner sees, and with `camera:=true`",
                                  [](const Graph& graph) { return graph.imagesOfEgo(); }};
