@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Drives all CBVs by the guided diffusion planner, from images.
-#include "ros/diffusion_planner_ros.h"
+/// Drives all CBVs where their planner sees: cbv_planner_node under another name.
 #include "ros/node_main.h"
+#include "ros/planner_ros.h"
 #include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;
   return cdiff::ros::runNode(argc, argv, cdiff::ros::kDiffusionPlannerNode, [](StopSignal& stop) {
-    return cdiff::ros::DiffusionPlannerRos(stop).run();
+    return cdiff::ros::CbvPlannerRos(stop).run();
   });
 }

@@ -8,9 +8,6 @@
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/conversions.h"
-#include "ros/display.h"
-#include "ros/image_conversions.h"
-#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -20,15 +17,12 @@ namespace fs = std::filesystem;
 /// A bag takes no stamp of zero.
 ::ros::Time bagStamp(const ::ros::Time& stamp) { return std::max(stamp, ::ros::TIME_MIN); }
 
-std::string controlTopic(int slot) {
-  return slot == kEgoSlot ? kEgoControlTopic : cbvControlTopic(slot);
-}
-
 }  // namespace
 
-BagFile::BagFile(const fs::path& file, const rendering::CameraOptions& camera, Naming naming)
+BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, Naming naming)
     : file_(file),
-      camera_(camera),
+      max_cbv_(static_cast<int>(options.max_cbv)),
+      reading_{options.camera, options.simulation_step},
       naming_(std::move(naming)),
       bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
@@ -64,12 +58,17 @@ void BagFile::guard(const std::function<void()>& writing) {
   }
 }
 
+void BagFile::put(const Topic& topic, const ::ros::Time& stamp, const AnyMessage& message) {
+  const std::string name = topic.name();
+  topic.row().type.write(*bag_, name.front() == '/' ? name : naming_(name), stamp, message);
+}
+
 void BagFile::write(const msgs::SessionInfo& info) {
-  guard([&] { bag_->write(naming_(kSessionTopic), ::ros::TIME_MIN, info); });
+  guard([&] { put(ChannelId::kSession, ::ros::TIME_MIN, shared(info)); });
 }
 
 void BagFile::write(const nav_msgs::Path& ego_route) {
-  guard([&] { bag_->write(naming_(kEgoRouteTopic), ::ros::TIME_MIN, ego_route); });
+  guard([&] { put(ChannelId::kEgoRoute, ::ros::TIME_MIN, shared(ego_route)); });
 }
 
 void BagFile::write(const TickMessages& tick) {
@@ -77,26 +76,17 @@ void BagFile::write(const TickMessages& tick) {
 }
 
 void BagFile::writeTick(const TickMessages& tick) {
-  const ::ros::Time stamp = bagStamp(tick.snapshot->header.stamp);
-  put(kTrafficTopic, stamp, tick.snapshot);
-  put(kDecisionRecordTopic, stamp, tick.decision);  // before what it speaks of
-  put(kSelectionTopic, stamp, tick.selection);
-  for (const auto& [slot, control] : tick.controls) put(controlTopic(slot), stamp, control);
-  for (const auto& [slot, rollout] : tick.rollouts) put(cbvRolloutTopic(slot), stamp, rollout);
-  put(kGuidanceTopic, stamp, tick.guidance);
-  for (const auto& [slot, image] : tick.images) {
-    put(imageTopic(slot), stamp, image);
-    bag_->write(naming_(cameraInfoTopic(slot)), stamp, toCameraInfoMsg(camera_, image->header));
+  const auto snapshot = tick.get<msgs::TrafficSnapshot>(ChannelId::kTraffic);
+  const ::ros::Time stamp = bagStamp(snapshot->header.stamp);
+  for (const Channel& row : channels()) {
+    if (row.recorded != Recorded::kTick && row.recorded != Recorded::kDecision) continue;
+    for (const Topic& topic : topicsOf(row, max_cbv_)) {
+      AnyMessage message = tick.find(topic);
+      if (!message && row.derive != nullptr && snapshot->decision_tick)
+        message = row.derive(tick, reading_, topic.slot);
+      if (message) put(topic, stamp, message);
+    }
   }
-  put(kMetricsTopic, stamp, tick.report);
-  if (tick.snapshot->decision_tick) writeDisplay(tick, stamp);
-}
-
-void BagFile::writeDisplay(const TickMessages& tick, const ::ros::Time& stamp) {
-  const traffic::TrafficSnapshot snapshot = fromMsg(*tick.snapshot);
-  bag_->write("/tf", stamp, toTfMsg(snapshot, tick.images.empty() ? nullptr : &camera_));
-  if (const traffic::Vehicle* ego = snapshot.ego())
-    bag_->write(naming_(kEgoOdometryTopic), stamp, toOdometryMsg(*ego, snapshot.time));
 }
 
 void BagFile::finish() {

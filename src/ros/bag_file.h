@@ -6,52 +6,33 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 
-#include "e2e_cdiff/CbvSelection.h"
-#include "e2e_cdiff/ControlAction.h"
-#include "e2e_cdiff/DecisionRecord.h"
-#include "e2e_cdiff/GuidanceReport.h"
-#include "e2e_cdiff/MetricReport.h"
-#include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
-#include "e2e_cdiff/TrafficSnapshot.h"
 #include "nav_msgs/Path.h"
-#include "rendering/camera_options.h"
+#include "ros/tick_messages.h"
 #include "rosbag/bag.h"
-#include "sensor_msgs/Image.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::ros {
 
-/// Everything that belongs to a tick; only the snapshot must be there.
-struct TickMessages {
-  ::e2e_cdiff::TrafficSnapshot::ConstPtr snapshot;
-  ::e2e_cdiff::DecisionRecord::ConstPtr decision;
-  ::e2e_cdiff::CbvSelection::ConstPtr selection;
-  std::map<int, ::e2e_cdiff::ControlAction::ConstPtr> controls;  ///< by slot, the ego's as kEgoSlot
-  std::map<int, ::e2e_cdiff::Rollout::ConstPtr> rollouts;        ///< by slot
-  ::e2e_cdiff::GuidanceReport::ConstPtr guidance;
-  std::map<int, sensor_msgs::Image::ConstPtr> images;  ///< by slot, the ego's as kEgoSlot
-  ::e2e_cdiff::MetricReport::ConstPtr report;
-};
-
 class BagFile {
  public:
-  /// Name in the bag of a topic of topics.h.
+  /// Name in the bag of a topic whose name is relative.
   using Naming = std::function<std::string(const std::string& topic)>;
 
   /// Makes the file's folder. Throws InputError naming the file when it cannot be written.
-  BagFile(const std::filesystem::path& file, const rendering::CameraOptions& camera, Naming naming);
+  BagFile(const std::filesystem::path& file, const session::ScenarioOptions& options,
+          Naming naming);
   ~BagFile();
   BagFile(const BagFile&) = delete;
   BagFile& operator=(const BagFile&) = delete;
 
   void write(const ::e2e_cdiff::SessionInfo& info);
   void write(const nav_msgs::Path& ego_route);
-  /// With camera_info beside each image and, at decisions, what rviz needs beside `rosbag play`: tf
-  /// and the ego's odometry.
+  /// What the table of channels records of a tick, and at decisions what tools need beside `rosbag
+  /// play`. The snapshot must be among the messages.
   void write(const TickMessages& tick);
   /// Gives the file its name. Without this call it stays FILE.active; one that could not be written
   /// (disk full) is removed instead, and its room is free again.
@@ -62,14 +43,11 @@ class BagFile {
  private:
   void guard(const std::function<void()>& writing);
   void writeTick(const TickMessages& tick);
-  void writeDisplay(const TickMessages& tick, const ::ros::Time& stamp);
-  template <class Message>
-  void put(const std::string& topic, const ::ros::Time& stamp, const Message& message) {
-    if (message) bag_->write(naming_(topic), stamp, message);
-  }
+  void put(const Topic& topic, const ::ros::Time& stamp, const AnyMessage& message);
 
   std::filesystem::path file_;
-  rendering::CameraOptions camera_;
+  int max_cbv_;  ///< slots
+  TickReading reading_;
   Naming naming_;
   std::unique_ptr<rosbag::Bag> bag_;
   bool failed_ = false;

@@ -42,7 +42,7 @@ struct BagReader::Chunk {
   std::string_view data;
   std::uint64_t size = 0;   ///< decompressed; 0 when the recording was cut off in it
   std::uint64_t begin = 0;  ///< of the data in the file
-  bool named = false;       ///< its damage has been told
+  bool named = false;       ///< its damage has been reported
 };
 
 BagReader::BagReader(const fs::path& file) : file_(file) {
@@ -106,7 +106,7 @@ bool BagReader::takeRecord(std::uint64_t& offset) {
 }
 
 /// A chunk whose length does not lead to another record is taken up to the next chunk: its own data
-/// tell how much of it is good.
+/// says how much of it is good.
 bool BagReader::takeChunk(std::uint64_t& offset) {
   const std::string_view text = bytes_->text();
   const auto record = parseRecord(text, offset);

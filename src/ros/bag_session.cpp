@@ -57,7 +57,7 @@ class Reader {
     const TickAnswers& answers = recording_.answers();
     if (const auto selection = answers.selection(snapshot.tick)) takeSelection(*selection);
     for (int slot = kEgoSlot; slot < recording_.graph().max_cbv; ++slot) {
-      if (const auto control = answers.cbv(slot, snapshot.tick)) takeControl(*control);
+      if (const auto control = answers.control(slot, snapshot.tick)) takeControl(*control);
       if (const auto image = answers.image(slot, snapshot.tick))
         session_.images.push_back({slot, toImage(*image, snapshot.tick)});
     }

@@ -20,7 +20,7 @@ void CameraRos::begin(const msgs::SessionInfo& info) {
   if (graph().imagesOfEgo()) open(kEgoSlot);
   if (!graph().imagesOfCbvs()) return;
   for (int slot = 0; slot < graph().max_cbv; ++slot) open(slot);
-  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& selection) {
+  listen<msgs::CbvSelection>(ChannelId::kSelection, [this](const auto& selection) {
     const std::string wrong = unusable(*selection, graph().max_cbv);
     if (wrong.empty()) selections_.emplace(selection->tick, selection);
     return wrong;
@@ -30,8 +30,8 @@ void CameraRos::begin(const msgs::SessionInfo& info) {
 /// Every transport that is installed counts as the image topic itself: the nodes that the session
 /// counts on take the raw one.
 void CameraRos::open(int slot) {
-  const std::string topic = imageTopic(slot);
-  connections().expect(topic, listeners(topic, graph()));
+  const std::string topic = imageOf(slot).name();
+  connections().expect(topic, listeners(imageOf(slot), graph()));
   const auto connect = [this, topic](const image_transport::SingleSubscriberPublisher& peer) {
     connections().connected(topic, peer.getSubscriberName());
   };
@@ -39,7 +39,7 @@ void CameraRos::open(int slot) {
     connections().disconnected(topic, peer.getSubscriberName());
   };
   outputs_[slot] = {transport_.advertise(topic, kQueueSize, connect, disconnect),
-                    advertise<sensor_msgs::CameraInfo>(cameraInfoTopic(slot))};
+                    advertise<sensor_msgs::CameraInfo>(cameraInfoOf(slot))};
 }
 
 bool CameraRos::handle(const Snapshot& message, bool superseded) {

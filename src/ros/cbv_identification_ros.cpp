@@ -10,8 +10,8 @@ void CbvIdentificationRos::begin(const msgs::SessionInfo& info) {
   options_ = optionsFromMsg(info).cbv;
   network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
   graph_.emplace(*network_);
-  selections_ = advertise<msgs::CbvSelection>(kSelectionTopic);
-  listen<nav_msgs::Path>(kEgoRouteTopic,
+  selections_ = advertise<msgs::CbvSelection>(ChannelId::kSelection);
+  listen<nav_msgs::Path>(ChannelId::kEgoRoute,
                          [this](const nav_msgs::PathConstPtr& path) { takeRoute(*path); });
 }
 

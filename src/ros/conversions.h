@@ -19,6 +19,7 @@
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "metrics/session_metrics.h"
 #include "nav_msgs/Path.h"
+#include "ros/stamp.h"
 #include "session/session_setup.h"
 
 namespace cdiff::ros {
@@ -30,8 +31,6 @@ inline constexpr const char* kMapFrame = "map";
 
 /// Simulated time as a ROS stamp.
 ::ros::Time toStamp(double seconds);
-/// Tick whose stamp is nearest; `simulation_step` in [s].
-std::uint64_t nearestTick(const ::ros::Time& stamp, double simulation_step);
 
 msgs::VehicleState toMsg(const traffic::VehicleState& state);
 traffic::VehicleState fromMsg(const msgs::VehicleState& message);

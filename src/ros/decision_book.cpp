@@ -201,7 +201,7 @@ msgs::DecisionRecord punctualRecord(const msgs::TrafficSnapshot& snapshot,
   msgs::DecisionRecord record = emptyRecord(snapshot);
   record.selection_came = answers.selection(snapshot.tick) != nullptr;
   for (const Key& key : askedFor(snapshot, answers)) {
-    const auto control = answers.cbv(key.first, snapshot.tick);
+    const auto control = answers.control(key.first, snapshot.tick);
     if (!control) continue;
     msgs::DecidedVehicle vehicle;
     vehicle.slot = key.first;

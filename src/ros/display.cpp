@@ -102,7 +102,7 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
 }
 
 Display::Display(::ros::NodeHandle& node)
-    : odometry_(node.advertise<nav_msgs::Odometry>(kEgoOdometryTopic, 100)) {}
+    : odometry_(node.advertise<nav_msgs::Odometry>(Topic(ChannelId::kEgoOdometry).name(), 100)) {}
 
 void Display::publish(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();

@@ -17,7 +17,8 @@ constexpr std::chrono::seconds kPeriod{1};
 }  // namespace
 
 HeartbeatPublisher::HeartbeatPublisher(::ros::NodeHandle& node, double timeout)
-    : publisher_(node.advertise<::e2e_cdiff::Heartbeat>(kHeartbeatTopic, 1, true)),
+    : publisher_(
+          node.advertise<::e2e_cdiff::Heartbeat>(Topic(ChannelId::kHeartbeat).name(), 1, true)),
       thread_([this, timeout] { publishUntilStopped(timeout); }) {}
 
 HeartbeatPublisher::~HeartbeatPublisher() {

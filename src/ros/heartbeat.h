@@ -16,7 +16,7 @@ namespace cdiff::ros {
 /// wait of the node looks like its death.
 class HeartbeatPublisher {
  public:
-  /// Publishes from now on. `timeout` [s] of silence is what listeners shall take for death.
+  /// Publishes from now on. After `timeout` [s] of silence listeners take this node for dead.
   HeartbeatPublisher(::ros::NodeHandle& node, double timeout);
   ~HeartbeatPublisher();
   HeartbeatPublisher(const HeartbeatPublisher&) = delete;

@@ -26,7 +26,7 @@ PlannedAction failSafe(const PlanningTask& task, const std::string& fault) {
 }
 
 std::string missingText(int slot, std::uint64_t tick) {
-  return "no image on " + imageTopic(slot) + " for tick " + std::to_string(tick);
+  return "no image on " + imageOf(slot).name() + " for tick " + std::to_string(tick);
 }
 
 /// [s] of simulated time.
@@ -37,7 +37,8 @@ double ageOf(const sensor_msgs::Image& image, const traffic::TrafficSnapshot& sn
 /// Puts the images into `images` and points the tasks to them; answers each task's fault.
 std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficSnapshot& snapshot,
                                 std::vector<PlanningTask>& tasks,
-                                std::vector<session::SlotImage>& images, SeeingDecision& decision) {
+                                std::vector<session::SlotImage>& images,
+                                PlannerDecision& decision) {
   std::vector<std::string> faults(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const auto message = inbox.find(tasks[i].slot, snapshot.tick);
@@ -74,17 +75,25 @@ sensor_msgs::Image::ConstPtr ImageInbox::find(int slot, std::uint64_t tick) cons
 
 traffic::CameraImage ImageInbox::read(int slot, const std::string& vehicle_id,
                                       std::uint64_t tick) const {
-  return fromMsg(*images_.at(tick).at(slot),
-                 {imageTopic(slot), vehicle_id, camera_.width, camera_.height, simulation_step_});
+  return fromMsg(*images_.at(tick).at(slot), {imageOf(slot).name(), vehicle_id, camera_.width,
+                                              camera_.height, simulation_step_});
 }
 
 void ImageInbox::forgetBefore(std::uint64_t tick) {
   images_.erase(images_.begin(), images_.lower_bound(tick));
 }
 
-SeeingDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
-                          const std::vector<PlanningTask>& tasks, const ImageInbox& inbox) {
-  SeeingDecision decision;
+PlannerDecision planBlind(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                          const std::vector<PlanningTask>& tasks) {
+  PlannerDecision decision;
+  decision.actions =
+      session::planTimed(planner, snapshot, tasks, decision.latency_ms, decision.fault);
+  return decision;
+}
+
+PlannerDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                           const std::vector<PlanningTask>& tasks, const ImageInbox& inbox) {
+  PlannerDecision decision;
   std::vector<PlanningTask> with_images = tasks;
   std::vector<session::SlotImage> images;
   const std::vector<std::string> faults = attach(inbox, snapshot, with_images, images, decision);

@@ -38,8 +38,8 @@ class ImageInbox {
   std::map<std::uint64_t, std::map<int, sensor_msgs::Image::ConstPtr>> images_;
 };
 
-/// A decision of a planner that sees.
-struct SeeingDecision {
+/// A decision of a planner.
+struct PlannerDecision {
   std::vector<planning::PlannedAction> actions;  ///< one per task, in their order
   double latency_ms = 0.0;                       ///< wall time of the planning call
   std::string fault;                             ///< of the whole call; empty when none
@@ -48,10 +48,14 @@ struct SeeingDecision {
   int refused = 0;         ///< vehicles whose image was not as expected
 };
 
+/// Asks `planner`, which sees nothing, for all tasks.
+PlannerDecision planBlind(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                          const std::vector<planning::PlanningTask>& tasks);
+
 /// Asks `planner` for the tasks whose image at the snapshot's tick is there and as expected; the
 /// others get the fail-safe action.
-SeeingDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
-                          const std::vector<planning::PlanningTask>& tasks,
-                          const ImageInbox& inbox);
+PlannerDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
+                           const std::vector<planning::PlanningTask>& tasks,
+                           const ImageInbox& inbox);
 
 }  // namespace cdiff::ros

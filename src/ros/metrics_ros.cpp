@@ -18,8 +18,8 @@ namespace cdiff::ros {
 namespace {
 
 /// The end of a session whose last snapshot never came.
-traffic::TrafficSnapshot untoldEnd(const traffic::TrafficSnapshot& last, double step, Ending ending,
-                                   double timeout) {
+traffic::TrafficSnapshot unpublishedEnd(const traffic::TrafficSnapshot& last, double step,
+                                        Ending ending, double timeout) {
   if (ending == Ending::kStopped) {
     return endedAfter(last, step, traffic::SessionStatus::kInterrupted,
                       {0, kTrafficSimulatorNode, "interrupted; no last snapshot came"});
@@ -39,11 +39,11 @@ void MetricsRos::begin(const msgs::SessionInfo& info) {
     video_ = std::make_unique<video::SessionVideo>(*setup_, results_);
   }
   reporter_ = std::make_unique<MetricReporter>(*setup_);
-  reports_ = advertise<msgs::MetricReport>(kMetricsTopic);
-  marker_output_ = advertise<visualization_msgs::MarkerArray>(kMarkersTopic);
-  map_output_ = advertise<visualization_msgs::MarkerArray>(kMapMarkersTopic, true);
+  reports_ = advertise<msgs::MetricReport>(ChannelId::kMetrics);
+  marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
+  map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
   map_output_.publish(mapMarkers(*setup_));
-  listenToAnswers(setup_->options(), {graph().egoPlansFromImages(), graph().cbvsPlanFromImages()});
+  listenToAnswers(Party::kMetrics, setup_->options());
   diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
   diagnostics_->setHardwareID(setup_->options().name);
   diagnostics_->add("session", this, &MetricsRos::diagnose);
@@ -104,7 +104,7 @@ double MetricsRos::wallSeconds() const {
 int MetricsRos::conclude(Ending ending) {
   if (ending != Ending::kFinalSnapshot) {
     const traffic::TrafficSnapshot snapshot =
-        untoldEnd(last_, setup_->options().simulation_step, ending, heartbeatTimeout());
+        unpublishedEnd(last_, setup_->options().simulation_step, ending, heartbeatTimeout());
     session::TickRecord record;
     record.snapshot = &snapshot;
     writer_->observe(record);

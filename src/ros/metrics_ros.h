@@ -23,7 +23,7 @@ class MetricsRos : public Observer {
   using Observer::Observer;
 
   /// The ROS master was gone before this node began: writes the result of the session that
-  /// roslaunch was asked for, as far as its command line says, and answers the exit code.
+  /// roslaunch was asked for, as far as its command line says, and returns the exit code.
   static int runWithoutMaster();
 
  protected:

@@ -48,7 +48,7 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
   }
   ::ros::master::setRetryTimeout(::ros::WallDuration(kMasterPatience));
   ::ros::start();  // else ROS would end with the last node handle, and an error after that would
-                   // not be told
+                   // not be logged
   const int exit_code = runGuarded(body, stop);
   ::ros::shutdown();
   return exit_code;

@@ -10,20 +10,14 @@
 
 namespace cdiff::ros {
 
-/// Whose images an observer takes.
-struct ImageInterest {
-  bool ego = false;
-  bool cbvs = false;
-};
-
 class Observer : public Participant {
  public:
   using Participant::Participant;
 
  protected:
-  /// Listens to selection, controls and rollouts, to guidance where planners guide, and to images;
-  /// from now on a decision is complete with all of them.
-  void listenToAnswers(const session::ScenarioOptions& options, const ImageInterest& images);
+  /// Listens to all that the table of channels says of answers and reports for an observer of this
+  /// part; from now on a decision is complete with all that the table asks for.
+  void listenToAnswers(Party party, const session::ScenarioOptions& options);
   /// Whether all answers to a tick are here, or nothing more of it will come: in lockstep when it
   /// is `superseded` by a later one.
   bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
@@ -32,10 +26,6 @@ class Observer : public Participant {
   void forgetUntil(std::uint64_t tick) { answers_.forgetBefore(tick + 1); }
 
  private:
-  void listenToControls(int slot);
-  void listenToSlot(int slot);
-  void listenToImages(int slot);
-
   TickAnswers answers_;
   ::ros::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
 };

@@ -31,7 +31,7 @@ class PacedAnswers {
   explicit PacedAnswers(double simulation_step, std::uint64_t ticks_per_decision = 2)
       : simulation_step_(simulation_step), ticks_per_decision_(ticks_per_decision) {}
 
-  /// What the world shall take over and release at a tick: all that selections said since the last
+  /// What the world is to take over and release at a tick: all that selections said since the last
   /// call, but no vehicle whose first action has not come; nullopt when nothing changes.
   std::optional<::e2e_cdiff::CbvSelection> selection(const ::e2e_cdiff::TrafficSnapshot& snapshot,
                                                      const TickAnswers& answers);

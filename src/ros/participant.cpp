@@ -41,17 +41,29 @@ std::string simulatorFault(Ending ending, double timeout) {
 
 Participant::Participant(StopSignal& stop)
     : stop_(stop), name_(baseName(::ros::this_node::getName())) {
-  acks_ = connections_.advertise<msgs::TickAck>(node_, kTickAckTopic, {kTrafficSimulatorNode});
+  acks_ = connections_.advertise<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
+                                                {kTrafficSimulatorNode});
   gate_.setReport([this](const std::string& text) {
     ROS_WARN("%s: %s", name_.c_str(), text.c_str());
     tell(msgs::TickAck::FAULT, lastTick(), text);
   });
   heartbeat_input_ = gate_.subscribe<msgs::Heartbeat>(
-      node_, kHeartbeatTopic, siblingNodes({kTrafficSimulatorNode}),
+      node_, Topic(ChannelId::kHeartbeat).name(), siblingNodes({kTrafficSimulatorNode}),
       [this](const auto& message) { heartbeat_.heard(message->timeout); });
   session_input_ = gate_.subscribe<msgs::SessionInfo>(
-      node_, kSessionTopic, siblingNodes({kTrafficSimulatorNode}),
+      node_, Topic(ChannelId::kSession).name(), siblingNodes({kTrafficSimulatorNode}),
       [this](const auto& message) { session_ = message; });
+}
+
+::ros::Publisher Participant::advertise(const Topic& topic) {
+  const Channel& row = topic.row();
+  return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
+                            row.latched);
+}
+
+void Participant::listen(const Topic& topic, const TakeMessage& take) {
+  inputs_.push_back(topic.row().type.subscribe(gate_, node_, topic.name(),
+                                               siblingNodes(publishersOf(topic, graph_)), take));
 }
 
 int Participant::run() {
@@ -77,7 +89,7 @@ int Participant::standBy() {
   return 0;
 }
 
-/// Answers how it ended where no session has begun.
+/// Returns how it ended where no session has begun.
 std::optional<Ending> Participant::waitForSession() {
   while (!session_ || !stopped_at_.isZero()) {
     if (const auto ending = unstartedEnding()) return ending;
@@ -107,7 +119,7 @@ int Participant::runSession() {
   lead_ = static_cast<std::uint64_t>(
       std::llround((options.decision_period + kLead) / simulation_step_));
   traffic_input_ = gate_.subscribe<msgs::TrafficSnapshot>(
-      node_, kTrafficTopic, siblingNodes({kTrafficSimulatorNode}),
+      node_, Topic(ChannelId::kTraffic).name(), siblingNodes({kTrafficSimulatorNode}),
       [this](const auto& message) { queue(message); });
   while (!handleQueue()) {
     if (const auto ending = unexpectedEnding()) return leave(*ending);
@@ -135,7 +147,7 @@ void Participant::queue(const Snapshot& snapshot) {
   snapshots_.push_back(snapshot);
 }
 
-/// Answers whether the last snapshot of the session has been handled.
+/// Returns whether the last snapshot of the session has been handled.
 bool Participant::handleQueue() {
   if (leavesOut()) leaveOutdatedOut();
   while (!snapshots_.empty() && handle(snapshots_.front(), snapshots_.size() > 1 && !leavesOut())) {
@@ -189,9 +201,9 @@ int Participant::fail(const std::string& text) {
   while (::ros::ok() && !simulatorGone() && ::ros::WallTime::now() < limit) {
     tell(msgs::TickAck::ERROR, lastTick(), text);
     spin();
-    const bool told =
+    const bool ended =
         !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
-    if (told) break;
+    if (ended) break;
   }
   return 2;
 }

@@ -37,7 +37,7 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Runs the session to its end and answers the exit code.
+  /// Runs the session to its end and returns the exit code.
   int run();
 
  protected:
@@ -54,22 +54,28 @@ class Participant {
   virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
   /// Whether the node leaves decisions out when it falls behind the wall clock.
   virtual bool leavesOut() const { return false; }
-  /// The session is over; answers the exit code.
+  /// The session is over; returns the exit code.
   virtual int conclude(Ending ending) = 0;
-  /// The traffic simulator has ended, or hangs, before it published a session; answers the exit
+  /// The traffic simulator has ended, or hangs, before it published a session; returns the exit
   /// code.
   virtual int concludeUnstarted(Ending) { return 0; }
 
+  /// Throws std::logic_error unless the topic's messages are of that type, as `listen` does.
   template <class Message>
-  ::ros::Publisher advertise(const std::string& topic, bool latch = false) {
-    return connections_.advertise<Message>(node_, topic, listeners(topic, graph_), latch);
+  ::ros::Publisher advertise(const Topic& topic) {
+    requireType(topic.id, typeid(Message));
+    return connections_.advertise<Message>(node_, topic.name(), listeners(topic, graph_),
+                                           topic.row().latched);
   }
+  ::ros::Publisher advertise(const Topic& topic);
   /// Takes what the topic's publisher sends; see MessageGate::subscribe.
   template <class Message, class Callback>
-  void listen(const std::string& topic, Callback callback) {
+  void listen(const Topic& topic, Callback callback) {
+    requireType(topic.id, typeid(Message));
     inputs_.push_back(gate_.subscribe<Message>(
-        node_, topic, siblingNodes(publishersOf(topic, graph_)), callback));
+        node_, topic.name(), siblingNodes(publishersOf(topic, graph_)), callback));
   }
+  void listen(const Topic& topic, const TakeMessage& take);
   /// Tells the traffic simulator that a tick is dealt with.
   void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
   const SessionGraph& graph() const { return graph_; }

@@ -6,17 +6,25 @@
 #include "ros/markers.h"
 #include "ros/message_checks.h"
 #include "ros/session_parts.h"
+#include "ros/tick_answers.h"
 #include "session/closed_loop.h"
 
 namespace cdiff::ros {
 namespace {
 
-void warnOf(const std::vector<planning::PlannedAction>& actions, const ActionOrigin& origin) {
-  if (!origin.fault.empty()) ROS_WARN("%s: %s", origin.planner.c_str(), origin.fault.c_str());
-  for (const planning::PlannedAction& action : actions) {
+void warnOf(const std::string& planner, const PlannerDecision& decision) {
+  if (!decision.fault.empty()) ROS_WARN("%s: %s", planner.c_str(), decision.fault.c_str());
+  for (const planning::PlannedAction& action : decision.actions) {
     if (action.fault.empty()) continue;
-    ROS_WARN("%s: %s: %s", origin.planner.c_str(), action.vehicle_id.c_str(), action.fault.c_str());
+    ROS_WARN("%s: %s: %s", planner.c_str(), action.vehicle_id.c_str(), action.fault.c_str());
   }
+}
+
+std::vector<Answer> answersOf(const std::string& planner, const PlannerDecision& decision) {
+  std::vector<Answer> answers;
+  for (const planning::PlannedAction& action : decision.actions)
+    answers.push_back({action, planner, decision.latency_ms, decision.fault, true, {}});
+  return answers;
 }
 
 /// The traffic simulator goes by the planner's name when it says who takes part.
@@ -34,13 +42,13 @@ void EgoPlannerRos::begin(const msgs::SessionInfo& info) {
   planner_ = setup_->makeEgoPlanner();
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
   images_ = ImageInbox(setup_->options().camera, setup_->options().simulation_step);
-  controls_ = advertise<msgs::ControlAction>(kEgoControlTopic);
-  listen<nav_msgs::Path>(kEgoRouteTopic, [this](const nav_msgs::PathConstPtr& path) {
+  controls_ = advertise<msgs::ControlAction>(ChannelId::kEgoControl);
+  listen<nav_msgs::Path>(ChannelId::kEgoRoute, [this](const nav_msgs::PathConstPtr& path) {
     if (route_.empty() && !path->poses.empty())
       route_ = map::matchRoute(setup_->network(), fromMsg(*path));
   });
   if (!graph().ego_sees) return;
-  listen<sensor_msgs::Image>(imageTopic(kEgoSlot),
+  listen<sensor_msgs::Image>(ChannelId::kEgoImage,
                              [this](const auto& image) { images_.add(kEgoSlot, image); });
 }
 
@@ -59,40 +67,57 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
   const auto tasks = session::egoTasks(snapshot, route_, setup_->options().target_speed);
   if (tasks.empty()) return true;
   if (blind && !superseded) return false;
-  ActionOrigin origin{"ego:" + setup_->options().ego_planner, 0.0, {}};
-  const auto actions = decide(snapshot, tasks, origin);
-  controls_.publish(
-      boost::make_shared<const msgs::ControlAction>(toMsg(actions.front(), snapshot, origin)));
-  warnOf(actions, origin);
+  const std::string name = "ego:" + setup_->options().ego_planner;
+  const PlannerDecision decision = graph().ego_sees
+                                       ? planSeeing(*planner_, snapshot, tasks, images_)
+                                       : planBlind(*planner_, snapshot, tasks);
+  controls_.publish(shared(
+      toMsg(decision.actions.front(), snapshot, {name, decision.latency_ms, decision.fault})));
+  warnOf(name, decision);
   images_.forgetBefore(message->tick);
   return true;
 }
 
-std::vector<planning::PlannedAction> EgoPlannerRos::decide(
-    const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
-    ActionOrigin& origin) {
-  if (!graph().ego_sees)
-    return session::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
-  SeeingDecision decision = planSeeing(*planner_, snapshot, tasks, images_);
-  origin.latency_ms = decision.latency_ms;
-  origin.fault = decision.fault;
-  return std::move(decision.actions);
-}
-
 void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
+  const session::ScenarioOptions& options = setup_->options();
   planner_ = setup_->makeCbvPlanner();
-  checkSight(*planner_, graph().cbvsSee(), setup_->options().cbv_planner);
-  for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    controls_.push_back(advertise<msgs::ControlAction>(cbvControlTopic(slot)));
-    rollouts_.push_back(advertise<msgs::Rollout>(cbvRolloutTopic(slot)));
+  checkSight(*planner_, graph().cbvs_see, options.cbv_planner);
+  images_ = ImageInbox(options.camera, options.simulation_step);
+  statistics_ = PlannerStatistics(options.decision_period);
+  for (const Channel& row : channels()) {
+    const bool ours = row.publisher == Party::kCbvPlanner && row.make != nullptr;
+    if (!ours || !row.published.holds(graph())) continue;
+    for (const Topic& topic : topicsOf(row, graph().max_cbv)) answers_[topic] = advertise(topic);
   }
-  markers_ = advertise<visualization_msgs::MarkerArray>(kRolloutMarkersTopic);
-  listen<msgs::CbvSelection>(kSelectionTopic, [this](const auto& selection) {
+  markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kRolloutMarkers);
+  listenToInputs();
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_->setHardwareID(options.name);
+  diagnostics_->add("planner", &statistics_, &PlannerStatistics::diagnose);
+}
+
+void CbvPlannerRos::listenToInputs() {
+  listen<msgs::CbvSelection>(ChannelId::kSelection, [this](const auto& selection) {
     const std::string wrong = unusable(*selection, graph().max_cbv);
     if (wrong.empty()) selections_.emplace(selection->tick, selection);
     return wrong;
   });
+  if (!graph().cbvs_see) return;
+  for (int slot = 0; slot < graph().max_cbv; ++slot) {
+    listen<sensor_msgs::Image>(imageOf(slot),
+                               [this, slot](const auto& image) { images_.add(slot, image); });
+  }
+}
+
+bool CbvPlannerRos::complete(const msgs::TrafficSnapshot& snapshot,
+                             const msgs::CbvSelection& selection) const {
+  if (!graph().cbvs_see) return true;
+  for (const msgs::CbvAssignment& assignment : selection.assignments) {
+    if (!contains(snapshot, assignment.vehicle_id)) continue;
+    if (!images_.find(assignment.slot, snapshot.tick)) return false;
+  }
+  return true;
 }
 
 bool CbvPlannerRos::ready(const msgs::TrafficSnapshot& snapshot) const {
@@ -115,29 +140,29 @@ void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
   const cbv::CbvSelection selection = fromMsg(message, setup_->network());
   const auto tasks = session::cbvTasks(snapshot, selection, setup_->options().target_speed);
   if (tasks.empty()) return;
-  ActionOrigin origin{"cbv:" + setup_->options().cbv_planner, 0.0, {}};
-  const std::vector<planning::PlannedAction> actions = decide(snapshot, tasks, origin);
-  publish(snapshot, actions, origin);
-  warnOf(actions, origin);
+  const PlannerDecision decision = graph().cbvs_see
+                                       ? planSeeing(*planner_, snapshot, tasks, images_)
+                                       : planBlind(*planner_, snapshot, tasks);
+  statistics_.observe(decision);
+  images_.forgetBefore(snapshot.tick + 1);
+  diagnostics_->update();
+  publish(snapshot, decision);
+  warnOf("cbv:" + setup_->options().cbv_planner, decision);
 }
 
-std::vector<planning::PlannedAction> CbvPlannerRos::decide(
-    const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
-    ActionOrigin& origin) {
-  return session::planTimed(*planner_, snapshot, tasks, origin.latency_ms, origin.fault);
-}
-
+/// Controls, which come first in the table, are published last: with them the session goes on.
 void CbvPlannerRos::publish(const traffic::TrafficSnapshot& snapshot,
-                            const std::vector<planning::PlannedAction>& actions,
-                            const ActionOrigin& origin) {
-  for (const planning::PlannedAction& action : actions) {
-    const auto slot = static_cast<std::size_t>(action.slot);
-    rollouts_.at(slot).publish(
-        boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
-    controls_.at(slot).publish(
-        boost::make_shared<const msgs::ControlAction>(toMsg(action, snapshot, origin)));
+                            const PlannerDecision& decision) {
+  TickValues values{snapshot, &setup_->network(), setup_->options().simulation_step,
+                    graph().cbvs_guided, decision.image_age};
+  values.answers = answersOf("cbv:" + setup_->options().cbv_planner, decision);
+  for (auto entry = answers_.rbegin(); entry != answers_.rend(); ++entry) {
+    const auto& [topic, publisher] = *entry;
+    if (const AnyMessage message = makeMessage(topic, values))
+      topic.row().type.publish(publisher, message);
   }
-  if (markers_.getNumSubscribers() > 0) markers_.publish(rolloutMarkers(actions, snapshot.time));
+  if (markers_.getNumSubscribers() > 0)
+    markers_.publish(rolloutMarkers(decision.actions, snapshot.time));
 }
 
 }  // namespace cdiff::ros

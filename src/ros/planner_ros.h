@@ -7,17 +7,19 @@
 #include <map>
 #include <memory>
 
+#include "diagnostic_updater/diagnostic_updater.h"
 #include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "nav_msgs/Path.h"
 #include "ros/conversions.h"
 #include "ros/image_inbox.h"
 #include "ros/participant.h"
+#include "ros/planner_statistics.h"
 #include "session/session_setup.h"
 
 namespace cdiff::ros {
 
-/// The ego's planner: snapshots and route in (and its image where the planner sees), ego/control
+/// The ego's planner: snapshots and route in (and its image where the planner sees), its control
 /// out.
 class EgoPlannerRos : public Participant {
  public:
@@ -32,9 +34,6 @@ class EgoPlannerRos : public Participant {
   int conclude(Ending) override { return 0; }
 
  private:
-  std::vector<planning::PlannedAction> decide(const traffic::TrafficSnapshot& snapshot,
-                                              const std::vector<planning::PlanningTask>& tasks,
-                                              ActionOrigin& origin);
   std::unique_ptr<session::SessionSetup> setup_;
   map::Route route_;
   ImageInbox images_;
@@ -42,8 +41,10 @@ class EgoPlannerRos : public Participant {
   ::ros::Publisher controls_;
 };
 
-/// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in,
-/// cbv_K/control and cbv_K/rollout out, and the rollouts as markers while somebody looks.
+/// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and
+/// the image of every occupied slot where the planner sees), controls and rollouts out, what
+/// guidance did where the planner is guided, the rollouts as markers while somebody looks, and how
+/// the planner fares in /diagnostics.
 class CbvPlannerRos : public Participant {
  public:
   using Participant::Participant;
@@ -55,28 +56,22 @@ class CbvPlannerRos : public Participant {
   bool leavesOut() const override { return graph().paced; }
   int conclude(Ending) override { return 0; }
 
-  /// Whether all that the planner needs for this decision besides the selection has come.
-  virtual bool complete(const ::e2e_cdiff::TrafficSnapshot&,
-                        const ::e2e_cdiff::CbvSelection&) const {
-    return true;
-  }
-  /// The actions for the tasks (one at least), in their order; fills in latency and fault.
-  virtual std::vector<planning::PlannedAction> decide(
-      const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks,
-      ActionOrigin& origin);
-  const session::SessionSetup& setup() const { return *setup_; }
-  planning::Planner& planner() { return *planner_; }
-
  private:
+  void listenToInputs();
+  /// Whether the image of every slot with a vehicle has come, where the planner sees.
+  bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot,
+                const ::e2e_cdiff::CbvSelection& selection) const;
   void plan(const traffic::TrafficSnapshot& snapshot, const ::e2e_cdiff::CbvSelection& selection);
-  void publish(const traffic::TrafficSnapshot& snapshot,
-               const std::vector<planning::PlannedAction>& actions, const ActionOrigin& origin);
+  void publish(const traffic::TrafficSnapshot& snapshot, const PlannerDecision& decision);
+
   std::unique_ptr<session::SessionSetup> setup_;
   std::unique_ptr<planning::Planner> planner_;
-  ::ros::Publisher markers_;
+  ImageInbox images_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
-  std::vector<::ros::Publisher> controls_;                                   ///< by slot
-  std::vector<::ros::Publisher> rollouts_;                                   ///< by slot
+  std::map<Topic, ::ros::Publisher> answers_;
+  ::ros::Publisher markers_;
+  PlannerStatistics statistics_;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 
 }  // namespace cdiff::ros

@@ -9,7 +9,7 @@
 
 namespace cdiff::ros {
 
-void PlannerStatistics::observe(const SeeingDecision& decision) {
+void PlannerStatistics::observe(const PlannerDecision& decision) {
   const auto count = [this](const char* kind, std::size_t vehicles) {
     if (vehicles > 0) faults_[kind] += vehicles;
   };

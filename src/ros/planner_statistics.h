@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// How a planner that sees fares over a session: latency [ms], batch size, age of images, faults by
+/// How a planner fares over a session: latency [ms], batch size, age of images, faults by
 /// kind, calls that took longer than the decision period. For /diagnostics.
 #pragma once
 
@@ -19,7 +19,7 @@ class PlannerStatistics {
   /// `decision_period` [s]: a call that takes longer in wall time misses its deadline.
   explicit PlannerStatistics(double decision_period = 0.1) : decision_period_(decision_period) {}
 
-  void observe(const SeeingDecision& decision);
+  void observe(const PlannerDecision& decision);
   /// Vehicles that got the fail-safe action, by kind: "image missing", "image refused", "planning
   /// call" (all of a call), "vehicle" (the planner's own).
   const std::map<std::string, std::uint64_t>& faults() const { return faults_; }

@@ -3,42 +3,25 @@
 #include "ros/recorded_channels.h"
 
 #include "core/text.h"
-#include "e2e_cdiff/CbvSelection.h"
-#include "e2e_cdiff/ControlAction.h"
-#include "e2e_cdiff/DecisionRecord.h"
-#include "e2e_cdiff/GuidanceReport.h"
-#include "e2e_cdiff/Rollout.h"
-#include "e2e_cdiff/SessionInfo.h"
-#include "e2e_cdiff/TrafficSnapshot.h"
-#include "ros/conversions.h"
-#include "ros/message_traits.h"
-#include "sensor_msgs/Image.h"
 
 namespace cdiff::ros {
 namespace {
 
-template <class Message>
-std::string wrongType(const BagConnection& connection) {
-  const std::string type = ::ros::message_traits::DataType<Message>::value();
-  const std::string md5sum = ::ros::message_traits::MD5Sum<Message>::value();
-  if (connection.type != type)
-    return "topic '" + connection.topic + "' holds " + connection.type + "; expected " + type;
-  if (connection.md5sum == md5sum) return "";
-  return "topic '" + connection.topic + "' holds " + type + " with MD5 sum " + connection.md5sum +
-         "; expected " + md5sum + ": it was recorded by another version of the package";
+std::string wrongType(const BagConnection& connection, const MessageType& expected) {
+  if (connection.type != expected.name)
+    return "topic '" + connection.topic + "' holds " + connection.type + "; expected " +
+           expected.name;
+  if (connection.md5sum == expected.md5sum) return "";
+  return "topic '" + connection.topic + "' holds " + expected.name + " with MD5 sum " +
+         connection.md5sum + "; expected " + expected.md5sum +
+         ": it was recorded by another version of the package";
 }
 
-std::optional<Channel> channelOfSlot(const BagConnection& connection, const std::string& topic,
-                                     int slot, const SessionGraph& graph, bool all_images) {
-  const bool ego = slot == kEgoSlot;
-  if (topic == (ego ? kEgoControlTopic : cbvControlTopic(slot)))
-    return Channel{ChannelKind::kControl, slot, wrongType<msgs::ControlAction>(connection)};
-  if (!ego && topic == cbvRolloutTopic(slot))
-    return Channel{ChannelKind::kRollout, slot, wrongType<msgs::Rollout>(connection)};
-  const bool seen = ego ? graph.egoPlansFromImages() : graph.cbvsPlanFromImages();
-  if ((seen || all_images) && topic == imageTopic(slot))
-    return Channel{ChannelKind::kImage, slot, wrongType<sensor_msgs::Image>(connection)};
-  return std::nullopt;
+/// Whether a recorded session is read from a channel.
+bool isRead(const Channel& row, const SessionGraph& graph, bool all_images) {
+  if (row.use == Use::kTick || row.id == ChannelId::kSession) return true;
+  if (row.use != Use::kAnswer) return false;
+  return replayed(row, graph) || (all_images && row.publisher == Party::kCamera);
 }
 
 /// "/words (std_msgs/String), ...", ten at most.
@@ -61,38 +44,30 @@ bool endsWith(const std::string& text, const std::string& end) {
 
 }  // namespace
 
-Channel channelOf(const BagConnection& connection, const std::string& topic,
-                  const SessionGraph& graph, bool all_images) {
-  if (topic == kSessionTopic)
-    return {ChannelKind::kSession, kEgoSlot, wrongType<msgs::SessionInfo>(connection)};
-  if (topic == kTrafficTopic)
-    return {ChannelKind::kTraffic, kEgoSlot, wrongType<msgs::TrafficSnapshot>(connection)};
-  if (topic == kDecisionRecordTopic)
-    return {ChannelKind::kDecision, kEgoSlot, wrongType<msgs::DecisionRecord>(connection)};
-  if (topic == kSelectionTopic)
-    return {ChannelKind::kSelection, kEgoSlot, wrongType<msgs::CbvSelection>(connection)};
-  if (topic == kGuidanceTopic && graph.cbvsSee())
-    return {ChannelKind::kGuidance, kEgoSlot, wrongType<msgs::GuidanceReport>(connection)};
-  for (int slot = kEgoSlot; slot < graph.max_cbv; ++slot) {
-    if (const auto channel = channelOfSlot(connection, topic, slot, graph, all_images))
-      return *channel;
+RecordedTopic recordedTopic(const BagConnection& connection, const std::string& name,
+                            const SessionGraph& graph, bool all_images) {
+  for (const Channel& row : channels()) {
+    if (!isRead(row, graph, all_images)) continue;
+    for (const Topic& topic : topicsOf(row, graph.max_cbv)) {
+      if (topic.name() == name) return {topic, wrongType(connection, row.type)};
+    }
   }
   return {};
 }
 
 std::string sessionPrefix(const std::vector<BagConnection>& connections) {
-  const std::string name = kSessionTopic;
+  const MessageType& type = channel(ChannelId::kSession).type;
+  const std::string name = Topic(ChannelId::kSession).name();
   std::string wrong;
   for (const BagConnection& connection : connections) {
     const std::string& topic = connection.topic;
-    const std::string fault = wrongType<msgs::SessionInfo>(connection);
+    const std::string fault = wrongType(connection, type);
     if (fault.empty() && endsWith(topic, name)) return topic.substr(0, topic.size() - name.size());
-    if (connection.type == "e2e_cdiff/SessionInfo" || endsWith(topic, "/" + name)) wrong = fault;
+    if (connection.type == type.name || endsWith(topic, "/" + name)) wrong = fault;
   }
   if (!wrong.empty()) throw core::InputError(wrong);
-  throw core::InputError(
-      "it holds no session (a message of type e2e_cdiff/SessionInfo); it holds " +
-      contentText(connections));
+  throw core::InputError("it holds no session (a message of type " + type.name + "); it holds " +
+                         contentText(connections));
 }
 
 }  // namespace cdiff::ros

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Which topic of a bag is what of a session, and whether it holds the type that it must.
+/// Which topic of a session a connection of its bag is, and whether it holds the type that it must.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,29 +12,15 @@
 
 namespace cdiff::ros {
 
-enum class ChannelKind {
-  kOther,
-  kSession,
-  kTraffic,
-  kDecision,
-  kSelection,
-  kGuidance,
-  kControl,
-  kRollout,
-  kImage
+struct RecordedTopic {
+  std::optional<Topic> topic;  ///< nullopt for what no figure is made of
+  std::string wrong_type;      ///< what is wrong with the type; empty when nothing is
 };
 
-struct Channel {
-  ChannelKind kind = ChannelKind::kOther;
-  int slot = kEgoSlot;     ///< of control, rollout and image
-  std::string wrong_type;  ///< what is wrong with the type; empty when nothing is
-};
-
-/// What a topic (name without the session's namespace) holds; kOther for what no figure is made of.
-/// `graph` says how many slots there are and whose images planners saw; `all_images`: those of
-/// others count too.
-Channel channelOf(const BagConnection& connection, const std::string& topic,
-                  const SessionGraph& graph, bool all_images);
+/// What a connection holds; `name` is its topic without the session's namespace. `graph` says how
+/// many slots there are and whose images planners saw; `all_images`: those of others count too.
+RecordedTopic recordedTopic(const BagConnection& connection, const std::string& name,
+                            const SessionGraph& graph, bool all_images);
 
 /// Namespace of the recorded session with its last slash: topic of the first connection of
 /// SessionInfo's type, less its name. Throws InputError listing what the bag holds when none is of

@@ -35,6 +35,14 @@ bool broke(const msgs::TrafficSnapshot& snapshot) {
 
 std::string tickText(std::uint64_t tick) { return "tick " + std::to_string(tick); }
 
+/// What the metrics node of the session waited for. Earlier versions recorded no decision records,
+/// so none is waited for; one that is there says what else came.
+ChannelSet awaitedInBag(SessionGraph graph) {
+  graph.paced = false;
+  graph.external_ego = false;
+  return awaitedBy(Party::kMetrics, graph);
+}
+
 std::string gapText(std::uint64_t first, std::uint64_t last) {
   if (first == last) return tickText(first) + " is missing";
   return "ticks " + std::to_string(first) + " to " + std::to_string(last) + " (" +
@@ -44,20 +52,18 @@ std::string gapText(std::uint64_t first, std::uint64_t last) {
 }  // namespace
 
 /// What each connection of the bag is.
-struct RecordedSession::Channels {
-  std::map<const BagConnection*, Channel> known;
+struct RecordedSession::Topics {
+  std::map<const BagConnection*, RecordedTopic> known;
 };
 
 RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImages images)
-    : reader_(bag), images_(images), channels_(std::make_unique<Channels>()) {
+    : reader_(bag), images_(images), topics_(std::make_unique<Topics>()) {
   try {
     readInfo();
     setup_ = setupOf(*info_);
     const session::ScenarioOptions& options = setup_->options();
     graph_ = info_->participants.empty() ? graphOf(options, GraphRequest()) : graphOf(*info_);
-    const ExpectedAnswers expected{graph_.cbvsSee(), true, graph_.egoPlansFromImages(),
-                                   graph_.cbvsPlanFromImages()};
-    answers_ = TickAnswers(options.simulation_step, expected, options.camera);
+    answers_ = TickAnswers(options.simulation_step, awaitedInBag(graph_), options.camera);
   } catch (const std::exception& error) {
     std::string text = "bag '" + bag.string() + "': " + error.what();
     for (const std::string& damage : reader_.damage()) text += "; " + damage;
@@ -67,11 +73,11 @@ RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImage
 
 RecordedSession::~RecordedSession() = default;
 
-/// Finds the session wherever it is in the bag, then goes back to the begin.
+/// Finds the session wherever it is in the bag, then goes back to its first message.
 void RecordedSession::readInfo() {
   BagMessage message;
   while (!info_ && reader_.next(message)) {
-    if (message.connection->type != "e2e_cdiff/SessionInfo") continue;
+    if (message.connection->type != channel(ChannelId::kSession).type.name) continue;
     prefix_ = sessionPrefix({*message.connection});
     info_ = decode<msgs::SessionInfo>(message);
   }
@@ -106,47 +112,29 @@ bool RecordedSession::readMessage() {
 }
 
 void RecordedSession::take(const BagMessage& message) {
-  if (channels_->known.count(message.connection) == 0) {
-    const std::string& topic = message.connection->topic;
-    Channel channel;
-    if (topic.compare(0, prefix_.size(), prefix_) == 0)
-      channel = channelOf(*message.connection, topic.substr(prefix_.size()), graph_,
-                          images_ == RecordedImages::kAll);
-    if (!channel.wrong_type.empty()) find(channel.wrong_type);
-    channels_->known[message.connection] = channel;
+  if (topics_->known.count(message.connection) == 0) {
+    const std::string& name = message.connection->topic;
+    RecordedTopic topic;
+    if (name.compare(0, prefix_.size(), prefix_) == 0)
+      topic = recordedTopic(*message.connection, name.substr(prefix_.size()), graph_,
+                            images_ == RecordedImages::kAll);
+    if (!topic.wrong_type.empty()) find(topic.wrong_type);
+    topics_->known[message.connection] = topic;
   }
+  const RecordedTopic& known = topics_->known.at(message.connection);
+  if (!known.topic || !known.wrong_type.empty()) return;
   try {
-    if (channels_->known.at(message.connection).wrong_type.empty()) dispatch(message);
+    dispatch(*known.topic, message);
   } catch (const InputError& error) {
     find(error.what());
   }
 }
 
-void RecordedSession::dispatch(const BagMessage& message) {
-  const Channel& channel = channels_->known.at(message.connection);
-  switch (channel.kind) {
-    case ChannelKind::kSession:
-      return takeSession(message);
-    case ChannelKind::kTraffic:
-      return takeSnapshot(message);
-    case ChannelKind::kDecision:
-      return answers_.add(decode<msgs::DecisionRecord>(message));
-    case ChannelKind::kSelection:
-      return takeSelection(message);
-    case ChannelKind::kGuidance:
-      return answers_.add(decode<msgs::GuidanceReport>(message));
-    case ChannelKind::kControl:
-      if (channel.slot != kEgoSlot)
-        return answers_.addCbv(channel.slot, decode<msgs::ControlAction>(message));
-      answers_.addEgo(decode<msgs::ControlAction>(message));
-      return;
-    case ChannelKind::kRollout:
-      return answers_.addRollout(channel.slot, decode<msgs::Rollout>(message));
-    case ChannelKind::kImage:
-      return answers_.addImage(channel.slot, decode<sensor_msgs::Image>(message));
-    case ChannelKind::kOther:
-      return;
-  }
+void RecordedSession::dispatch(const Topic& topic, const BagMessage& message) {
+  if (topic.id == ChannelId::kSession) return takeSession(message);
+  if (topic.id == ChannelId::kTraffic) return takeSnapshot(message);
+  if (topic.id == ChannelId::kSelection) return takeSelection(message);
+  answers_.add(topic, topic.row().type.decode(message));
 }
 
 /// A latched message may be recorded again; another one begins another session.
@@ -183,7 +171,10 @@ void RecordedSession::takeSnapshot(const BagMessage& message) {
 void RecordedSession::takeSelection(const BagMessage& message) {
   const auto selection = decode<msgs::CbvSelection>(message);
   const std::string wrong = unusable(*selection, setup_->network());
-  if (wrong.empty()) return answers_.add(selection);
+  if (wrong.empty()) {
+    answers_.add(ChannelId::kSelection, selection);
+    return;
+  }
   find("the selection of " + tickText(selection->tick) + " cannot be used: " + wrong);
 }
 
@@ -198,7 +189,7 @@ RecordedSession::Snapshot RecordedSession::next() {
   if (last_ && !running(*last_)) return nullptr;
   while (!frontIsReady() && readMessage()) {
   }
-  if (snapshots_.empty()) return last_ ? untoldEnd() : nullptr;
+  if (snapshots_.empty()) return last_ ? unrecordedEnd() : nullptr;
   const Snapshot front = snapshots_.front();
   snapshots_.pop_front();
   if (!running(*front) && !snapshots_.empty())
@@ -213,13 +204,13 @@ RecordedSession::Snapshot RecordedSession::next() {
 /// Adds to the snapshot what was found since the last one.
 RecordedSession::Snapshot RecordedSession::handOut(const Snapshot& snapshot) {
   last_ = snapshot;
-  if (told_ == findings_.size()) return snapshot;
+  if (handed_out_ == findings_.size()) return snapshot;
   auto copy = boost::make_shared<msgs::TrafficSnapshot>(*snapshot);
-  for (; told_ < findings_.size(); ++told_) {
+  for (; handed_out_ < findings_.size(); ++handed_out_) {
     copy->faults.emplace_back();
     copy->faults.back().tick = snapshot->tick;
     copy->faults.back().source = kBagSource;
-    copy->faults.back().text = findings_[told_];
+    copy->faults.back().text = findings_[handed_out_];
   }
   return copy;
 }
@@ -238,12 +229,12 @@ void RecordedSession::checkAnswers(const msgs::TrafficSnapshot& snapshot) {
   unanswered_.clear();
   if (!running(snapshot) || setup_->options().real_time_factor > 0.0) return;
   if (images_ == RecordedImages::kAll) return;
-  const std::vector<std::string> missing = answers_.missing(snapshot);
+  const std::vector<std::string> missing = namesOf(answers_.missing(snapshot));
   if (!missing.empty())
     unanswered_ = tickText(snapshot.tick) + " lacks " + core::joinText(missing, ", ");
 }
 
-RecordedSession::Snapshot RecordedSession::untoldEnd() {
+RecordedSession::Snapshot RecordedSession::unrecordedEnd() {
   if (!unanswered_.empty()) find(unanswered_);
   find("the recording ends at " + tickText(last_->tick) + " (" + core::formatNumber(last_->time) +
        " s) while the session was still running");

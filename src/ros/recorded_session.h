@@ -56,17 +56,17 @@ class RecordedSession {
   const std::vector<std::string>& findings() const { return findings_; }
 
  private:
-  struct Channels;
+  struct Topics;
   void readInfo();
   bool readMessage();
   void take(const BagMessage& message);
-  void dispatch(const BagMessage& message);
+  void dispatch(const Topic& topic, const BagMessage& message);
   void takeSnapshot(const BagMessage& message);
   void takeSelection(const BagMessage& message);
   void takeSession(const BagMessage& message);
   bool frontIsReady() const;
   Snapshot handOut(const Snapshot& snapshot);
-  Snapshot untoldEnd();
+  Snapshot unrecordedEnd();
   void checkOrder(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void checkAnswers(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void find(const std::string& text);
@@ -74,7 +74,7 @@ class RecordedSession {
 
   BagReader reader_;
   RecordedImages images_;
-  std::unique_ptr<Channels> channels_;
+  std::unique_ptr<Topics> topics_;
   std::string prefix_;
   ::e2e_cdiff::SessionInfo::ConstPtr info_;
   std::unique_ptr<session::SessionSetup> setup_;
@@ -87,7 +87,7 @@ class RecordedSession {
   std::string unanswered_;               ///< what the last decision lacked
   bool session_over_ = false;            ///< a second session begins in the bag
   std::size_t damage_copied_ = 0;        ///< of the reader's
-  std::size_t told_ = 0;                 ///< findings handed out
+  std::size_t handed_out_ = 0;           ///< findings
   std::vector<std::string> findings_;
 };
 

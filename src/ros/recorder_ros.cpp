@@ -17,16 +17,13 @@ std::string bagTopic(const std::string& topic) { return ::ros::names::resolve(to
 void RecorderRos::begin(const msgs::SessionInfo& info) {
   const session::ScenarioOptions options = optionsFromMsg(info);
   bag_ = std::make_unique<BagFile>(std::filesystem::path(info.results_folder) / "session.bag",
-                                   options.camera, bagTopic);
+                                   options, bagTopic);
   bag_->write(info);
-  listen<nav_msgs::Path>(kEgoRouteTopic, [this](const nav_msgs::Path::ConstPtr& path) {
+  listen<nav_msgs::Path>(ChannelId::kEgoRoute, [this](const nav_msgs::Path::ConstPtr& path) {
     if (!has_route_) bag_->write(*path);
     has_route_ = true;
   });
-  listenToAnswers(options, {graph().imagesOfEgo(), graph().imagesOfCbvs()});
-  if (!graph().has(kMetricsNode)) return;
-  listen<msgs::MetricReport>(kMetricsTopic,
-                             [this](const auto& message) { reports_[message->tick] = message; });
+  listenToAnswers(Party::kRecorder, options);
 }
 
 std::string RecorderRos::waitingFor() const {
@@ -38,7 +35,7 @@ bool RecorderRos::measured(const msgs::TrafficSnapshot& snapshot, bool supersede
   if (over() || (superseded && !graph().recordsDecisions())) return true;
   const bool final = snapshot.status != msgs::TrafficSnapshot::RUNNING;
   if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
-      reports_.count(snapshot.tick) > 0)
+      answers().has(ChannelId::kMetrics, snapshot.tick))
     return true;
   if (waiting_since_.isZero()) waiting_since_ = ::ros::WallTime::now();
   return (final || superseded) &&
@@ -47,29 +44,13 @@ bool RecorderRos::measured(const msgs::TrafficSnapshot& snapshot, bool supersede
 
 bool RecorderRos::handle(const Snapshot& snapshot, bool superseded) {
   if (!complete(*snapshot, superseded) || !measured(*snapshot, superseded)) return false;
-  bag_->write(messagesOf(snapshot));
+  TickMessages messages = answers().messages(snapshot->tick);
+  messages.add(ChannelId::kTraffic, snapshot);
+  bag_->write(messages);
   acknowledge(snapshot->tick);
   forgetUntil(snapshot->tick);
-  reports_.erase(reports_.begin(), reports_.upper_bound(snapshot->tick));
   waiting_since_ = {};
   return true;
-}
-
-TickMessages RecorderRos::messagesOf(const Snapshot& snapshot) const {
-  const std::uint64_t tick = snapshot->tick;
-  TickMessages messages;
-  messages.snapshot = snapshot;
-  messages.selection = answers().selection(tick);
-  for (int slot = kEgoSlot; slot < graph().max_cbv; ++slot) {
-    if (const auto control = answers().cbv(slot, tick)) messages.controls[slot] = control;
-    if (const auto rollout = answers().rollout(slot, tick)) messages.rollouts[slot] = rollout;
-    if (const auto image = answers().image(slot, tick)) messages.images[slot] = image;
-  }
-  messages.guidance = answers().guidance(tick);
-  messages.decision = answers().decision(tick);
-  const auto report = reports_.find(tick);
-  if (report != reports_.end()) messages.report = report->second;
-  return messages;
 }
 
 int RecorderRos::conclude(Ending ending) {

@@ -4,7 +4,6 @@
 /// session.bag in the result folder.
 #pragma once
 
-#include <map>
 #include <memory>
 
 #include "ros/bag_file.h"
@@ -24,11 +23,9 @@ class RecorderRos : public Observer {
 
  private:
   bool measured(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
-  TickMessages messagesOf(const Snapshot& snapshot) const;
 
   std::unique_ptr<BagFile> bag_;
   bool has_route_ = false;
-  std::map<std::uint64_t, ::e2e_cdiff::MetricReport::ConstPtr> reports_;  ///< by tick
   ::ros::WallTime waiting_since_;
 };
 

@@ -19,13 +19,13 @@ namespace cdiff::ros {
 inline constexpr const char* kReplayCommand = "cdiff replay";
 inline constexpr const char* kReplayLaunch = "replay.launch";
 
-/// Shows observers every tick of a recording in order; answers the number of snapshots. Call once.
+/// Shows observers every tick of a recording in order; returns the number of snapshots. Call once.
 std::size_t showTicks(RecordedSession& session,
                       const std::vector<session::SessionObserver*>& observers);
 
-/// Deployment of a session that is told again, for SessionInfo: who tells it, and who recorded it.
+/// Deployment of a replayed session, for SessionInfo: who replays it, and who recorded it.
 std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionInfo& recorded);
-/// What results say of a session, live or told again.
+/// What results say of a session, live or replayed.
 record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic);
 
 /// Throws InputError when a replay may not write into the folder: it holds an earlier result that

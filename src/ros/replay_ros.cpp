@@ -9,7 +9,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/conversions.h"
 #include "ros/decision_book.h"
-#include "ros/image_conversions.h"
 #include "ros/launched_nodes.h"
 #include "ros/markers.h"
 #include "ros/replay.h"
@@ -28,7 +27,6 @@ constexpr double kPatience = 30.0;  // [s] of wall time for the metrics node to 
 constexpr double kFarewell = 5.0;   // [s] for its files when the replay is interrupted
 constexpr double kHeartbeatTimeout = 10.0;  // [s] until the metrics node takes us for lost
 constexpr double kStraggle = 0.1;           // [s] for the answers to a tick that lacks some
-constexpr const char* kClockTopic = "/clock";
 
 /// Rate from the parameter: a number from 0.
 double rateOf(const Parameters& parameters) {
@@ -81,38 +79,28 @@ ReplayRos::ReplayRos(const Parameters& parameters, StopSignal& stop)
   if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().options().camera);
 }
 
-/// Of those who listen live, the metrics node alone is counted on.
-template <class Message>
-::ros::Publisher ReplayRos::offer(const std::string& topic, bool latch) {
+/// A replay waits for the metrics node alone; others may listen.
+void ReplayRos::offer(const Topic& topic) {
   const std::vector<std::string> nodes = listeners(topic, graph_);
   const bool counted = std::find(nodes.begin(), nodes.end(), kMetricsNode) != nodes.end();
   const std::vector<std::string> expected =
       counted ? std::vector<std::string>{kMetricsNode} : std::vector<std::string>();
-  return topics_[topic] = connections_.advertise<Message>(node_, topic, expected, latch);
+  const Channel& row = topic.row();
+  topics_[topic] = row.type.advertise(connections_, node_, topic.name(), expected, row.latched);
 }
 
 void ReplayRos::advertise() {
-  topics_[kClockTopic] = node_.advertise<rosgraph_msgs::Clock>(kClockTopic, 100);
-  offer<msgs::SessionInfo>(kSessionTopic, true);
-  offer<msgs::TrafficSnapshot>(kTrafficTopic, true);
-  offer<nav_msgs::Path>(kEgoRouteTopic, true);
-  if (graph_.recordsDecisions()) offer<msgs::DecisionRecord>(kDecisionRecordTopic);
-  offer<msgs::CbvSelection>(kSelectionTopic);
-  offer<visualization_msgs::MarkerArray>(kRolloutMarkersTopic);
-  if (graph_.cbvsSee()) offer<msgs::GuidanceReport>(kGuidanceTopic);
-  for (int slot = kEgoSlot; slot < graph_.max_cbv; ++slot) advertiseSlot(slot);
+  for (const ChannelId id : {ChannelId::kClock, ChannelId::kSession, ChannelId::kTraffic,
+                             ChannelId::kEgoRoute, ChannelId::kRolloutMarkers})
+    offer(id);
+  for (const Channel& row : channels()) {
+    if (!replayed(row, graph_)) continue;
+    for (const Topic& topic : topicsOf(row, graph_.max_cbv)) offer(topic);
+  }
   gate_.setReport([](const std::string& text) { ROS_WARN("%s", text.c_str()); });
-  acks_ = gate_.subscribe<msgs::TickAck>(node_, kTickAckTopic, {siblingNode(kMetricsNode)},
+  acks_ = gate_.subscribe<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
+                                         {siblingNode(kMetricsNode)},
                                          [this](const auto& ack) { book_.note(*ack); });
-}
-
-void ReplayRos::advertiseSlot(int slot) {
-  const bool ego = slot == kEgoSlot;
-  offer<msgs::ControlAction>(ego ? kEgoControlTopic : cbvControlTopic(slot));
-  if (!ego) offer<msgs::Rollout>(cbvRolloutTopic(slot));
-  if (!(ego ? graph_.egoPlansFromImages() : graph_.cbvsPlanFromImages())) return;
-  offer<sensor_msgs::Image>(imageTopic(slot));
-  offer<sensor_msgs::CameraInfo>(cameraInfoTopic(slot));
 }
 
 void ReplayRos::publishSession() {
@@ -120,48 +108,33 @@ void ReplayRos::publishSession() {
   info.deployment = replayDeployment(kReplayLaunch, info);
   info.results_folder = results_.string();
   putGraph(graph_, info);
-  topics_.at(kSessionTopic).publish(boost::make_shared<const msgs::SessionInfo>(info));
-  topics_.at(kEgoRouteTopic).publish(toPathMsg(session_.setup().egoRoute()));
+  topics_.at(ChannelId::kSession).publish(shared(info));
+  topics_.at(ChannelId::kEgoRoute).publish(toPathMsg(session_.setup().egoRoute()));
 }
 
 void ReplayRos::publishTick(const msgs::TrafficSnapshot::ConstPtr& snapshot) {
   rosgraph_msgs::Clock clock;
   clock.clock = snapshot->header.stamp;
-  topics_.at(kClockTopic).publish(clock);
-  topics_.at(kTrafficTopic).publish(snapshot);
+  topics_.at(ChannelId::kClock).publish(clock);
+  topics_.at(ChannelId::kTraffic).publish(snapshot);
   if (snapshot->decision_tick) publishAnswers(*snapshot);
   display_.publish(fromMsg(*snapshot));
 }
 
 void ReplayRos::publishAnswers(const msgs::TrafficSnapshot& snapshot) {
-  const TickAnswers& answers = session_.answers();
-  if (graph_.recordsDecisions()) {
-    const auto record = answers.decision(snapshot.tick);  // earlier versions recorded none
-    topics_.at(kDecisionRecordTopic)
-        .publish(record ? record
-                        : boost::make_shared<const msgs::DecisionRecord>(
-                              punctualRecord(snapshot, answers)));
+  TickMessages messages = session_.answers().messages(snapshot.tick);
+  if (graph_.recordsDecisions())  // earlier versions recorded none
+    messages.add(ChannelId::kDecisionRecord, shared(punctualRecord(snapshot, session_.answers())));
+  const session::ScenarioOptions& options = session_.setup().options();
+  const TickReading reading{options.camera, options.simulation_step};
+  for (const auto& [topic, publisher] : topics_) {
+    const Channel& row = topic.row();
+    if (!replayed(row, graph_)) continue;
+    AnyMessage message = messages.find(topic);
+    if (!message && row.derive != nullptr) message = row.derive(messages, reading, topic.slot);
+    if (message) row.type.publish(publisher, message);
   }
-  if (const auto guidance = answers.guidance(snapshot.tick))
-    topics_.at(kGuidanceTopic).publish(guidance);
-  for (int slot = kEgoSlot; slot < graph_.max_cbv; ++slot) publishSlot(slot, snapshot.tick);
-  if (const auto selection = answers.selection(snapshot.tick))
-    topics_.at(kSelectionTopic).publish(selection);
-  if (topics_.at(kRolloutMarkersTopic).getNumSubscribers() > 0) publishPlans(snapshot);
-}
-
-void ReplayRos::publishSlot(int slot, std::uint64_t tick) {
-  const TickAnswers& answers = session_.answers();
-  const bool ego = slot == kEgoSlot;
-  if (const auto control = answers.cbv(slot, tick))
-    topics_.at(ego ? kEgoControlTopic : cbvControlTopic(slot)).publish(control);
-  const auto rollout = answers.rollout(slot, tick);
-  if (!ego && rollout) topics_.at(cbvRolloutTopic(slot)).publish(rollout);
-  const auto image = answers.image(slot, tick);
-  if (!image) return;
-  topics_.at(imageTopic(slot)).publish(image);
-  topics_.at(cameraInfoTopic(slot))
-      .publish(toCameraInfoMsg(session_.setup().options().camera, image->header));
+  if (topics_.at(ChannelId::kRolloutMarkers).getNumSubscribers() > 0) publishPlans(snapshot);
 }
 
 /// The plans of CBVs for rviz, which live their planner's node shows.
@@ -169,7 +142,7 @@ void ReplayRos::publishPlans(const msgs::TrafficSnapshot& snapshot) {
   std::vector<planning::PlannedAction> actions = actionsOf(session_.answers().answers(snapshot));
   const auto of_ego = [](const planning::PlannedAction& action) { return action.slot == kEgoSlot; };
   actions.erase(std::remove_if(actions.begin(), actions.end(), of_ego), actions.end());
-  topics_.at(kRolloutMarkersTopic).publish(rolloutMarkers(actions, snapshot.time));
+  topics_.at(ChannelId::kRolloutMarkers).publish(rolloutMarkers(actions, snapshot.time));
 }
 
 bool ReplayRos::disturbed() {
@@ -211,12 +184,12 @@ std::vector<std::string> ReplayRos::notReady() const {
 int ReplayRos::run() {
   advertise();
   publishSession();
-  if (waitFor([this] { return notReady(); })) tellTicks();
-  if (!failed_ && stop_.raised()) tellInterruption();
+  if (waitFor([this] { return notReady(); })) replayTicks();
+  if (!failed_ && stop_.raised()) publishInterruption();
   return finish();
 }
 
-void ReplayRos::tellTicks() {
+void ReplayRos::replayTicks() {
   begin_ = Clock::now();
   bool going = true;
   while (going) {
@@ -240,8 +213,8 @@ bool ReplayRos::waitForMetrics(const msgs::TrafficSnapshot& snapshot) {
   return waitFor([&] { return last ? book_.notFinished() : book_.notAcknowledged(snapshot.tick); });
 }
 
-/// The user has had enough: the metrics node shall write what there is.
-void ReplayRos::tellInterruption() {
+/// A last snapshot, so that the metrics node writes the result of the ticks replayed so far.
+void ReplayRos::publishInterruption() {
   if (!last_ || last_->status != msgs::TrafficSnapshot::RUNNING || !::ros::ok()) return;
   const traffic::TrafficSnapshot end =
       endedAfter(fromMsg(*last_), session_.setup().options().simulation_step,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A recorded session told again as topics, in the place of the traffic simulator: it publishes the
-/// bag's ticks and the answers to each, and waits for the metrics node's acknowledgement of a tick
-/// before the next. So the metrics node sees what it saw live, and nothing can be lost on the way.
+/// A recorded session replayed on its topics, in the place of the traffic simulator: it publishes
+/// the bag's ticks and the answers to each, and waits for the metrics node's acknowledgement of a
+/// tick before the next. So the metrics node sees what it saw live, and nothing can be lost on the
+/// way.
 #pragma once
 
 #include <chrono>
@@ -33,30 +34,27 @@ class ReplayRos {
   /// for bad input.
   ReplayRos(const Parameters& parameters, StopSignal& stop);
 
-  /// Tells the session to its end; answers 0, 2 for a damaged recording or a metrics node that
+  /// Replays the session to its end; returns 0, 2 for a damaged recording or a metrics node that
   /// failed, 130 when interrupted.
   int run();
 
  private:
   using Clock = std::chrono::steady_clock;
   void advertise();
-  void advertiseSlot(int slot);
   void publishSession();
   void publishTick(const ::e2e_cdiff::TrafficSnapshot::ConstPtr& snapshot);
   void publishAnswers(const ::e2e_cdiff::TrafficSnapshot& snapshot);
-  void publishSlot(int slot, std::uint64_t tick);
   void publishPlans(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   void waitUntilDue(double time);
-  void tellTicks();
-  void tellInterruption();
+  void replayTicks();
+  void publishInterruption();
   bool waitForMetrics(const ::e2e_cdiff::TrafficSnapshot& snapshot);
   std::vector<std::string> notReady() const;
   /// False when the session cannot go on.
   bool waitFor(const std::function<std::vector<std::string>()>& missing);
   bool disturbed();
   int finish();
-  template <class Message>
-  ::ros::Publisher offer(const std::string& topic, bool latch = false);
+  void offer(const Topic& topic);
 
   StopSignal& stop_;
   double rate_ = 1.0;
@@ -70,16 +68,16 @@ class ReplayRos {
   Connections connections_;
   ::ros::NodeHandle node_;
   HeartbeatPublisher heartbeat_;
-  std::map<std::string, ::ros::Publisher> topics_;
+  std::map<Topic, ::ros::Publisher> topics_;
   ::ros::Subscriber acks_;
   Display display_;
-  ::e2e_cdiff::TrafficSnapshot::ConstPtr last_;  ///< told
+  ::e2e_cdiff::TrafficSnapshot::ConstPtr last_;  ///< published
   Clock::time_point begin_;
   bool failed_ = false;
 };
 
-/// Replays the bag that the node's parameters name; bad input is told in one line, and in the exit
-/// code's file where the result folder was given.
+/// Replays the bag that the node's parameters name; bad input is reported in one line, and in the
+/// exit code's file where the result folder was given.
 int runReplay(StopSignal& stop);
 
 }  // namespace cdiff::ros

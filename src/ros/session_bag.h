@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "ros/bag_file.h"
 #include "ros/metric_reporter.h"
@@ -42,9 +43,7 @@ class SessionBag : public session::SessionObserver {
   void discard() { file_.discard(); }
 
  private:
-  void addActions(const session::TickRecord& record, TickMessages& tick) const;
-  void addImages(const session::TickRecord& record, TickMessages& tick) const;
-  void addGuidance(const session::TickRecord& record, TickMessages& tick) const;
+  std::vector<Answer> answersOf(const session::TickRecord& record) const;
   std::string plannerOf(int slot) const;
 
   const session::SessionSetup& setup_;

@@ -20,6 +20,14 @@ std::vector<std::string> neededNodes(const session::ScenarioOptions& options,
   return nodes;
 }
 
+/// What follows from the scenario and the participants, who must be known.
+void addCbvPlanner(const session::ScenarioOptions& options, SessionGraph& graph) {
+  graph.cbvs_see = planners::seesImages(options.cbv_planner);
+  graph.cbvs_guided = planners::canBeGuided(options.cbv_planner);
+  graph.cbv_planner_node = kCbvPlannerNode;
+  if (graph.has(kDiffusionPlannerNode)) graph.cbv_planner_node = kDiffusionPlannerNode;
+}
+
 }  // namespace
 
 std::unique_ptr<session::SessionSetup> setupOf(const msgs::SessionInfo& info) {
@@ -39,6 +47,7 @@ SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest
        participants.empty() ? neededNodes(options, request) : participants) {
     if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
   }
+  addCbvPlanner(options, graph);
   return graph;
 }
 
@@ -58,6 +67,7 @@ SessionGraph graphOf(const msgs::SessionInfo& info) {
   graph.external_ego = info.external_ego != 0;
   graph.ego_sees = info.ego_sees != 0;
   graph.show_cameras = info.show_cameras != 0;
+  addCbvPlanner(options, graph);
   return graph;
 }
 

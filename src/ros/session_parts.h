@@ -7,7 +7,7 @@
 #include <string>
 
 #include "e2e_cdiff/SessionInfo.h"
-#include "ros/topics.h"
+#include "ros/session_graph.h"
 #include "session/session_setup.h"
 
 namespace cdiff::ros {
@@ -23,7 +23,8 @@ struct GraphRequest {
 /// The nodes that a scenario needs. `participants` replaces the list when it is not empty.
 SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest& request,
                      const std::vector<std::string>& participants = {});
-/// Writes the graph into a session's message, and reads it.
+/// Writes the graph into a session's message, and reads it. What the planner of the CBVs needs
+/// follows from the scenario in it.
 void putGraph(const SessionGraph& graph, ::e2e_cdiff::SessionInfo& info);
 SessionGraph graphOf(const ::e2e_cdiff::SessionInfo& info);
 

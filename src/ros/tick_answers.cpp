@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
-#include <cmath>
 
-#include "e2e_cdiff/core/exceptions.h"
 #include "ros/conversions.h"
-#include "ros/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -20,268 +17,161 @@ const msgs::Vehicle* findEgo(const msgs::TrafficSnapshot& snapshot) {
   return found == snapshot.vehicles.end() ? nullptr : &*found;
 }
 
-/// A user's own planner may leave out whom it drives and what it is called.
-Answer answerOf(const msgs::ControlAction& control, int slot, const std::string& vehicle_id) {
-  Answer answer;
-  answer.action = fromMsg(control);
-  answer.action.slot = slot;
-  answer.action.vehicle_id = vehicle_id;
-  answer.planner = control.planner.empty() ? "ego:external" : control.planner;
-  answer.latency_ms = control.planner_latency_ms;
-  answer.fault = control.fault;
-  return answer;
-}
-
-template <class Message>
-Message findIn(const std::map<std::uint64_t, std::map<int, Message>>& messages, int slot,
-               std::uint64_t tick) {
-  const auto at_tick = messages.find(tick);
-  if (at_tick == messages.end()) return nullptr;
-  const auto found = at_tick->second.find(slot);
-  return found == at_tick->second.end() ? nullptr : found->second;
+void append(std::vector<Topic>& topics, const std::vector<Topic>& more) {
+  topics.insert(topics.end(), more.begin(), more.end());
 }
 
 }  // namespace
-
-std::vector<planning::PlannedAction> actionsOf(const std::vector<Answer>& answers) {
-  std::vector<planning::PlannedAction> actions;
-  for (const Answer& answer : answers) {
-    if (answer.drove) actions.push_back(answer.action);
-  }
-  return actions;
-}
-
-std::vector<session::PlannerLatency> latenciesOf(const std::vector<Answer>& answers) {
-  std::vector<session::PlannerLatency> latencies;
-  for (const Answer& answer : answers) {
-    if (!std::isfinite(answer.latency_ms) || answer.latency_ms <= 0.0) continue;
-    const bool same_call = !latencies.empty() && latencies.back().planner == answer.planner;
-    if (!same_call) latencies.push_back({answer.planner, answer.latency_ms});
-  }
-  return latencies;
-}
 
 bool contains(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_id) {
   return std::any_of(snapshot.vehicles.begin(), snapshot.vehicles.end(),
                      [&](const msgs::Vehicle& vehicle) { return vehicle.id == vehicle_id; });
 }
 
-std::uint64_t TickAnswers::tickOf(const msgs::ControlAction& control,
-                                  std::uint64_t otherwise) const {
-  if (control.tick != 0) return control.tick;
-  if (control.header.stamp.isZero()) return otherwise;
-  return nearestTick(control.header.stamp, simulation_step_);
-}
+TickAnswers::TickAnswers(double simulation_step)
+    : TickAnswers(simulation_step, awaitedBy(Party::kSimulator, SessionGraph())) {}
 
-void TickAnswers::add(const Selection& selection) {
-  selections_.emplace(selection->tick, selection);
-}
+TickAnswers::TickAnswers(double simulation_step, ChannelSet awaited,
+                         const rendering::CameraOptions& camera)
+    : awaited_(std::move(awaited)), reading_{camera, simulation_step} {}
 
-void TickAnswers::add(const Guidance& guidance) { guidance_.emplace(guidance->tick, guidance); }
-
-std::uint64_t TickAnswers::addEgo(const Control& control, std::uint64_t otherwise) {
-  const std::uint64_t tick = tickOf(*control, otherwise);
-  controls_[tick].emplace(kEgoSlot, control);
+std::uint64_t TickAnswers::add(const Topic& topic, const AnyMessage& message,
+                               std::uint64_t otherwise) {
+  const std::uint64_t tick =
+      topic.row().type.tick(message, reading_.simulation_step).value_or(otherwise);
+  ticks_[tick].add(topic, message);
+  if (topic.id != ChannelId::kDecisionRecord) return tick;
+  for (const msgs::DecidedVehicle& vehicle : messageAs<msgs::DecisionRecord>(message)->vehicles) {
+    if (vehicle.answered) ticks_[tick].add(controlOf(vehicle.slot), shared(vehicle.answer));
+  }
   return tick;
 }
 
-void TickAnswers::addCbv(int slot, const Control& control) {
-  controls_[control->tick].emplace(slot, control);
+AnyMessage TickAnswers::find(const Topic& topic, std::uint64_t tick) const {
+  const auto found = ticks_.find(tick);
+  return found == ticks_.end() ? nullptr : found->second.find(topic);
 }
 
-void TickAnswers::add(const Decision& record) {
-  decisions_.emplace(record->tick, record);
-  for (const msgs::DecidedVehicle& vehicle : record->vehicles) {
-    if (!vehicle.answered) continue;
-    controls_[record->tick].emplace(vehicle.slot,
-                                    boost::make_shared<const msgs::ControlAction>(vehicle.answer));
+TickMessages TickAnswers::messages(std::uint64_t tick) const {
+  const auto found = ticks_.find(tick);
+  TickMessages messages = found == ticks_.end() ? TickMessages() : found->second;
+  if (!selection(tick)) messages.remove(ChannelId::kSelection);
+  return messages;
+}
+
+/// What a vehicle of the tick still needs; a planner that answers with a fault may have had no
+/// image.
+std::vector<Topic> TickAnswers::missingOf(int slot, std::uint64_t tick, bool with_fault) const {
+  const Scope scope = slot == kEgoSlot ? Scope::kEgo : Scope::kSlot;
+  std::vector<Topic> topics;
+  for (const ChannelId id : awaited_) {
+    const Channel& row = channel(id);
+    const bool needed = row.need == Need::kVehicle || (row.need == Need::kSight && !with_fault);
+    if (row.scope == scope && needed && !has({id, slot}, tick)) topics.emplace_back(id, slot);
   }
+  return topics;
 }
 
-void TickAnswers::addRollout(int slot, const Rollout& rollout) {
-  rollouts_[rollout->tick].emplace(slot, rollout);
-}
-
-/// What a vehicle of the tick still needs.
-std::vector<std::string> TickAnswers::missingOf(int slot, std::uint64_t tick) const {
-  const bool ego = slot == kEgoSlot;
-  std::vector<std::string> topics;
-  if (!cbv(slot, tick)) topics.push_back(ego ? kEgoControlTopic : cbvControlTopic(slot));
-  if (expected_.rollouts && !ego && !rollout(slot, tick)) topics.push_back(cbvRolloutTopic(slot));
-  const bool image_expected = ego ? expected_.ego_image : expected_.cbv_images;
-  if (image_expected && !image(slot, tick)) topics.push_back(imageTopic(slot));
+/// What the tick needs once.
+std::vector<Topic> TickAnswers::missingOfSession(Need need, std::uint64_t tick) const {
+  std::vector<Topic> topics;
+  for (const ChannelId id : awaited_) {
+    if (channel(id).need == need && !has(id, tick)) topics.emplace_back(id);
+  }
   return topics;
 }
 
 /// What the record names and has not come on its own topic; its controls it carries itself.
-std::vector<std::string> TickAnswers::missingOf(const msgs::DecisionRecord& record) const {
-  std::vector<std::string> topics;
-  const std::uint64_t tick = record.tick;
-  if (record.selection_came && !selection(tick)) topics.emplace_back(kSelectionTopic);
+std::vector<Topic> TickAnswers::missingOf(const msgs::DecisionRecord& record) const {
+  std::vector<Topic> topics;
+  if (record.selection_came) topics = missingOfSession(Need::kDecision, record.tick);
   bool any_cbv = false;
   for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
     if (!vehicle.answered) continue;
-    const bool ego = vehicle.slot == kEgoSlot;
-    any_cbv = any_cbv || !ego;
-    if (expected_.rollouts && !ego && !rollout(vehicle.slot, tick))
-      topics.push_back(cbvRolloutTopic(vehicle.slot));
-    // A planner that says what was wrong may have had no image.
-    const bool saw =
-        (ego ? expected_.ego_image : expected_.cbv_images) && vehicle.answer.fault.empty();
-    if (saw && !image(vehicle.slot, tick)) topics.push_back(imageTopic(vehicle.slot));
+    any_cbv = any_cbv || vehicle.slot != kEgoSlot;
+    append(topics, missingOf(vehicle.slot, record.tick, !vehicle.answer.fault.empty()));
   }
-  if (expected_.guidance && any_cbv && !guidance(tick)) topics.emplace_back(kGuidanceTopic);
+  if (any_cbv) append(topics, missingOfSession(Need::kAnyCbv, record.tick));
   return topics;
 }
 
-std::vector<std::string> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
-  std::vector<std::string> topics;
+std::vector<Topic> TickAnswers::missing(const msgs::TrafficSnapshot& snapshot) const {
+  std::vector<Topic> topics;
+  const std::uint64_t tick = snapshot.tick;
   if (!snapshot.decision_tick) return topics;
-  if (const Decision record = decision(snapshot.tick)) return missingOf(*record);
-  if (expected_.record) return {kDecisionRecordTopic};
-  if (findEgo(snapshot) != nullptr) topics = missingOf(kEgoSlot, snapshot.tick);
-  const Selection chosen = selection(snapshot.tick);
-  if (!chosen) {
-    topics.emplace_back(kSelectionTopic);
-    return topics;
-  }
+  if (const Decision record = decision(tick)) return missingOf(*record);
+  topics = missingOfSession(Need::kRecord, tick);
+  if (!topics.empty()) return topics;
+  if (findEgo(snapshot) != nullptr) topics = missingOf(kEgoSlot, tick);
+  append(topics, missingOfSession(Need::kDecision, tick));
+  const Selection chosen = selection(tick);
+  if (!chosen) return topics;
   bool any_cbv = false;
   for (const msgs::CbvAssignment& assignment : chosen->assignments) {
     if (!contains(snapshot, assignment.vehicle_id)) continue;
     any_cbv = true;
-    for (std::string& topic : missingOf(assignment.slot, snapshot.tick))
-      topics.push_back(std::move(topic));
+    append(topics, missingOf(assignment.slot, tick));
   }
-  if (expected_.guidance && any_cbv && !guidance(snapshot.tick))
-    topics.emplace_back(kGuidanceTopic);
+  if (any_cbv) append(topics, missingOfSession(Need::kAnyCbv, tick));
   return topics;
-}
-
-TickAnswers::Decision TickAnswers::decision(std::uint64_t tick) const {
-  const auto found = decisions_.find(tick);
-  return found == decisions_.end() ? nullptr : found->second;
 }
 
 TickAnswers::Selection TickAnswers::selection(std::uint64_t tick) const {
   const Decision record = decision(tick);
   if (record && !record->selection_came) return nullptr;
-  const auto found = selections_.find(tick);
-  return found == selections_.end() ? nullptr : found->second;
+  return get<msgs::CbvSelection>(ChannelId::kSelection, tick);
 }
-
-TickAnswers::Control TickAnswers::cbv(int slot, std::uint64_t tick) const {
-  return findIn(controls_, slot, tick);
-}
-
-TickAnswers::Rollout TickAnswers::rollout(int slot, std::uint64_t tick) const {
-  return findIn(rollouts_, slot, tick);
-}
-
-TickAnswers::Guidance TickAnswers::guidance(std::uint64_t tick) const {
-  const auto found = guidance_.find(tick);
-  return found == guidance_.end() ? nullptr : found->second;
-}
-
-void TickAnswers::addGuidance(Answer& answer, std::uint64_t tick) const {
-  const Guidance report = guidance(tick);
-  if (!report) return;
-  for (const msgs::VehicleGuidance& vehicle : report->vehicles) {
-    if (vehicle.vehicle_id != answer.action.vehicle_id) continue;
-    answer.action.guidance = fromMsg(vehicle);
-    answer.action.state_mismatch = vehicle.state_mismatch;
-  }
-}
-
-/// Marks an answer that came too late to drive.
-void TickAnswers::addTiming(Answer& answer, std::uint64_t tick) const {
-  const Decision record = decision(tick);
-  if (!record) return;
-  for (const msgs::DecidedVehicle& vehicle : record->vehicles) {
-    if (vehicle.slot == answer.action.slot && vehicle.vehicle_id == answer.action.vehicle_id)
-      answer.drove = vehicle.answer_drove != 0;
-  }
-}
-
-TickAnswers::Control TickAnswers::ego(std::uint64_t tick) const { return cbv(kEgoSlot, tick); }
 
 std::vector<Answer> TickAnswers::answers(const msgs::TrafficSnapshot& snapshot) const {
   std::vector<Answer> answers;
-  const msgs::Vehicle* ego_vehicle = findEgo(snapshot);
-  const Control ego_control = ego(snapshot.tick);
-  if (ego_vehicle != nullptr && ego_control)
-    answers.push_back(answerOf(*ego_control, kEgoSlot, ego_vehicle->id));
+  const auto tick = ticks_.find(snapshot.tick);
+  if (tick == ticks_.end()) return answers;
+  const auto take = [&](int slot, const std::string& vehicle_id) {
+    if (auto answer = readAnswer(tick->second, slot, vehicle_id, reading_))
+      answers.push_back(std::move(*answer));
+  };
+  if (const msgs::Vehicle* ego = findEgo(snapshot)) take(kEgoSlot, ego->id);
   const Selection chosen = selection(snapshot.tick);
   if (!chosen) return answers;
   for (const msgs::CbvAssignment& assignment : chosen->assignments) {
-    const Control control = cbv(assignment.slot, snapshot.tick);
-    if (!control || !contains(snapshot, assignment.vehicle_id)) continue;
-    answers.push_back(answerOf(*control, assignment.slot, assignment.vehicle_id));
-    addGuidance(answers.back(), snapshot.tick);
-    if (const Rollout plan = rollout(assignment.slot, snapshot.tick))
-      answers.back().action.rollout = fromMsg(*plan);
+    if (contains(snapshot, assignment.vehicle_id)) take(assignment.slot, assignment.vehicle_id);
   }
-  for (Answer& answer : answers) addTiming(answer, snapshot.tick);
   return answers;
-}
-
-std::vector<session::SlotImage> TickAnswers::images(const msgs::TrafficSnapshot& snapshot) const {
-  std::vector<session::SlotImage> seen;
-  for (const Answer& answer : answers(snapshot)) {
-    const int slot = answer.action.slot;
-    if (!image(slot, snapshot.tick)) continue;
-    try {
-      seen.push_back({slot, images_.read(slot, answer.action.vehicle_id, snapshot.tick)});
-    } catch (const core::InputError&) {  // its planner has braked and said why
-    }
-  }
-  return seen;
 }
 
 TickAnswers::TimedControl TickAnswers::newest(int slot, const std::string& vehicle_id,
                                               std::uint64_t tick) const {
-  for (auto at_tick = controls_.rbegin(); at_tick != controls_.rend(); ++at_tick) {
-    const auto found = at_tick->second.find(slot);
-    if (at_tick->first > tick || found == at_tick->second.end()) continue;
-    if (slot == kEgoSlot || found->second->vehicle_id == vehicle_id)
-      return {at_tick->first, found->second};
+  for (auto at = ticks_.rbegin(); at != ticks_.rend(); ++at) {
+    if (at->first > tick) continue;
+    const auto found = at->second.get<msgs::ControlAction>(controlOf(slot));
+    if (found && (slot == kEgoSlot || found->vehicle_id == vehicle_id)) return {at->first, found};
   }
   return {};
 }
 
 TickAnswers::TimedControl TickAnswers::within(int slot, std::uint64_t begin,
                                               std::uint64_t end) const {
-  for (auto at_tick = controls_.lower_bound(begin);
-       at_tick != controls_.end() && at_tick->first < end; ++at_tick) {
-    const auto found = at_tick->second.find(slot);
-    if (found != at_tick->second.end()) return {at_tick->first, found->second};
+  for (auto at = ticks_.lower_bound(begin); at != ticks_.end() && at->first < end; ++at) {
+    if (const auto found = at->second.get<msgs::ControlAction>(controlOf(slot)))
+      return {at->first, found};
   }
   return {};
 }
 
 bool TickAnswers::answeredFrom(int slot, std::uint64_t begin) const {
-  const bool ego = slot == kEgoSlot;
-  return std::any_of(controls_.lower_bound(begin), controls_.end(), [&](const auto& at_tick) {
-    const auto& slots = at_tick.second;
-    return ego ? slots.count(kEgoSlot) > 0 : slots.upper_bound(kEgoSlot) != slots.end();
-  });
+  return std::any_of(ticks_.lower_bound(begin), ticks_.end(),
+                     [&](const auto& tick) { return tick.second.holds(controlOf(slot).id); });
 }
 
-TickAnswers::Selection TickAnswers::firstSelection() const {
-  return selections_.empty() ? nullptr : selections_.begin()->second;
-}
-
-TickAnswers::Selection TickAnswers::selectionAfter(std::uint64_t tick) const {
-  const auto found = selections_.upper_bound(tick);
-  return found == selections_.end() ? nullptr : found->second;
+TickAnswers::Selection TickAnswers::selectionFrom(std::uint64_t tick) const {
+  for (auto at = ticks_.lower_bound(tick); at != ticks_.end(); ++at) {
+    if (const auto found = at->second.get<msgs::CbvSelection>(ChannelId::kSelection)) return found;
+  }
+  return nullptr;
 }
 
 void TickAnswers::forgetBefore(std::uint64_t tick) {
-  selections_.erase(selections_.begin(), selections_.lower_bound(tick));
-  controls_.erase(controls_.begin(), controls_.lower_bound(tick));
-  decisions_.erase(decisions_.begin(), decisions_.lower_bound(tick));
-  guidance_.erase(guidance_.begin(), guidance_.lower_bound(tick));
-  rollouts_.erase(rollouts_.begin(), rollouts_.lower_bound(tick));
-  images_.forgetBefore(tick);
+  ticks_.erase(ticks_.begin(), ticks_.lower_bound(tick));
 }
 
 }  // namespace cdiff::ros

@@ -44,7 +44,7 @@ TickRecordView::TickRecordView(const msgs::TrafficSnapshot& message, const TickA
   if (!snapshot_.decision_tick) return;
   const std::vector<Answer> given = answers.answers(message);
   actions_ = actionsOf(given);
-  images_ = answers.images(message);
+  images_ = imagesOf(given);
   record_.selection = selection();
   record_.actions = &actions_;
   record_.images = &images_;

@@ -36,8 +36,8 @@ class TickRecordView {
   session::TickRecord record_;
 };
 
-/// The last state with an end that nobody told, as World::end would have made it; `fault` gets the
-/// last state's tick.
+/// The last state with the end of a session that published none itself, as World::end would have
+/// made it; `fault` gets the last state's tick.
 traffic::TrafficSnapshot endedAfter(const traffic::TrafficSnapshot& last, double simulation_step,
                                     traffic::SessionStatus status, const traffic::Fault& fault);
 

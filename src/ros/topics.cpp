@@ -3,97 +3,100 @@
 #include "ros/topics.h"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "e2e_cdiff/CbvSelection.h"
+#include "ros/message_checks.h"
 
 namespace cdiff::ros {
-namespace {
 
-using Nodes = std::vector<std::string>;
-
-Nodes listenersOfControl(const SessionGraph& graph) {
-  if (graph.recordsDecisions()) return {kTrafficSimulatorNode};
-  return {kTrafficSimulatorNode, kMetricsNode, kRecorderNode};
+std::string Topic::name() const {
+  std::string name = row().name;
+  if (row().scope == Scope::kSlot) name.replace(name.find('K'), 1, std::to_string(slot));
+  return name;
 }
 
-/// Who may listen to a topic of a slot, whether it takes part or not.
-Nodes possibleListenersOfSlot(const std::string& topic, int slot, const SessionGraph& graph) {
-  if (topic == cbvControlTopic(slot)) return listenersOfControl(graph);
-  if (topic == cbvRolloutTopic(slot)) {
-    return graph.paced ? Nodes{kTrafficSimulatorNode, kMetricsNode, kRecorderNode}
-                       : Nodes{kMetricsNode, kRecorderNode};
-  }
-  if (topic != imageTopic(slot) || !graph.imagesOfCbvs()) return {};
-  if (!graph.cbvsPlanFromImages()) return {kRecorderNode};
-  return {kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
+Topic controlOf(int slot) {
+  return {slot == kEgoSlot ? ChannelId::kEgoControl : ChannelId::kCbvControl, slot};
+}
+Topic imageOf(int slot) {
+  return {slot == kEgoSlot ? ChannelId::kEgoImage : ChannelId::kCbvImage, slot};
+}
+Topic cameraInfoOf(int slot) {
+  return {slot == kEgoSlot ? ChannelId::kEgoCameraInfo : ChannelId::kCbvCameraInfo, slot};
 }
 
-/// Who may listen, whether it takes part or not.
-Nodes possibleListeners(const std::string& topic, const SessionGraph& graph) {
-  if (topic == kSessionTopic || topic == kTrafficTopic) {
-    return {kCbvIdentificationNode, kCameraNode,  kEgoPlannerNode, kCbvPlannerNode,
-            kDiffusionPlannerNode,  kMetricsNode, kRecorderNode};
-  }
-  if (topic == kEgoRouteTopic) return {kCbvIdentificationNode, kEgoPlannerNode, kRecorderNode};
-  if (topic == kSelectionTopic) {
-    return {kTrafficSimulatorNode, kCameraNode,  kCbvPlannerNode,
-            kDiffusionPlannerNode, kMetricsNode, kRecorderNode};
-  }
-  if (topic == kEgoControlTopic) return listenersOfControl(graph);
-  if (topic == kDecisionRecordTopic) return {kMetricsNode, kRecorderNode};
-  if (topic == imageTopic(kEgoSlot) && graph.imagesOfEgo()) {
-    return graph.egoPlansFromImages() ? Nodes{kEgoPlannerNode, kMetricsNode, kRecorderNode}
-                                      : Nodes{kRecorderNode};
-  }
-  if (topic == kTickAckTopic) return {kTrafficSimulatorNode};
-  if (topic == kMetricsTopic) return {kRecorderNode};
-  if (topic == kGuidanceTopic) return {kMetricsNode, kRecorderNode};
-  for (int slot = 0; slot < graph.max_cbv; ++slot) {
-    const Nodes nodes = possibleListenersOfSlot(topic, slot, graph);
-    if (!nodes.empty()) return nodes;
-  }
-  return {};
+std::vector<Topic> topicsOf(const Channel& channel, int max_cbv) {
+  if (channel.scope != Scope::kSlot) return {channel.id};
+  std::vector<Topic> topics;
+  for (int slot = 0; slot < max_cbv; ++slot) topics.emplace_back(channel.id, slot);
+  return topics;
 }
 
-std::string vehicleTopics(int slot) {
-  return slot == kEgoSlot ? "ego" : "cbv_" + std::to_string(slot);
+std::vector<std::string> namesOf(const std::vector<Topic>& topics) {
+  std::vector<std::string> names;
+  for (const Topic& topic : topics) names.push_back(topic.name());
+  return names;
 }
 
-}  // namespace
-
-std::string cbvControlTopic(int slot) { return vehicleTopics(slot) + "/control"; }
-std::string cbvRolloutTopic(int slot) { return vehicleTopics(slot) + "/rollout"; }
-std::string imageTopic(int slot) { return vehicleTopics(slot) + "/camera/image_raw"; }
-std::string cameraInfoTopic(int slot) { return vehicleTopics(slot) + "/camera/camera_info"; }
-
-bool SessionGraph::has(const std::string& node) const {
-  return std::find(participants.begin(), participants.end(), node) != participants.end();
+bool listensTo(const Channel& channel, Party party, const SessionGraph& graph) {
+  return std::any_of(channel.listeners.begin(), channel.listeners.end(),
+                     [&](const Listener& listener) {
+                       return listener.party == party && listener.when.holds(graph);
+                     });
 }
 
-std::vector<std::string> listeners(const std::string& topic, const SessionGraph& graph) {
+std::vector<std::string> listeners(const Topic& topic, const SessionGraph& graph) {
   std::vector<std::string> nodes;
-  for (const std::string& node : possibleListeners(topic, graph)) {
-    if (node == kTrafficSimulatorNode || graph.has(node)) nodes.push_back(node);
+  if (topic.row().scope == Scope::kSlot && topic.slot >= graph.max_cbv) return nodes;
+  for (const Listener& listener : topic.row().listeners) {
+    const std::string node = nodeOf(listener.party, graph);
+    const bool there = listener.party == Party::kSimulator || graph.has(node);
+    if (there && listener.when.holds(graph)) nodes.push_back(node);
   }
   return nodes;
 }
 
-std::string answererOf(const std::string& topic, const SessionGraph& graph) {
-  if (topic == kSelectionTopic) return kCbvIdentificationNode;
-  if (topic == kEgoControlTopic)
-    return graph.external_ego ? "the external ego planner" : kEgoPlannerNode;
-  return graph.cbvsSee() ? kDiffusionPlannerNode : kCbvPlannerNode;
+bool replayed(const Channel& channel, const SessionGraph& graph) {
+  SessionGraph seen = graph;
+  seen.show_cameras = false;
+  if (channel.use != Use::kAnswer && channel.publisher != Party::kCamera) return false;
+  return channel.published.holds(seen);
 }
 
-std::vector<std::string> publishersOf(const std::string& topic, const SessionGraph& graph) {
-  if (topic == kEgoControlTopic && graph.external_ego) return {};
-  if (topic == kSessionTopic || topic == kTrafficTopic || topic == kEgoRouteTopic ||
-      topic == kDecisionRecordTopic)
-    return {kTrafficSimulatorNode};
-  if (topic == kMetricsTopic) return {kMetricsNode};
-  if (topic == kTickAckTopic) return graph.participants;
-  const bool image = topic.find("/camera/") != std::string::npos;
-  return {image ? kCameraNode : answererOf(topic, graph), kTrafficSimulatorNode};
+std::vector<std::string> publishersOf(const Topic& topic, const SessionGraph& graph) {
+  const Channel& row = topic.row();
+  if (row.publisher == Party::kParticipants) return graph.participants;
+  if (row.publisher == Party::kEgoPlanner && graph.external_ego) return {};
+  const std::string node = nodeOf(row.publisher, graph);
+  if (row.use != Use::kAnswer || row.publisher == Party::kSimulator) return {node};
+  return {node, kTrafficSimulatorNode};
 }
 
-bool isObserver(const std::string& node) { return node == kMetricsNode || node == kRecorderNode; }
+std::string answererOf(const Topic& topic, const SessionGraph& graph) {
+  return nodeOf(topic.row().publisher, graph);
+}
+
+ChannelSet awaitedBy(Party party, const SessionGraph& graph) {
+  ChannelSet awaited;
+  for (const Channel& row : channels()) {
+    if (row.need != Need::kNothing && listensTo(row, party, graph)) awaited.insert(row.id);
+  }
+  return awaited;
+}
+
+std::string unusable(const AnyMessage& message, const Topic& topic, const SessionGraph& graph) {
+  const Channel& row = topic.row();
+  const std::optional<int> slot = row.type.slot(message);
+  if (row.scope == Scope::kSlot && slot && *slot != topic.slot) return wrongSlot(*slot);
+  if (topic.id != ChannelId::kSelection) return "";
+  return unusable(*messageAs<::e2e_cdiff::CbvSelection>(message), graph.max_cbv);
+}
+
+void requireType(ChannelId id, const std::type_index& type) {
+  if (channel(id).type.type == type) return;
+  throw std::logic_error(std::string("messages on ") + channel(id).name + " are of type " +
+                         channel(id).type.name);
+}
 
 }  // namespace cdiff::ros

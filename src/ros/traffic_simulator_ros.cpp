@@ -10,7 +10,6 @@
 #include "ros/session_files.h"
 #include "ros/session_parts.h"
 #include "ros/spinning.h"
-#include "rosgraph_msgs/Clock.h"
 
 namespace cdiff::ros {
 namespace {
@@ -83,57 +82,57 @@ bool TrafficSimulatorRos::startWorld() {
   }
 }
 
+::ros::Publisher TrafficSimulatorRos::advertise(const Topic& topic) {
+  const Channel& row = topic.row();
+  return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
+                            row.latched);
+}
+
 void TrafficSimulatorRos::advertise() {
-  clock_ = connections_.advertise<rosgraph_msgs::Clock>(node_, "/clock", {});
-  session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
-                                                       listeners(kSessionTopic, graph_), true);
-  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
-                                                           listeners(kTrafficTopic, graph_), true);
-  route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
-                                                  listeners(kEgoRouteTopic, graph_), true);
-  if (!graph_.recordsDecisions()) return;
-  records_ = connections_.advertise<msgs::DecisionRecord>(node_, kDecisionRecordTopic,
-                                                          listeners(kDecisionRecordTopic, graph_));
+  clock_ = advertise(ChannelId::kClock);
+  session_ = advertise(ChannelId::kSession);
+  traffic_ = advertise(ChannelId::kTraffic);
+  route_ = advertise(ChannelId::kEgoRoute);
+  if (graph_.recordsDecisions()) records_ = advertise(ChannelId::kDecisionRecord);
 }
 
 void TrafficSimulatorRos::listen() {
   gate_.setReport([this](const std::string& text) { noteFault(kTrafficSimulatorNode, text); });
   gate_.setNewestTick(0, setup_->options().simulation_step);
-  listenTo<msgs::TickAck>(kTickAckTopic, [this](const auto& ack) {
-    if (ack->kind == msgs::TickAck::FAULT)
-      noteFault(ack->node, ack->text);
-    else
-      book_.note(*ack);
-  });
-  listenTo<msgs::CbvSelection>(kSelectionTopic, [this](const auto& message) {
-    std::string wrong = unusable(*message, graph_.max_cbv);
-    if (wrong.empty()) wrong = unusable(*message, setup_->network());
-    if (!wrong.empty()) return wrong;
-    answers_.add(message);
-    noteArrival(DecisionBook::kSelection, message->tick);
-    return wrong;
-  });
-  listenTo<msgs::ControlAction>(kEgoControlTopic, [this](const auto& message) {
-    ego_heard_at_ = Clock::now();
-    noteArrival(kEgoSlot, answers_.addEgo(message, paced() ? world_->snapshot().tick : 0));
-  });
-  ego_control_ = inputs_.back();
-  for (int slot = 0; slot < graph_.max_cbv; ++slot) listenToSlot(slot);
+  inputs_.push_back(gate_.subscribe<msgs::TickAck>(
+      node_, Topic(ChannelId::kTickAck).name(),
+      siblingNodes(publishersOf(ChannelId::kTickAck, graph_)), [this](const auto& ack) {
+        if (ack->kind == msgs::TickAck::FAULT)
+          noteFault(ack->node, ack->text);
+        else
+          book_.note(*ack);
+      }));
+  for (const Channel& row : channels()) {
+    if (row.use != Use::kAnswer || !listensTo(row, Party::kSimulator, graph_)) continue;
+    for (const Topic& topic : topicsOf(row, graph_.max_cbv)) listenTo(topic);
+  }
 }
 
-void TrafficSimulatorRos::listenToSlot(int slot) {
-  listenTo<msgs::ControlAction>(cbvControlTopic(slot), [this, slot](const auto& message) {
-    if (message->slot != slot) return wrongSlot(message->slot);
-    answers_.addCbv(slot, message);
-    noteArrival(slot, message->tick);
-    return std::string();
-  });
-  if (!paced()) return;
-  listenTo<msgs::Rollout>(cbvRolloutTopic(slot), [this, slot](const auto& message) {
-    if (message->slot != slot) return wrongSlot(message->slot);
-    answers_.addRollout(slot, message);
-    return std::string();
-  });
+void TrafficSimulatorRos::listenTo(const Topic& topic) {
+  inputs_.push_back(topic.row().type.subscribe(
+      gate_, node_, topic.name(), siblingNodes(publishersOf(topic, graph_)),
+      [this, topic](const AnyMessage& message) { return takeAnswer(topic, message); }));
+  if (topic.id == ChannelId::kEgoControl) ego_control_ = inputs_.back();
+}
+
+/// Returns why a message cannot be used; empty when it can.
+std::string TrafficSimulatorRos::takeAnswer(const Topic& topic, const AnyMessage& message) {
+  std::string wrong = unusable(message, topic, graph_);
+  if (wrong.empty() && topic.id == ChannelId::kSelection)
+    wrong = unusable(*messageAs<msgs::CbvSelection>(message), setup_->network());
+  if (!wrong.empty()) return wrong;
+  const bool ego = topic.id == ChannelId::kEgoControl;
+  if (ego) ego_heard_at_ = Clock::now();
+  const std::uint64_t tick =
+      answers_.add(topic, message, ego && paced() ? world_->snapshot().tick : 0);
+  if (topic.id == ChannelId::kSelection) noteArrival(DecisionBook::kSelection, tick);
+  if (ego || topic.id == ChannelId::kCbvControl) noteArrival(topic.slot, tick);
+  return wrong;
 }
 
 void TrafficSimulatorRos::noteArrival(int slot, std::uint64_t tick) {
@@ -155,16 +154,16 @@ void TrafficSimulatorRos::publishSession() {
   info.deployment = kDeployment;
   info.results_folder = results_.string();
   putGraph(graph_, info);
-  session_.publish(boost::make_shared<const msgs::SessionInfo>(info));
-  route_.publish(boost::make_shared<const nav_msgs::Path>(toPathMsg(setup_->egoRoute())));
+  session_.publish(shared(info));
+  route_.publish(shared(toPathMsg(setup_->egoRoute())));
 }
 
 std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingParticipants() const {
   std::vector<Missing> missing;
   if (graph_.external_ego && ego_control_.getNumPublishers() == 0) {
-    missing.push_back({"the external ego planner",
-                       "no node publishes ego/control yet; start yours (external_ego_node is an "
-                       "example)"});
+    missing.push_back(
+        {"the external ego planner", "no node publishes " + Topic(ChannelId::kEgoControl).name() +
+                                         " yet; start yours (external_ego_node is an example)"});
   }
   for (const std::string& text : book_.notReady())
     missing.push_back({text.substr(0, text.find(' ')), text});

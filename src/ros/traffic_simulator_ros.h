@@ -42,7 +42,7 @@ class TrafficSimulatorRos {
   /// Reads the node's parameters and sets the session up. Throws InputError for bad input.
   TrafficSimulatorRos(const Parameters& parameters, StopSignal& stop);
 
-  /// Runs the session to its end and answers the exit code.
+  /// Runs the session to its end and returns the exit code.
   int run();
 
  private:
@@ -62,12 +62,9 @@ class TrafficSimulatorRos {
   bool startWorld();
   void advertise();
   void listen();
-  void listenToSlot(int slot);
-  template <class Message, class Callback>
-  void listenTo(const std::string& topic, Callback callback) {
-    inputs_.push_back(gate_.subscribe<Message>(
-        node_, topic, siblingNodes(publishersOf(topic, graph_)), callback));
-  }
+  ::ros::Publisher advertise(const Topic& topic);
+  void listenTo(const Topic& topic);
+  std::string takeAnswer(const Topic& topic, const AnyMessage& message);
   void noteFault(const std::string& source, const std::string& text);
   void publishSession();
   std::optional<Ending> waitForParticipants();

@@ -29,7 +29,7 @@ constexpr double kPacedSilence =
 /// again.
 void TrafficSimulatorRos::sendAgainForLateListener() {
   if (!graph_.external_ego || !published_ || secondsSince(published_at_) < kSendAgainAfter) return;
-  if (answers_.ego(published_->tick)) return;
+  if (answers_.has(ChannelId::kEgoControl, published_->tick)) return;
   traffic_.publish(published_);
   published_at_ = Clock::now();
 }
@@ -79,10 +79,10 @@ void TrafficSimulatorRos::addTotals(msgs::TrafficSnapshot& message) const {
 
 std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::missingAnswers() const {
   std::vector<Missing> missing;
-  for (const std::string& topic : answers_.missing(*published_)) {
+  for (const Topic& topic : answers_.missing(*published_)) {
     const std::string node = answererOf(topic, graph_);
     missing.push_back(
-        {node, topic + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
+        {node, topic.name() + " for tick " + std::to_string(published_->tick) + " (" + node + ")"});
   }
   return missing;
 }
@@ -141,7 +141,8 @@ std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::silentFor(double 
   for (const std::string& node : book_.silent(seconds))
     missing.push_back({node, "a sign of life of " + node});
   if (graph_.external_ego && secondsSince(std::max(ego_heard_at_, begin_)) > seconds)
-    missing.push_back({answererOf(kEgoControlTopic, graph_), "a command on ego/control"});
+    missing.push_back({answererOf(ChannelId::kEgoControl, graph_),
+                       "a command on " + Topic(ChannelId::kEgoControl).name()});
   return missing;
 }
 
@@ -191,7 +192,7 @@ void TrafficSimulatorRos::keepInReserve(const cbv::CbvSelection* selection,
 
 void TrafficSimulatorRos::publishRecord(const msgs::DecisionRecord::ConstPtr& record) {
   records_.publish(record);
-  answers_.add(record);
+  answers_.add(ChannelId::kDecisionRecord, record);
 }
 
 /// The session goes on, or ends, with what has come.

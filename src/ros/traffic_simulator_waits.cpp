@@ -33,7 +33,7 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
   }
   if (graph_.external_ego && published_ && egoGone()) {
     return ending(SessionStatus::kError, "the external ego planner",
-                  "no node publishes on ego/control any more");
+                  "no node publishes on " + Topic(ChannelId::kEgoControl).name() + " any more");
   }
   if (!::ros::ok())
     return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");
@@ -42,7 +42,7 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
 
 bool TrafficSimulatorRos::egoGone() const {
   return ego_control_.getNumPublishers() == 0 ||
-         connections_.stoppedListening(gate_.firstSender(kEgoControlTopic));
+         connections_.stoppedListening(gate_.firstSender(Topic(ChannelId::kEgoControl).name()));
 }
 
 /// Something is missing for too long. Of several nodes the one to blame says nothing at all, not

@@ -14,11 +14,10 @@ using namespace ros;  // NOLINT: a test of that layer
 namespace {
 
 template <class Message, class Callback>
-::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const std::string& topic,
-                            Callback callback) {
+::ros::Subscriber subscribe(::ros::NodeHandle& node_handle, const Topic& topic, Callback callback) {
   return node_handle.subscribe<Message>(
-      topic, 1000, boost::function<void(const boost::shared_ptr<const Message>&)>(callback), {},
-      ::ros::TransportHints().tcpNoDelay());
+      topic.name(), 1000, boost::function<void(const boost::shared_ptr<const Message>&)>(callback),
+      {}, ::ros::TransportHints().tcpNoDelay());
 }
 
 session::ScenarioOptions scenarioFor(const std::string& node,
@@ -33,20 +32,19 @@ session::ScenarioOptions scenarioFor(const std::string& node,
 }  // namespace
 
 FakeSimulator::FakeSimulator(const std::string& node, const std::filesystem::path& results)
-    : setup_(scenarioFor(node, results)),
-      graph_{{node}, static_cast<int>(setup_.options().max_cbv), false, false, true} {
+    : setup_(scenarioFor(node, results)), graph_(graphOf(setup_.options(), {false, true}, {node})) {
   listen();
   answerForOthers(node);
   publishSession(results);
 }
 
 void FakeSimulator::publishSession(const std::filesystem::path& results) {
-  session_ = connections_.advertise<msgs::SessionInfo>(node_, kSessionTopic,
-                                                       listeners(kSessionTopic, graph_), true);
-  route_ = connections_.advertise<nav_msgs::Path>(node_, kEgoRouteTopic,
-                                                  listeners(kEgoRouteTopic, graph_), true);
-  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, kTrafficTopic,
-                                                           listeners(kTrafficTopic, graph_));
+  session_ = connections_.advertise<msgs::SessionInfo>(
+      node_, Topic(ChannelId::kSession).name(), listeners(ChannelId::kSession, graph_), true);
+  route_ = connections_.advertise<nav_msgs::Path>(node_, Topic(ChannelId::kEgoRoute).name(),
+                                                  listeners(ChannelId::kEgoRoute, graph_), true);
+  traffic_ = connections_.advertise<msgs::TrafficSnapshot>(node_, Topic(ChannelId::kTraffic).name(),
+                                                           listeners(ChannelId::kTraffic, graph_));
   msgs::SessionInfo info = toMsg(setup_);
   putGraph(graph_, info);
   info.results_folder = results.string();
@@ -57,46 +55,46 @@ void FakeSimulator::publishSession(const std::filesystem::path& results) {
 }
 
 void FakeSimulator::answerForOthers(const std::string& node) {
-  const auto offer = [this](const std::string& topic, auto message) {
-    others_[topic] =
-        connections_.advertise<decltype(message)>(node_, topic, listeners(topic, graph_));
+  const auto offer = [this](const Topic& topic) {
+    others_[topic] = topic.row().type.advertise(connections_, node_, topic.name(),
+                                                listeners(topic, graph_), false);
   };
-  if (node != kCbvIdentificationNode) offer(kSelectionTopic, msgs::CbvSelection());
-  if (node != kEgoPlannerNode) offer(kEgoControlTopic, msgs::ControlAction());
+  if (node != kCbvIdentificationNode) offer(ChannelId::kSelection);
+  if (node != kEgoPlannerNode) offer(ChannelId::kEgoControl);
   if (node == kDiffusionPlannerNode) {
-    for (int slot = 0; slot < graph_.max_cbv; ++slot) offer(imageTopic(slot), sensor_msgs::Image());
+    for (int slot = 0; slot < graph_.max_cbv; ++slot) offer(imageOf(slot));
   }
   if (node == kCbvPlannerNode || node == kDiffusionPlannerNode) return;
   for (int slot = 0; slot < graph_.max_cbv; ++slot) {
-    offer(cbvControlTopic(slot), msgs::ControlAction());
-    offer(cbvRolloutTopic(slot), msgs::Rollout());
+    offer(controlOf(slot));
+    offer(Topic(ChannelId::kCbvRollout, slot));
   }
 }
 
 void FakeSimulator::listen() {
-  inputs_ = {subscribe<msgs::TickAck>(node_, kTickAckTopic,
+  inputs_ = {subscribe<msgs::TickAck>(node_, ChannelId::kTickAck,
                                       [this](const auto& ack) { acks_.push_back(*ack); }),
-             subscribe<msgs::CbvSelection>(node_, kSelectionTopic,
+             subscribe<msgs::CbvSelection>(node_, ChannelId::kSelection,
                                            [this](const auto& m) { selections[m->tick] = m; }),
-             subscribe<msgs::ControlAction>(node_, kEgoControlTopic,
+             subscribe<msgs::ControlAction>(node_, ChannelId::kEgoControl,
                                             [this](const auto& m) { ego_controls[m->tick] = m; }),
-             subscribe<msgs::ControlAction>(node_, cbvControlTopic(0),
+             subscribe<msgs::ControlAction>(node_, controlOf(0),
                                             [this](const auto& m) { cbv_controls[m->tick] = m; }),
-             subscribe<msgs::ControlAction>(node_, cbvControlTopic(1), [](const auto&) {}),
-             subscribe<msgs::GuidanceReport>(node_, kGuidanceTopic,
+             subscribe<msgs::ControlAction>(node_, controlOf(1), [](const auto&) {}),
+             subscribe<msgs::GuidanceReport>(node_, ChannelId::kGuidance,
                                              [this](const auto& m) { guidance[m->tick] = m; }),
              subscribe<sensor_msgs::Image>(
-                 node_, imageTopic(0),
+                 node_, imageOf(0),
                  [this](const auto& m) { images[nearestTick(m->header.stamp, 0.05)] = m; }),
              subscribe<sensor_msgs::Image>(
-                 node_, imageTopic(kEgoSlot),
+                 node_, imageOf(kEgoSlot),
                  [this](const auto& m) { ego_images[nearestTick(m->header.stamp, 0.05)] = m; }),
              subscribe<sensor_msgs::CameraInfo>(
-                 node_, cameraInfoTopic(0),
+                 node_, cameraInfoOf(0),
                  [this](const auto& m) { infos[nearestTick(m->header.stamp, 0.05)] = m; }),
-             subscribe<msgs::Rollout>(node_, cbvRolloutTopic(0),
+             subscribe<msgs::Rollout>(node_, Topic(ChannelId::kCbvRollout, 0),
                                       [this](const auto& m) { rollouts[m->tick] = m; }),
-             subscribe<msgs::MetricReport>(node_, kMetricsTopic,
+             subscribe<msgs::MetricReport>(node_, ChannelId::kMetrics,
                                            [this](const auto& m) { reports[m->tick] = m; })};
 }
 
@@ -145,19 +143,19 @@ cbv::CbvSelection FakeSimulator::selection(std::uint64_t tick) const {
 }
 
 void FakeSimulator::publishSelection(const traffic::TrafficSnapshot& snapshot) {
-  others_.at(kSelectionTopic)
+  others_.at(ChannelId::kSelection)
       .publish(toMsg(selection(snapshot.tick), snapshot.time, setup_.network()));
 }
 
 void FakeSimulator::publishImage(const sensor_msgs::Image& image) {
-  others_.at(imageTopic(0)).publish(image);
+  others_.at(imageOf(0)).publish(image);
 }
 
 void FakeSimulator::answer(const traffic::TrafficSnapshot& snapshot) {
   const planning::PlannedAction cbv{0, "bg_0", {0.2, 0.0, 0.0}, {}};
-  others_.at(cbvControlTopic(0)).publish(toMsg(cbv, snapshot, {"cbv:test", 2.0, {}}));
-  others_.at(cbvRolloutTopic(0)).publish(toRolloutMsg(cbv, snapshot));
-  others_.at(kEgoControlTopic)
+  others_.at(controlOf(0)).publish(toMsg(cbv, snapshot, {"cbv:test", 2.0, {}}));
+  others_.at({ChannelId::kCbvRollout, 0}).publish(toRolloutMsg(cbv, snapshot));
+  others_.at(ChannelId::kEgoControl)
       .publish(toMsg(planning::PlannedAction{-1, "ego", {0.3, 0.0, 0.0}, {}}, snapshot,
                      {"ego:test", 1.0, {}}));
   publishSelection(snapshot);

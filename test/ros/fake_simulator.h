@@ -79,7 +79,7 @@ class FakeSimulator {
   ::ros::Publisher session_;
   ::ros::Publisher route_;
   ::ros::Publisher traffic_;
-  std::map<std::string, ::ros::Publisher> others_;  ///< topics of nodes that do not take part
+  std::map<ros::Topic, ::ros::Publisher> others_;  ///< topics of nodes that do not take part
   std::vector<::ros::Subscriber> inputs_;
   std::vector<ros::msgs::TickAck> acks_;
 };

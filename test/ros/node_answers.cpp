@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "diagnostic_msgs/DiagnosticArray.h"
 #include "metrics/metric_registry.h"
 #include "rendering/front_camera.h"
 #include "ros/fake_simulator.h"
@@ -69,6 +70,26 @@ TEST(EgoPlanner, DrivesTheEgoAtDecisionTicks) {
   EXPECT_TRUE(ros::fromMsg(control).action.valid());
 }
 
+/// Goes on with decisions until the planner's diagnostics come, which they do once a second.
+bool reportsStatistics(FakeSimulator& simulator) {
+  bool reported = false;
+  ::ros::NodeHandle node;
+  const auto note = [&](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
+    for (const auto& status : message->status)
+      reported = reported || status.name.find("cbv_planner_node: planner") != std::string::npos;
+  };
+  const ::ros::Subscriber input = node.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10,
+      boost::function<void(const diagnostic_msgs::DiagnosticArray::ConstPtr&)>(note));
+  for (std::uint64_t tick = 2; !reported && tick < 60; tick += 2) {
+    simulator.publish(simulator.snapshot(tick));
+    simulator.publishSelection(simulator.snapshot(tick));
+    const ::ros::WallTime wait = ::ros::WallTime::now() + ::ros::WallDuration(0.2);
+    simulator.until([&] { return ::ros::WallTime::now() > wait; });
+  }
+  return reported;
+}
+
 TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
   FakeSimulator simulator(ros::kCbvPlannerNode, resultFolder());
   ASSERT_TRUE(simulator.ready());
@@ -86,6 +107,8 @@ TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
   EXPECT_EQ(control.planner, "cbv:pdm_lite");
   EXPECT_EQ(control.fault, "");
   EXPECT_EQ(simulator.rollouts.at(0)->vehicle_id, "bg_0");
+  EXPECT_TRUE(simulator.guidance.empty());  // its planner is not guided
+  EXPECT_TRUE(reportsStatistics(simulator));
 }
 
 TEST(DiffusionPlanner, WaitsForTheImageAndBrakesWithANamedFaultWithoutAUsableOne) {

@@ -43,7 +43,7 @@ const AppliedAction& of(const std::vector<AppliedAction>& applied, const std::st
 
 TEST(PacedAnswers, HoldsTheNewestActionForHalfASecondThenBrakes) {
   TickAnswers answers;
-  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   const PacedAnswers paced(0.05);
   const auto at = [&](std::uint64_t tick) {
     return of(paced.actions(*snapshotAt(tick), std::nullopt, answers), "ego");
@@ -58,8 +58,8 @@ TEST(PacedAnswers, HoldsTheNewestActionForHalfASecondThenBrakes) {
 
 TEST(PacedAnswers, DrivesOnByTheNextActionsOfThePlan) {
   TickAnswers answers;
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  answers.addRollout(1, planFor(4));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  answers.add({ChannelId::kCbvRollout, 1}, planFor(4));
   const PacedAnswers paced(0.05);
   const auto at = [&](std::uint64_t tick) {
     return of(paced.actions(*snapshotAt(tick), std::nullopt, answers), "bg_7").planned.action;
@@ -74,10 +74,10 @@ TEST(PacedAnswers, TakesAVehicleOverWhenItsFirstActionHasCome) {
   TickAnswers answers;
   PacedAnswers paced(0.05);
   EXPECT_FALSE(paced.selection(*snapshotAt(4), answers).has_value());
-  answers.add(selectionFor(4, 0, "bg_9"));
+  answers.add(ChannelId::kSelection, selectionFor(4, 0, "bg_9"));
   ASSERT_TRUE(paced.selection(*snapshotAt(4), answers).has_value());  // it has come: releases count
   EXPECT_FALSE(paced.selection(*snapshotAt(5), answers).has_value());
-  answers.addCbv(0, controlFor(4, 0, "bg_9"));
+  answers.add({ChannelId::kCbvControl, 0}, controlFor(4, 0, "bg_9"));
   const auto taken = paced.selection(*snapshotAt(6), answers);
   ASSERT_TRUE(taken.has_value());
   ASSERT_EQ(taken->assignments.size(), 1U);
@@ -97,9 +97,10 @@ class LateSession : public testing::Test {
     return options;
   }
   void arrive(int slot, std::uint64_t tick, double now) {
-    if (slot == DecisionBook::kSelection) answers_.add(selectionFor(tick, 1, "bg_7"));
-    if (slot == -1) answers_.addEgo(controlFor(tick, -1, "ego"));
-    if (slot == 1) answers_.addCbv(1, controlFor(tick, 1, "bg_7"));
+    if (slot == DecisionBook::kSelection)
+      answers_.add(ChannelId::kSelection, selectionFor(tick, 1, "bg_7"));
+    if (slot == -1) answers_.add(ChannelId::kEgoControl, controlFor(tick, -1, "ego"));
+    if (slot == 1) answers_.add({ChannelId::kCbvControl, 1}, controlFor(tick, 1, "bg_7"));
     book_.arrived(slot, tick, now);
   }
   std::vector<msgs::DecisionRecord::ConstPtr> end(std::uint64_t tick, double now) {
@@ -168,7 +169,7 @@ TEST_F(LateSession, AnswerThatIsTooOldToDriveIsTimedButNoActionThatDrove) {
   const auto records = end(15, 10.60);  // 0.55 s after its decision
   ASSERT_EQ(records.size(), 1U);
   EXPECT_FALSE(records[0]->vehicles[1].answer_drove);
-  answers_.add(records[0]);
+  answers_.add(ChannelId::kDecisionRecord, records[0]);
   const std::vector<Answer> given = answers_.answers(*snapshotAt(4));
   ASSERT_EQ(given.size(), 2U);
   EXPECT_EQ(actionsOf(given).size(), 1U);    // the ego's
@@ -186,19 +187,19 @@ TEST_F(LateSession, SilentPlannerIsGivenUpAfterTenSeconds) {
 }
 
 TEST_F(LateSession, RecordSaysWhatObserversWaitFor) {
-  ExpectedAnswers expected;
-  expected.rollouts = expected.record = true;
-  TickAnswers observed(0.05, expected);
-  EXPECT_EQ(observed.missing(*snapshotAt(4)), std::vector<std::string>{"decision_record"});
+  SessionGraph paced;
+  paced.paced = true;
+  TickAnswers observed(0.05, awaitedBy(Party::kMetrics, paced));
+  EXPECT_EQ(namesOf(observed.missing(*snapshotAt(4))), std::vector<std::string>{"decision_record"});
   book_.open(snapshotAt(4));
   arrive(DecisionBook::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   arrive(1, 4, 10.02);
-  observed.add(end(4, 10.05).at(0));
-  EXPECT_EQ(observed.missing(*snapshotAt(4)),
+  observed.add(ChannelId::kDecisionRecord, end(4, 10.05).at(0));
+  EXPECT_EQ(namesOf(observed.missing(*snapshotAt(4))),
             (std::vector<std::string>{"cbv/selection", "cbv_1/rollout"}));
-  observed.add(selectionFor(4, 1, "bg_7"));
-  observed.addRollout(1, planFor(4));
+  observed.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  observed.add({ChannelId::kCbvRollout, 1}, planFor(4));
   EXPECT_TRUE(observed.missing(*snapshotAt(4)).empty());
   EXPECT_EQ(observed.answers(*snapshotAt(4)).size(), 2U);  // the controls are the record's
 }

@@ -143,7 +143,7 @@ sensor_msgs::Image::ConstPtr plainImage(std::uint64_t tick, const std::string& v
 /// CBVs "bg_7" in slot 1 and "bg_9" in slot 3.
 class PlanSeeing : public ::testing::Test {
  protected:
-  SeeingDecision decide() { return planSeeing(planner, snapshot, tasks, inbox); }
+  PlannerDecision decide() { return planSeeing(planner, snapshot, tasks, inbox); }
 
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
   std::vector<planning::PlanningTask> tasks = {{1, &snapshot.vehicles[1], nullptr},
@@ -156,7 +156,7 @@ TEST_F(PlanSeeing, EachTaskHasTheImageOfItsSlotAndTick) {
   inbox.add(3, plainImage(2, "bg_9", 64));  // of an earlier tick
   inbox.add(3, plainImage(4, "bg_9", 32));
   inbox.add(1, plainImage(4, "bg_7", 128));
-  const SeeingDecision decision = decide();
+  const PlannerDecision decision = decide();
   ASSERT_EQ(decision.actions.size(), 2U);
   EXPECT_EQ(decision.actions[0].action.throttle, 0.5);
   EXPECT_EQ(decision.actions[1].action.throttle, 0.125);
@@ -168,7 +168,7 @@ TEST_F(PlanSeeing, EachTaskHasTheImageOfItsSlotAndTick) {
 TEST_F(PlanSeeing, VehicleWithoutImageBrakesAndTheOtherDrivesOn) {
   inbox.add(3, plainImage(4, "bg_9", 32));
   inbox.add(1, plainImage(2, "bg_7", 128));
-  const SeeingDecision decision = decide();
+  const PlannerDecision decision = decide();
   ASSERT_EQ(decision.actions.size(), 2U);
   EXPECT_EQ(decision.actions[0].vehicle_id, "bg_7");
   EXPECT_EQ(decision.actions[0].action, traffic::ControlAction::failSafe());
@@ -185,7 +185,7 @@ TEST_F(PlanSeeing, RefusedImagesNameWhatIsWrongAndThePlannerIsNotAsked) {
   wrong->encoding = "mono8";
   inbox.add(1, wrong);
   inbox.add(3, plainImage(4, "bg_8", 1));  // of a vehicle that had the slot before
-  const SeeingDecision decision = decide();
+  const PlannerDecision decision = decide();
   EXPECT_NE(decision.actions[0].fault.find("mono8"), std::string::npos);
   EXPECT_NE(decision.actions[1].fault.find("bg_8"), std::string::npos);
   EXPECT_EQ(decision.refused, 2);
@@ -195,7 +195,7 @@ TEST_F(PlanSeeing, RefusedImagesNameWhatIsWrongAndThePlannerIsNotAsked) {
 TEST_F(PlanSeeing, StatisticsCountFaultsByKindAndMissedDeadlines) {
   PlannerStatistics statistics(0.1);
   inbox.add(3, plainImage(4, "bg_9", 32));
-  SeeingDecision decision = decide();
+  PlannerDecision decision = decide();
   decision.latency_ms = 100.5;
   statistics.observe(decision);
   decision.latency_ms = 99.5;

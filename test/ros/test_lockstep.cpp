@@ -23,42 +23,41 @@ using test::selectionFor;
 TEST(TickAnswers, NothingIsMissingBetweenDecisions) {
   msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(3));
   snapshot.decision_tick = false;
-  EXPECT_EQ(TickAnswers().missing(snapshot), Texts());
+  EXPECT_EQ(namesOf(TickAnswers().missing(snapshot)), Texts());
 }
 
 TEST(TickAnswers, WhatIsMissingDependsOnTheSelection) {
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
   TickAnswers answers;
-  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv/selection"}));
-  answers.add(selectionFor(4, 1, "bg_7"));
-  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv_1/control"}));
-  answers.addCbv(1, controlFor(2, 1, "bg_7"));  // of another tick
-  EXPECT_EQ(answers.missing(snapshot), (Texts{"ego/control", "cbv_1/control"}));
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  answers.addEgo(controlFor(4, -1, "ego"));
-  EXPECT_EQ(answers.missing(snapshot), Texts());
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), (Texts{"ego/control", "cbv/selection"}));
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), (Texts{"ego/control", "cbv_1/control"}));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(2, 1, "bg_7"));  // of another tick
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), (Texts{"ego/control", "cbv_1/control"}));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());
 }
 
 TEST(TickAnswers, GuidanceIsWaitedForWhereItIsExpected) {
-  ExpectedAnswers guidance;
-  guidance.guidance = true;
+  const ChannelSet guidance = {ChannelId::kSelection, ChannelId::kEgoControl,
+                               ChannelId::kCbvControl, ChannelId::kGuidance};
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
   TickAnswers answers(0.05, guidance);
-  answers.addEgo(controlFor(4, -1, "ego"));
-  answers.add(selectionFor(4, 1, "bg_gone"));
-  EXPECT_EQ(answers.missing(snapshot), Texts());  // nobody to drive
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());  // nobody to drive
   answers = TickAnswers(0.05, guidance);
-  answers.addEgo(controlFor(4, -1, "ego"));
-  answers.add(selectionFor(4, 1, "bg_7"));
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  EXPECT_EQ(answers.missing(snapshot), Texts{"cbv/guidance"});
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts{"cbv/guidance"});
   planning::PlannedAction action;
   action.vehicle_id = "bg_7";
   action.state_mismatch = 0.25;
   action.guidance.candidates = 3;
-  answers.add(boost::make_shared<const msgs::GuidanceReport>(
-      toGuidanceMsg({action}, test::sampleSnapshot(4))));
-  EXPECT_EQ(answers.missing(snapshot), Texts());
+  answers.add(ChannelId::kGuidance, shared(toGuidanceMsg({action}, test::sampleSnapshot(4))));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());
   const std::vector<Answer> all = answers.answers(snapshot);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].action.guidance.candidates, 0);
@@ -82,27 +81,30 @@ rendering::CameraOptions smallCamera() {
 TEST(TickAnswers, RolloutsAndImagesAreWaitedForWhereTheyAreExpected) {
   const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
   const msgs::TrafficSnapshot message = toMsg(snapshot);
-  TickAnswers answers(0.05, {false, true, true, true}, smallCamera());
-  answers.add(selectionFor(4, 1, "bg_7"));
-  answers.addEgo(controlFor(4, -1, "ego"));
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  EXPECT_EQ(answers.missing(message),
+  SessionGraph seeing{{kCameraNode}, 2};
+  seeing.ego_sees = seeing.cbvs_see = true;
+  TickAnswers answers(0.05, awaitedBy(Party::kMetrics, seeing), smallCamera());
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  EXPECT_EQ(namesOf(answers.missing(message)),
             (Texts{"ego/camera/image_raw", "cbv_1/rollout", "cbv_1/camera/image_raw"}));
   planning::PlannedAction action;
   action.slot = 1;
   action.vehicle_id = "bg_7";
   action.rollout = {{{{1.0, 2.0}, 3.0, 0.5, 6.0}, {0.1, 0.2, 0.0}}};
-  answers.addRollout(1, boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
-  answers.addImage(-1, imageFor(4, "ego"));
-  EXPECT_EQ(answers.missing(message), Texts{"cbv_1/camera/image_raw"});
-  answers.addImage(1, imageFor(4, "bg_7"));
-  EXPECT_EQ(answers.missing(message), Texts());
+  answers.add({ChannelId::kCbvRollout, 1},
+              boost::make_shared<const msgs::Rollout>(toRolloutMsg(action, snapshot)));
+  answers.add(ChannelId::kEgoImage, imageFor(4, "ego"));
+  EXPECT_EQ(namesOf(answers.missing(message)), Texts{"cbv_1/camera/image_raw"});
+  answers.add({ChannelId::kCbvImage, 1}, imageFor(4, "bg_7"));
+  EXPECT_EQ(namesOf(answers.missing(message)), Texts());
   const std::vector<Answer> all = answers.answers(message);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_TRUE(all[0].action.rollout.empty());
   ASSERT_EQ(all[1].action.rollout.size(), 1U);
   EXPECT_EQ(all[1].action.rollout[0].state.speed, 6.0);
-  const std::vector<session::SlotImage> seen = answers.images(message);
+  const std::vector<session::SlotImage> seen = imagesOf(answers.answers(message));
   ASSERT_EQ(seen.size(), 2U);
   EXPECT_EQ(seen[0].slot, -1);
   EXPECT_EQ(seen[1].slot, 1);
@@ -112,29 +114,32 @@ TEST(TickAnswers, RolloutsAndImagesAreWaitedForWhereTheyAreExpected) {
 
 TEST(TickAnswers, ImageOfAnotherVehicleIsHereButNotSeen) {
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
-  TickAnswers answers(0.05, {false, false, false, true}, smallCamera());
-  answers.add(selectionFor(4, 1, "bg_7"));
-  answers.addEgo(controlFor(4, -1, "ego"));
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  answers.addImage(1, imageFor(4, "bg_9"));
-  EXPECT_EQ(answers.missing(snapshot), Texts());
-  EXPECT_TRUE(answers.images(snapshot).empty());
+  TickAnswers answers(
+      0.05,
+      {ChannelId::kSelection, ChannelId::kEgoControl, ChannelId::kCbvControl, ChannelId::kCbvImage},
+      smallCamera());
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  answers.add({ChannelId::kCbvImage, 1}, imageFor(4, "bg_9"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());
+  EXPECT_TRUE(imagesOf(answers.answers(snapshot)).empty());
 }
 
 TEST(TickAnswers, AssignedVehicleThatIsGoneIsNotWaitedFor) {
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
   TickAnswers answers;
-  answers.addEgo(controlFor(4, -1, "ego"));
-  answers.add(selectionFor(4, 1, "bg_gone"));
-  EXPECT_EQ(answers.missing(snapshot), Texts());
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());
 }
 
 TEST(TickAnswers, EgoComesFirstWhateverTheOrderOfArrival) {
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
   TickAnswers answers;
-  answers.addCbv(1, controlFor(4, 1, "bg_7"));
-  answers.add(selectionFor(4, 1, "bg_7"));
-  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   const std::vector<Answer> all = answers.answers(snapshot);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].action.vehicle_id, "ego");
@@ -150,9 +155,9 @@ TEST(TickAnswers, ExternalEgoMayGiveItsStampAloneAndNoName) {
   control->header.stamp = ::ros::Time(0.2);  // tick 4 of 0.05 s
   control->throttle = 0.5;
   TickAnswers answers;
-  answers.addEgo(control);
-  answers.add(selectionFor(4, 1, "bg_gone"));
-  EXPECT_EQ(answers.missing(snapshot), Texts());
+  answers.add(ChannelId::kEgoControl, control);
+  answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_gone"));
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());
   const std::vector<Answer> all = answers.answers(snapshot);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].action.slot, -1);
@@ -162,11 +167,11 @@ TEST(TickAnswers, ExternalEgoMayGiveItsStampAloneAndNoName) {
 
 TEST(TickAnswers, ForgetsOlderTicksOnly) {
   TickAnswers answers;
-  answers.addEgo(controlFor(2, -1, "ego"));
-  answers.addEgo(controlFor(4, -1, "ego"));
+  answers.add(ChannelId::kEgoControl, controlFor(2, -1, "ego"));
+  answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   answers.forgetBefore(4);
-  EXPECT_EQ(answers.ego(2), nullptr);
-  EXPECT_NE(answers.ego(4), nullptr);
+  EXPECT_EQ(answers.control(kEgoSlot, 2), nullptr);
+  EXPECT_NE(answers.control(kEgoSlot, 4), nullptr);
 }
 
 msgs::TickAck ackOf(const std::string& node, std::uint8_t kind, std::uint64_t tick = 0,
@@ -212,9 +217,9 @@ TEST(ParticipantBook, KeepsTheFirstErrorAndIgnoresStrangers) {
 TEST(Connections, CountsOnNamedNodesOnly) {
   Connections connections;
   connections.expect("traffic", {kMetricsNode});
-  EXPECT_EQ(connections.missing().size(), 1U);
+  EXPECT_EQ(namesOf(connections.missing().size()), 1U);
   connections.connected("traffic", "/rostopic_1234");
-  EXPECT_EQ(connections.missing().size(), 1U);
+  EXPECT_EQ(namesOf(connections.missing().size()), 1U);
   connections.connected("traffic", "/metrics_node");
   EXPECT_TRUE(connections.missing().empty());
   connections.disconnected("traffic", "/rostopic_1234");
@@ -225,11 +230,12 @@ TEST(Connections, CountsOnNamedNodesOnly) {
 
 TEST(Topics, ListenersAreThoseThatTakePart) {
   const SessionGraph graph{{kCbvIdentificationNode, kMetricsNode}, 2, false};
-  EXPECT_EQ(listeners(kTrafficTopic, graph), (Texts{kCbvIdentificationNode, kMetricsNode}));
-  EXPECT_EQ(listeners("cbv_1/control", graph), (Texts{kTrafficSimulatorNode, kMetricsNode}));
-  EXPECT_EQ(listeners("cbv_2/control", graph), Texts());  // there is no slot 2
-  EXPECT_EQ(listeners("cbv_1/rollout", graph), Texts{kMetricsNode});
-  EXPECT_EQ(listeners(kTickAckTopic, graph), Texts{kTrafficSimulatorNode});
+  EXPECT_EQ(listeners(ChannelId::kTraffic, graph), (Texts{kCbvIdentificationNode, kMetricsNode}));
+  EXPECT_EQ(listeners({ChannelId::kCbvControl, 1}, graph),
+            (Texts{kTrafficSimulatorNode, kMetricsNode}));
+  EXPECT_EQ(listeners({ChannelId::kCbvControl, 2}, graph), Texts());  // there is no slot 2
+  EXPECT_EQ(listeners({ChannelId::kCbvRollout, 1}, graph), Texts{kMetricsNode});
+  EXPECT_EQ(listeners(ChannelId::kTickAck, graph), Texts{kTrafficSimulatorNode});
 }
 
 session::ScenarioOptions scenarioWith(const std::string& ego, const std::string& cbv) {
@@ -243,14 +249,14 @@ TEST(SessionGraph, WithoutASeeingPlannerThereIsNoCamera) {
   const SessionGraph graph = graphOf(scenarioWith("pdm_lite", "pdm_lite"), {true, false});
   EXPECT_EQ(graph.participants, (Texts{kCbvIdentificationNode, kEgoPlannerNode, kCbvPlannerNode,
                                        kMetricsNode, kRecorderNode}));
-  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts());
+  EXPECT_EQ(listeners({ChannelId::kCbvImage, 0}, graph), Texts());
 }
 
 TEST(SessionGraph, CamerasForLookingFeedTheRecorderOnly) {
   const SessionGraph graph = graphOf(scenarioWith("external", "pdm_lite"), {true, true});
   EXPECT_FALSE(graph.has(kEgoPlannerNode));
-  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts{kRecorderNode});
-  EXPECT_EQ(listeners("ego/camera/image_raw", graph), Texts{kRecorderNode});
+  EXPECT_EQ(listeners({ChannelId::kCbvImage, 0}, graph), Texts{kRecorderNode});
+  EXPECT_EQ(listeners(ChannelId::kEgoImage, graph), Texts{kRecorderNode});
   EXPECT_TRUE(graph.has(kCameraNode));
 }
 
@@ -258,11 +264,11 @@ TEST(SessionGraph, DiffusionPlannerReplacesTheOtherAndSeesTheSlots) {
   const SessionGraph graph = graphOf(scenarioWith("pdm_lite", "diffusion"), {false, false});
   EXPECT_EQ(graph.participants, (Texts{kCbvIdentificationNode, kEgoPlannerNode,
                                        kDiffusionPlannerNode, kMetricsNode, kCameraNode}));
-  EXPECT_EQ(listeners("cbv_1/camera/image_raw", graph),
+  EXPECT_EQ(listeners({ChannelId::kCbvImage, 1}, graph),
             (Texts{kDiffusionPlannerNode, kMetricsNode}));
-  EXPECT_EQ(listeners("ego/camera/image_raw", graph), Texts());
-  EXPECT_EQ(listeners(kGuidanceTopic, graph), Texts{kMetricsNode});
-  EXPECT_EQ(answererOf("cbv_1/control", graph), kDiffusionPlannerNode);
+  EXPECT_EQ(listeners(ChannelId::kEgoImage, graph), Texts());
+  EXPECT_EQ(listeners(ChannelId::kGuidance, graph), Texts{kMetricsNode});
+  EXPECT_EQ(answererOf({ChannelId::kCbvControl, 1}, graph), kDiffusionPlannerNode);
 }
 
 TEST(SessionGraph, EgoThatSeesHasItsImageAloneAndAllComesBackFromTheMessage) {
@@ -271,9 +277,9 @@ TEST(SessionGraph, EgoThatSeesHasItsImageAloneAndAllComesBackFromTheMessage) {
   putGraph(graphOf(scenarioWith("diffusion", "pdm_lite"), {true, false}), info);
   const SessionGraph graph = graphOf(info);
   EXPECT_EQ(graph.max_cbv, 3);
-  EXPECT_EQ(listeners("ego/camera/image_raw", graph),
+  EXPECT_EQ(listeners(ChannelId::kEgoImage, graph),
             (Texts{kEgoPlannerNode, kMetricsNode, kRecorderNode}));
-  EXPECT_EQ(listeners("cbv_0/camera/image_raw", graph), Texts());
+  EXPECT_EQ(listeners({ChannelId::kCbvImage, 0}, graph), Texts());
 }
 
 }  // namespace

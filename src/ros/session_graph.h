@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The nodes of a session by name, who of them takes part, and what their planners need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cdiff::ros {
+
+// Nodes, without namespace.
+inline constexpr const char* kTrafficSimulatorNode = "traffic_simulator_node";
+inline constexpr const char* kCbvIdentificationNode = "cbv_identification_node";
+inline constexpr const char* kEgoPlannerNode = "ego_planner_node";
+inline constexpr const char* kCbvPlannerNode = "cbv_planner_node";
+inline constexpr const char* kDiffusionPlannerNode = "diffusion_planner_node";  ///< instead of it
+inline constexpr const char* kCameraNode = "camera_node";
+inline constexpr const char* kMetricsNode = "metrics_node";
+inline constexpr const char* kRecorderNode = "recorder_node";
+
+/// Slot number of the ego where slots name vehicles.
+inline constexpr int kEgoSlot = -1;
+
+/// The part that a node plays in a session.
+enum class Party {
+  kSimulator,
+  kIdentification,
+  kEgoPlanner,
+  kCbvPlanner,
+  kCamera,
+  kMetrics,
+  kRecorder,
+  kParticipants  ///< every node but the traffic simulator
+};
+
+/// Who takes part in a session, besides the traffic simulator.
+struct SessionGraph {
+  std::vector<std::string> participants;  ///< nodes that the session counts on
+  int max_cbv = 0;                        ///< slots
+  bool external_ego = false;              ///< the user's own node drives the ego
+  bool ego_sees = false;                  ///< the ego's planner needs images
+  bool show_cameras = false;              ///< images of ego and CBVs even where no planner sees
+  bool paced = false;                     ///< the wall clock rules: late answers are replaced
+  bool cbvs_see = false;                  ///< the planner of the CBVs needs images
+  bool cbvs_guided = false;               ///< the planner of the CBVs follows objectives
+  std::string cbv_planner_node = kCbvPlannerNode;
+
+  bool has(const std::string& node) const;
+  /// Whether the traffic simulator publishes which answers counted at each decision; observers take
+  /// the controls from there.
+  bool recordsDecisions() const { return paced || external_ego; }
+  /// Whether camera_node publishes images of the slots, or of the ego.
+  bool imagesOfCbvs() const { return has(kCameraNode) && (cbvs_see || show_cameras); }
+  bool imagesOfEgo() const { return has(kCameraNode) && (ego_sees || show_cameras); }
+  /// Whether these images are what the planner of the CBVs, or of the ego, plans from.
+  bool cbvsPlanFromImages() const { return has(kCameraNode) && cbvs_see; }
+  bool egoPlansFromImages() const { return has(kCameraNode) && ego_sees; }
+};
+
+/// The node that plays a part; "the external ego planner" for a node of the user's own. Throws
+/// std::logic_error for kParticipants, which are many.
+std::string nodeOf(Party party, const SessionGraph& graph);
+
+/// Whether a node acknowledges every tick (metrics and recorder do).
+bool isObserver(const std::string& node);
+
+}  // namespace cdiff::ros

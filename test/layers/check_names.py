@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+"""Check that a name stands as a string in its table alone: where else it is spelt, a change of the table would not reach.
+
+    check_names.py SOURCE RESULT.xml
+
+Each section of SECTIONS names a table, how names are read from it and which files are searched for them.
+"""
+import re
+import sys
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+INCLUDE = re.compile(r"^[ \t]*#[ \t]*include.*$", re.MULTILINE)
+
+
+def literals_of(text):
+    """(line number, contents) of each string of a C++ source; comments and includes hold none. Neighbours are one string."""
+    text = INCLUDE.sub("", text)
+    text = re.sub(r"//[^\n]*|/\*.*?\*/|" + LITERAL.pattern,
+                  lambda found: found.group(0) if found.group(0).startswith('"') else "\n" * found.group(0).count("\n"), text, flags=re.DOTALL)
+    for found in re.finditer(LITERAL.pattern + r'(?:\s*"(?:[^"\\\n]|\\.)*")*', text):
+        yield text.count("\n", 0, found.start()) + 1, "".join(LITERAL.findall(found.group(0)))
+
+
+def topic_names(table):
+    """Names of topics, without slot: of cbv_K/control also /control, with which a name could be put together."""
+    names = re.findall(r'ChannelId::k\w+,\s*"([^"]+)"', table)
+    return names + [name[name.index("K") + 1:] for name in names if "K" in name]
+
+
+def topic_patterns(names):
+    """A name with a slash anywhere in a string. A name of one word ("metrics") may mean something else: as a whole string
+    with a slash before it, or where a topic is advertised or subscribed to."""
+    for name in names:
+        inner = name.strip("/")
+        word = re.escape(inner).replace("K", r"(?:K|\d+|)")
+        if "/" in inner:
+            yield re.compile(rf"(?<![a-z_]){word}(?![a-z_/])")
+        elif name.startswith("/") and f"cbv_K{name}" in names:
+            yield re.compile(rf"^{re.escape(name)}$")
+        else:
+            yield re.compile(rf"^/{word}$")
+
+
+def topic_calls(names):
+    words = "|".join(re.escape(name.strip("/")) for name in names)
+    return re.compile(rf'(?:advertise|subscribe|resolve)(?:<[^;(]*>)?\([^;"]*"/?(?:{words})"')
+
+
+SECTIONS = {
+    "topics": {"table": "src/ros/channels.cpp", "search": ["src"], "names": topic_names, "patterns": topic_patterns, "calls": topic_calls},
+}
+
+
+def violations(source, section):
+    table = source / section["table"]
+    names = section["names"](table.read_text())
+    if len(names) < 2:
+        yield f"{section['table']} names nothing; its form has changed"
+    patterns = list(section["patterns"](names))
+    for folder in section["search"]:
+        for path in sorted((source / folder).rglob("*")):
+            if path.suffix not in (".h", ".cpp") or path == table:
+                continue
+            text = path.read_text()
+            for line, literal in literals_of(text):
+                if any(pattern.search(literal) for pattern in patterns):
+                    yield f"{path.relative_to(source)}:{line}: {literal!r} is a name of {section['table']}"
+            for found in section["calls"](names).finditer(text):
+                line = text.count("\n", 0, found.start()) + 1
+                yield f"{path.relative_to(source)}:{line}: {found.group(0)!r} spells a name of {section['table']}"
+
+
+def self_test():
+    """The search finds what it must, and nothing else."""
+    names = topic_names('{ChannelId::kA, "ego/route", x}, {ChannelId::kB,\n "cbv_K/control"}, {ChannelId::kC, "metrics"}')
+    patterns = list(topic_patterns(names))
+    hits = lambda literal: any(pattern.search(literal) for pattern in patterns)
+    wanted = ["ego/route", "on ego/route yet", "/ego/route", "cbv_3/control", "/control", "/metrics"]
+    free = ["metrics", "/ego/route_completion", "control", "/metrics/ttc", "out of control"]
+    wrong = [text for text in wanted if not hits(text)] + [text for text in free if hits(text)]
+    if not topic_calls(names).search('node.advertise<msgs::A>("metrics", 1)'):
+        wrong.append("advertise")
+    if list(literals_of('#include "a"\n// "b"\nf("c"\n  "d");')) != [(3, "cd")]:
+        wrong.append("literals")
+    return [f"the search goes wrong with {text!r}" for text in wrong]
+
+
+def main():
+    source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    cases = [("self_test", self_test())] + [(name, list(violations(source, section))) for name, section in SECTIONS.items()]
+    for _, found in cases:
+        print("\n".join(found), end="\n" if found else "")
+    body = "".join(f"<testcase classname='names' name={quoteattr(name)}>"
+                   + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>" for name, found in cases)
+    result.parent.mkdir(parents=True, exist_ok=True)
+    result.write_text(f"<testsuite name='names'>{body}</testsuite>\n")
+    return 1 if any(found for _, found in cases) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

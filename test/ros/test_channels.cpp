@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include "core/file.h"
+#include "e2e_cdiff/GuidanceReport.h"
+#include "ros/channel_table.h"
+#include "ros/conversions.h"
+#include "ros/recorded_channels.h"
+#include "ros/sample_messages.h"
+#include "ros/session_parts.h"
+#include "ros/tick_messages.h"
+
+namespace cdiff::ros {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+TEST(Channels, RowsStandInTheOrderOfTheirIdsAndNamesAreUnique) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < channels().size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(channels()[i].id), i) << channels()[i].name;
+    EXPECT_TRUE(names.insert(channels()[i].name).second) << channels()[i].name;
+  }
+  EXPECT_EQ(channels().back().id, ChannelId::kRolloutMarkers);  // the last of the ids
+}
+
+TEST(Channels, WhatIsWaitedForIsCollectedRecordedAndHasListeners) {
+  for (const Channel& row : channels()) {
+    const bool slots = std::string(row.name).find('K') != std::string::npos;
+    EXPECT_EQ(slots, row.scope == Scope::kSlot) << row.name;
+    if (row.need == Need::kNothing) continue;
+    EXPECT_EQ(row.use, Use::kAnswer) << row.name;
+    EXPECT_EQ(row.recorded, Recorded::kDecision) << row.name;
+    EXPECT_FALSE(row.listeners.empty()) << row.name;
+  }
+}
+
+TEST(Channels, ATypeThatIsNotTheTopicsIsRefused) {
+  EXPECT_THROW(requireType(ChannelId::kTraffic, typeid(msgs::CbvSelection)), std::logic_error);
+  EXPECT_NO_THROW(requireType(ChannelId::kTraffic, typeid(msgs::TrafficSnapshot)));
+}
+
+TEST(Channels, TheDocumentationShowsTheTable) {
+  const std::string page = core::readFile(E2E_CDIFF_DOCS "/ros_api.md", "documentation");
+  EXPECT_NE(page.find(channelTable()), std::string::npos)
+      << "docs/ros_api.md must hold this table:\n\n"
+      << channelTable();
+}
+
+/// Everybody takes part.
+SessionGraph graphWith(bool cbvs_see, bool cbvs_guided) {
+  SessionGraph graph{{kCbvPlannerNode, kCameraNode, kMetricsNode, kRecorderNode}, 2};
+  graph.cbvs_see = cbvs_see;
+  graph.cbvs_guided = cbvs_guided;
+  return graph;
+}
+
+TEST(SightAndGuidance, NeitherFollowsFromTheOther) {
+  const Topic image(ChannelId::kCbvImage, 1);
+  const SessionGraph sees = graphWith(true, false);
+  EXPECT_EQ(listeners(image, sees), (Texts{kCbvPlannerNode, kMetricsNode, kRecorderNode}));
+  EXPECT_EQ(listeners(ChannelId::kGuidance, sees), Texts());
+  EXPECT_EQ(awaitedBy(Party::kMetrics, sees).count(ChannelId::kGuidance), 0U);
+  EXPECT_FALSE(replayed(channel(ChannelId::kGuidance), sees));
+  const SessionGraph guided = graphWith(false, true);
+  EXPECT_EQ(listeners(image, guided), Texts());
+  EXPECT_EQ(listeners(ChannelId::kGuidance, guided), (Texts{kMetricsNode, kRecorderNode}));
+  EXPECT_EQ(awaitedBy(Party::kMetrics, guided).count(ChannelId::kCbvImage), 0U);
+  EXPECT_TRUE(replayed(channel(ChannelId::kGuidance), guided));
+}
+
+TEST(SightAndGuidance, ARecordedReportIsReadWhereThePlannerIsGuided) {
+  const MessageType& type = channel(ChannelId::kGuidance).type;
+  const BagConnection connection{"/cbv/guidance", type.name, type.md5sum};
+  EXPECT_TRUE(recordedTopic(connection, "cbv/guidance", graphWith(false, true), false).topic);
+  EXPECT_FALSE(recordedTopic(connection, "cbv/guidance", graphWith(true, false), false).topic);
+}
+
+TEST(SightAndGuidance, BothComeFromTheScenarioInTheSessionsMessage) {
+  msgs::SessionInfo info;
+  info.participants = {kCbvPlannerNode};
+  info.scenario_yaml = "cbv_planner: two_stage_pid\n";
+  SessionGraph graph = graphOf(info);
+  EXPECT_TRUE(graph.cbvs_see);
+  EXPECT_TRUE(graph.cbvs_guided);
+  EXPECT_EQ(graph.cbv_planner_node, kCbvPlannerNode);  // the one that takes part
+  info.participants = {kDiffusionPlannerNode};
+  info.scenario_yaml = "cbv_planner: pdm_lite\n";
+  graph = graphOf(info);
+  EXPECT_FALSE(graph.cbvs_see);
+  EXPECT_FALSE(graph.cbvs_guided);
+  EXPECT_EQ(graph.cbv_planner_node, kDiffusionPlannerNode);
+}
+
+/// The answer for the CBV of slot 1 of the sample snapshot.
+Answer sampleAnswer() {
+  Answer answer;
+  answer.action.slot = 1;
+  answer.action.vehicle_id = "bg_7";
+  answer.action.action = {0.1, -0.2, 0.0};
+  answer.action.rollout = {{{{1.0, 2.0}, 3.0, 0.5, 6.0}, {0.1, 0.2, 0.0}}};
+  answer.action.guidance.candidates = 3;
+  answer.action.state_mismatch = 0.25;
+  answer.planner = "cbv:sample";
+  answer.latency_ms = 1.5;
+  return answer;
+}
+
+TEST(TickMessages, AnAnswerBecomesMessagesAndComesBack) {
+  const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
+  const std::vector<session::SlotImage> images = {{1, {2, 1, 4, {1, 2, 3, 4, 5, 6}}}};
+  TickValues values{snapshot, nullptr, 0.05, true};
+  values.answers = {sampleAnswer()};
+  values.images = &images;
+  const TickMessages messages = makeMessages(values, 2);
+  TickReading reading;
+  reading.camera.width = 2;
+  reading.camera.height = 1;
+  const auto answer = readAnswer(messages, 1, "bg_7", reading);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->action.action, (traffic::ControlAction{0.1, -0.2, 0.0}));
+  ASSERT_EQ(answer->action.rollout.size(), 1U);
+  EXPECT_EQ(answer->action.rollout[0].state.speed, 6.0);
+  EXPECT_EQ(answer->action.guidance.candidates, 3);
+  EXPECT_EQ(answer->action.state_mismatch, 0.25);
+  EXPECT_EQ(answer->planner, "cbv:sample");
+  EXPECT_EQ(answer->latency_ms, 1.5);
+  ASSERT_TRUE(answer->image.has_value());
+  EXPECT_EQ(answer->image->rgb, images[0].image.rgb);
+  EXPECT_FALSE(readAnswer(messages, 0, "bg_7", reading).has_value());
+}
+
+TEST(TickMessages, OnlyAGuidedPlannerReportsGuidance) {
+  const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
+  TickValues values{snapshot, nullptr, 0.05, false};
+  values.answers = {sampleAnswer()};
+  EXPECT_FALSE(makeMessages(values, 2).holds(ChannelId::kGuidance));
+  values.cbvs_guided = true;
+  const auto report = makeMessages(values, 2).get<msgs::GuidanceReport>(ChannelId::kGuidance);
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->vehicles.size(), 1U);
+  EXPECT_EQ(report->planner_latency_ms, 1.5);
+  values.answers[0].action.slot = kEgoSlot;  // no CBV to drive
+  EXPECT_FALSE(makeMessages(values, 2).holds(ChannelId::kGuidance));
+}
+
+}  // namespace
+}  // namespace cdiff::ros
