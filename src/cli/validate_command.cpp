@@ -20,7 +20,7 @@ bool validateOne(const std::string& scenario_name, bool print) {
     request.scenario = scenario_name;
     const session::ScenarioOptions options = session::resolveRequest(request);
     const session::SessionSetup setup(options);
-    if (options.ego_planner != "external") setup.makeEgoPlanner();
+    if (options.ego_planner != planning::kExternalPlanner) setup.makeEgoPlanner();
     setup.makeCbvPlanner();
     std::ostream& out = print ? std::cerr : std::cout;  // what is printed can be a scenario file
     out << scenario_name << ": valid (ego route " << static_cast<int>(setup.egoRoute().length())

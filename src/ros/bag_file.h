@@ -18,8 +18,8 @@
 #include "e2e_cdiff/Rollout.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "nav_msgs/Path.h"
-#include "rendering/camera_options.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Image.h"
 

@@ -4,7 +4,7 @@
 
 #include <boost/make_shared.hpp>
 
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 #include "ros/conversions.h"
 #include "ros/image_conversions.h"
 #include "ros/topics.h"

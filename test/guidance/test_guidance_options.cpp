@@ -10,8 +10,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 #include "guidance/collision_seeking_objective.h"
-#include "guidance/guidance_options.h"
 #include "guidance/objective_factory.h"
 
 namespace cdiff::guidance {
