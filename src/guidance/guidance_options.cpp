@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 
 namespace cdiff::guidance {
 namespace {

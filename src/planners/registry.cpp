@@ -21,14 +21,9 @@ struct Registered {
 
 using Table = std::map<std::string, Registered>;
 
-bool isSnakeCase(const std::string& name) {
-  if (name.empty() || name.front() < 'a' || name.front() > 'z') return false;
-  return name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-}
-
 /// What is wrong with a descriptor; empty when nothing is.
 std::string faultOf(const PlannerDescriptor& descriptor) {
-  if (!isSnakeCase(descriptor.name) || descriptor.name == planning::kExternalPlanner)
+  if (!core::isSnakeCase(descriptor.name) || descriptor.name == planning::kExternalPlanner)
     return "its name must be snake_case and other than 'external'";
   if (!descriptor.options) return "its descriptor has no options";
   if (!descriptor.make) return "its descriptor has no constructor";

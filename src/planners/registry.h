@@ -13,8 +13,8 @@
 namespace cdiff::planners {
 
 /// Adds a planner to the table; `source` says who does ("library /x/libmine.so"). Throws InputError
-/// naming `source` for a name that is taken, is not snake_case or means something else in a
-/// scenario, no role, no options or constructor, and a camera that nobody publishes.
+/// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
+/// and a camera that nobody publishes.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
 
 /// nullptr for an unknown name.

@@ -12,7 +12,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "guidance/collision_seeking_objective.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 
 namespace cdiff::guidance {
 namespace {
