@@ -22,7 +22,7 @@ RESTRICTED = {
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
 ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion", "planning",
-         "planners training", "session", "collection suite record", "page", "video", "evaluation ros", "nodes cli"]
+         "planners training", "session", "collection plugins suite record", "page", "video", "evaluation ros", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 
