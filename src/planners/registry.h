@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The table of planners, for ego and CBVs alike: those of this package
-/// (planners/registered_planners.cpp) and those that plug-ins add.
+/// (the list in src/planners/CMakeLists.txt) and those that plug-ins add.
 #pragma once
 
 #include <memory>
