@@ -89,11 +89,6 @@ std::string fileName(std::string text) {
   return text.empty() ? "unnamed" : text;
 }
 
-bool isSnakeCase(std::string_view name) {
-  if (name.empty() || name.front() < 'a' || name.front() > 'z') return false;
-  return name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
-}
-
 std::vector<std::string> splitText(std::string_view text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;

@@ -36,9 +36,6 @@ std::string shortened(const std::string& text, std::size_t length = 80);
 /// leading dots: safe as the name of a file.
 std::string fileName(std::string text);
 
-/// Whether `name` is a lower-case letter and then lower-case letters, digits and underscores.
-bool isSnakeCase(std::string_view name);
-
 /// Parts of `text` between separators; runs of separators count as one, no empty parts.
 std::vector<std::string> splitText(std::string_view text, char separator);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "core/names.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "guidance/collision_avoidance_objective.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/names.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
