@@ -18,7 +18,12 @@ file(GLOB CDIFF_MESSAGES RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS
 add_message_files(DIRECTORY msg FILES ${CDIFF_MESSAGES})
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
-catkin_package(CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
+# What planners, objectives and metrics of other packages need (include/e2e_cdiff/plugins/plugin.h).
+catkin_package(INCLUDE_DIRS include
+               LIBRARIES e2e_cdiff_core e2e_cdiff_geometry e2e_cdiff_map e2e_cdiff_traffic e2e_cdiff_dynamics e2e_cdiff_guidance
+                         e2e_cdiff_rendering e2e_cdiff_planning
+               CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
+install(DIRECTORY include/e2e_cdiff/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 
 # The interface that ros, nodes, cli and their tests link to see ROS and our messages.
 add_library(e2e_cdiff_messages INTERFACE)

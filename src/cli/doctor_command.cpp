@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "diffusion/cpu_denoiser.h"
 #include "diffusion/image_encoder.h"
+#include "plugins/plugin_loader.h"
 #include "session/scenario_options.h"
 
 namespace cdiff::cli {
@@ -46,6 +47,17 @@ Finding program(const std::string& name, const std::string& package) {
 Finding encoder() {
   return {true, "ffmpeg",
           inPath("ffmpeg") ? "found" : "missing: no videos; to have them, apt-get install ffmpeg"};
+}
+
+Finding plugIns() {
+  try {
+    std::string text;
+    for (const plugins::LoadedPlugin& plugin : plugins::loadPlugins())
+      text += (text.empty() ? "" : ", ") + plugin.library.file.string();
+    return {true, "plug-ins", text.empty() ? "none" : text};
+  } catch (const std::exception& error) {
+    return {false, "plug-ins", error.what()};
+  }
 }
 
 Finding folder(const std::string& subject, const std::function<fs::path()>& find) {
@@ -105,6 +117,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
                                            folder("cache folder", core::cacheFolder),
                                            folder("temporary folder", core::temporaryFolder),
                                            shippedModel(),
+                                           plugIns(),
                                            encoder(),
                                            rosIp()};
     for (const Finding& finding : findings) {

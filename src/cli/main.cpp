@@ -9,6 +9,7 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "plugins/plugin_loader.h"
 
 namespace {
 
@@ -41,6 +42,13 @@ void requireKnownCommand(const CLI::App& program, int argc, char** argv) {
                                 "; known: " + cdiff::core::joinText(known, ", "));
 }
 
+/// Every command but these knows the planners, objectives and metrics of plug-ins; `doctor` says
+/// what is wrong with them.
+void loadPluginsFor(int argc, char** argv) {
+  const std::string first = argc < 2 ? "" : argv[1];
+  if (first != "doctor" && !first.empty() && first.front() != '-') cdiff::plugins::loadPlugins();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -53,6 +61,7 @@ int main(int argc, char** argv) {
   addCommands(program, exit_code);
   try {
     requireKnownCommand(program, argc, argv);
+    loadPluginsFor(argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? cdiff::cli::kPassed : cdiff::cli::kBadInput;

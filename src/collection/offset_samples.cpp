@@ -7,6 +7,7 @@
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/angle.h"
 #include "planners/pdm_lite/lateral_controller.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::collection {
@@ -34,7 +35,8 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
                               const std::vector<const traffic::TrafficSnapshot*>& future,
                               traffic::Rollout& rollout) const {
   const traffic::VehicleState start = vehicle.state;
-  planners::LateralController controller(setup_.options().pdm_lite);
+  planners::LateralController controller(
+      setup_.options().planner_options.of<planners::PdmLiteOptions>());
   double arc_length = around.arc_length;
   double heading = 0.0;
   for (std::size_t t = 0; t < future.size(); ++t) {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/options_dump.h"
+#include "core/options_path.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -195,53 +196,6 @@ class LoadVisitor : public OptionsVisitor {
   std::vector<Level> levels_;
 };
 
-/// Collects the full path of every leaf and group.
-class PathVisitor : public OptionsVisitor {
- public:
-  void number(const FieldInfo& info, double&, double, double) override { add(info); }
-  void integer(const FieldInfo& info, std::int64_t&, std::int64_t, std::int64_t) override {
-    add(info);
-  }
-  void flag(const FieldInfo& info, bool&) override { add(info); }
-  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override {
-    add(info);
-  }
-  void list(const FieldInfo& info, std::vector<std::string>&) override { add(info); }
-  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>&) override { add(info); }
-  bool enter(const FieldInfo& info) override {
-    add(info);
-    prefixes_.push_back(prefix() + info.key + ".");
-    return true;
-  }
-  void leave() override { prefixes_.pop_back(); }
-
-  const std::vector<std::string>& paths() const { return paths_; }
-
- private:
-  std::string prefix() const { return prefixes_.empty() ? "" : prefixes_.back(); }
-  void add(const FieldInfo& info) { paths_.push_back(prefix() + info.key); }
-  std::vector<std::string> prefixes_;
-  std::vector<std::string> paths_;
-};
-
-std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
-std::string resolvePath(const std::string& key, const std::vector<std::string>& paths,
-                        const std::string& source) {
-  if (std::find(paths.begin(), paths.end(), key) != paths.end()) return key;
-  std::vector<std::string> matches;
-  for (const std::string& path : paths) {
-    if (lastPart(path) == key) matches.push_back(path);
-  }
-  if (matches.size() == 1) return matches.front();
-  if (matches.size() > 1) {
-    throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
-                     joinText(matches, ", ") + "}");
-  }
-  throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
-                   nearestName(key, paths) + "'");
-}
-
 YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
                   const YAML::Node& value) {
   if (depth == path.size()) return value;
@@ -298,9 +252,7 @@ void override_(const std::string& assignment, const std::string& source, void* o
   if (equals == std::string::npos || equals == 0) {
     throw InputError(source + ": '" + assignment + "' is not of the form key=value");
   }
-  PathVisitor paths;
-  describe(options, paths);
-  const std::string path = resolvePath(assignment.substr(0, equals), paths.paths(), source);
+  const std::string path = resolvePath(assignment.substr(0, equals), source, options, describe);
   const std::string value_text = assignment.substr(equals + 1);
   const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
   LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value), false);

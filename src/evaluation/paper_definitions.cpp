@@ -165,7 +165,7 @@ TableDefinition table3() {
     table.rows.push_back(cbvRow(paperCbvPlanners()[i], paper));
   }
   for (const PaperSystem& ego : paperEgoPlanners()) {
-    if (std::string(ego.planner) == paper::kDiffusion.planner) continue;
+    if (ego.planner() == paper::kDiffusion.planner()) continue;
     for (TableColumn column : {drivingScore(), routeCompletion()}) {
       column.name = std::string(ego.name) + " " + column.name;
       column.levels = egoLevel(ego);
@@ -260,7 +260,7 @@ TableDefinition collisionFigure() {
   variant("E2E-CDiff", naturalisticLevels());
   variant("E2E-CDiff w/ coll", safetyCriticalLevels());
   for (const PaperSystem& ego : paperEgoPlanners()) {
-    if (std::string(ego.planner) == paper::kDiffusion.planner) continue;
+    if (ego.planner() == paper::kDiffusion.planner()) continue;
     table.rows.push_back({ego.name, egoLevel(ego), {}, ""});
   }
   table.rows.front().paper = {{5.68, {}}, {20.77, {}}};
@@ -283,12 +283,12 @@ TableDefinition latencyFigure() {
   for (std::size_t i = 0; i < std::size(paper); ++i) {
     const PaperSystem& ego = paperEgoPlanners()[i];
     table.rows.push_back(
-        {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner)});
+        {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner())});
   }
-  const PaperSystem cbvs[] = {paper::kDiffusion, {"two-stage PID", paper::kTwoStage.planner}};
+  const PaperSystem cbvs[] = {paper::kDiffusion, {paper::kTwoStage.title, "two-stage PID"}};
   for (const PaperSystem& cbv : cbvs) {
     table.rows.push_back(
-        {"CBV: " + std::string(cbv.name), cbvLevel(cbv), {}, "cbv:" + std::string(cbv.planner)});
+        {"CBV: " + std::string(cbv.name), cbvLevel(cbv), {}, "cbv:" + std::string(cbv.planner())});
   }
   return table;
 }

@@ -8,14 +8,14 @@
 #include "core/file.h"
 #include "evaluation/paper_definitions.h"
 #include "evaluation/paper_systems.h"
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 /// A CBV planner in runs with ego PDM-Lite.
 ShownSystem cbvSystem(const std::string& name, const std::string& planner, Factors levels) {
-  levels["ego_planner"] = paper::kPdmLite.planner;
+  levels["ego_planner"] = paper::kPdmLite.planner();
   levels["cbv_planner"] = planner;
   return {name, levels};
 }
@@ -26,12 +26,12 @@ std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs) {
   std::vector<ShownSystem> systems;
   std::set<std::string> further;
   Factors levels = naturalisticLevels();
-  levels["ego_planner"] = paper::kPdmLite.planner;
+  levels["ego_planner"] = paper::kPdmLite.planner();
   for (const BatchRun* run : runsWith(runs, levels))
     further.insert(run->record.factors.at("cbv_planner"));
   for (const PaperSystem& system : paperCbvPlanners()) {
-    systems.push_back(cbvSystem(system.name, system.planner, naturalisticLevels()));
-    further.erase(system.planner);
+    systems.push_back(cbvSystem(system.name, system.planner(), naturalisticLevels()));
+    further.erase(system.planner());
   }
   for (const std::string& planner : further)
     systems.push_back(cbvSystem(planner + " (not in the paper)", planner, naturalisticLevels()));
@@ -79,8 +79,8 @@ std::vector<Figure> paperFigures(const std::vector<BatchRun>& runs) {
       frameFigure("figure_5", "Figure 5. CBV planners from above", shownCbvPlanners(runs), runs),
       frameFigure(
           "figure_6", "Figure 6. Safety-critical scenario generation from above",
-          {cbvSystem(own.name, own.planner, naturalisticLevels()),
-           cbvSystem(std::string(own.name) + " w/ coll", own.planner, safetyCriticalLevels())},
+          {cbvSystem(own.name, own.planner(), naturalisticLevels()),
+           cbvSystem(std::string(own.name) + " w/ coll", own.planner(), safetyCriticalLevels())},
           runs),
       executionFigure(runs),
       latency};

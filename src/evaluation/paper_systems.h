@@ -4,29 +4,33 @@
 /// them have in a batch.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "evaluation/run_plan.h"
 
 namespace cdiff::evaluation {
 
-/// A system of the paper and the planner that it is here, whether it exists yet or not.
+/// A system of the paper, whether a planner with its title is registered or not.
 struct PaperSystem {
-  const char* name;     ///< "E2E-CDiff"
-  const char* planner;  ///< "diffusion"
+  const char* title;  ///< as the descriptor of its planner has it
+  const char* name;   ///< in the table
+  explicit constexpr PaperSystem(const char* a_title) : PaperSystem(a_title, a_title) {}
+  constexpr PaperSystem(const char* a_title, const char* a_name) : title(a_title), name(a_name) {}
+  /// Name of its planner here; where there is none, a level that no run has.
+  std::string planner() const;
 };
 
-/// The planner name table: a planner of another name here is one change in its line.
 namespace paper {
-inline constexpr PaperSystem kPdmLite = {"PDM-Lite", "pdm_lite"};
-inline constexpr PaperSystem kPlanT = {"PlanT", "plant"};
-inline constexpr PaperSystem kUniAd = {"UniAD", "uniad"};
-inline constexpr PaperSystem kVad = {"VAD", "vad"};
-inline constexpr PaperSystem kPpo = {"PPO", "ppo"};
-inline constexpr PaperSystem kPluto = {"Pluto", "pluto"};
-inline constexpr PaperSystem kRift = {"RIFT", "rift"};
-inline constexpr PaperSystem kDiffusion = {"E2E-CDiff", "diffusion"};
-inline constexpr PaperSystem kTwoStage = {"Two-stage trajectory-then-PID", "two_stage_pid"};
+inline constexpr PaperSystem kPdmLite("PDM-Lite");
+inline constexpr PaperSystem kPlanT("PlanT");
+inline constexpr PaperSystem kUniAd("UniAD");
+inline constexpr PaperSystem kVad("VAD");
+inline constexpr PaperSystem kPpo("PPO");
+inline constexpr PaperSystem kPluto("Pluto");
+inline constexpr PaperSystem kRift("RIFT");
+inline constexpr PaperSystem kDiffusion("E2E-CDiff");
+inline constexpr PaperSystem kTwoStage("Two-stage trajectory-then-PID");
 }  // namespace paper
 
 /// In the paper's order.

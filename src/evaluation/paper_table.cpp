@@ -6,7 +6,7 @@
 
 #include "core/csv.h"
 #include "core/text.h"
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 
 namespace cdiff::evaluation {
 namespace {

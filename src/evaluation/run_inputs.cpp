@@ -9,9 +9,8 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "diffusion/model.h"
 #include "map/network_import.h"
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -43,9 +42,11 @@ const std::string& InputHasher::ofFile(const fs::path& file, const std::string& 
   return hash;
 }
 
-const std::string& InputHasher::ofModel(const std::string& name) {
-  std::string& hash = models_[name];
-  if (hash.empty()) hash = diffusion::modelFilesSha256(name);
+const std::string& InputHasher::ofNetwork(const planning::PlannerDescriptor& planner,
+                                          const session::ScenarioOptions& options) {
+  const std::string model = planner.network(options.planner_options, options.guidance).model;
+  std::string& hash = models_[{planner.name, model}];
+  if (hash.empty()) hash = planner.weights_sha256(options.planner_options);
   return hash;
 }
 
@@ -58,8 +59,11 @@ InputHashes InputHasher::hashes(const session::ScenarioOptions& options) {
     hashes["route_file"] = ofFile(options.route.bench2drive_file, "route file");
   if (!options.metrics.speed_target_file.empty())
     hashes["speed_target"] = ofFile(options.metrics.speed_target_file, "speed target");
-  if (planners::seesImages(options.ego_planner) || planners::seesImages(options.cbv_planner))
-    hashes["weights"] = ofModel(options.diffusion.model);
+  for (const auto& [input, name] : {std::pair{"ego_weights", options.ego_planner},
+                                    std::pair{"cbv_weights", options.cbv_planner}}) {
+    const planning::PlannerDescriptor* planner = planners::findPlanner(name);
+    if (planner != nullptr && planner->network) hashes[input] = ofNetwork(*planner, options);
+  }
   return hashes;
 }
 

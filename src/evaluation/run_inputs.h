@@ -8,13 +8,14 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "session/scenario_options.h"
 
 namespace cdiff::evaluation {
 
-/// SHA-256 by name: "network", "demand", "route_file", "speed_target", "weights" (where the
-/// scenario has one) and "program".
+/// SHA-256 by name: "network", "demand", "route_file", "speed_target", "ego_weights", "cbv_weights"
+/// (where the scenario has them) and "program".
 using InputHashes = std::map<std::string, std::string>;
 
 /// Hashes each file once.
@@ -25,9 +26,10 @@ class InputHasher {
 
  private:
   const std::string& ofFile(const std::filesystem::path& file, const std::string& what);
-  const std::string& ofModel(const std::string& name);
+  const std::string& ofNetwork(const planning::PlannerDescriptor& planner,
+                               const session::ScenarioOptions& options);
   std::map<std::string, std::string> files_;
-  std::map<std::string, std::string> models_;
+  std::map<std::pair<std::string, std::string>, std::string> models_;  ///< by planner and model
 };
 
 /// SHA-256 of this program and those of its libraries that are ours. Package version and revision

@@ -22,7 +22,7 @@ using core::InputError;
 
 /// The names are checked as those of any scenario.
 void checkEgoPlanner(const std::string& name) {
-  if (name == "external")
+  if (name == planning::kExternalPlanner)
     throw InputError("ego_planner 'external' needs the node graph; a batch cannot run it");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "guidance/guidance_options.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 
 namespace cdiff::guidance {
 namespace {

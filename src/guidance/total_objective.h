@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/guidance/guidance_report.h"
-#include "guidance/guidance_options.h"
 
 namespace cdiff::guidance {
 

@@ -5,10 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "core/file.h"
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/image_encoder.h"
-#include "diffusion/model.h"
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 #include "record/build_info.h"
 
 namespace cdiff::record {
@@ -53,33 +50,30 @@ std::string machineBlock() {
          line(1, "instruction_set", quoted(instructionSet()));
 }
 
-/// What the networks of ego and CBVs are told.
-std::string conditioningLines(const session::ScenarioOptions& options) {
-  const auto lineOf = [&](const char* key, const std::string& planner,
-                          const guidance::GuidanceOptions& guidance) {
-    return planners::seesImages(planner)
-               ? line(1, key, options.diffusion.conditioningUnder(guidance))
-               : "";
-  };
-  return lineOf("ego_conditioning", options.ego_planner, options.ego_guidance) +
-         lineOf("cbv_conditioning", options.cbv_planner, options.guidance);
+/// Facts of a planner's network under keys that begin with `prefix`; "" where it has none.
+std::string networkLines(const session::ScenarioOptions& options, const std::string& planner,
+                         const guidance::GuidanceOptions& guidance, bool inferred_here,
+                         const std::string& prefix) {
+  const planning::PlannerDescriptor* descriptor = planners::findPlanner(planner);
+  if (descriptor == nullptr || !descriptor->network) return "";
+  const planning::NetworkFacts facts = descriptor->network(options.planner_options, guidance);
+  std::string text = line(1, prefix + "model", quoted(facts.model)) +
+                     line(1, prefix + "conditioning", facts.conditioning);
+  if (!inferred_here) return text;  // the weights may not even be here
+  text += line(1, prefix + "model_files_sha256",
+               quoted(descriptor->weights_sha256(options.planner_options)));
+  for (const auto& [key, value] : facts.instruction_sets)
+    text += line(1, prefix + key, quoted(value));
+  return text;
 }
 
-/// What the bytes of a planned action depend on besides the scenario: model and instruction sets.
+/// What the bytes of planned actions depend on besides the scenario: models and instruction sets.
 std::string inferenceBlock(const session::ScenarioOptions& options, const RunFacts& facts) {
-  if (!planners::seesImages(options.cbv_planner) && !planners::seesImages(options.ego_planner))
-    return "";
-  using diffusion::CpuDenoiser;
-  if (!facts.recorded_by.empty())  // nothing was inferred here; the model may not even be here
-    return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
-           conditioningLines(options);
-  return "inference:\n" + line(1, "model", quoted(options.diffusion.model)) +
-         conditioningLines(options) +
-         line(1, "model_files_sha256",
-              quoted(diffusion::modelFilesSha256(options.diffusion.model))) +
-         line(1, "encoder_instruction_set", quoted(diffusion::ImageEncoder::instructionSet())) +
-         line(1, "denoiser_instruction_set",
-              quoted(CpuDenoiser::toText(CpuDenoiser::bestInstructionSet())));
+  const bool here = facts.recorded_by.empty();
+  const std::string text =
+      networkLines(options, options.ego_planner, options.ego_guidance, here, "ego_") +
+      networkLines(options, options.cbv_planner, options.guidance, here, "cbv_");
+  return text.empty() ? "" : "inference:\n" + text;
 }
 
 }  // namespace

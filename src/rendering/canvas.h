@@ -8,8 +8,8 @@
 
 #include <vector>
 
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/camera_image.h"
-#include "rendering/camera_options.h"
 #include "rendering/color.h"
 
 namespace cdiff::rendering {

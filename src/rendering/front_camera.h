@@ -10,9 +10,9 @@
 #include <string>
 
 #include "e2e_cdiff/map/road_network.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "rendering/camera_options.h"
 
 namespace cdiff::rendering {
 

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "rendering/camera_options.h"
 
 namespace cdiff::rendering {
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "nav_msgs/Path.h"
 #include "ros/tick_messages.h"
 #include "rosbag/bag.h"

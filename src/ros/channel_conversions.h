@@ -5,7 +5,7 @@
 #pragma once
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "ros/conversions.h"
 #include "ros/display.h"
 #include "ros/image_conversions.h"

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "nav_msgs/Odometry.h"
-#include "rendering/camera_options.h"
 #include "ros/ros.h"
 #include "tf2_msgs/TFMessage.h"
 #include "tf2_ros/static_transform_broadcaster.h"

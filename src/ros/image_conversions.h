@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <string>
 
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/camera_image.h"
-#include "rendering/camera_options.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"
 

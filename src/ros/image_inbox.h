@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "e2e_cdiff/planning/planner.h"
-#include "rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "sensor_msgs/Image.h"
 
 namespace cdiff::ros {

@@ -10,6 +10,7 @@
 
 #include "core/failure.h"
 #include "core/program.h"
+#include "plugins/plugin_loader.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {
@@ -19,6 +20,7 @@ constexpr double kMasterPatience = 5.0;  // [s] of wall time for a master that d
 
 int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
   try {
+    plugins::loadPlugins();
     return body(stop);
   } catch (const std::exception& error) {
     const core::Failure failure = core::failureOf(error);

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/session_bag.h"
 
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 #include "ros/conversions.h"
 
 namespace cdiff::ros {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "e2e_cdiff/map/road_network.h"
-#include "rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "ros/tick_answer.h"
 #include "ros/topics.h"
 

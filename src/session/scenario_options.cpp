@@ -104,10 +104,21 @@ void checkDemandFile(const std::string& file) {
   }
 }
 
-void requirePlanner(const std::string& key, const std::string& name, bool or_external) {
-  std::vector<std::string> names = planners::plannerNames();
-  if (or_external) names.emplace_back("external");
+enum class Role { kEgo, kCbv };
+
+void requirePlanner(const std::string& key, const std::string& name, Role role) {
+  std::vector<std::string> names;
+  for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
+    if (role == Role::kEgo ? planner->drives_ego : planner->drives_cbv)
+      names.push_back(planner->name);
+  }
+  if (role == Role::kEgo) names.emplace_back(planning::kExternalPlanner);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  if (planners::findPlanner(name) != nullptr) {
+    throw InputError("key '" + key + "' is '" + name + "', a planner that does not drive " +
+                     (role == Role::kEgo ? "the ego" : "CBVs") + "; expected one of " +
+                     core::joinText(names, ", "));
+  }
   throw InputError("key '" + key + "' is '" + name + "', an unknown planner" +
                    core::didYouMean(name, names) + "; known: " + core::joinText(names, ", "));
 }
@@ -191,11 +202,7 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
-  visitor.group({"pdm_lite", "", "Planner pdm_lite."}, pdm_lite);
-  visitor.group({"diffusion", "", "Planner diffusion."}, diffusion);
-  visitor.group(
-      {"two_stage_pid", "", "Tracker of planner two_stage_pid, which plans as diffusion."},
-      two_stage_pid);
+  planner_options.describe(visitor);
   visitor.text(
       {"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
       guidance_profile, {});
@@ -227,20 +234,20 @@ void ScenarioOptions::validate() const {
     throw InputError("key 'network' is missing; expected a shipped network or a file");
   route.validate();
   cbv.validate();
-  pdm_lite.validate();
-  two_stage_pid.validate();
+  planner_options.validate();
   guidance.validate("guidance.");
   ego_guidance.validate("ego_guidance.");
   camera.validate();
   vehicle.validate();
   metrics.validate();
   validateTime();
-  requirePlanner("ego_planner", ego_planner, true);
-  requirePlanner("cbv_planner", cbv_planner, false);
+  requirePlanner("ego_planner", ego_planner, Role::kEgo);
+  requirePlanner("cbv_planner", cbv_planner, Role::kCbv);
   if (mode == "safety_critical" && !planners::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
-        cbv_planner + "' drives naturalistically only; expected diffusion or two_stage_pid");
+        cbv_planner + "' drives naturalistically only; expected one of " +
+        core::joinText(planners::guidedPlannerNames(), ", "));
   }
   const bool file = demand != "generated" && demand != "none";
   if (file && !core::isFile(demand)) {

@@ -9,10 +9,10 @@
 
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "map/route_source.h"
 #include "e2e_cdiff/metrics/metrics_options.h"
-#include "planners/planner_factory.h"
-#include "rendering/camera_options.h"
+#include "planners/registry.h"
 #include "session/protocol.h"
 #include "simulation/demand_generator.h"
 #include "simulation/sumo_simulator.h"
@@ -59,13 +59,12 @@ struct ScenarioOptions {
   double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
   std::string lights = "green";       ///< green | program
   std::string mode = "naturalistic";  ///< naturalistic | safety_critical
-  std::string ego_planner = "pdm_lite";
-  std::string cbv_planner = "diffusion";
+  std::string ego_planner = planners::kDefaultEgoPlanner;
+  std::string cbv_planner = planners::kDefaultCbvPlanner;
   std::int64_t max_cbv = 2;
   cbv::CbvOptions cbv;
-  planners::PdmLiteOptions pdm_lite;
-  planners::DiffusionOptions diffusion;
-  planners::TrajectoryTrackerOptions two_stage_pid;
+  planning::PlannerOptionsTable planner_options =
+      planners::defaultOptions();      ///< groups by their names
   std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
   guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
@@ -88,12 +87,6 @@ struct ScenarioOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for fields that contradict each other.
   void validate() const;
-  planners::PlannerOptions egoPlannerOptions() const {
-    return {pdm_lite, diffusion, two_stage_pid, ego_guidance, "ego_guidance.", vehicle, camera};
-  }
-  planners::PlannerOptions cbvPlannerOptions() const {
-    return {pdm_lite, diffusion, two_stage_pid, guidance, "guidance.", vehicle, camera};
-  }
 
  private:
   void describeTraffic(core::OptionsVisitor& visitor);

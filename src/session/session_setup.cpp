@@ -44,13 +44,15 @@ planning::PlanningContext SessionSetup::planningContext() const {
 }
 
 std::unique_ptr<planning::Planner> SessionSetup::makeEgoPlanner() const {
-  return planners::makePlanner(options_.ego_planner, options_.egoPlannerOptions(),
-                               planningContext());
+  return planners::makePlanner(options_.ego_planner,
+                               {planningContext(), options_.planner_options, options_.vehicle,
+                                options_.camera, options_.ego_guidance, "ego_guidance."});
 }
 
 std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
-  return planners::makePlanner(options_.cbv_planner, options_.cbvPlannerOptions(),
-                               planningContext());
+  return planners::makePlanner(options_.cbv_planner,
+                               {planningContext(), options_.planner_options, options_.vehicle,
+                                options_.camera, options_.guidance, "guidance."});
 }
 
 std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {

@@ -62,7 +62,8 @@ class ReplayCommand : public testing::Test {
         "session.yaml",
         {{"deployment: \"cdiff run\"\n", ""},
          {"deployment: \"cdiff replay\"\nrecorded_by: \"cdiff run of e2e_cdiff .*\"\n", ""},
-         {"  (model_files_sha256|(en|de)(coder|noiser)_instruction_set): .*\n", ""}});
+         {"  ((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_instruction_set): .*\n",
+          ""}});
   }
   nlohmann::json summary() const {
     return nlohmann::json::parse(core::readFile(replayed() / "summary.json", "summary"));

@@ -10,6 +10,7 @@
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
@@ -161,13 +162,15 @@ TEST(RunInputs, HashTheContentOfTheFilesThatAScenarioNames) {
       core::sha256(core::readFile(
           core::shareFolder() / "networks/arterial_merge/arterial_merge.net.xml", "network")));
   EXPECT_EQ(plain.at("program").size(), 64U);
-  EXPECT_EQ(plain.count("weights") + plain.count("demand"), 0U);
+  EXPECT_EQ(plain.count("cbv_weights") + plain.count("demand"), 0U);
   options.demand = demand.string();
   options.cbv_planner = "diffusion";
   const InputHashes more = InputHasher().hashes(options);
   EXPECT_EQ(more.at("demand"), core::sha256("<routes/>"));
-  EXPECT_EQ(more.at("weights"), diffusion::modelFilesSha256(options.diffusion.model));
-  EXPECT_EQ(changedInputs(plain, more), "demand, weights");
+  EXPECT_EQ(
+      more.at("cbv_weights"),
+      diffusion::modelFilesSha256(options.planner_options.of<planners::DiffusionOptions>().model));
+  EXPECT_EQ(changedInputs(plain, more), "cbv_weights, demand");
   EXPECT_EQ(changedInputs(more, more), "");
 }
 

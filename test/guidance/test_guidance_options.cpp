@@ -10,9 +10,9 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 #include "guidance/collision_seeking_objective.h"
-#include "guidance/guidance_options.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 #include "guidance/route_objective.h"
 
 namespace cdiff::guidance {

@@ -12,7 +12,7 @@
 #include "guidance/comfort_objective.h"
 #include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 #include "guidance/route_objective.h"
 #include "guidance/speed_objective.h"
 #include "guidance/traffic_avoidance_objective.h"

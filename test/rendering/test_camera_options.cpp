@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 
 namespace cdiff::rendering {
 namespace {

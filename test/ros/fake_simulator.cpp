@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "planners/diffusion/diffusion_options.h"
 #include "ros/session_parts.h"
 #include "support/random_model.h"
 
@@ -25,7 +26,8 @@ session::ScenarioOptions scenarioFor(const std::string& node,
   session::ScenarioOptions options = session::loadScenario("crossing_left_turn");
   options.cbv_planner = node == kDiffusionPlannerNode ? "diffusion" : "pdm_lite";
   if (node != kDiffusionPlannerNode) return options;
-  options.diffusion.model = testing::writeRandomModel(results / "model");
+  options.planner_options.of<planners::DiffusionOptions>().model =
+      testing::writeRandomModel(results / "model");
   return options;
 }
 

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "metrics/session_metrics.h"
-#include "planners/planner_factory.h"
+#include "planners/registry.h"
 #include "session/world.h"
 #include "support/sumo_network.h"
 
@@ -43,7 +43,7 @@ class PassedLights {
 struct BlindDrive {
   explicit BlindDrive(const ScenarioOptions& options) : setup(options), passed(setup.egoRoute()) {
     metrics::SessionMetrics metrics(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute());
-    const auto planner = planners::makePlanner("pdm_lite", {}, setup.planningContext());
+    const auto planner = setup.makeEgoPlanner();
     World world(setup);
     while (world.snapshot().status == traffic::SessionStatus::kRunning) {
       traffic::TrafficSnapshot snapshot = world.snapshot();

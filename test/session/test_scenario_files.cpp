@@ -115,16 +115,16 @@ TEST(SessionRequest, TheModeIsAboutTheCbvsAlone) {
   request.ego_planner = "diffusion";
   request.mode = "safety_critical";
   const ScenarioOptions attacked = resolveRequest(request);
-  EXPECT_TRUE(attacked.cbvPlannerOptions().guidance.isActive("collision_seeking"));
-  EXPECT_FALSE(attacked.egoPlannerOptions().guidance.isActive("collision_seeking"));
-  EXPECT_TRUE(attacked.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+  EXPECT_TRUE(attacked.guidance.isActive("collision_seeking"));
+  EXPECT_FALSE(attacked.ego_guidance.isActive("collision_seeking"));
+  EXPECT_TRUE(attacked.ego_guidance.isActive("collision_avoidance"));
   request.set = {"guidance_profile=none", "ego_guidance_profile=ablation_speed",
                  "ego_guidance.speed.weight=0.5"};
   ScenarioOptions named = resolveRequest(request);
   EXPECT_EQ(named.ego_guidance.find("speed").weight, 0.5);
-  EXPECT_FALSE(named.cbvPlannerOptions().guidance.isActive("speed"));
-  EXPECT_TRUE(named.egoPlannerOptions().guidance.isActive("speed"));
-  EXPECT_FALSE(named.egoPlannerOptions().guidance.isActive("collision_avoidance"));
+  EXPECT_FALSE(named.guidance.isActive("speed"));
+  EXPECT_TRUE(named.ego_guidance.isActive("speed"));
+  EXPECT_FALSE(named.ego_guidance.isActive("collision_avoidance"));
 }
 
 TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {

@@ -7,7 +7,7 @@
 
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/core/options.h"
-#include "guidance/guidance_options.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 
 namespace cdiff::planners {
 
@@ -22,6 +22,8 @@ struct DiffusionOptions {
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
+  /// Every value that `describe` admits is fine here; the model has its say when it is read.
+  void validate() const {}
   /// What `conditioning` comes to under a guidance: by_guidance is image where collision_seeking
   /// has a weight (an attacker that knows its route stops in its lane before the ego
   /// instead of driving at it), image_route elsewhere and where the sampler's mode is unguided.

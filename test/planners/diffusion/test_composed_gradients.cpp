@@ -11,7 +11,7 @@
 #include "diffusion/sampling_batch.h"
 #include "dynamics/executable_action.h"
 #include "guidance/guidance_world.h"
-#include "guidance/objective_factory.h"
+#include "guidance/objective_registry.h"
 #include "planners/diffusion/guided_batch.h"
 #include "support/random_model.h"
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/diffusion/diffusion_situation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diffusion/route_tokens.h"
+#include "planning/motion_forecast.h"
+#include "planning/route_forecast.h"
+#include "planning/surrounding_vehicles.h"
+
+namespace cdiff::planners {
+namespace {
+
+/// Rows of a rollout in a decision period.
+double rowsOf(const planning::PlanningContext& context) {
+  return context.decision_period / traffic::kRolloutStep;
+}
+
+std::uint64_t ticksOf(const planning::PlanningContext& context) {
+  return static_cast<std::uint64_t>(
+      std::llround(context.decision_period / context.simulation_step));
+}
+
+}  // namespace
+
+/// For a CBV the other is the ego along its route; for the ego the nearest other vehicle. The
+/// vehicles around both are the traffic.
+void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation) {
+  const traffic::Vehicle& vehicle = *situation.task->vehicle;
+  const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
+  const traffic::Vehicle* ego = snapshot.ego();
+  const bool about_ego = situation.task->slot >= 0;
+  const traffic::Vehicle* other = about_ego ? ego : planning::nearestVehicle(snapshot, vehicle);
+  for (const traffic::Vehicle* near : planning::vehiclesAround(snapshot, vehicle, other)) {
+    situation.scene.traffic.push_back(
+        {near->state, near->dimensions,
+         planning::forecastMotion(*near, context_.network, vehicle_, steps)});
+  }
+  if (other == nullptr || !planning::isFinite(other->state) ||
+      traffic::onDifferentLevels(*other, vehicle))
+    return;
+  situation.other.now = other->state;
+  situation.other.dimensions = other->dimensions;
+  const bool along_route =
+      about_ego && context_.ego_route != nullptr && !context_.ego_route->empty();
+  situation.other.predicted =
+      along_route ? planning::forecastAlongRoute(*other, *context_.ego_route,
+                                                 ego_follower_.arcLength(), steps)
+                  : planning::forecastMotion(*other, context_.network, vehicle_, steps);
+  situation.scene.other = &situation.other;
+}
+
+/// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
+/// plan said, on its way to the same goal.
+void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
+  const std::optional<LastPlan>& last = situation.memory->plan;
+  if (!last || last->tick() + ticksOf(context_) != tick) return;
+  const planning::PlanningTask& task = *situation.task;
+  const double rows = rowsOf(context_);
+  situation.previous = last->continued(rows, exact_, task.vehicle->state);
+  if (situation.previous && options_.sampler.warm_start &&
+      last->holds(std::lround(rows), task.vehicle->state, task.route))
+    situation.warm = model_.normalizer.normalize(*situation.previous);
+}
+
+/// Encodes an image unless it is the one of the last decision, as before a standing vehicle.
+const std::vector<float>& DiffusionPlanner::featuresOf(const traffic::CameraImage& image,
+                                                       Memory& memory) {
+  const std::uint64_t hash = memory.watch.imageHash();
+  if (memory.features.empty() || memory.features_hash != hash) {
+    memory.features = encoder_.encode(image);
+    memory.features_hash = hash;
+  }
+  return memory.features;
+}
+
+std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
+    const traffic::TrafficSnapshot& snapshot, const planning::PlanningTask& task, Memory& memory) {
+  auto situation = std::make_unique<Situation>();
+  situation->task = &task;
+  situation->memory = &memory;
+  const traffic::Vehicle& vehicle = *task.vehicle;
+  guidance::GuidanceScene& scene = situation->scene;
+  scene.state = vehicle.state;
+  scene.dimensions = vehicle.dimensions;
+  scene.target_speed = task.target_speed;
+  scene.drivable_area = &context_.drivable_area;
+  situation->context.speed = vehicle.state.speed;
+  situation->context.image_features = featuresOf(*task.image, memory);
+  if (task.route != nullptr && !task.route->empty()) {
+    memory.follower.update(*task.route, vehicle.state.position);
+    const double arc_length = memory.follower.arcLength();
+    scene.route = task.route;
+    scene.route_arc_length = arc_length;
+    const double place = std::clamp(arc_length, 0.0, task.route->length());
+    scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
+    if (tells_route_) {
+      situation->context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
+                                                        arc_length, vehicle.state.pose());
+    }
+  }
+  setOther(snapshot, *situation);
+  setWarmStart(snapshot.tick, *situation);
+  for (std::int64_t i = 0; i < options_.candidates; ++i) {
+    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(guidance_, scene));
+  }
+  return situation;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The table of planners, for ego and CBVs alike: those of this package
+/// (the list in src/planners/CMakeLists.txt) and those that plug-ins add.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/planning/planner_descriptor.h"
+
+namespace cdiff::planners {
+
+/// Adds a planner to the table; `source` says who does ("library /x/libmine.so"). Throws InputError
+/// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
+/// and a camera that nobody publishes.
+void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
+
+/// nullptr for an unknown name.
+const planning::PlannerDescriptor* findPlanner(const std::string& name);
+/// All, sorted by name.
+std::vector<const planning::PlannerDescriptor*> registeredPlanners();
+/// Who registered a planner; "" for an unknown name.
+std::string sourceOf(const std::string& name);
+
+/// Throws InputError naming the nearest known planner for an unknown name.
+std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
+                                               const planning::PlannerParts& parts);
+
+/// The default options of every planner.
+planning::PlannerOptionsTable defaultOptions();
+
+/// Names that makePlanner knows, sorted.
+std::vector<std::string> plannerNames();
+/// Names of the planners that follow guidance objectives, sorted.
+std::vector<std::string> guidedPlannerNames();
+/// Whether a planner of this name follows guidance objectives; false for unknown names.
+bool canBeGuided(const std::string& name);
+/// Whether a planner of this name needs images; false for unknown names.
+bool seesImages(const std::string& name);
+/// Name of the planner with this title; "" when there is none.
+std::string plannerTitled(const std::string& title);
+
+/// Planners of a scenario that names none.
+extern const char* const kDefaultEgoPlanner;
+extern const char* const kDefaultCbvPlanner;
+
+/// The planners of this package.
+std::vector<planning::PlannerDescriptor> packagePlanners();
+
+}  // namespace cdiff::planners

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "plugins/plugin_loader.h"
+
+#include <class_loader/class_loader.hpp>
+#include <memory>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/plugins/plugin.h"
+#include "guidance/objective_registry.h"
+#include "planners/registry.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::plugins {
+namespace {
+
+using core::InputError;
+
+/// The library stays loaded as long as the program runs: descriptors hold its functions.
+class_loader::ClassLoader& openLibrary(const PluginLibrary& library, const std::string& what) {
+  static std::vector<std::unique_ptr<class_loader::ClassLoader>> libraries;
+  try {
+    libraries.push_back(std::make_unique<class_loader::ClassLoader>(library.file.string(), false));
+  } catch (const class_loader::ClassLoaderException& error) {
+    throw InputError(what + " cannot be loaded: " + error.what() +
+                     "; build it again against this package");
+  }
+  return *libraries.back();
+}
+
+/// Calls a function of the plug-in's author.
+template <class Call>
+auto ask(const std::string& what, const std::string& where, const Call& call) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    throw InputError(what + " throws in " + where + ": " + error.what() +
+                     "; its author must mend it");
+  } catch (...) {
+    throw InputError(what + " throws in " + where + "; its author must mend it");
+  }
+}
+
+void requireVersion(const Plugin& plugin, const std::string& what) {
+  const int version = plugin.apiVersion();
+  if (version == kApiVersion) return;
+  throw InputError(what + " was built for version " + std::to_string(version) +
+                   " of the API; this is version " + std::to_string(kApiVersion) +
+                   ": build it again against this package");
+}
+
+/// The keys at the top of a scenario file.
+bool isScenarioKey(const std::string& name) {
+  const std::string text = "\n" + core::dumpOptions(session::ScenarioOptions());
+  return text.find("\n" + name + ":") != std::string::npos;
+}
+
+/// The options of a planner are a group of the scenario file under its name.
+void requireFreeKey(const std::string& name, const std::string& what) {
+  if (planners::findPlanner(name) != nullptr || !isScenarioKey(name)) return;
+  throw InputError(what + " names a planner '" + name +
+                   "', which is a key of scenario files; its author must choose another name");
+}
+
+void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded) {
+  for (planning::PlannerDescriptor& planner :
+       ask(what, "planners()", [&] { return plugin.planners(); })) {
+    requireFreeKey(planner.name, what);
+    loaded.planners.push_back(planner.name);
+    planners::registerPlanner(std::move(planner), what);
+  }
+  for (guidance::ObjectiveDescriptor& objective :
+       ask(what, "objectives()", [&] { return plugin.objectives(); })) {
+    loaded.objectives.push_back(objective.name);
+    guidance::registerObjective(std::move(objective), what);
+  }
+  for (metrics::MetricDescriptor& metric :
+       ask(what, "metrics()", [&] { return plugin.metrics(); })) {
+    loaded.metrics.push_back(metric.name);
+    metric.source = what;
+    metrics::registerMetric(std::move(metric));
+  }
+}
+
+}  // namespace
+
+LoadedPlugin loadPlugin(const PluginLibrary& library) {
+  const std::string what = "plug-in '" + library.file.string() + "' (named by " +
+                           library.named_by + ")";
+  class_loader::ClassLoader& loader = openLibrary(library, what);
+  const std::vector<std::string> classes = loader.getAvailableClasses<Plugin>();
+  if (classes.empty()) {
+    throw InputError(what + " exports no class of cdiff::plugins::Plugin; its author must add "
+                     "CLASS_LOADER_REGISTER_CLASS(CLASS, cdiff::plugins::Plugin)");
+  }
+  LoadedPlugin loaded{library, {}, {}, {}};
+  for (const std::string& name : classes) {
+    const std::string of_class = what + ", class " + name + ",";
+    const auto plugin = ask(of_class, "its constructor", [&] {
+      return std::shared_ptr<Plugin>(loader.createUnmanagedInstance<Plugin>(name));
+    });
+    requireVersion(*plugin, of_class);
+    addAll(*plugin, of_class, loaded);
+  }
+  return loaded;
+}
+
+const std::vector<LoadedPlugin>& loadPlugins() {
+  static const std::vector<LoadedPlugin> plugins = [] {
+    std::vector<LoadedPlugin> loaded;
+    for (const PluginLibrary& library : findPlugins()) loaded.push_back(loadPlugin(library));
+    return loaded;
+  }();
+  return plugins;
+}
+
+}  // namespace cdiff::plugins

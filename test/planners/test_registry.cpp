@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/course.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
+#include "planners/registry.h"
+#include "planners/two_stage_pid/trajectory_tracker.h"
+
+namespace cdiff::planners {
+namespace {
+
+class PlannerRegistry : public ::testing::Test {
+ protected:
+  std::unique_ptr<planning::Planner> make(const std::string& name) const {
+    return makePlanner(name, {{network_, area_}, options_, vehicle_, camera_, guidance_});
+  }
+  std::string errorOf(const std::string& name) const {
+    return messageOf([&] { make(name); });
+  }
+  template <class Call>
+  static std::string messageOf(const Call& call) {
+    try {
+      call();
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  /// A descriptor that could be registered.
+  static planning::PlannerDescriptor descriptor(const std::string& name) {
+    planning::PlannerDescriptor made = *findPlanner("pdm_lite");
+    made.name = name;
+    return made;
+  }
+  static std::string refusal(const planning::PlannerDescriptor& descriptor) {
+    return messageOf([&] { registerPlanner(descriptor, "library mine.so"); });
+  }
+
+  map::RoadNetwork network_ =
+      testing::makeNetwork({{"road", testing::straight(0.0, 0.0, 50.0, 0.0)}});
+  map::DrivableArea area_{network_};
+  planning::PlannerOptionsTable options_ = defaultOptions();
+  dynamics::BicycleModelOptions vehicle_;
+  rendering::CameraOptions camera_;
+  guidance::GuidanceOptions guidance_;
+};
+
+TEST_F(PlannerRegistry, MakesEveryPlannerThatItNames) {
+  const std::vector<std::string> names = plannerNames();
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+  EXPECT_NE(std::find(names.begin(), names.end(), "pdm_lite"), names.end());
+  for (const std::string& name : names) {
+    const auto planner = make(name);
+    ASSERT_NE(planner, nullptr) << name;
+    EXPECT_EQ(planner->needsImages(), seesImages(name)) << name;
+    EXPECT_FALSE(findPlanner(name)->help.empty()) << name;
+    EXPECT_FALSE(findPlanner(name)->title.empty()) << name;
+  }
+}
+
+TEST_F(PlannerRegistry, DefaultPlannersAreRegistered) {
+  EXPECT_TRUE(findPlanner(kDefaultEgoPlanner)->drives_ego);
+  EXPECT_TRUE(findPlanner(kDefaultCbvPlanner)->drives_cbv);
+}
+
+TEST_F(PlannerRegistry, TwoStagePidIsGuidedAndSees) {
+  EXPECT_TRUE(canBeGuided("two_stage_pid"));
+  EXPECT_TRUE(seesImages("two_stage_pid"));
+  EXPECT_FALSE(canBeGuided("pdm_lite"));
+  options_.of<TrajectoryTrackerOptions>().look_ahead_maximum = 1.0;
+  EXPECT_THROW(make("two_stage_pid"), core::InputError);
+  EXPECT_THROW(options_.validate(), core::InputError);
+  options_ = defaultOptions();
+  camera_.width = 80;
+  EXPECT_THROW(make("two_stage_pid"), core::InputError);
+}
+
+TEST_F(PlannerRegistry, NamesTheNearestPlanner) {
+  EXPECT_EQ(errorOf("pdmlite"),
+            "unknown planner 'pdmlite'; the nearest known planner is 'pdm_lite'");
+}
+
+TEST_F(PlannerRegistry, ExternalNeedsTheNodeGraph) {
+  EXPECT_NE(errorOf("external").find("needs the node graph"), std::string::npos);
+}
+
+TEST_F(PlannerRegistry, PassesTheOptionsOn) {
+  options_.of<PdmLiteOptions>().forecast_horizon = -1.0;
+  EXPECT_THROW(make("pdm_lite"), core::InputError);
+}
+
+TEST_F(PlannerRegistry, CopiesOfOptionsAreDeep) {
+  planning::PlannerOptionsTable copy = options_;
+  copy.of<PdmLiteOptions>().lateral_kp = 3.118;
+  EXPECT_NE(options_.of<PdmLiteOptions>().lateral_kp, 3.118);
+  options_ = copy;
+  EXPECT_EQ(options_.of<PdmLiteOptions>().lateral_kp, 3.118);
+}
+
+TEST_F(PlannerRegistry, RefusesWhatCannotWork) {
+  EXPECT_EQ(refusal(descriptor("pdm_lite")),
+            "library mine.so: planner 'pdm_lite' is already registered by package e2e_cdiff; one "
+            "of the two needs another name");
+  for (const char* name : {"", "external", "My planner", "_x"})
+    EXPECT_NE(refusal(descriptor(name)).find("must be snake_case"), std::string::npos) << name;
+  planning::PlannerDescriptor broken = descriptor("broken");
+  broken.options = nullptr;
+  EXPECT_NE(refusal(broken).find("its descriptor has no options"), std::string::npos);
+  broken = descriptor("broken");
+  broken.make = nullptr;
+  EXPECT_NE(refusal(broken).find("no constructor"), std::string::npos);
+  broken = descriptor("broken");
+  broken.drives_ego = broken.drives_cbv = false;
+  EXPECT_NE(refusal(broken).find("neither the ego nor CBVs"), std::string::npos);
+  broken = descriptor("broken");
+  broken.cameras = {"rear"};
+  EXPECT_NE(refusal(broken).find("camera 'rear'"), std::string::npos);
+  EXPECT_EQ(findPlanner("broken"), nullptr);
+}
+
+TEST_F(PlannerRegistry, WhatIsRegisteredIsKnownEverywhere) {
+  planning::PlannerDescriptor mine = descriptor("registry_test_planner");
+  mine.guided = true;
+  registerPlanner(mine, "library mine.so");
+  EXPECT_EQ(sourceOf("registry_test_planner"), "library mine.so");
+  EXPECT_NE(make("registry_test_planner"), nullptr);
+  EXPECT_TRUE(canBeGuided("registry_test_planner"));
+  const std::vector<std::string> guided = guidedPlannerNames();
+  EXPECT_NE(std::find(guided.begin(), guided.end(), "registry_test_planner"), guided.end());
+}
+
+TEST(PdmLiteOptions, ReadBackFromTheirOwnText) {
+  PdmLiteOptions options;
+  options.lateral_kp = 3.118;
+  options.obey_lights = false;
+  PdmLiteOptions read;
+  core::loadOptions({"text", core::dumpOptions(options, true)}, read);
+  EXPECT_EQ(read.lateral_kp, 3.118);
+  EXPECT_FALSE(read.obey_lights);
+  EXPECT_EQ(core::dumpOptions(read), core::dumpOptions(options));
+}
+
+TEST(PdmLiteOptions, UnknownKeysAndValuesOutOfRangeAreErrors) {
+  PdmLiteOptions options;
+  EXPECT_THROW(core::loadOptions({"text", "lateral_pk: 2.0"}, options), core::InputError);
+  EXPECT_THROW(core::loadOptions({"text", "lateral_window: 0"}, options), core::InputError);
+}
+
+}  // namespace
+}  // namespace cdiff::planners

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// Plug-ins for the tests: a good one, and one for each thing that can be wrong.
+#include <class_loader/class_loader.hpp>
+#include <stdexcept>
+
+#include "e2e_cdiff/plugins/plugin.h"
+
+namespace {
+
+struct Options {
+  double value = 1.0;
+  void describe(cdiff::core::OptionsVisitor& visitor) {
+    visitor.number({"value", "", "A value."}, value, 0.0, 2.0);
+  }
+  void validate() const {}
+};
+
+class Thrower : public cdiff::planning::Planner {
+ public:
+  std::vector<cdiff::planning::PlannedAction> plan(
+      const cdiff::traffic::TrafficSnapshot&,
+      const std::vector<cdiff::planning::PlanningTask>&) override {
+    throw std::runtime_error("nothing can be planned here");
+  }
+};
+
+cdiff::planning::PlannerDescriptor thrower(const std::string& name) {
+  cdiff::planning::PlannerDescriptor descriptor;
+  descriptor.name = name;
+  descriptor.title = "Thrower";
+  descriptor.help = "throws.";
+  descriptor.options = cdiff::planning::makePlannerOptions<Options>;
+  descriptor.make = [](const cdiff::planning::PlannerParts&) {
+    return std::make_unique<Thrower>();
+  };
+  return descriptor;
+}
+
+#ifndef PLUGIN_empty
+
+class TestPlugin : public cdiff::plugins::Plugin {
+ public:
+#if defined(PLUGIN_throwing_constructor)
+  TestPlugin() { throw std::runtime_error("no licence found"); }
+#elif defined(PLUGIN_other_version)
+  int apiVersion() const override { return cdiff::plugins::kApiVersion + 1; }
+#endif
+  std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
+#if defined(PLUGIN_throwing_list)
+    throw std::runtime_error("no planner today");
+#elif defined(PLUGIN_taken_name)
+    return {thrower("pdm_lite")};
+#elif defined(PLUGIN_scenario_key)
+    return {thrower("camera")};
+#elif defined(PLUGIN_no_options)
+    cdiff::planning::PlannerDescriptor descriptor = thrower("bare");
+    descriptor.options = nullptr;
+    return {descriptor};
+#else
+    return {thrower("thrower")};
+#endif
+  }
+};
+
+#endif
+
+}  // namespace
+
+#ifdef PLUGIN_empty
+extern "C" const void* unusedPlanner() {
+  static const auto descriptor = thrower("unused");
+  return &descriptor;
+}
+#else
+CLASS_LOADER_REGISTER_CLASS(TestPlugin, cdiff::plugins::Plugin)
+#endif
