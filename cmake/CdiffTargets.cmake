@@ -3,6 +3,21 @@ set(CDIFF_WARNINGS -Wall -Wextra -Werror)
 # Private headers lie beside their sources: "FOLDER/name.h". Only quoted names are looked up there, so <ros/...> stays ROS's.
 set(CDIFF_PRIVATE_HEADERS "SHELL:-iquote ${PROJECT_SOURCE_DIR}/src")
 
+# cdiff_camel_case(SNAKE OUT): the name of a function, as in pdm_lite -> pdmLite.
+function(cdiff_camel_case snake out)
+  set(camel "")
+  string(REPLACE "_" ";" words ${snake})
+  foreach(word ${words})
+    string(SUBSTRING ${word} 0 1 first)
+    string(SUBSTRING ${word} 1 -1 rest)
+    if(camel)
+      string(TOUPPER ${first} first)
+    endif()
+    string(APPEND camel ${first}${rest})
+  endforeach()
+  set(${out} ${camel} PARENT_SCOPE)
+endfunction()
+
 # cdiff_layer(NAME SOURCES file... LINK target...): library e2e_cdiff_NAME of src/NAME.
 function(cdiff_layer name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
