@@ -48,8 +48,26 @@ def topic_calls(names):
     return re.compile(rf'(?:advertise|subscribe|resolve)(?:<[^;(]*>)?\([^;"]*"/?(?:{words})"')
 
 
+def planner_names(table):
+    """The planners of the list in src/planners/CMakeLists.txt."""
+    return re.search(r"set\(CDIFF_PLANNERS ([a-z_0-9 ]+)\)", table).group(1).split()
+
+
+def planner_patterns(names):
+    """A name of several words anywhere in a string; one of a single word ("diffusion") as a whole string."""
+    for name in names:
+        yield re.compile(rf"(?<![a-z_]){name}(?![a-z_])" if "_" in name else rf"^{name}$")
+
+
+def no_calls(_names):
+    return re.compile(r"(?!)")
+
+
+# "own": the folder whose files may spell the names.
 SECTIONS = {
     "topics": {"table": "src/ros/channels.cpp", "search": ["src"], "names": topic_names, "patterns": topic_patterns, "calls": topic_calls},
+    "planners": {"table": "src/planners/CMakeLists.txt", "search": ["src"], "own": "src/planners", "names": planner_names,
+                 "patterns": planner_patterns, "calls": no_calls},
 }
 
 
@@ -61,7 +79,8 @@ def violations(source, section):
     patterns = list(section["patterns"](names))
     for folder in section["search"]:
         for path in sorted((source / folder).rglob("*")):
-            if path.suffix not in (".h", ".cpp") or path == table:
+            own = section.get("own")
+            if path.suffix not in (".h", ".cpp") or path == table or own and source / own in path.parents:
                 continue
             text = path.read_text()
             for line, literal in literals_of(text):
