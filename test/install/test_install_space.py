@@ -77,7 +77,7 @@ class InstallSpace(unittest.TestCase):
             faults = [text for text in pool.map(fault, headers) if text]
         self.assertEqual(faults, [])
 
-    def test_a_planner_and_an_objective_of_ones_own_drive_a_session(self):
+    def test_a_planner_an_objective_and_a_metric_of_ones_own_serve_a_session(self):
         results = self.folder / "session"
         code, text = self.cdiff("run", "crossing_left_turn", "--results", results, "--set", "ego_planner=creep", "--set", "creep.speed=3",
                                 "--set", "guidance.keep_right.weight=0.5", "--set", "protocol.time_limit=4")
@@ -87,6 +87,8 @@ class InstallSpace(unittest.TestCase):
         self.assertEqual([fault for fault in summary["faults"] if "creep" in str(fault)], [])
         self.assertIn("creep", (results / "report.html").read_text())
         self.assertIn("keep_right", (results / "report.html").read_text())
+        self.assertGreater(summary["metrics"]["ego_jerk"]["value"], 0.0)
+        self.assertIn("Ego jerk", (results / "report.html").read_text())
 
     def test_validate_lists_and_checks_them(self):
         code, text = self.cdiff("validate", "--planners")

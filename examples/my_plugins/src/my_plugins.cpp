@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A planner and a guidance objective of one's own. In a scenario, or by --set:
+/// A planner, a guidance objective and a metric of one's own. In a scenario, or by --set:
 ///   ego_planner: creep        creep.speed: 2.0
 ///   guidance.keep_right.weight: 0.5
 #include <algorithm>
@@ -76,6 +76,48 @@ class KeepRight : public cdiff::guidance::Objective {
   double offset_ = 0.5;
 };
 
+constexpr cdiff::metrics::FigureDefinition kEgoJerk = {
+    "ego_jerk",
+    "",
+    "Ego jerk",
+    "m/s^3",
+    cdiff::metrics::Direction::kLowerIsBetter,
+    cdiff::metrics::Subject::kEgo,
+    "Mean absolute second difference of the ego's speed over two ticks, divided by the square of "
+    "the tick.",
+    "",
+};
+
+class EgoJerk : public cdiff::metrics::Metric {
+ public:
+  explicit EgoJerk(double step) : step_(step) {}
+
+  void observe(const cdiff::metrics::MetricTick& tick) override {
+    if (tick.ego == nullptr) return;
+    const double speed = tick.ego->state.speed;
+    if (ticks_ > 1) sum_ += std::abs(speed - 2.0 * last_ + before_) / (step_ * step_);
+    before_ = last_;
+    last_ = speed;
+    ++ticks_;
+  }
+  void report(cdiff::metrics::MetricSink& sink) const override {
+    cdiff::metrics::Measure measure;
+    measure.n = ticks_ > 2 ? ticks_ - 2 : 0;
+    if (measure.n > 0)
+      measure.value = sum_ / static_cast<double>(measure.n);
+    else
+      measure.reason = "fewer than three ticks with the ego";
+    sink.set(kEgoJerk, measure);
+  }
+
+ private:
+  double step_;  ///< [s]
+  double last_ = 0.0;
+  double before_ = 0.0;
+  double sum_ = 0.0;
+  std::size_t ticks_ = 0;
+};
+
 class MyPlugins : public cdiff::plugins::Plugin {
  public:
   std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
@@ -92,6 +134,14 @@ class MyPlugins : public cdiff::plugins::Plugin {
   std::vector<cdiff::guidance::ObjectiveDescriptor> objectives() const override {
     return {{"keep_right", "Keeps to the right of where the vehicle is.",
              [] { return std::make_unique<KeepRight>(); }}};
+  }
+  std::vector<cdiff::metrics::MetricDescriptor> metrics() const override {
+    return {{"ego_jerk",
+             "How jerkily the ego drives.",
+             {kEgoJerk},
+             [](const cdiff::metrics::MetricContext& context) {
+               return std::make_unique<EgoJerk>(context.options.simulation_step);
+             }}};
   }
 };
 
