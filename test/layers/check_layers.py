@@ -16,7 +16,7 @@ RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"learning", "planner_training"}),
-    "a planner's training": (r"/src/planners/[a-z_]+/training/", {"planner_training", "cli"}),
+    "planner training": (r"/src/planners/[a-z_]+/training/", {"planner_training", "cli"}),
     "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"inference", "diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
     "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "ros"}),

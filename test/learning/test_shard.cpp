@@ -134,7 +134,7 @@ TEST_F(ShardTest, RefusesAHeaderThatDoesNotFitTheSamples) {
   expectError(resealed("\"samples\":3", "\"samples\":4"), "3 of 4 samples");
   expectError(resealed("\"samples\":3", "\"samples\":2"), "truncated or overlong");
   expectError(resealed("[8,7]", "[9,7]"), "truncated");
-  expectError(resealed("[8,7]", "[-2,7]"), "field 'rollout': 'shape' holds the size -2");
+  expectError(resealed("[8,7]", "[-9 ]"), "field 'rollout': 'shape' holds the size -9");
   expectError(resealed("[64,64,3]", "[64,96,3]"), "field 'image' does not unpack");
   expectError(resealed("\"fields\"", "\"fieldz\""), "header");
 }

@@ -10,12 +10,13 @@
 namespace cdiff::planners {
 namespace {
 
+using learning::ParameterSet;
 using learning::toTensor;
 using learning::toVector;
 
 using Shapes = std::map<std::string, std::vector<std::int64_t>>;
 
-Shapes shapesOf(const learning::ParameterSet& parameters) {
+Shapes shapesOf(const ParameterSet& parameters) {
   Shapes shapes;
   for (const std::string& name : parameters.names()) shapes[name] = parameters(name).sizes().vec();
   return shapes;
