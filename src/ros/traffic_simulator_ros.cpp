@@ -31,7 +31,6 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
       heartbeat_(node_, parameters.positive("heartbeat_timeout", 10.0)),
       book_({}),
       paced_answers_(0.05),
-      decisions_({}),
       display_(node_) {
   parameters.requireKnown(knownParameters());
   limits_ = {parameters.positive("start_timeout", 30.0),
@@ -49,7 +48,7 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   book_ = ParticipantBook(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
   paced_answers_ = PacedAnswers(options.simulation_step, setup_->ticksPerDecision());
-  decisions_ = DecisionBook(options);
+  decisions_.emplace(options);
 }
 
 int TrafficSimulatorRos::run() {
@@ -136,7 +135,7 @@ std::string TrafficSimulatorRos::takeAnswer(const Topic& topic, const AnyMessage
 }
 
 void TrafficSimulatorRos::noteArrival(int slot, std::uint64_t tick) {
-  if (paced()) decisions_.arrived(slot, tick, secondsSince(begin_));
+  if (paced()) decisions_->arrived(slot, tick, secondsSince(begin_));
 }
 
 /// A fault that a node reports is recorded once, whoever else reports it too.

@@ -116,8 +116,9 @@ class TrafficSimulatorRos {
   ParticipantBook book_;
   TickAnswers answers_;
   PacedAnswers paced_answers_;
-  DecisionBook decisions_;               ///< of a session that the wall clock rules
-  bool recorded_ = true;                 ///< whether the record of the present decision is out
+  std::optional<DecisionBook>
+      decisions_;         ///< set by the constructor; of a session that the wall clock rules
+  bool recorded_ = true;  ///< whether the record of the present decision is out
   std::set<std::string> late_planners_;  ///< whose first late answer is recorded as a fault
   std::deque<::e2e_cdiff::TrafficSnapshot::ConstPtr> unsettled_;  ///< from an open decision on
   MessageGate gate_;

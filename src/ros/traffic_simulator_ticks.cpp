@@ -52,7 +52,7 @@ void TrafficSimulatorRos::publishTick() {
   const traffic::TrafficSnapshot& snapshot = world_->snapshot();
   if (snapshot.status != SessionStatus::kRunning) closeDecisions();
   msgs::TrafficSnapshot message = toMsg(snapshot);
-  message.late_answers = decisions_.late();
+  message.late_answers = decisions_->late();
   if (snapshot.status != SessionStatus::kRunning) addTotals(message);
   rosgraph_msgs::Clock clock;
   clock.clock = message.header.stamp;
@@ -63,7 +63,7 @@ void TrafficSimulatorRos::publishTick() {
   published_at_ = Clock::now();
   display_.publish(snapshot);
   recorded_ = !published_->decision_tick;
-  if (paced() && published_->decision_tick) decisions_.open(published_);
+  if (paced() && published_->decision_tick) decisions_->open(published_);
   if (paced()) unsettled_.push_back(published_);
 }
 
@@ -207,7 +207,7 @@ void TrafficSimulatorRos::closeDecisions() {
 
 void TrafficSimulatorRos::settleDecisions(bool all) {
   if (!published_) return;
-  for (const auto& record : decisions_.settle(answers_, published_->tick, all)) {
+  for (const auto& record : decisions_->settle(answers_, published_->tick, all)) {
     publishRecord(record);
     for (const auto& [planner, text] : latenessTexts(*record)) {
       if (late_planners_.insert(planner).second) world_->recordFault(planner, text);
@@ -229,7 +229,7 @@ void TrafficSimulatorRos::keepSettledInReserve() {
 void TrafficSimulatorRos::advancePaced() {
   const auto taken = paced_answers_.selection(*published_, answers_);
   const auto applied = paced_answers_.actions(*published_, taken, answers_);
-  decisions_.ended(published_->tick, applied, secondsSince(begin_));
+  decisions_->ended(published_->tick, applied, secondsSince(begin_));
   settleDecisions(false);
   world_->withholdBlocked(standsPerhapsForSilence());
   if (taken) {
@@ -246,7 +246,7 @@ void TrafficSimulatorRos::forgetSettled() {
   const auto kept =
       static_cast<std::uint64_t>(std::llround(2.0 / setup_->options().simulation_step));
   const std::uint64_t oldest =
-      std::min(decisions_.oldestOpen().value_or(published_->tick),
+      std::min(decisions_->oldestOpen().value_or(published_->tick),
                unsettled_.empty() ? published_->tick : unsettled_.front()->tick);
   answers_.forgetBefore(std::min(oldest, published_->tick - std::min(kept, published_->tick)));
 }
