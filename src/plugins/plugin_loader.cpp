@@ -16,16 +16,15 @@ namespace {
 
 using core::InputError;
 
-/// The library stays loaded as long as the program runs: descriptors hold its functions.
+/// The library stays loaded to the last: the tables hold its functions, and their destructors may
+/// run after those of this file, so nothing here is destroyed.
 class_loader::ClassLoader& openLibrary(const PluginLibrary& library, const std::string& what) {
-  static std::vector<std::unique_ptr<class_loader::ClassLoader>> libraries;
   try {
-    libraries.push_back(std::make_unique<class_loader::ClassLoader>(library.file.string(), false));
+    return *new class_loader::ClassLoader(library.file.string(), false);
   } catch (const class_loader::ClassLoaderException& error) {
     throw InputError(what + " cannot be loaded: " + error.what() +
                      "; build it again against this package");
   }
-  return *libraries.back();
 }
 
 /// Calls a function of the plug-in's author.

@@ -19,28 +19,11 @@ import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
+from source_copy import SourceCopy  # noqa: E402
 
 BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
 COPY = Path(tempfile.gettempdir()) / f"e2e_cdiff_mutants_{os.getpid()}"
-COPY_BUILD = COPY / "build"  # at the same place as usual, so that ccache knows the files
-LEFT_OUT = {".git", "build", "devel", "install", "results"}
-
-
-def copy_source():
-    COPY.mkdir()
-    for top in SOURCE.iterdir():
-        if top.name in LEFT_OUT or top == BUILD:
-            continue
-        if top.is_dir():
-            shutil.copytree(top, COPY / top.name)
-        else:
-            shutil.copy(top, COPY)
-
-
-def ninja(targets):
-    environment = {**os.environ, "CCACHE_BASEDIR": str(COPY)}
-    done = subprocess.run(["ninja", "-C", COPY_BUILD, *targets], env=environment, capture_output=True, text=True, check=False)
-    return done.returncode == 0, done.stdout
+COPY_BUILD = COPY / "build"
 
 
 def failing_test(programs):
@@ -67,13 +50,13 @@ def changed(text, mutant):
     return text
 
 
-def verdict(mutant):
+def verdict(mutant, copy):
     """None when the mutant is killed, else why not."""
     path = COPY / "src" / mutant["file"]
     original = path.read_text()
     try:
         path.write_text(changed(original, mutant))
-        built, output = ninja([f"test_{name}" for name in mutant["tests"]])
+        built, output = copy.ninja([f"test_{name}" for name in mutant["tests"]])
         if not built:
             return "does not compile:\n" + output[-1500:]
         killer = failing_test(mutant["tests"])
@@ -91,18 +74,18 @@ def main():
     mutants = yaml.safe_load((Path(__file__).parent / "mutants.yaml").read_text())
     words = sys.argv[4:]
     mutants = [m for m in mutants if not words or any(word in m["name"] + " " + m["file"] for word in words)]
-    copy_source()
+    copy = SourceCopy(SOURCE, BUILD, COPY)
     subprocess.run(["cmake", "-S", COPY, "-B", COPY_BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                     "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"],
                    check=True, stdout=subprocess.DEVNULL)
     programs = sorted({name for mutant in mutants for name in mutant["tests"]})
     begin = time.monotonic()
-    built, output = ninja([f"test_{name}" for name in programs])
+    built, output = copy.ninja([f"test_{name}" for name in programs])
     broken = failing_test(programs) if built else output[-3000:]
     cases = [("without a mutant", time.monotonic() - begin, broken and f"fails: {broken}")]
     for mutant in [] if broken else mutants:
         begin = time.monotonic()
-        reason = verdict(mutant)
+        reason = verdict(mutant, copy)
         if reason:
             print(f"NOT KILLED {mutant['name']} ({mutant['file']}): {reason}", flush=True)
         cases.append((f"{mutant['name']} ({mutant['file']})", time.monotonic() - begin, reason))

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""Add a thing of each kind with scripts/add in a copy of the source, count the files that it takes, build it and run its tests.
+
+    additions.py BUILD SOURCE RESULT.xml
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
+from source_copy import SourceCopy  # noqa: E402
+
+BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
+# Kind, name, most files (registration included, pages of docs that a test prints apart), test programs.
+ADDITIONS = [
+    ("planner", "night_rider", 4, ["test_planners_night_rider", "test_planners_registry"]),
+    ("objective", "night_axis", 3, ["test_guidance_objective_gradients", "test_guidance_guidance_options"]),
+    ("metric", "night_speed", 2, ["test_metrics_night_speed_metric", "test_metrics_metric_registry", "test_metrics_metric_keys"]),
+    ("topic", "night_report", 3, ["test_ros_channels"]),
+]
+# Compares docs/ros_api.md with the table, which has one topic more here.
+EXPECTED_FAILURES = {"test_ros_channels": "docs/ros_api.md"}
+
+
+def contents(root):
+    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file() and "build" not in path.relative_to(root).parts[:1]}
+
+
+def fault_of_tests(copy, programs):
+    environment = {**os.environ, "E2E_CDIFF_SHARE": str(copy.root), "SUMO_HOME": "/usr/share/sumo"}
+    for name in programs:
+        program = next(path for path in copy.build.rglob(name) if path.is_file() and os.access(path, os.X_OK))
+        done = subprocess.run([program], env=environment, cwd=copy.build, timeout=600, capture_output=True, text=True, check=False)
+        if done.returncode != 0 and EXPECTED_FAILURES.get(name, "\0") not in done.stdout:
+            return f"{name} fails:\n{done.stdout[-2000:]}"
+    return None
+
+
+def fault_of(copy, kind, name, most, programs):
+    before = contents(copy.root)
+    done = subprocess.run([copy.root / "scripts/add", kind, name], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return f"scripts/add: {done.stderr}"
+    after = contents(copy.root)
+    touched = sorted(str(path.relative_to(copy.root)) for path in after if before.get(path) != after[path])
+    if not 0 < len(touched) <= most:
+        return f"takes {len(touched)} files, at most {most} were expected: {', '.join(touched)}"
+    built, output = copy.ninja(programs)
+    return fault_of_tests(copy, programs) if built else "does not build:\n" + output[-3000:]
+
+
+def main():
+    root = Path(tempfile.gettempdir()) / f"e2e_cdiff_additions_{os.getpid()}"
+    cases = []
+    try:
+        copy = SourceCopy(SOURCE, BUILD, root)
+        subprocess.run(["cmake", "-S", root, "-B", copy.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                        "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DE2E_CDIFF_TESTS=ON"], check=True, capture_output=True)
+        for kind, name, most, programs in ADDITIONS:
+            start = time.monotonic()
+            fault = fault_of(copy, kind, name, most, programs)
+            print(f"{kind}: {fault or 'added'}", flush=True)
+            cases.append((kind, time.monotonic() - start, fault))
+    finally:
+        shutil.rmtree(root, ignore_errors=True)
+    junit.write(RESULT, "additions", cases)
+    return 1 if any(fault for _, _, fault in cases) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
