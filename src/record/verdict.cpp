@@ -18,11 +18,6 @@ using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
 
-constexpr std::pair<Outcome, const char*> kOutcomes[] = {
-    {Outcome::kPassed, "passed"}, {Outcome::kStruck, "struck"},
-    {Outcome::kFailed, "failed"}, {Outcome::kNotJudged, "not_judged"},
-    {Outcome::kError, "error"},   {Outcome::kInterrupted, "interrupted"}};
-
 Check judged(const std::string& name, bool met, const std::string& text) {
   return {name, met ? CheckOutcome::kPassed : CheckOutcome::kFailed, text};
 }
@@ -234,41 +229,6 @@ void addReasons(Verdict& verdict) {
 }
 
 }  // namespace
-
-const char* toText(Outcome outcome) {
-  for (const auto& [each, text] : kOutcomes) {
-    if (each == outcome) return text;
-  }
-  return "error";
-}
-
-std::string wordOf(Outcome outcome) {
-  return outcome == Outcome::kNotJudged ? "not judged" : toText(outcome);
-}
-
-std::string capitalsOf(Outcome outcome) {
-  std::string text = wordOf(outcome);
-  for (char& letter : text) letter = static_cast<char>(std::toupper(letter));
-  return text;
-}
-
-Outcome outcomeOf(const std::string& text) {
-  for (const auto& [outcome, name] : kOutcomes) {
-    if (text == name) return outcome;
-  }
-  throw core::InputError("'" + text + "' is no outcome of a session");
-}
-
-int exitCodeOf(Outcome outcome) {
-  if (outcome == Outcome::kInterrupted) return 130;
-  if (outcome == Outcome::kError) return 2;
-  return outcome == Outcome::kFailed ? 1 : 0;
-}
-
-const char* toText(CheckOutcome outcome) {
-  constexpr const char* kTexts[] = {"passed", "struck", "failed", "error", "skipped"};
-  return kTexts[static_cast<std::size_t>(outcome)];
-}
 
 bool endedByItself(SessionStatus status) {
   return status != SessionStatus::kError && status != SessionStatus::kInterrupted &&

@@ -20,36 +20,6 @@ using core::InputError;
 
 constexpr double kInfinite = 1e9;
 
-fs::path scenarioFolder() { return core::shareFolder() / "config" / "scenarios"; }
-
-fs::path findScenario(const std::string& name_or_file) {
-  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
-  const fs::path shipped = scenarioFolder() / (name_or_file + ".yaml");
-  if (core::isFile(shipped)) return shipped;
-  const std::vector<std::string> known = shippedScenarios();
-  throw InputError("scenario '" + name_or_file +
-                   "' is neither a file nor a shipped scenario; the nearest shipped one is '" +
-                   core::nearestName(name_or_file, known) +
-                   "' (all: " + core::joinText(known, ", ") + ")");
-}
-
-bool looksLikeFile(const std::string& text) {
-  return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
-}
-
-/// A file named in a scenario: beside the scenario file, else beside its network, else as given.
-std::string resolveFile(const std::string& file, const fs::path& scenario_folder,
-                        const std::string& network) {
-  if (file.empty() || fs::path(file).is_absolute()) return file;
-  const fs::path candidates[] = {scenario_folder / file,
-                                 core::shareFolder() / "networks" / network / file,
-                                 fs::path(network).parent_path() / file};
-  for (const fs::path& candidate : candidates) {
-    if (core::isFile(candidate)) return fs::weakly_canonical(candidate).string();
-  }
-  return file;
-}
-
 bool isMultiple(double value, double unit) {
   const double ratio = value / unit;
   return std::abs(ratio - std::round(ratio)) < 1e-6 && ratio > 0.5;
@@ -274,32 +244,6 @@ void ScenarioOptions::validateTime() const {
                      ") are both set; expected one of them: at_most waits for every answer, "
                      "real_time_factor replaces late ones");
   }
-}
-
-ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base) {
-  const fs::path file = findScenario(name_or_file);
-  ScenarioOptions options = base;
-  options.name = file.stem().string();
-  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
-  const bool file_network = looksLikeFile(options.network);
-  if (file_network) options.network = resolveFile(options.network, file.parent_path(), "");
-  if (options.demand != "generated" && options.demand != "none") {
-    options.demand = resolveFile(options.demand, file.parent_path(), options.network);
-  }
-  options.metrics.speed_target_file =
-      resolveFile(options.metrics.speed_target_file, file.parent_path(), options.network);
-  options.route.bench2drive_file =
-      resolveFile(options.route.bench2drive_file, file.parent_path(), options.network);
-  return options;
-}
-
-std::vector<std::string> shippedScenarios() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(scenarioFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
 }
 
 }  // namespace cdiff::session

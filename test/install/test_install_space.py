@@ -101,6 +101,28 @@ class InstallSpace(unittest.TestCase):
         self.assertEqual(code, 3, text)
         self.assertIn("creep.speed", text)
 
+    def test_a_batch_and_its_table_take_them(self):
+        matrix = self.folder / "mine_matrix.yaml"
+        matrix.write_text("scenarios: [crossing_left_turn]\nseeds: [1]\nego_planners: [creep]\ncbv_planners: [pdm_lite]\n"
+                          "set: [protocol.time_limit=3]\n")
+        code, text = self.cdiff("evaluate", matrix, "--results", self.folder / "batch")
+        self.assertIn(code, (0, 1), text)
+        header, row = (self.folder / "batch/runs.csv").read_text().splitlines()[:2]
+        columns = header.split(",")
+        self.assertIn("creep", row)
+        self.assertIn("ego_jerk", columns)
+
+    def test_the_node_graph_takes_them(self):
+        results = self.folder / "graph"
+        code, text = run(self.prefix / "share/e2e_cdiff/scripts/session", "scenario:=crossing_left_turn", "ego_planner:=creep",
+                         "cbv_planner:=pdm_lite", "set:=protocol.time_limit=3", f"results:={results}",
+                         env={**self.environment, "ROS_HOME": str(self.folder / "ros_home"), "ROS_IP": "127.0.0.1"}, cwd=self.folder)
+        self.assertIn(code, (0, 1), text)
+        summary = json.loads((results / "summary.json").read_text())
+        self.assertEqual(summary["ego_planner"], "creep")
+        self.assertEqual(summary["status"], "timed_out", text)
+        self.assertGreater(summary["metrics"]["ego_jerk"]["value"], 0.0)
+
     def test_an_unbuilt_plug_in_is_named(self):
         package = self.folder / "broken" / "lost_plugins"
         package.mkdir(parents=True)
