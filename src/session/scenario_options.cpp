@@ -136,6 +136,8 @@ void ReportOptions::describe(core::OptionsVisitor& visitor) {
                  front_view_rate, 0.0, 10.0);
 }
 
+ScenarioOptions::ScenarioOptions() = default;
+
 void ScenarioOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"schema_version", "", "Version of this format."}, schema_version, 1, 1);
   visitor.text({"name", "", "Name of the scenario in results."}, name, {});

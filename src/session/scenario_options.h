@@ -50,6 +50,8 @@ struct ReportOptions {
 };
 
 struct ScenarioOptions {
+  ScenarioOptions();
+
   std::int64_t schema_version = 1;
   std::string name = "unnamed";
   std::string network;                ///< shipped name or file (*.net.xml, *.xodr)

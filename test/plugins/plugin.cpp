@@ -25,7 +25,7 @@ class Thrower : public cdiff::planning::Planner {
   }
 };
 
-cdiff::planning::PlannerDescriptor thrower(const std::string& name) {
+[[maybe_unused]] cdiff::planning::PlannerDescriptor thrower(const std::string& name) {
   cdiff::planning::PlannerDescriptor descriptor;
   descriptor.name = name;
   descriptor.title = "Thrower";
