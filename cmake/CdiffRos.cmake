@@ -21,7 +21,7 @@ generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 # What planners, objectives and metrics of other packages need (include/e2e_cdiff/plugins/plugin.h).
 catkin_package(INCLUDE_DIRS include
                LIBRARIES e2e_cdiff_core e2e_cdiff_geometry e2e_cdiff_map e2e_cdiff_traffic e2e_cdiff_dynamics e2e_cdiff_guidance
-                         e2e_cdiff_rendering e2e_cdiff_planning e2e_cdiff_metrics
+                         e2e_cdiff_rendering e2e_cdiff_planning e2e_cdiff_metrics e2e_cdiff_cbv
                CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
 install(DIRECTORY include/e2e_cdiff/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 
