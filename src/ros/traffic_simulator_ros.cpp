@@ -125,13 +125,29 @@ std::string TrafficSimulatorRos::takeAnswer(const Topic& topic, const AnyMessage
   if (wrong.empty() && topic.id == ChannelId::kSelection)
     wrong = unusable(*messageAs<msgs::CbvSelection>(message), setup_->network());
   if (!wrong.empty()) return wrong;
+  if (waitsForRollout(topic, message)) return wrong;
   const bool ego = topic.id == ChannelId::kEgoControl;
   if (ego) ego_heard_at_ = Clock::now();
   const std::uint64_t tick =
       answers_.add(topic, message, ego && paced() ? world_->snapshot().tick : 0);
   if (topic.id == ChannelId::kSelection) noteArrival(DecisionBook::kSelection, tick);
   if (ego || topic.id == ChannelId::kCbvControl) noteArrival(topic.slot, tick);
+  const auto early = early_controls_.find(topic.slot);
+  if (topic.id == ChannelId::kCbvRollout && early != early_controls_.end())
+    takeAnswer({ChannelId::kCbvControl, topic.slot}, early->second);
   return wrong;
+}
+
+/// Where answers may be late, a CBV's control counts with the rollout that is sent before it but on
+/// another connection, so that the next action of a plan is always that of the plan. The newest
+/// control of a slot is kept until then.
+bool TrafficSimulatorRos::waitsForRollout(const Topic& topic, const AnyMessage& message) {
+  if (!paced() || topic.id != ChannelId::kCbvControl) return false;
+  early_controls_.erase(topic.slot);
+  const bool waits =
+      answers_.rollout(topic.slot, messageAs<msgs::ControlAction>(message)->tick) == nullptr;
+  if (waits) early_controls_[topic.slot] = message;
+  return waits;
 }
 
 void TrafficSimulatorRos::noteArrival(int slot, std::uint64_t tick) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -89,6 +90,7 @@ class TrafficSimulatorRos {
   void settleDecisions(bool all);
   void keepSettledInReserve();
   void forgetSettled();
+  bool waitsForRollout(const Topic& topic, const AnyMessage& message);
   void noteArrival(int slot, std::uint64_t tick);
   void waitForObservers();
   void writeResultAlone(const traffic::TrafficSnapshot& snapshot);
@@ -116,9 +118,10 @@ class TrafficSimulatorRos {
   ParticipantBook book_;
   TickAnswers answers_;
   PacedAnswers paced_answers_;
+  std::map<int, AnyMessage> early_controls_;  ///< by slot: come before their rollouts
   std::optional<DecisionBook>
-      decisions_;         ///< set by the constructor; of a session that the wall clock rules
-  bool recorded_ = true;  ///< whether the record of the present decision is out
+      decisions_;                        ///< set by the constructor; used where answers may be late
+  bool recorded_ = true;                 ///< whether the record of the present decision is out
   std::set<std::string> late_planners_;  ///< whose first late answer is recorded as a fault
   std::deque<::e2e_cdiff::TrafficSnapshot::ConstPtr> unsettled_;  ///< from an open decision on
   MessageGate gate_;

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "page/result_writer.h"
 #include "ros/replay.h"
