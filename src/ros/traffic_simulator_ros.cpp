@@ -133,8 +133,9 @@ std::string TrafficSimulatorRos::takeAnswer(const Topic& topic, const AnyMessage
   if (topic.id == ChannelId::kSelection) noteArrival(DecisionBook::kSelection, tick);
   if (ego || topic.id == ChannelId::kCbvControl) noteArrival(topic.slot, tick);
   const auto early = early_controls_.find(topic.slot);
-  if (topic.id == ChannelId::kCbvRollout && early != early_controls_.end())
-    takeAnswer({ChannelId::kCbvControl, topic.slot}, early->second);
+  if (topic.id != ChannelId::kCbvRollout || early == early_controls_.end()) return wrong;
+  const AnyMessage control = early->second;  // which the call below takes out of the map
+  takeAnswer({ChannelId::kCbvControl, topic.slot}, control);
   return wrong;
 }
 
