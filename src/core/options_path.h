@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The keys of an options struct with those of its groups before them: "cbv.radius".
+/// The keys of an options struct with those of its groups before them: "cbv.search_radius".
 #pragma once
 
 #include <string>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Guided sampling of a batch of normalised trajectories (paper III-C4 and III-D).
-///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k =
-///  gradient
-///    of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state branch; no noise
-///    is added at k = 1.
+///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k the
+///    gradient of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state
+///    branch (paper eq. 8); no noise is added
+///    at k = 1.
 ///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
 ///    J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c r_k per element, r_k^2 =
 ///    s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s = spread given the context.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// J_coll = sum_t softplus((d_safe - d_t) / kappa) + lambda exp(-d_t^2 / (2 sigma^2)), see
-/// Proximity (paper III-D1, "Collision Guidance", J_coll^safe): keeps away from the other vehicle.
+/// Proximity (paper III-D1, eq. 11, J_coll^safe): keeps away from the other vehicle.
 #pragma once
 
 #include "e2e_cdiff/guidance/objective.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// J_risk = -eta(d_ref) J_safe, d_ref = distance of the box centres now [m], J_safe see Proximity
-/// (paper III-D1, "Collision Guidance", J_coll^risk): approaches the other vehicle once it is near.
+/// (paper III-D1, eq. 12, J_coll^risk): approaches the other vehicle once it is near.
 /// eta is 1 up to trigger_distance; beyond it 0 (hard), or falls to exactly 0 over trigger_width as
 /// 1 - 3 s^2 + 2 s^3 (smooth). J_risk is bounded below: d_t cannot be negative.
 #pragma once

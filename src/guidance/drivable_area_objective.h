@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// J_area = sum_t mean_p max(0, margin - d_A(p))^2 [m^2], d_A = signed distance to the border of
 /// the drivable area at the vehicle's elevation, positive inside; p = centre of the box at row t
-/// (paper III-D1, "Drivable Area Guidance", eq. area_loss), or also the middles of its front and
+/// (paper III-D1, "Drivable Area Guidance", eq. 10), or also the middles of its front and
 /// rear. Beyond the border the pull grows with the distance, so there is no dead zone outside.
 #pragma once
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The table of channels: one row per topic of a session, from which publishers, listeners, the
 /// recorder, the bag reader, the replay, the book-keeping of the lockstep and docs/ros_api.md
-/// follow. A topic's name stands here and nowhere else.
+/// follow. A topic's name stands in channels.cpp and nowhere else.
 #pragma once
 
 #include <string>
@@ -60,7 +60,7 @@ enum class Need {
   kNothing,
   kDecision,  ///< a message
   kVehicle,   ///< one of each vehicle (of the scope) that the decision asks a planner for
-  kSight,     ///< the same, but for planners that answered with a fault
+  kSight,     ///< the same, except of vehicles whose planner answered with a fault
   kAnyCbv,    ///< a message where there is a CBV to drive
   kRecord     ///< a message, which then says what else came
 };

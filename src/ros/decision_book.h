@@ -23,15 +23,15 @@ namespace cdiff::ros {
 class DecisionBook {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
-  /// Slot number of the selection where slots name answers.
+  /// Stands for the selection where an answer is named by its slot.
   static constexpr int kSelection = -2;
 
   explicit DecisionBook(const session::ScenarioOptions& options);
 
   /// A decision has been published.
   void open(const Snapshot& snapshot) { open_.push_back({snapshot, {}, {}}); }
-  /// An answer came for `slot` (kEgoSlot, kSelection); the first of a tick counts. `now`: wall time
-  /// from any zero [s], as below.
+  /// An answer came for `slot` (kEgoSlot, kSelection); the first of a tick counts. `now`: wall-clock
+  /// time [s], of which differences count alone.
   void arrived(int slot, std::uint64_t tick, double now) {
     arrivals_.try_emplace({tick, slot}, now);
   }

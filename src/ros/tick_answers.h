@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Collects what the other nodes answer to a tick, whatever the order of arrival, and says what is
 /// still missing. Traffic simulator, metrics and recorder wait by the same rule: a decision is
-/// complete when there is all that the table of channels asks for of what they listen to.
+/// complete when every message has come that the table of channels requires of what they hear.
 #pragma once
 
 #include <cstdint>

@@ -54,7 +54,7 @@ struct ScenarioOptions {
 
   std::int64_t schema_version = 1;
   std::string name = "unnamed";
-  std::string network;                ///< shipped name or file (*.net.xml, *.xodr)
+  std::string network;                ///< shipped name or file (*.net.xml, *.xodr, *.osm)
   map::RouteOptions route;            ///< of the ego
   std::string demand = "generated";   ///< generated | none | a *.rou.xml file
   simulation::DemandOptions traffic;  ///< of generated demand

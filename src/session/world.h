@@ -54,7 +54,7 @@ class World {
   /// Records a fault that was survived; shown in the next snapshot.
   void recordFault(const std::string& source, const std::string& text);
 
-  /// Time since which the ego has been standing [s]; nullopt while it drives.
+  /// Simulated time at which the ego came to a stand [s]; nullopt while it drives.
   std::optional<double> egoStandsSince() const { return monitor_.standingSince(); }
   /// As long as it is withheld, standing does not end the session; its time counts on.
   void withholdBlocked(bool withheld) { monitor_.withholdBlocked(withheld); }

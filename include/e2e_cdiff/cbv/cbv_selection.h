@@ -34,7 +34,7 @@ struct CbvAssignment {
       conflict_aware_route;  ///< from where it was selected, through the conflict point, and on
 };
 
-/// A candidate that was not taken. Reasons are fixed words: see rejection_reason.h.
+/// A candidate that was not taken. Reasons are fixed words (docs/cbv_identification.md).
 struct RejectedCandidate {
   std::string vehicle_id;
   std::string reason;
@@ -45,7 +45,7 @@ struct RejectedCandidate {
 struct ReleasedCbv {
   int slot = 0;
   std::string vehicle_id;
-  std::string reason;  ///< see held_cbv.h; or "outranked" (life cycle "reselect")
+  std::string reason;  ///< "contact", "gone", ...; "outranked" in life cycle "reselect"
 };
 
 struct CbvSelection {

@@ -36,7 +36,7 @@ struct GuidanceOptions {
   GuidanceOptions& operator=(const GuidanceOptions& other);
   GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;
 
-  std::vector<WeightedObjective> objectives;  ///< in the factory's order
+  std::vector<WeightedObjective> objectives;  ///< in the order of the table of objectives
   double trust_region = 2.0;  ///< farthest that a step of sampler mode real_time moves an action,
                               ///< in units of r_k
 

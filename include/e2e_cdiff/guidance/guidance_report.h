@@ -21,7 +21,7 @@ struct ObjectiveReport {
 };
 
 struct GuidanceReport {
-  std::vector<ObjectiveReport> objectives;  ///< active ones, in the factory's order
+  std::vector<ObjectiveReport> objectives;  ///< active ones, in the table's order
   std::int64_t candidates = 0;              ///< samples drawn
   std::int64_t chosen = 0;                  ///< index of the one that drives
   double trust_region_share = 0.0;          ///< of guided steps in which the trust region acted

@@ -11,7 +11,7 @@
 
 namespace cdiff::guidance {
 
-/// Stateless besides its options; one file per objective, one line in the factory's table.
+/// Stateless besides its options; one row per objective in the table of objectives.
 class Objective {
  public:
   virtual ~Objective() = default;

@@ -11,9 +11,9 @@
 ///  - attackers are not told their route (DiffusionOptions::conditioningUnder);
 ///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
 ///    brake the larger one acts;
-///  - of several candidates the one with the lowest weighted objective drives, unless the one
-///  nearest
-///    to the previous plan is no worse by `hysteresis`.
+///  - of several candidates the one with the lowest weighted objective drives, unless the
+///    one nearest to the previous plan is no worse
+///    by `hysteresis`.
 #pragma once
 
 #include <map>

@@ -7,11 +7,11 @@
 ///
 /// The plan is thinned to one place a second (two a second if it is shorter than 2 s).
 ///  - Desired speed: mean length of the segments between these places, from the vehicle on, per
-///  time.
+///    time.
 ///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
 ///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
-///  - Turn error: bearing of the place whose distance is nearest to the look-ahead clamp(0.5 v
-///  + 2.5,
+///  - Turn error: bearing of the place whose distance is nearest to the look-ahead
+///    clamp(0.5 v + 2.5,
 ///    5, 8) m, in units of 90 degrees; none while it stands (below 0.01 m/s) or brakes.
 #pragma once
 
