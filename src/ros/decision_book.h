@@ -30,8 +30,8 @@ class DecisionBook {
 
   /// A decision has been published.
   void open(const Snapshot& snapshot) { open_.push_back({snapshot, {}, {}}); }
-  /// An answer came for `slot` (kEgoSlot, kSelection); the first of a tick counts. `now`: wall-clock
-  /// time [s], of which differences count alone.
+  /// An answer came for `slot` (kEgoSlot, kSelection); the first of a tick counts. `now`:
+  /// wall-clock time [s], of which differences count alone.
   void arrived(int slot, std::uint64_t tick, double now) {
     arrivals_.try_emplace({tick, slot}, now);
   }

@@ -9,9 +9,9 @@
 
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "map/route_source.h"
-#include "e2e_cdiff/metrics/metrics_options.h"
 #include "planners/registry.h"
 #include "session/protocol.h"
 #include "simulation/demand_generator.h"
