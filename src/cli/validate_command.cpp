@@ -45,8 +45,8 @@ bool validateOne(const std::string& scenario_name, bool print) {
 void printPlanners() {
   std::cout << "planner          drives    cameras  guided  of\n";
   for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
-    const std::string roles = std::string(planner->drives_ego ? "ego " : "") +
-                              (planner->drives_cbv ? "CBVs" : "");
+    const std::string roles =
+        std::string(planner->drives_ego ? "ego " : "") + (planner->drives_cbv ? "CBVs" : "");
     std::cout << std::left << std::setw(17) << planner->name << std::setw(10) << roles
               << std::setw(9) << (planner->sees() ? core::joinText(planner->cameras, ",") : "-")
               << std::setw(8) << (planner->guided ? "yes" : "no")

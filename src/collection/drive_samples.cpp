@@ -157,9 +157,9 @@ class DriveSamples {
 }  // namespace
 
 std::vector<learning::DrivingSample> samplesOf(const RecordedDrive& drive, const std::string& name,
-                                        const DriveOptions& drive_options,
-                                        const DatasetOptions& options,
-                                        DatasetStatistics& statistics) {
+                                               const DriveOptions& drive_options,
+                                               const DatasetOptions& options,
+                                               DatasetStatistics& statistics) {
   if (drive.images.empty()) throw InputError("holds no image on '" + drive_options.image + "'");
   std::vector<learning::DrivingSample> samples =
       DriveSamples(drive, drive_options, options, name).make(statistics);

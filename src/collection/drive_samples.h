@@ -19,8 +19,8 @@ namespace cdiff::collection {
 /// dynamics knows no reverse. Actions that are inferred are those of the vehicle dynamics
 /// (dynamics/action_inference.h). Throws InputError where there is no image or no sample.
 std::vector<learning::DrivingSample> samplesOf(const RecordedDrive& drive, const std::string& name,
-                                        const DriveOptions& drive_options,
-                                        const DatasetOptions& options,
-                                        DatasetStatistics& statistics);
+                                               const DriveOptions& drive_options,
+                                               const DatasetOptions& options,
+                                               DatasetStatistics& statistics);
 
 }  // namespace cdiff::collection

@@ -5,8 +5,8 @@
 
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/angle.h"
-#include "session/session_setup.h"
 #include "learning/driving_sample.h"
+#include "session/session_setup.h"
 
 namespace cdiff::collection {
 

@@ -223,8 +223,9 @@ class SampleMaker {
 
 }  // namespace
 
-std::vector<learning::DrivingSample> samplesOf(const DrivenSession& session, const DatasetOptions& options,
-                                        DatasetStatistics& statistics) {
+std::vector<learning::DrivingSample> samplesOf(const DrivenSession& session,
+                                               const DatasetOptions& options,
+                                               DatasetStatistics& statistics) {
   return SampleMaker(session, options, statistics).make();
 }
 

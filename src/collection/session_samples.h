@@ -14,7 +14,8 @@ namespace cdiff::collection {
 
 /// By tick and slot. An image gives one if its vehicle was driven, without noise, contact or jump,
 /// from the tick before it to the end of the horizon. Throws InputError for images of another size.
-std::vector<learning::DrivingSample> samplesOf(const DrivenSession& session, const DatasetOptions& options,
-                                        DatasetStatistics& statistics);
+std::vector<learning::DrivingSample> samplesOf(const DrivenSession& session,
+                                               const DatasetOptions& options,
+                                               DatasetStatistics& statistics);
 
 }  // namespace cdiff::collection

@@ -35,7 +35,7 @@ double hundredths(double value) { return std::round(100.0 * value) / 100.0; }
 /// Six whole numbers per vehicle: index, style, x and y [0.1 pixel], heading clockwise [deg], speed
 /// [0.1 m/s].
 Json frameNumbers(const record::TimelineFrame& frame, const MapCanvas& canvas,
-                          const std::vector<std::size_t>& cbv_styles) {
+                  const std::vector<std::size_t>& cbv_styles) {
   Json numbers = Json::array();
   for (auto pose = frame.poses.rbegin(); pose != frame.poses.rend(); ++pose) {
     if (!canvas.shows({pose->x, pose->y})) continue;
@@ -139,12 +139,12 @@ std::string safeInScript(const std::string& json) {
 
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
   Json data = {{"styles", {"ego", "bg", "cbv c0", "cbv c1", "cbv c2", "cbv c3", "cbv c4"}},
-                       {"vehicles", Json::array()},
-                       {"times", Json::array()},
-                       {"frames", Json::array()},
-                       {"moments", Json::array()},
-                       {"period", result.front_views.period()},
-                       {"views", viewLists(result)}};
+               {"vehicles", Json::array()},
+               {"times", Json::array()},
+               {"frames", Json::array()},
+               {"moments", Json::array()},
+               {"period", result.front_views.period()},
+               {"views", viewLists(result)}};
   addVehicles(data, result);
   addFrames(data, result, canvas);
   data["start"] = firstShown(data["times"], result.timeline);

@@ -84,12 +84,13 @@ void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded)
 }  // namespace
 
 LoadedPlugin loadPlugin(const PluginLibrary& library) {
-  const std::string what = "plug-in '" + library.file.string() + "' (named by " +
-                           library.named_by + ")";
+  const std::string what =
+      "plug-in '" + library.file.string() + "' (named by " + library.named_by + ")";
   class_loader::ClassLoader& loader = openLibrary(library, what);
   const std::vector<std::string> classes = loader.getAvailableClasses<Plugin>();
   if (classes.empty()) {
-    throw InputError(what + " exports no class of cdiff::plugins::Plugin; its author must add "
+    throw InputError(what +
+                     " exports no class of cdiff::plugins::Plugin; its author must add "
                      "CLASS_LOADER_REGISTER_CLASS(CLASS, cdiff::plugins::Plugin)");
   }
   LoadedPlugin loaded{library, {}, {}, {}};

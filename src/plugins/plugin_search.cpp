@@ -89,9 +89,9 @@ std::vector<PluginLibrary> findPlugins() {
   for (const fs::path& package_file : packages) addExports(package_file, named);
   std::vector<PluginLibrary> libraries;
   for (PluginLibrary& library : named) {
-    const bool known = std::any_of(
-        libraries.begin(), libraries.end(),
-        [&](const PluginLibrary& other) { return other.file == library.file; });
+    const bool known =
+        std::any_of(libraries.begin(), libraries.end(),
+                    [&](const PluginLibrary& other) { return other.file == library.file; });
     if (!known) libraries.push_back(std::move(library));
   }
   return libraries;

@@ -9,9 +9,9 @@
 #include "collection/collection_scenario.h"
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/driving_sample.h"
 #include "ros/dataset_from_bag.h"
 #include "ros/session_bag.h"
-#include "learning/driving_sample.h"
 
 namespace cdiff::ros {
 namespace {
@@ -98,7 +98,8 @@ collection::StatisticsByName collectBags(const BagRequest& request) {
   for (const fs::path bag : request.bags) {
     collection::DatasetStatistics& statistics = all[bag.stem().string()];
     learning::DrivingShardWriter writer(collection::schemaOf(options.architecture));
-    for (const learning::DrivingSample& sample : samplesFromDrivingBag(bag, topics, options, statistics))
+    for (const learning::DrivingSample& sample :
+         samplesFromDrivingBag(bag, topics, options, statistics))
       writer.append(sample);
     const fs::path shard = request.results / "shards" / (bag.stem().string() + ".shard");
     fs::create_directories(shard.parent_path());

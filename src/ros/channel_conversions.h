@@ -4,8 +4,8 @@
 /// back, and to messages that say the same for tools.
 #pragma once
 
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/rendering/camera_options.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "ros/conversions.h"
 #include "ros/display.h"
 #include "ros/image_conversions.h"

@@ -12,8 +12,8 @@ namespace cdiff::ros {
 using core::InputError;
 
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
-                                             const collection::DatasetOptions& options,
-                                             collection::DatasetStatistics& statistics) {
+                                                    const collection::DatasetOptions& options,
+                                                    collection::DatasetStatistics& statistics) {
   const collection::DrivenSession session = readBagSession(bag);
   try {
     return collection::samplesOf(session, options, statistics);
@@ -22,10 +22,9 @@ std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path&
   }
 }
 
-std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const collection::DriveOptions& drive_options,
-                                                    const collection::DatasetOptions& options,
-                                                    collection::DatasetStatistics& statistics) {
+std::vector<learning::DrivingSample> samplesFromDrivingBag(
+    const std::filesystem::path& bag, const collection::DriveOptions& drive_options,
+    const collection::DatasetOptions& options, collection::DatasetStatistics& statistics) {
   drive_options.validate();
   try {
     const collection::RecordedDrive drive =

@@ -14,14 +14,13 @@ namespace cdiff::ros {
 /// no bag, holds no session of ours, no images, images of another size, or decisions that are not
 /// 0.1 s apart; the texts name the file.
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
-                                             const collection::DatasetOptions& options,
-                                             collection::DatasetStatistics& statistics);
+                                                    const collection::DatasetOptions& options,
+                                                    collection::DatasetStatistics& statistics);
 
 /// Samples of a drive's bag (collection/drive_samples.h), called as the file without its extension.
 /// Throws InputError naming the file and what readDrivingBag or samplesOf finds.
-std::vector<learning::DrivingSample> samplesFromDrivingBag(const std::filesystem::path& bag,
-                                                    const collection::DriveOptions& drive_options,
-                                                    const collection::DatasetOptions& options,
-                                                    collection::DatasetStatistics& statistics);
+std::vector<learning::DrivingSample> samplesFromDrivingBag(
+    const std::filesystem::path& bag, const collection::DriveOptions& drive_options,
+    const collection::DatasetOptions& options, collection::DatasetStatistics& statistics);
 
 }  // namespace cdiff::ros

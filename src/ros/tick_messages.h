@@ -37,7 +37,7 @@ class TickMessages {
 /// What the messages of a tick are made of.
 struct TickValues {
   const traffic::TrafficSnapshot& snapshot;
-  const map::RoadNetwork* network = nullptr;  ///< that the lanes of the selection are of
+  const map::RoadNetwork* network = nullptr;     ///< that the lanes of the selection are of
   double simulation_step = 0.0;                  ///< [s]
   bool cbvs_guided = false;                      ///< the CBVs' planner follows objectives
   double image_age = 0.0;                        ///< as in GuidanceReport [s]

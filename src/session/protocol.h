@@ -10,8 +10,8 @@
 
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/map/route_progress.h"
-#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/metrics/infraction_options.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::session {
 

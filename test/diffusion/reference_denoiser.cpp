@@ -143,10 +143,9 @@ Doubles ReferenceDenoiser::timeEmbedding(int k) const {
 
 Doubles ReferenceDenoiser::contextVector(const Context& context) const {
   Doubles joined = toDoubles(context.image_features);
-  append(joined,
-         context.route.empty()
-             ? toDoubles(tensor("no_route").values)
-             : linear("route.2", mishOf(linear("route.0", toDoubles(context.route)))));
+  append(joined, context.route.empty()
+                     ? toDoubles(tensor("no_route").values)
+                     : linear("route.2", mishOf(linear("route.0", toDoubles(context.route)))));
   append(joined, mishOf(linear("speed.0", {context.speed / 10.0})));
   return mishOf(linear("context.0", joined));
 }
@@ -156,8 +155,7 @@ Grid ReferenceDenoiser::block(const std::string& name, const Grid& input) const 
       referenceConvolution(input, tensor(name + ".conv.weight"), tensor(name + ".conv.bias"), 1,
                            model_.architecture.kernel / 2);
   return mishOf(referenceGroupNorm(convolved, model_.architecture.groups,
-                                              tensor(name + ".norm.weight"),
-                                              tensor(name + ".norm.bias")));
+                                   tensor(name + ".norm.weight"), tensor(name + ".norm.bias")));
 }
 
 Grid ReferenceDenoiser::residual(const std::string& name, const Grid& input,
@@ -215,8 +213,7 @@ Doubles ReferenceDenoiser::states(const Doubles& actions, int k, const Context& 
   Doubles input = actions;
   input.push_back(context.speed / 10.0);
   append(input, timeEmbedding(k));
-  return linear("state.4",
-                mishOf(linear("state.2", mishOf(linear("state.0", input)))));
+  return linear("state.4", mishOf(linear("state.2", mishOf(linear("state.0", input)))));
 }
 
 Model randomModel(const Architecture& architecture) {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "inference/unet_layers.h"
 #include "diffusion/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
+#include "inference/unet_layers.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -77,8 +77,7 @@ std::string matrix(const std::string& value) {
 Metadata metadataOf(const std::string& part) {
   return {{"format", "e2e_cdiff." + part + ".1"},
           {"architecture", smallArchitecture().toJson()},
-          {"normalizer",
-           "{\"mean\":" + matrix("0.5") + ",\"scale\":" + matrix("2") + "}"},
+          {"normalizer", "{\"mean\":" + matrix("0.5") + ",\"scale\":" + matrix("2") + "}"},
           {"spread", matrix("1")}};
 }
 
@@ -197,15 +196,12 @@ TEST_F(ModelFiles, MalformedMetadataIsNamed) {
   expectMentions(errorWith("architecture", "{}"), "the architecture lacks the key 'horizon'");
   expectMentions(errorWith("normalizer", "[]"), "'normalizer' is an array");
   expectMentions(errorWith("normalizer", "{"), "'normalizer' is not JSON");
-  expectMentions(
-      errorWith("normalizer", normalizer(matrix("0"), matrix("0"))),
-      "scale of row 0, column 0 is 0; a positive one");
-  expectMentions(
-      errorWith("normalizer", normalizer(matrix("0"), matrix("-1"))),
-      "is -1; a positive");
-  expectMentions(
-      errorWith("normalizer", normalizer(matrix("null"), matrix("1"))),
-      "mean, row 0, column 0 is null; a number");
+  expectMentions(errorWith("normalizer", normalizer(matrix("0"), matrix("0"))),
+                 "scale of row 0, column 0 is 0; a positive one");
+  expectMentions(errorWith("normalizer", normalizer(matrix("0"), matrix("-1"))),
+                 "is -1; a positive");
+  expectMentions(errorWith("normalizer", normalizer(matrix("null"), matrix("1"))),
+                 "mean, row 0, column 0 is null; a number");
   expectMentions(errorWith("normalizer", normalizer("[[1,2]]", matrix("1"))),
                  "mean is an array of 1; T = 2 rows");
   expectMentions(errorWith("normalizer", normalizer("[[1,2],[1,2]]", matrix("1"))),

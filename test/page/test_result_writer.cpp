@@ -97,8 +97,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
 }
 
 /// Places of all numbers (and nulls) of figures below `object`, whose own place is `place`.
-void addPlaces(const Json& object, const std::string& place,
-               std::set<std::string>& places) {
+void addPlaces(const Json& object, const std::string& place, std::set<std::string>& places) {
   for (const auto& [key, value] : object.items()) {
     const std::string here = place + "/" + key;
     const bool list = value.is_array();

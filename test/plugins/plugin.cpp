@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Plug-ins for the tests: a good one, and one for each thing that can be wrong.
+#include "e2e_cdiff/plugins/plugin.h"
+
 #include <class_loader/class_loader.hpp>
 #include <stdexcept>
-
-#include "e2e_cdiff/plugins/plugin.h"
 
 namespace {
 

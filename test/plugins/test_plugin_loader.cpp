@@ -53,9 +53,9 @@ TEST(PluginLoader, WhatThrowsInPlanBrakesAndIsRecorded) {
   if (planners::findPlanner("thrower") == nullptr) loadPlugin(libraryOf("good"));
   const session::ScenarioOptions options = session::loadScenario("crossing_left_turn");
   const session::SessionSetup setup(options);
-  const auto planner = planners::makePlanner(
-      "thrower", {setup.planningContext(), options.planner_options, options.vehicle,
-                  options.camera, options.guidance});
+  const auto planner =
+      planners::makePlanner("thrower", {setup.planningContext(), options.planner_options,
+                                        options.vehicle, options.camera, options.guidance});
   traffic::Vehicle vehicle;
   vehicle.id = "ego";
   planning::PlanningTask task;

@@ -22,7 +22,8 @@ TEST(FigureList, IsInTheDocumentationWordByWord) {
 TEST(FigureList, HasASectionAFigure) {
   const std::string list = figureList();
   const std::string section =
-      "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; `/cbv/collisions`\n\n";
+      "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; "
+      "`/cbv/collisions`\n\n";
   EXPECT_NE(list.find(section), std::string::npos);
 }
 

@@ -72,7 +72,8 @@ BagImages imagesIn(const fs::path& file) {
     if (const auto selection = message.instantiate<::e2e_cdiff::CbvSelection>()) {
       for (const auto& assignment : selection->assignments) {
         if (ros::contains(*snapshots.at(selection->tick), assignment.vehicle_id))
-          images.occupied.emplace("/" + ros::imageOf(assignment.slot).name(), selection->header.stamp);
+          images.occupied.emplace("/" + ros::imageOf(assignment.slot).name(),
+                                  selection->header.stamp);
       }
     }
     if (const auto image = message.instantiate<sensor_msgs::Image>()) {
