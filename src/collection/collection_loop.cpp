@@ -7,6 +7,7 @@
 
 #include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planners/registry.h"
 
 namespace cdiff::collection {
 namespace {
@@ -23,7 +24,7 @@ std::unique_ptr<PerturbedPlanner> perturbedPlanner(const session::SessionSetup& 
     throw core::InputError(
         "planner '" + name +
         "' needs images; data are collected with planners that do not, such as '" +
-        session::ScenarioOptions().ego_planner + "'");
+        std::string(planners::kDefaultEgoPlanner) + "'");
   return std::make_unique<PerturbedPlanner>(std::move(planner), options, seedOf(setup),
                                             setup.options().decision_period);
 }

@@ -7,6 +7,7 @@
 
 #include "collection/random_route.h"
 #include "e2e_cdiff/core/random.h"
+#include "planners/registry.h"
 
 namespace cdiff::collection {
 namespace {
@@ -27,7 +28,7 @@ session::ScenarioOptions collectionScenario(session::ScenarioOptions scenario,
   const core::RandomStream random(static_cast<std::uint64_t>(scenario.seed), "collection_session");
   const core::RandomKey key{core::hashText(scenario.name), 0, 0};
   scenario.max_cbv = options.vehicles;
-  const std::string expert = session::ScenarioOptions().ego_planner;
+  const std::string expert = planners::kDefaultEgoPlanner;
   for (std::string* planner : {&scenario.ego_planner, &scenario.cbv_planner}) {
     if (planners::seesImages(*planner)) *planner = expert;
   }

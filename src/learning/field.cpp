@@ -18,7 +18,6 @@ using core::InputError;
 using nlohmann::json;
 
 constexpr const char* kTypeNames[] = {"u8", "u64", "f32", "f64", "text"};
-constexpr std::int64_t kMostValues = 1 << 26;
 
 std::size_t countOf(const FieldValue& value) {
   return std::visit([](const auto& values) { return values.size(); }, value);

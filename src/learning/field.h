@@ -24,6 +24,9 @@ using FieldValue = std::variant<std::vector<std::uint8_t>, std::vector<std::uint
 /// First size of a shape where each sample has its own number of rows (boxes, lanes).
 constexpr std::int64_t kAnyCount = -1;
 
+/// Most values of a field in one sample.
+constexpr std::int64_t kMostValues = 1 << 26;
+
 struct FieldSpec {
   FieldSpec() = default;
   FieldSpec(std::string name, FieldType type, std::vector<std::int64_t> shape = {});

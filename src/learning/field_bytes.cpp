@@ -85,6 +85,11 @@ void putField(std::string& bytes, const FieldSpec& spec, const FieldValue& value
 FieldValue takeField(ByteReader& reader, const FieldSpec& spec, const std::string& source) {
   if (spec.type == FieldType::kText) return std::string(reader.text());
   const std::size_t count = takeCount(reader, spec);
+  if (spec.packed && count > static_cast<std::size_t>(kMostValues)) {
+    throw core::InputError(source + ": field '" + spec.name + "' says that it holds " +
+                           std::to_string(count) + " values; at most " +
+                           std::to_string(kMostValues) + " were expected");
+  }
   const std::size_t length = count * valueBytes(spec);
   const std::string_view content = spec.packed ? reader.text() : reader.take(length);
   FieldValue value = emptyValue(spec.type, count);

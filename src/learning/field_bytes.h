@@ -13,7 +13,7 @@ namespace cdiff::learning {
 /// Appends a value that fits its schema.
 void putField(std::string& bytes, const FieldSpec& spec, const FieldValue& value);
 /// Reads forward over a field, and gives its value. Throws InputError naming `source` when a packed
-/// field does not unpack to its size.
+/// field says more values than a sample can hold, or does not unpack to its size.
 FieldValue takeField(ByteReader& reader, const FieldSpec& spec, const std::string& source);
 /// Reads forward over a field.
 void skipField(ByteReader& reader, const FieldSpec& spec);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/registry.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/shipped_metrics.h"
@@ -55,11 +56,27 @@ class Registry {
     return places_.back().c_str();
   }
 
+  /// Names are columns and topics; places are looked for below /ego, /cbv and /metrics alone.
+  static void checkFigure(const FigureDefinition& figure, const MetricDescriptor& descriptor) {
+    const std::string what = "figure '" + std::string(figure.name) + "' of metric '" +
+                             descriptor.name + "' of " + descriptor.source;
+    if (!core::isSnakeCase(figure.name))
+      throw core::InputError(what + ": its name must be snake_case");
+    const std::string place = figure.place;
+    const std::vector<std::string> keys = core::splitText(place, '/');
+    const bool known = !keys.empty() && place.front() == '/' && place.back() != '/' &&
+                       (keys[0] == "ego" || keys[0] == "cbv" || keys[0] == "metrics");
+    if (!place.empty() && (!known || keys.size() < 2))
+      throw core::InputError(what + ": its place '" + place +
+                             "' must lie below /ego, /cbv or /metrics");
+  }
+
   void check(const MetricDescriptor& descriptor) const {
     if (descriptor.name.empty() || descriptor.figures.empty() || !descriptor.make) {
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
                              " lacks a name, figures or 'make'");
     }
+    for (const FigureDefinition& figure : descriptor.figures) checkFigure(figure, descriptor);
     for (const MetricDescriptor& other : metrics_) {
       if (other.name == descriptor.name) refuse("metric '" + other.name + "'", other, descriptor);
       for (const FigureDefinition& known : other.figures) {

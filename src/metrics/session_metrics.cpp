@@ -47,8 +47,12 @@ class SessionMetrics::Metrics {
   Metrics(const SessionMetricsOptions& options, const map::DrivableArea& drivable_area,
           const map::Route& ego_route)
       : options_(options), context_{drivable_area, ego_route, options_}, ticks_(context_) {
-    for (const MetricDescriptor& descriptor : metricDescriptors())
+    for (const MetricDescriptor& descriptor : metricDescriptors()) {
       metrics_.emplace_back(&descriptor, descriptor.make(context_));
+      if (metrics_.back().second) continue;
+      throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
+                             ": its constructor gives none; its author must mend it");
+    }
   }
 
   TickMeasures observe(const traffic::TrafficSnapshot& snapshot,

@@ -3,10 +3,8 @@
 #include "planners/registry.h"
 
 #include <algorithm>
-#include <map>
 
-#include "core/names.h"
-#include "core/text.h"
+#include "core/registry.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::planners {
@@ -15,18 +13,11 @@ namespace {
 using core::InputError;
 using planning::PlannerDescriptor;
 
-struct Registered {
-  PlannerDescriptor descriptor;
-  std::string source;
-};
-
-using Table = std::map<std::string, Registered>;
-
 /// What is wrong with a descriptor; empty when nothing is.
 std::string faultOf(const PlannerDescriptor& descriptor) {
-  if (!core::isSnakeCase(descriptor.name) || descriptor.name == planning::kExternalPlanner)
-    return "its name must be snake_case and other than 'external'";
-  if (!descriptor.options) return "its descriptor has no options";
+  if (descriptor.name == planning::kExternalPlanner)
+    return "its name must be snake_case and other than 'external', the user's own node";
+  if (!descriptor.options || !descriptor.options()) return "its descriptor has no options";
   if (!descriptor.make) return "its descriptor has no constructor";
   if (!descriptor.drives_ego && !descriptor.drives_cbv) return "it drives neither the ego nor CBVs";
   if (!descriptor.network != !descriptor.weights_sha256)
@@ -37,60 +28,42 @@ std::string faultOf(const PlannerDescriptor& descriptor) {
   return "";
 }
 
-void add(Table& table, PlannerDescriptor descriptor, const std::string& source) {
-  const std::string fault = faultOf(descriptor);
-  if (!fault.empty()) throw InputError(source + ": planner '" + descriptor.name + "': " + fault);
-  const auto found = table.find(descriptor.name);
-  if (found != table.end()) {
-    throw InputError(source + ": planner '" + descriptor.name + "' is already registered by " +
-                     found->second.source + "; one of the two needs another name");
-  }
-  const std::string name = descriptor.name;
-  table.emplace(name, Registered{std::move(descriptor), source});
-}
+using Registry = core::Registry<PlannerDescriptor>;
 
-Table& table() {
-  static Table planners = [] {
-    Table of_package;
-    for (PlannerDescriptor& descriptor : packagePlanners())
-      add(of_package, std::move(descriptor), "package e2e_cdiff");
-    return of_package;
-  }();
+Registry& table() {
+  static Registry planners("planner", packagePlanners());
   return planners;
 }
 
 }  // namespace
 
 void registerPlanner(PlannerDescriptor descriptor, const std::string& source) {
-  add(table(), std::move(descriptor), source);
+  const std::string fault = faultOf(descriptor);
+  if (!fault.empty()) throw InputError(source + ": planner '" + descriptor.name + "': " + fault);
+  table().add(std::move(descriptor), source);
 }
 
-const PlannerDescriptor* findPlanner(const std::string& name) {
-  const auto found = table().find(name);
-  return found == table().end() ? nullptr : &found->second.descriptor;
-}
+const PlannerDescriptor* findPlanner(const std::string& name) { return table().find(name); }
 
 std::vector<const PlannerDescriptor*> registeredPlanners() {
   std::vector<const PlannerDescriptor*> planners;
-  for (const auto& [name, registered] : table()) planners.push_back(&registered.descriptor);
+  for (const std::string& name : plannerNames()) planners.push_back(findPlanner(name));
   return planners;
 }
 
-std::string sourceOf(const std::string& name) {
-  const auto found = table().find(name);
-  return found == table().end() ? "" : found->second.source;
-}
+std::string sourceOf(const std::string& name) { return table().sourceOf(name); }
 
 std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
                                                const planning::PlannerParts& parts) {
-  if (const PlannerDescriptor* descriptor = findPlanner(name)) return descriptor->make(parts);
   if (name == planning::kExternalPlanner) {
     throw InputError(
         "planner 'external' is a node of the user's own: it needs the node graph "
         "(session.launch), not a planner in this process");
   }
-  throw InputError("unknown planner '" + name + "'; the nearest known planner is '" +
-                   core::nearestName(name, plannerNames()) + "'");
+  auto planner = table().at(name).make(parts);
+  if (planner) return planner;
+  throw InputError("planner '" + name + "' of " + sourceOf(name) +
+                   ": its constructor gives none; its author must mend it");
 }
 
 planning::PlannerOptionsTable defaultOptions() {
@@ -103,9 +76,8 @@ planning::PlannerOptionsTable defaultOptions() {
 }
 
 std::vector<std::string> plannerNames() {
-  std::vector<std::string> names;
-  for (const PlannerDescriptor* descriptor : registeredPlanners())
-    names.push_back(descriptor->name);
+  std::vector<std::string> names = table().names();
+  std::sort(names.begin(), names.end());
   return names;
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "plugins/plugin_loader.h"
 
+#include <algorithm>
 #include <class_loader/class_loader.hpp>
 #include <memory>
 
@@ -48,28 +49,32 @@ void requireVersion(const Plugin& plugin, const std::string& what) {
                    ": build it again against this package");
 }
 
-/// The keys at the top of a scenario file.
-bool isScenarioKey(const std::string& name) {
-  const std::string text = "\n" + core::dumpOptions(session::ScenarioOptions());
-  return text.find("\n" + name + ":") != std::string::npos;
-}
-
-/// The options of a planner are a group of the scenario file under its name.
-void requireFreeKey(const std::string& name, const std::string& what) {
-  if (planners::findPlanner(name) != nullptr || !isScenarioKey(name)) return;
-  throw InputError(what + " names a planner '" + name +
-                   "', which is a key of scenario files; its author must choose another name");
+/// The options of a planner are a group of the scenario file under its name, those of an objective
+/// one of a guidance profile: `dump` holds the keys that there are at the top of either.
+void requireFreeKey(const std::string& thing, const std::string& dump, const std::string& file,
+                    const std::string& what) {
+  if (("\n" + dump).find("\n" + thing + ":") == std::string::npos) return;
+  throw InputError(what + " names something '" + thing + "', which is a key of " + file +
+                   "; its author must choose another name");
 }
 
 void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded) {
   for (planning::PlannerDescriptor& planner :
        ask(what, "planners()", [&] { return plugin.planners(); })) {
-    requireFreeKey(planner.name, what);
+    if (planners::findPlanner(planner.name) == nullptr) {
+      requireFreeKey(planner.name, core::dumpOptions(session::ScenarioOptions()), "scenario files",
+                     what);
+    }
     loaded.planners.push_back(planner.name);
     planners::registerPlanner(std::move(planner), what);
   }
   for (guidance::ObjectiveDescriptor& objective :
        ask(what, "objectives()", [&] { return plugin.objectives(); })) {
+    const std::vector<std::string> known = guidance::objectiveNames();
+    if (std::find(known.begin(), known.end(), objective.name) == known.end()) {
+      requireFreeKey(objective.name, core::dumpOptions(guidance::GuidanceOptions()),
+                     "guidance profiles", what);
+    }
     loaded.objectives.push_back(objective.name);
     guidance::registerObjective(std::move(objective), what);
   }
@@ -84,8 +89,8 @@ void addAll(const Plugin& plugin, const std::string& what, LoadedPlugin& loaded)
 }  // namespace
 
 LoadedPlugin loadPlugin(const PluginLibrary& library) {
-  const std::string what =
-      "plug-in '" + library.file.string() + "' (named by " + library.named_by + ")";
+  const std::string file = "plug-in '" + library.file.string() + "' (";
+  const std::string what = file + "named by " + library.named_by + ")";
   class_loader::ClassLoader& loader = openLibrary(library, what);
   const std::vector<std::string> classes = loader.getAvailableClasses<Plugin>();
   if (classes.empty()) {
@@ -95,7 +100,7 @@ LoadedPlugin loadPlugin(const PluginLibrary& library) {
   }
   LoadedPlugin loaded{library, {}, {}, {}};
   for (const std::string& name : classes) {
-    const std::string of_class = what + ", class " + name + ",";
+    const std::string of_class = file + "class " + name + ", named by " + library.named_by + ")";
     const auto plugin = ask(of_class, "its constructor", [&] {
       return std::shared_ptr<Plugin>(loader.createUnmanagedInstance<Plugin>(name));
     });

@@ -8,24 +8,31 @@
 namespace cdiff::ros {
 namespace {
 
+/// The program that the planner's descriptor names.
+std::string cbvPlannerNode(const session::ScenarioOptions& options) {
+  const planning::PlannerDescriptor* planner = planners::findPlanner(options.cbv_planner);
+  return planner == nullptr ? kCbvPlannerNode : planner->cbv_node;
+}
+
 std::vector<std::string> neededNodes(const session::ScenarioOptions& options,
                                      const GraphRequest& request) {
-  const bool cbvs_see = planners::seesImages(options.cbv_planner);
   std::vector<std::string> nodes = {kCbvIdentificationNode, kEgoPlannerNode,
-                                    cbvs_see ? kDiffusionPlannerNode : kCbvPlannerNode,
-                                    kMetricsNode};
-  if (cbvs_see || planners::seesImages(options.ego_planner) || request.show_cameras)
+                                    cbvPlannerNode(options), kMetricsNode};
+  if (planners::seesImages(options.cbv_planner) || planners::seesImages(options.ego_planner) ||
+      request.show_cameras)
     nodes.emplace_back(kCameraNode);
   if (request.record) nodes.emplace_back(kRecorderNode);
   return nodes;
 }
 
-/// What follows from the scenario and the participants, who must be known.
+/// What follows from the scenario; who takes part says which program runs the CBVs' planner.
 void addCbvPlanner(const session::ScenarioOptions& options, SessionGraph& graph) {
   graph.cbvs_see = planners::seesImages(options.cbv_planner);
   graph.cbvs_guided = planners::canBeGuided(options.cbv_planner);
-  graph.cbv_planner_node = kCbvPlannerNode;
-  if (graph.has(kDiffusionPlannerNode)) graph.cbv_planner_node = kDiffusionPlannerNode;
+  graph.cbv_planner_node = cbvPlannerNode(options);
+  for (const char* node : {kDiffusionPlannerNode, kCbvPlannerNode}) {
+    if (!graph.has(graph.cbv_planner_node) && graph.has(node)) graph.cbv_planner_node = node;
+  }
 }
 
 }  // namespace
@@ -39,7 +46,7 @@ SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest
                      const std::vector<std::string>& participants) {
   SessionGraph graph;
   graph.max_cbv = static_cast<int>(options.max_cbv);
-  graph.external_ego = options.ego_planner == "external";
+  graph.external_ego = options.ego_planner == planning::kExternalPlanner;
   graph.ego_sees = planners::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
   graph.paced = options.real_time_factor > 0.0;

@@ -91,6 +91,8 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
       fault = "the planner answered for other vehicles than it was asked for";
   } catch (const std::exception& error) {
     fault = error.what();
+  } catch (...) {
+    fault = "the planner threw something that is no std::exception";
   }
   milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   return fault.empty() ? actions : failSafe(tasks);

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/bytes.h"
+#include "learning/field_bytes.h"
 #include "learning/small_samples.h"
 
 namespace cdiff::learning {
@@ -216,6 +217,22 @@ Sample scene(std::size_t boxes) {
            {"scores", std::vector<float>{0.1F, 0.2F, 0.7F}},
            {"picture", std::vector<std::uint8_t>{1, 2, 3, 4}},
            {"town", std::string("Town02")}}};
+}
+
+TEST(FieldBytes, RefusesMoreRowsThanASampleCanHold) {
+  FieldSpec boxes = sceneSchema().fields[1];
+  boxes.packed = true;  // so that nothing but the number says how many there are
+  std::string bytes;
+  putField(bytes, boxes, std::vector<float>(10, 0.5F));
+  bytes.replace(0, 4, "\xff\xff\xff\x7f");  // 2^31 - 1 rows of 5 values
+  ByteReader reader(bytes, "a.shard");
+  try {
+    takeField(reader, boxes, "a.shard");
+    ADD_FAILURE() << "taken";
+  } catch (const core::InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("a.shard: field 'boxes' says that it holds", 0), 0U)
+        << error.what();
+  }
 }
 
 TEST_F(ShardTest, KeepsFieldsThatItNeverHeardOf) {

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "learning/checkpoint.h"
+#include "learning/stopping_buffer.h"
 #include "learning/task_registry.h"
 #include "learning/toy_task.h"
 #include "learning/trainer.h"
@@ -88,26 +89,10 @@ TEST_F(ToyTaskTest, LearnsTheLineJudgesItAndExportsIt) {
   EXPECT_NE(card.find("| fit | 300 |"), std::string::npos) << card;
 }
 
-/// Sets a flag when a line with `text` is logged.
-class StoppingBuffer : public std::stringbuf {
- public:
-  StoppingBuffer(std::atomic<bool>& stop, std::string text) : stop_(stop), text_(std::move(text)) {}
-
- protected:
-  int sync() override {
-    if (str().find(text_) != std::string::npos) stop_ = true;
-    return 0;
-  }
-
- private:
-  std::atomic<bool>& stop_;
-  std::string text_;
-};
-
 TEST_F(ToyTaskTest, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
   train(training_, stop_, log_);
   Training other = start("resumed");
-  StoppingBuffer buffer(stop_, "fit step 123/300");
+  test::StoppingBuffer buffer(stop_, "fit step 123/300");
   std::ostream log(&buffer);
   EXPECT_THROW(train(other, stop_, log), core::Interrupted);
   const auto path = folder_.path() / "resumed" / "fit.checkpoint";

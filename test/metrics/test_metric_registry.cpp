@@ -133,6 +133,21 @@ TEST(MetricRegistry, RefusesADescriptorThatLacksSomething) {
   EXPECT_NE(refusalOf(descriptor).find("a_plugin.so lacks"), std::string::npos);
 }
 
+TEST(MetricRegistry, RefusesNamesAndPlacesThatNoFileCouldHold) {
+  MetricDescriptor descriptor = ticksMetric("a_plugin.so");
+  descriptor.name = "other_ticks";
+  for (const char* name : {"", "Other ticks", "other/ticks", "_x"}) {
+    descriptor.figures.front().name = name;
+    EXPECT_NE(refusalOf(descriptor).find("must be snake_case"), std::string::npos) << name;
+  }
+  descriptor.figures.front().name = "other_ticks";
+  for (const char* place : {"ticks", "/ticks/other", "/ego", "/ego/", "ego/ticks", "/"}) {
+    descriptor.figures.front().place = place;
+    EXPECT_NE(refusalOf(descriptor).find("must lie below"), std::string::npos) << place;
+  }
+  EXPECT_EQ(findFigure("other_ticks"), nullptr);
+}
+
 // Last: from here on every session has a metric that reports a figure of another one.
 TEST(MetricRegistryWithAMistake, NamesAMetricThatReportsWhatIsNotIts) {
   static constexpr FigureDefinition kOwn = {

@@ -111,6 +111,9 @@ TEST_F(PlannerRegistry, RefusesWhatCannotWork) {
   broken.options = nullptr;
   EXPECT_NE(refusal(broken).find("its descriptor has no options"), std::string::npos);
   broken = descriptor("broken");
+  broken.options = [] { return std::unique_ptr<planning::PlannerOptions>(); };
+  EXPECT_NE(refusal(broken).find("its descriptor has no options"), std::string::npos);
+  broken = descriptor("broken");
   broken.make = nullptr;
   EXPECT_NE(refusal(broken).find("no constructor"), std::string::npos);
   broken = descriptor("broken");
@@ -120,6 +123,15 @@ TEST_F(PlannerRegistry, RefusesWhatCannotWork) {
   broken.cameras = {"rear"};
   EXPECT_NE(refusal(broken).find("camera 'rear'"), std::string::npos);
   EXPECT_EQ(findPlanner("broken"), nullptr);
+}
+
+TEST_F(PlannerRegistry, AConstructorThatGivesNoPlannerIsNamed) {
+  planning::PlannerDescriptor none = descriptor("registry_test_none");
+  none.make = [](const planning::PlannerParts&) { return std::unique_ptr<planning::Planner>(); };
+  registerPlanner(none, "library none.so");
+  EXPECT_EQ(errorOf("registry_test_none"),
+            "planner 'registry_test_none' of library none.so: its constructor gives none; its "
+            "author must mend it");
 }
 
 TEST_F(PlannerRegistry, WhatIsRegisteredIsKnownEverywhere) {

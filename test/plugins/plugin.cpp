@@ -16,6 +16,20 @@ struct Options {
   void validate() const {}
 };
 
+#ifdef PLUGIN_profile_key
+
+class Nothing : public cdiff::guidance::Objective {
+ public:
+  void describe(cdiff::core::OptionsVisitor&) override {}
+  double evaluate(const cdiff::guidance::GuidanceScene&, const cdiff::traffic::Rollout&,
+                  cdiff::traffic::Rollout&) const override {
+    return 0.0;
+  }
+  std::unique_ptr<Objective> clone() const override { return std::make_unique<Nothing>(*this); }
+};
+
+#endif
+
 class Thrower : public cdiff::planning::Planner {
  public:
   std::vector<cdiff::planning::PlannedAction> plan(
@@ -51,6 +65,8 @@ class TestPlugin : public cdiff::plugins::Plugin {
     throw std::runtime_error("no planner today");
 #elif defined(PLUGIN_taken_name)
     return {thrower("pdm_lite")};
+#elif defined(PLUGIN_profile_key)
+    return {};
 #elif defined(PLUGIN_scenario_key)
     return {thrower("camera")};
 #elif defined(PLUGIN_no_options)
@@ -61,6 +77,11 @@ class TestPlugin : public cdiff::plugins::Plugin {
     return {thrower("thrower")};
 #endif
   }
+#ifdef PLUGIN_profile_key
+  std::vector<cdiff::guidance::ObjectiveDescriptor> objectives() const override {
+    return {{ "trust_region", "Does nothing.", [] { return std::make_unique<Nothing>(); } }};
+  }
+#endif
 };
 
 #endif

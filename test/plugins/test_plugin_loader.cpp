@@ -77,6 +77,7 @@ TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
   expectIn("planner 'pdm_lite' is already registered by package e2e_cdiff",
            refusalOf("taken_name"));
   expectIn("'camera', which is a key of scenario files", refusalOf("scenario_key"));
+  expectIn("'trust_region', which is a key of guidance profiles", refusalOf("profile_key"));
   expectIn("planner 'bare': its descriptor has no options", refusalOf("no_options"));
   expectIn("exports no class of cdiff::plugins::Plugin", refusalOf("empty"));
   const test::TemporaryFolder folder;

@@ -37,6 +37,16 @@ def targets_of(calls):
 
 
 class Scripts(unittest.TestCase):
+    @unittest.skipUnless((BUILD / "devel" / "setup.bash").exists() and (SOURCE / "devel").exists(), "built elsewhere")
+    def test_rosrun_and_path_find_the_same_program(self):
+        found = subprocess.run(["bash", "-c", f". '{BUILD}/devel/setup.bash' && rosrun e2e_cdiff cdiff --version && cdiff --version"],
+                               env={**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]}, stdin=subprocess.DEVNULL, timeout=60,
+                               capture_output=True, text=True, check=False)
+        self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
+        lines = found.stdout.splitlines()
+        self.assertEqual(lines[:len(lines) // 2], lines[len(lines) // 2:])
+        self.assertTrue(lines)
+
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])

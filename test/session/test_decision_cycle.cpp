@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// The decision cycle with parts of a test: who is asked, what becomes of a planner's failure, which
+// The decision cycle with parts of a test: who is asked, how a planner's failure ends, which
 // images a record holds. The ego stands at x = 100 m, the CBV "car" 100 m ahead of it.
 #include <gtest/gtest.h>
 
@@ -133,6 +133,14 @@ TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
   EXPECT_EQ(record.actions[0][1].fault, "no idea");
   const std::string planner = "cbv:" + ScenarioOptions().ego_planner;  // that of the scenario
   EXPECT_EQ(record.faults, (std::vector<std::string>{planner, planner, "user"}));
+}
+
+TEST(DecisionCycle, SoIsOneThatThrowsWhatIsNoException) {
+  Cycle cycle;
+  cycle.parts.cbv_planner = std::make_unique<Braking>([](const PlanningTask&) { throw 7; });
+  const Record record = cycle.run();
+  EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
+  EXPECT_NE(record.actions[0][1].fault.find("no std::exception"), std::string::npos);
 }
 
 TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {

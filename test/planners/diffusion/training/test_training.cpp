@@ -10,6 +10,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/checkpoint.h"
 #include "learning/small_samples.h"
+#include "learning/stopping_buffer.h"
 #include "learning/trainer.h"
 #include "planners/diffusion/training/diffusion_task.h"
 #include "planners/diffusion/training/training.h"
@@ -91,27 +92,11 @@ TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "model" / "model_card.md"));
 }
 
-/// Sets a flag when a line with `text` is logged.
-class StoppingBuffer : public std::stringbuf {
- public:
-  StoppingBuffer(std::atomic<bool>& stop, std::string text) : stop_(stop), text_(std::move(text)) {}
-
- protected:
-  int sync() override {
-    if (str().find(text_) != std::string::npos) stop_ = true;
-    return 0;
-  }
-
- private:
-  std::atomic<bool>& stop_;
-  std::string text_;
-};
-
 TEST_F(DiffusionTrainingTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
   run("encoder", 4);
   const std::filesystem::path path = folder_.path() / "model" / "encoder.checkpoint";
   const learning::Checkpoint expected = learning::readCheckpoint(path);
-  StoppingBuffer buffer(stop_, "encoder step 2/4");
+  test::StoppingBuffer buffer(stop_, "encoder step 2/4");
   std::ostream log(&buffer);
   training_.options.stage = "encoder";
   training_.options.overwrite = true;
