@@ -4,7 +4,7 @@
 
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "rendering/front_camera.h"
 
 namespace cdiff::benchmark {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "benchmark.h"
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/image_encoder.h"
 #include "e2e_cdiff/core/random.h"
 #include "fma_peak.h"
 #include "network_times.h"

@@ -5,7 +5,7 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/map/drivable_area.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "map/route_source.h"
 
 namespace cdiff::benchmark {

@@ -13,10 +13,10 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/ttc_2d.h"
+#include "metrics/measures/wasserstein.h"
 #include "metrics/session_metrics.h"
-#include "metrics/shapiro_wilk.h"
-#include "metrics/ttc_2d.h"
-#include "metrics/wasserstein.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "diffusion/cpu_denoiser.h"
+#include "diffusion/network/cpu_denoiser.h"
 
 namespace cdiff::benchmark {
 

@@ -8,9 +8,9 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/session_metrics.h"
-#include "ros/bag_reader.h"
-#include "ros/replay.h"
-#include "ros/session_bag.h"
+#include "ros/bags/bag_reader.h"
+#include "ros/bags/replay.h"
+#include "ros/bags/session_bag_writer.h"
 #include "session/closed_loop.h"
 #include "session/session_request.h"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "cbv/rejection_reason.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::cbv {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cbv/candidate_gates.h"
+#include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::cbv {
@@ -214,6 +215,12 @@ std::optional<HeldCbv> CbvSelector::makeHeld(int slot, const Candidate& candidat
   assignment.conflict_point = conflict.point;
   assignment.conflict_aware_route = graph_.extended(to_conflict, options_.route_length);
   return HeldCbv(std::move(assignment), to_conflict.length());
+}
+
+const CbvAssignment* CbvSelection::find(int slot) const {
+  const auto found = std::find_if(assignments.begin(), assignments.end(),
+                                  [&](const auto& assignment) { return assignment.slot == slot; });
+  return found == assignments.end() ? nullptr : &*found;
 }
 
 }  // namespace cdiff::cbv

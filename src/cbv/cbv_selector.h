@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// CBV identification (paper III-B): for every vehicle the best conflict point with the ego's
-/// remaining route by equal distance, equal arrival time and nearness; the best candidates fill the
-/// slots and keep them (RIFT's life cycle by default).
 #pragma once
 
 #include <map>
@@ -11,15 +8,32 @@
 #include <string>
 #include <vector>
 
+#include "cbv/candidate_gates.h"
 #include "cbv/cbv_options.h"
 #include "cbv/conflict_search.h"
 #include "cbv/held_cbv.h"
-#include "cbv/rejection_reason.h"
-#include "cbv/vehicle_selector.h"
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "map/lane_graph.h"
 
 namespace cdiff::cbv {
 
+/// Who is driven besides the ego, and along which route: CBV identification in a session, anybody
+/// near the ego where data are collected.
+/// One per session; called once per tick in order: `update` at decision ticks, `observe` at all
+/// others.
+class VehicleSelector {
+ public:
+  virtual ~VehicleSelector() = default;
+  /// A tick without decision.
+  virtual void observe(const traffic::TrafficSnapshot& snapshot) = 0;
+  /// The selection of this decision.
+  virtual CbvSelection update(const traffic::TrafficSnapshot& snapshot) = 0;
+};
+
+/// CBV identification (paper III-B): for every vehicle the best conflict point with the ego's
+/// remaining route by equal distance, equal arrival time and nearness; the best candidates fill the
+/// slots and keep them (RIFT's life cycle by default).
 /// Not copyable; one per session; called once per tick in order: `update` at decision ticks,
 /// `observe` at all others.
 class CbvSelector : public VehicleSelector {

@@ -7,11 +7,21 @@
 #include <limits>
 
 #include "cbv/candidate_gates.h"
-#include "cbv/interaction_score.h"
-#include "cbv/rejection_reason.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::cbv {
+
+double arrivalTime(double distance, double speed, double minimum_speed) {
+  return distance / std::max(speed, minimum_speed);
+}
+
+double interactionScore(const ConflictPoint& point, double separation, const CbvOptions& options) {
+  const double distance_ratio = (point.cbv_distance - point.ego_distance) / options.distance_sigma;
+  const double time_ratio = point.arrivalTimeGap() / options.time_sigma;
+  return std::exp(-0.5 * distance_ratio * distance_ratio - 0.5 * time_ratio * time_ratio -
+                  separation / options.nearness_length);
+}
+
 namespace {
 
 constexpr double kClearlyBetter =

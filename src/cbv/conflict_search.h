@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Best conflict point of a candidate with the ego's remaining route: over the points of that route
-/// that lie near and ahead of the candidate and have a lane-connected way from it, the one with the
-/// highest interaction score, the first of equals. The points lie at multiples of sample_spacing
-/// from the route's start, and at its end.
 #pragma once
 
 #include <optional>
@@ -15,6 +11,17 @@
 #include "map/lane_graph.h"
 
 namespace cdiff::cbv {
+
+// Interaction score of a candidate at one point of the ego's route, in [0, 1]:
+// exp(-ds^2 / 2 sigma_s^2) exp(-dT^2 / 2 sigma_T^2) exp(-d / l), with ds the difference of the
+// distances still to drive [m], dT that of the arrival times at present speeds (at least v_min)
+// [s], and d the distance from candidate to ego [m].
+
+/// Time to drive `distance` [m] at `speed` [m/s], taken as at least `minimum_speed`.
+double arrivalTime(double distance, double speed, double minimum_speed);
+
+/// Score of a conflict point for a candidate `separation` metres away from the ego.
+double interactionScore(const ConflictPoint& point, double separation, const CbvOptions& options);
 
 /// The ego on its route.
 struct EgoProgress {
@@ -35,6 +42,10 @@ struct ConflictResult {
   const char* reason = nullptr;  ///< kOutOfView, kNoWay or kDistanceMismatch
 };
 
+/// Best conflict point of a candidate with the ego's remaining route: over the points of that route
+/// that lie near and ahead of the candidate and have a lane-connected way from it, the one with the
+/// highest interaction score, the first of equals. The points lie at multiples of sample_spacing
+/// from the route's start, and at its end.
 class ConflictSearch {
  public:
   /// Keeps references to options and graph. Samples the route once.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cbv/interaction_score.h"
+#include "cbv/conflict_search.h"
 
 namespace cdiff::cbv {
 

@@ -6,14 +6,14 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "collection/dataset_page.h"
+#include "collection/dataset_statistics.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/process_pool.h"
-#include "ros/bag_collection.h"
+#include "evaluation/child_process.h"
+#include "ros/bags/bag_collection.h"
 #include "suite/suite.h"
 
 namespace cdiff::cli {

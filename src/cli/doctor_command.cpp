@@ -10,8 +10,8 @@
 
 #include "cli/commands.h"
 #include "core/file.h"
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/cpu_denoiser.h"
+#include "diffusion/network/image_encoder.h"
 #include "plugins/plugin_loader.h"
 #include "session/scenario_options.h"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "cli/batch_progress.h"
 #include "cli/commands.h"
+#include "cli/progress.h"
 #include "cli/route_table.h"
 #include "core/file.h"
 #include "core/output_folder.h"

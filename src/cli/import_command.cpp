@@ -7,8 +7,8 @@
 #include "cli/commands.h"
 #include "core/file.h"
 #include "e2e_cdiff/map/drivable_area.h"
+#include "map/import/network_import.h"
 #include "map/lane_graph.h"
-#include "map/network_import.h"
 
 namespace cdiff::cli {
 namespace {

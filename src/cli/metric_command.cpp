@@ -5,7 +5,6 @@
 
 #include "cli/commands.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/figure_list.h"
 #include "record/metric_file.h"
 
 namespace cdiff::cli {

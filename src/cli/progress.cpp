@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "core/text.h"
@@ -44,6 +45,45 @@ void Progress::observe(const session::TickRecord& record) {
     std::cerr << "at most " << core::formatFixed(left, 0) << " s left   "
               << (terminal_ ? "" : "\n");
   std::cerr.flush();
+}
+
+using Clock = std::chrono::steady_clock;
+
+BatchProgress::BatchProgress(std::size_t total)
+    : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
+
+void BatchProgress::repeated(const std::string& cause, const std::vector<std::string>& ids) const {
+  constexpr std::size_t kShown = 5;
+  const std::vector<std::string> shown(ids.begin(), ids.begin() + std::min(kShown, ids.size()));
+  std::cerr << ids.size() << (ids.size() == 1 ? " run" : " runs") << " to do: " << cause << ": "
+            << core::joinText(shown, ", ");
+  if (ids.size() > kShown) std::cerr << " and " << ids.size() - kShown << " more";
+  std::cerr << "\n";
+}
+
+void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
+  ++done_;
+  if (resumed) {
+    ++resumed_;
+    return;
+  }
+  failed_ += record.failed();
+  simulated_ += record.simulated_seconds;
+  const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const double per_run = wall / static_cast<double>(done_ - resumed_);
+  const double left = per_run * static_cast<double>(total_ - done_);
+  std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_
+            << " failed, " << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1)
+            << " x real time, " << core::formatFixed(left, 0) << " s left: " << record.id << " "
+            << record.status << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
+            << (record.cause.empty() ? "" : " (" + record.cause + ")")
+            << (terminal_ && !record.failed() ? "" : "\n");
+  std::cerr.flush();
+}
+
+void BatchProgress::finish() const {
+  if (terminal_ && done_ > resumed_) std::cerr << "\n";
+  if (resumed_ > 0) std::cerr << resumed_ << " runs were complete already\n";
 }
 
 }  // namespace cdiff::cli

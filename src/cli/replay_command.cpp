@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "ros/replay.h"
+#include "ros/bags/replay.h"
 
 namespace cdiff::cli {
 namespace {

@@ -6,7 +6,6 @@
 #include "cli/commands.h"
 #include "cli/run_session.h"
 #include "core/text.h"
-#include "core/time_text.h"
 #include "session/session_request.h"
 
 namespace cdiff::cli {

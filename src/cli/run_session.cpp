@@ -18,7 +18,7 @@
 #include "session/closed_loop.h"
 #include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS
-#include "ros/session_bag.h"
+#include "ros/bags/session_bag_writer.h"
 #endif
 
 namespace cdiff::cli {

@@ -5,9 +5,9 @@
 
 #include "core/failure.h"
 #include "core/program.h"
-#include "learning/command_line.h"
-#include "learning/task_registry.h"
+#include "learning/task.h"
 #include "learning/trainer.h"
+#include "learning/training_options.h"
 #include "planners/diffusion/training/training.h"
 
 namespace {

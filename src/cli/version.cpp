@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdio>
 
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/cpu_denoiser.h"
+#include "diffusion/network/image_encoder.h"
 #include "record/build_info.h"
 
 namespace cdiff::cli {

@@ -108,4 +108,23 @@ void CollectionOptions::validate() const {
   requireOrder("noise.minimum_time", noise.minimum_time, "noise.maximum_time", noise.maximum_time);
 }
 
+DatasetOptions datasetOptions(const CollectionOptions& options) {
+  DatasetOptions dataset;
+  dataset.standing_share = options.standing_share;
+  dataset.offset_share = options.offset_share;
+  dataset.offset_lateral = options.offset_lateral;
+  dataset.offset_heading = options.offset_heading;
+  return dataset;
+}
+
+learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture) {
+  learning::DrivingSchema schema;
+  schema.horizon = architecture.horizon;
+  schema.image_width = architecture.image_width;
+  schema.image_height = architecture.image_height;
+  schema.route_points = architecture.route_points;
+  schema.route_spacing = architecture.route_spacing;
+  return schema;
+}
+
 }  // namespace cdiff::collection

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options of data collection: how many vehicles are driven, on which routes, how they are
-/// disturbed, and how often an image is taken (SI units).
 #pragma once
 
 #include <string>
 
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/options.h"
+#include "learning/samples/driving_sample.h"
 
 namespace cdiff::collection {
 
@@ -27,6 +27,8 @@ struct NoiseOptions {
   void describe(core::OptionsVisitor& visitor);
 };
 
+/// Options of data collection: how many vehicles are driven, on which routes, how they are
+/// disturbed, and how often an image is taken (SI units).
 struct CollectionOptions {
   std::int64_t vehicles = 12;         ///< background vehicles driven at a time
   double duration = 60.0;             ///< longest session [s]
@@ -62,5 +64,20 @@ struct CollectionOptions {
   /// Throws InputError for fields that contradict each other.
   void validate() const;
 };
+
+/// How training samples are made of what was recorded.
+struct DatasetOptions {
+  diffusion::Architecture architecture;  ///< horizon, image size, route tokens
+  double standing_share = 0.25;          ///< part kept of samples that stand all the time
+  double offset_share = 0.2;             ///< of samples that move, the part displaced once more
+  double offset_lateral = 0.75;          ///< largest displacement to the side [m]
+  double offset_heading = 12.0;          ///< largest turn of a displaced vehicle [deg]
+};
+
+/// Those that a collection's own options give.
+DatasetOptions datasetOptions(const CollectionOptions& options);
+
+/// The schema that such samples fit.
+learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture);
 
 }  // namespace cdiff::collection

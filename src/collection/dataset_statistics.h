@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the sessions or bags of a data set gave: images, samples and kinds of driving, counted.
 #pragma once
 
 #include <array>
@@ -11,6 +10,7 @@
 
 namespace cdiff::collection {
 
+/// What the sessions or bags of a data set gave: images, samples and kinds of driving, counted.
 /// What is in a data set; sums, so that those of several bags add up.
 struct DatasetStatistics {
   std::uint64_t images = 0;
@@ -36,5 +36,17 @@ DatasetStatistics readStatistics(const std::filesystem::path& file);
 /// Of several sessions or bags, by name.
 using StatisticsByName = std::map<std::string, DatasetStatistics>;
 DatasetStatistics sumOf(const StatisticsByName& statistics);
+
+// What a data set holds, in words and pictures.
+
+/// Writes statistics.json and, where there are shards, samples.html into the data set's folder, and
+/// the statistics as a table to the output.
+void describeDataset(const std::filesystem::path& folder, const DatasetStatistics& statistics);
+
+/// Names on standard error each "session" or "bag" (`kind`) that gave no sample, with what became
+/// of its images and, where they lie too near its end, the `remedy` ("longer bags"). Throws
+/// InputError when none gave any.
+void requireSamples(const StatisticsByName& statistics, const std::string& kind,
+                    const std::string& remedy);
 
 }  // namespace cdiff::collection

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "collection/dataset_options.h"
+#include "collection/collection_options.h"
 #include "collection/sample_kinds.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "rendering/front_camera.h"

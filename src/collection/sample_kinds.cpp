@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "e2e_cdiff/core/angle.h"
-#include "learning/sample_balance.h"
+#include "learning/samples/sample_order.h"
 #include "planners/pdm_lite/route_rules.h"
 
 namespace cdiff::collection {

@@ -5,7 +5,7 @@
 
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/angle.h"
-#include "learning/driving_sample.h"
+#include "learning/samples/driving_sample.h"
 #include "session/session_setup.h"
 
 namespace cdiff::collection {

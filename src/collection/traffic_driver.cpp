@@ -7,7 +7,6 @@
 
 #include "cbv/candidate_gates.h"
 #include "cbv/held_cbv.h"
-#include "cbv/rejection_reason.h"
 #include "collection/random_route.h"
 
 namespace cdiff::collection {

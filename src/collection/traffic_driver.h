@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "cbv/vehicle_selector.h"
+#include "cbv/cbv_selector.h"
 #include "collection/collection_options.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/map/drivable_area.h"

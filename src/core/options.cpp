@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "core/options_dump.h"
 #include "core/options_path.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -2,11 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "core/options_path.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <vector>
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/options.h"
 
 namespace cdiff::core::detail {
 namespace {
@@ -61,6 +64,85 @@ std::string resolvePath(const std::string& key, const std::string& source, void*
   }
   throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
                    nearestName(key, paths) + "'");
+}
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+/// Writes the fields as indented YAML.
+class DumpVisitor : public OptionsVisitor {
+ public:
+  explicit DumpVisitor(bool with_comments) : with_comments_(with_comments) {}
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    line(info, formatNumber(value),
+         rangeText(formatNumber(minimum), formatNumber(maximum), info.unit));
+  }
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    line(info, std::to_string(value),
+         rangeText(std::to_string(minimum), std::to_string(maximum), info.unit));
+  }
+  void flag(const FieldInfo& info, bool& value) override {
+    line(info, value ? "true" : "false", "true | false");
+  }
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    line(info, quoted(value), joinText(choices, " | "));
+  }
+  void list(const FieldInfo& info, std::vector<std::string>& value) override {
+    std::vector<std::string> items;
+    for (const std::string& item : value) items.push_back(quoted(item));
+    line(info, "[" + joinText(items, ", ") + "]", "");
+  }
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
+    std::vector<std::string> items;
+    for (const Eigen::Vector3d& item : value) {
+      items.push_back("[" + formatNumber(item.x()) + ", " + formatNumber(item.y()) + ", " +
+                      formatNumber(item.z()) + "]");
+    }
+    line(info, "[" + joinText(items, ", ") + "]", info.unit);
+  }
+  bool enter(const FieldInfo& info) override {
+    comment(info, "");
+    text_ += indent_ + info.key + ":\n";
+    indent_ += "  ";
+    return true;
+  }
+  void leave() override { indent_.resize(indent_.size() - 2); }
+
+  const std::string& written() const { return text_; }
+
+ private:
+  void comment(const FieldInfo& info, const std::string& range) {
+    if (!with_comments_) return;
+    text_ += indent_ + "# " + info.text + (range.empty() ? "" : " " + range) + "\n";
+  }
+  void line(const FieldInfo& info, const std::string& value, const std::string& range) {
+    comment(info, range);
+    text_ += indent_ + info.key + ": " + value + "\n";
+  }
+
+  bool with_comments_;
+  std::string indent_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string rangeText(const std::string& low, const std::string& high, const char* unit) {
+  return "[" + low + ", " + high + "]" + (*unit ? std::string(" ") + unit : std::string());
+}
+
+std::string dump(void* options, Describe describe, bool with_comments) {
+  DumpVisitor visitor(with_comments);
+  describe(options, visitor);
+  return visitor.written();
 }
 
 }  // namespace cdiff::core::detail

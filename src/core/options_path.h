@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The keys of an options struct with those of its groups before them: "cbv.search_radius".
 #pragma once
 
 #include <string>
@@ -9,9 +8,16 @@
 
 namespace cdiff::core::detail {
 
+// The keys of an options struct with those of its groups before them: "cbv.search_radius".
+
 /// The full key that `key` means: itself, or the one whose last part it is. Throws InputError that
 /// names `source` and the nearest key, or the keys among which it is ambiguous.
 std::string resolvePath(const std::string& key, const std::string& source, void* options,
                         Describe describe);
+
+// How loading and dumping of options write a range of values.
+
+/// "[0, 1] m"
+std::string rangeText(const std::string& low, const std::string& high, const char* unit);
 
 }  // namespace cdiff::core::detail

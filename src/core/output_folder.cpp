@@ -20,7 +20,6 @@
 #include "core/file.h"
 #include "core/program.h"
 #include "core/text.h"
-#include "core/time_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {

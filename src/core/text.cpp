@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 
 namespace cdiff::core {
@@ -108,5 +109,22 @@ std::string joinText(const std::vector<std::string>& parts, std::string_view sep
   }
   return joined;
 }
+
+namespace {
+
+std::string now(const char* format) {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&time, &local);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), format, &local);
+  return text.data();
+}
+
+}  // namespace
+
+std::string timeText() { return now("%Y-%m-%d %H:%M:%S"); }
+
+std::string timeForFileName() { return now("%Y%m%d_%H%M%S"); }
 
 }  // namespace cdiff::core

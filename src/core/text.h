@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Numbers and names as text: shortest round-trip decimals, nearest known name, numbers from text.
 #pragma once
 
 #include <optional>
@@ -9,6 +8,8 @@
 #include <vector>
 
 namespace cdiff::core {
+
+// Numbers and names as text: shortest round-trip decimals, nearest known name, numbers from text.
 
 /// Shortest decimal that reads back to the same double; "nan", "inf" and "-inf" for the rest.
 std::string formatNumber(double value);
@@ -41,5 +42,13 @@ std::vector<std::string> splitText(std::string_view text, char separator);
 
 /// The parts with a separator between them.
 std::string joinText(const std::vector<std::string>& parts, std::string_view separator);
+
+// The local time of the wall clock as text, to the second.
+
+/// For people: "2026-01-31 14:05:09".
+std::string timeText();
+
+/// For the name of a file or folder: "20260131_140509".
+std::string timeForFileName();
 
 }  // namespace cdiff::core

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 
 namespace cdiff::diffusion {
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/geometry/polyline.h"
 #include "e2e_cdiff/geometry/pose.h"
 

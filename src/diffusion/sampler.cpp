@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "core/text.h"
-#include "diffusion/proximal_step.h"
 #include "diffusion/sampling_batch.h"
 #include "e2e_cdiff/core/exceptions.h"
 

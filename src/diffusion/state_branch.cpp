@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "dynamics/executable_action.h"
+#include "dynamics/action_rollout.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -4,8 +4,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "e2e_cdiff/traffic/rollout.h"
 
 namespace cdiff::dynamics {
+namespace {
+
+constexpr double kLeastBrake = 0.05;  // below it the sampled brake is noise around none
+
+}  // namespace
+
+traffic::ControlAction executableAction(const traffic::Rollout& rollout, Eigen::Index row) {
+  traffic::ControlAction action;
+  action.throttle = std::clamp(rollout(row, traffic::kRolloutThrottle), 0.0, 1.0);
+  action.steer = std::clamp(rollout(row, traffic::kRolloutSteer), -1.0, 1.0);
+  action.brake = std::clamp(rollout(row, traffic::kRolloutBrake), 0.0, 1.0);
+  if (action.brake < kLeastBrake || action.brake < action.throttle)
+    action.brake = 0.0;
+  else
+    action.throttle = 0.0;
+  return action;
+}
+
+void makeExecutable(traffic::Rollout& rollout) {
+  for (Eigen::Index row = 0; row < rollout.rows(); ++row) {
+    const traffic::ControlAction action = executableAction(rollout, row);
+    rollout.row(row).tail<traffic::kActionColumns>() << action.throttle, action.steer, action.brake;
+  }
+}
+
 namespace {
 
 using traffic::ControlAction;
@@ -134,6 +162,43 @@ void ActionRollout::pullBack(double initial_speed, const Rollout& rollout,
         within(sum.slip * slip.by_steer, rollout(row, kRolloutSteer), -1.0, 1.0);
     gradient(row, kRolloutBrake) += within(sum.brake, rollout(row, kRolloutBrake), 0.0, 1.0);
   }
+}
+
+namespace {
+
+constexpr int kSteps = 50;         // of a pedal
+constexpr double kStanding = 0.5;  // [m/s]
+
+/// `speed`: mean of those at which the two ticks begin.
+double inferSteer(const BicycleModelOptions& options, double turn, double speed) {
+  if (speed < kStanding) return 0.0;
+  const double sine = turn * options.rear_length / (traffic::kRolloutStep * speed);
+  const double slip = std::asin(std::clamp(sine, -0.9, 0.9));
+  const double wheel = std::atan(std::tan(slip) * (options.front_length + options.rear_length) /
+                                 options.rear_length);
+  return std::clamp(wheel / options.steering_gain, -1.0, 1.0);
+}
+
+}  // namespace
+
+traffic::ControlAction inferAction(const BicycleModel& model, const ObservedMotion& motion) {
+  traffic::ControlAction best;
+  double nearest = std::numeric_limits<double>::infinity();
+  // From no pedal outwards, so that of equal ones the gentlest wins.
+  for (int i = 0; i <= kSteps; ++i) {
+    const double pedal = static_cast<double>(i) / kSteps;
+    for (const traffic::ControlAction& action :
+         {traffic::ControlAction{pedal, 0.0, 0.0}, traffic::ControlAction{0.0, 0.0, pedal}}) {
+      const double next = model.nextSpeed(model.nextSpeed(motion.speed, action), action);
+      const double error = std::abs(next - motion.next_speed);
+      if (error >= nearest) continue;
+      nearest = error;
+      best = action;
+    }
+  }
+  const double speed = 0.5 * (motion.speed + model.nextSpeed(motion.speed, best));
+  best.steer = inferSteer(model.options(), motion.turn, speed);
+  return best;
 }
 
 }  // namespace cdiff::dynamics

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The exact state branch: states s_1..s_T that the vehicle dynamics gives for actions a_0..a_{T-1}
-/// from (0, 0, 0, v_0) in the body frame, and its adjoint. One row is 0.1 s, two steps of
-/// BicycleModel.
 #pragma once
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::dynamics {
 
+// What a vehicle executes of a denoised action: each value clamped to its range; of throttle and
+// brake the larger acts, the other is 0; a brake below 0.05 counts as none.
+
+/// Of a row of a rollout.
+traffic::ControlAction executableAction(const traffic::Rollout& rollout, Eigen::Index row);
+
+/// Replaces every row's action by the one that is executed.
+void makeExecutable(traffic::Rollout& rollout);
+
+/// The exact state branch: states s_1..s_T that the vehicle dynamics gives for actions a_0..a_{T-1}
+/// from (0, 0, 0, v_0) in the body frame, and its adjoint. One row is 0.1 s, two steps of
+/// BicycleModel.
 class ActionRollout {
  public:
   explicit ActionRollout(const BicycleModelOptions& options = {});
@@ -28,5 +38,20 @@ class ActionRollout {
  private:
   BicycleModel model_;
 };
+
+// The action that the vehicle dynamics needs for a motion: the inverse of BicycleModel over 0.1 s,
+// for recordings that hold no pedals and for planners that choose accelerations (SI units).
+
+/// What a vehicle did, or is to do, over 0.1 s.
+struct ObservedMotion {
+  double speed = 0.0;       ///< at its begin [m/s]
+  double next_speed = 0.0;  ///< at its end [m/s]
+  double turn = 0.0;        ///< change of heading [rad], positive left
+};
+
+/// Throttle or brake, one of them 0, in steps of 0.02, whose speed after 0.1 s is nearest to
+/// next_speed; steer from turn = 0.1 s v / l_r sin(slip), 0 below 0.5 m/s; all within range, so
+/// that a motion beyond the model's means is approached.
+traffic::ControlAction inferAction(const BicycleModel& model, const ObservedMotion& motion);
 
 }  // namespace cdiff::dynamics

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/cell.h"
+#include "evaluation/statistics.h"
 
 namespace cdiff::evaluation {
 

@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/paper_definitions.h"
+#include "evaluation/paper/paper_definitions.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/paper_figures.h"
+#include "evaluation/paper/paper_figures.h"
 
 namespace cdiff::evaluation {
 

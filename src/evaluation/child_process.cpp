@@ -9,7 +9,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
+#include <map>
+#include <memory>
+#include <thread>
 
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -75,6 +80,34 @@ std::optional<int> ChildProcess::poll() {
 
 void ChildProcess::signal(int number) const {
   if (!exit_code_) ::kill(-process_, number);
+}
+
+void runProcesses(const std::filesystem::path& program, std::vector<ProcessJob>& jobs,
+                  int at_a_time, const std::atomic<bool>& stop,
+                  const std::function<void(const ProcessJob&)>& ended) {
+  constexpr std::chrono::milliseconds kPollPeriod{20};
+  std::map<std::size_t, std::unique_ptr<ChildProcess>> running;  // by index of the job
+  std::size_t next = 0;
+  bool interrupted = false;
+  while (!running.empty() || (next < jobs.size() && !stop)) {
+    while (!stop && next < jobs.size() && static_cast<int>(running.size()) < at_a_time) {
+      running[next] = std::make_unique<ChildProcess>(program, jobs[next].words, "");
+      ++next;
+    }
+    if (stop && !interrupted) {
+      interrupted = true;
+      for (const auto& [index, process] : running) process->signal(SIGINT);
+    }
+    for (auto entry = running.begin(); entry != running.end();) {
+      const auto exit_code = entry->second->poll();
+      ProcessJob& job = jobs[entry->first];
+      entry = exit_code ? running.erase(entry) : std::next(entry);
+      if (!exit_code) continue;
+      job.exit_code = *exit_code;
+      ended(job);
+    }
+    if (!running.empty()) std::this_thread::sleep_for(kPollPeriod);
+  }
 }
 
 }  // namespace cdiff::evaluation

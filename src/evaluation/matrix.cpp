@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/route_source.h"
+#include "suite/suite.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -102,6 +105,150 @@ std::string identityOf(const MatrixOptions& matrix) {
   same.timeout = defaults.timeout;
   same.retries = defaults.retries;
   return core::dumpOptions(same);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) {
+  std::vector<ScenarioLevel> levels;
+  std::vector<std::string> missing = options.routes;
+  for (const map::Bench2DriveEntry& entry : map::listBench2DriveRoutes(options.file)) {
+    const auto& wanted = options.routes;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end())
+      continue;
+    const fs::path network = fs::path(options.networks) / (entry.town + ".net.xml");
+    if (!core::isFile(network)) continue;
+    missing.erase(std::remove(missing.begin(), missing.end(), entry.id), missing.end());
+    session::SessionRequest request;
+    request.bench2drive = options.file;
+    request.route = entry.id;
+    request.network = network.string();
+    levels.push_back({entry.id, request});
+  }
+  if (!missing.empty()) {
+    throw InputError("routes " + core::joinText(missing, ", ") + " are not in '" + options.file +
+                     "', or the network of their town is not in '" + options.networks + "'");
+  }
+  if (levels.empty()) {
+    throw InputError("no route of '" + options.file +
+                     "' lies in a town whose TOWN.net.xml is in '" + options.networks + "'");
+  }
+  return levels;
+}
+
+/// Those named, then those of the suite.
+std::vector<std::string> scenariosOf(const MatrixOptions& matrix) {
+  std::vector<std::string> scenarios = matrix.scenarios;
+  if (matrix.suite.empty()) return scenarios;
+  for (const std::string& file : suite::scenarioFiles(suite::loadSuite(matrix.suite)))
+    scenarios.push_back(file);
+  return scenarios;
+}
+
+Combination combinationOf(const std::string& text, const std::string& source) {
+  Combination combination;
+  std::map<std::string, std::string*> fields = {
+      {"ego_planner", &combination.ego_planner},
+      {"cbv_planner", &combination.cbv_planner},
+      {"mode", &combination.mode},
+      {"guidance_profile", &combination.guidance_profile}};
+  for (const std::string& word : core::splitText(text, ' ')) {
+    const std::size_t equals = word.find('=');
+    const auto field = fields.find(word.substr(0, equals));
+    if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
+      throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
+                       "' is wrong; expected ego_planner=, cbv_planner=, mode= and "
+                       "guidance_profile=, each once at most");
+    }
+    *field->second = word.substr(equals + 1);
+  }
+  return combination;
+}
+
+/// A product of lists, of which an empty one leaves the factor as the scenario has it.
+std::vector<Combination> productOf(const MatrixOptions& matrix, const std::string& source) {
+  double count = 1.0;
+  for (const auto* list :
+       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles})
+    count *= static_cast<double>(std::max<std::size_t>(1, list->size()));
+  if (count > static_cast<double>(kMostRuns)) {
+    throw InputError(source + ": planners, modes and profiles give " + core::formatFixed(count, 0) +
+                     " combinations; at most " + std::to_string(kMostRuns) + " runs were expected");
+  }
+  const auto levels = [](const std::vector<std::string>& given) {
+    return given.empty() ? std::vector<std::string>{""} : given;
+  };
+  std::vector<Combination> product;
+  for (const std::string& ego : levels(matrix.ego_planners)) {
+    for (const std::string& cbv : levels(matrix.cbv_planners)) {
+      for (const std::string& mode : levels(matrix.modes)) {
+        for (const std::string& profile : levels(matrix.guidance_profiles))
+          product.push_back({ego, cbv, mode, profile});
+      }
+    }
+  }
+  return product;
+}
+
+}  // namespace
+
+std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std::string& source) {
+  std::vector<ScenarioLevel> levels;
+  for (const std::string& name : scenariosOf(matrix)) {
+    session::SessionRequest request;
+    request.scenario = name;
+    levels.push_back({core::isFile(name) ? fs::path(name).stem().string() : name, request});
+  }
+  if (!matrix.bench2drive.file.empty()) {
+    for (ScenarioLevel& level : bench2DriveLevels(matrix.bench2drive)) levels.push_back(level);
+  }
+  if (levels.empty()) {
+    throw InputError(source +
+                     ": the matrix is empty; give scenarios: [...], a suite or a bench2drive.file");
+  }
+  return levels;
+}
+
+std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& source) {
+  std::vector<Variant> variants;
+  for (const std::string& text : matrix.variants) {
+    const std::size_t colon = text.find(':');
+    const auto names = core::splitText(text.substr(0, colon), ' ');
+    if (colon == std::string::npos || names.size() != 1) {
+      throw InputError(source + ": key 'variants' holds '" + text +
+                       "'; expected \"name: key=value key=value\"");
+    }
+    variants.push_back({names.front(), core::splitText(text.substr(colon + 1), ' ')});
+  }
+  if (variants.empty()) variants.emplace_back();
+  return variants;
+}
+
+std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source) {
+  if (matrix.combinations.empty()) return productOf(matrix, source);
+  for (const auto* list :
+       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
+    if (list->empty()) continue;
+    throw InputError(source +
+                     ": key 'combinations' stands instead of ego_planners, cbv_planners, modes "
+                     "and guidance_profiles; give either it or them");
+  }
+  std::vector<Combination> combinations;
+  for (const std::string& text : matrix.combinations)
+    combinations.push_back(combinationOf(text, source));
+  return combinations;
+}
+
+void checkSeeds(const std::vector<std::string>& seeds, const std::string& source) {
+  for (const std::string& seed : seeds) {
+    const bool digits = !seed.empty() && seed.find_first_not_of("0123456789") == std::string::npos;
+    if (digits && seed.size() <= 10) continue;  // its range is that of the scenario's key
+    throw InputError(source + ": key 'seeds' holds '" + seed +
+                     "'; expected whole numbers from 0 on, e.g. [1, 2, 3]");
+  }
 }
 
 }  // namespace cdiff::evaluation

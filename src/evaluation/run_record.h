@@ -1,19 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What became of one planned run: record.json in its folder, written whole before the batch begins
-/// (not_run) and again after the run.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "evaluation/figures.h"
 #include "evaluation/run_plan.h"
+#include "record/verdict.h"
 
 namespace cdiff::evaluation {
 
+// The figures that a batch takes from a session's summary.json, by fixed names.
+
+/// Values by name; a figure that a session does not have is not there.
+using Figures = std::map<std::string, double>;
+
+/// All names in the order of columns.
+const std::vector<std::string>& figureNames();
+
+/// What a summary says.
+struct SummaryFacts {
+  std::string status;
+  std::string fault;  ///< text of the last fault, or empty
+  record::Outcome verdict = record::Outcome::kError;
+  std::vector<std::string> reasons;     ///< of the verdict
+  std::vector<std::string> decided_by;  ///< rules that decided it
+  double simulated_seconds = 0.0;
+  Figures figures;
+};
+
+/// Throws InputError naming `source` for a text that is no summary.
+SummaryFacts readSummary(const std::string& text, const std::string& source);
+
+/// What became of one planned run: record.json in its folder, written whole before the batch begins
+/// (not_run) and again after the run.
 struct RunRecord {
   std::string id;
   Factors factors;
@@ -51,5 +74,31 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file);
 /// Records of a batch's result folder by id. Throws InputError when it holds none, or one that is
 /// damaged.
 std::vector<RunRecord> readRecords(const std::filesystem::path& results);
+
+/// Numbers of a summary.json by JSON pointer (`FigureDefinition::place`); lists are left out.
+using SummaryNumbers = std::map<std::string, double>;
+
+/// Throws InputError naming `source` for a text that is no JSON object.
+SummaryNumbers summaryNumbers(const std::string& text, const std::string& source);
+
+/// The runs of a batch with all numbers of their summaries, from which tables and figures are made.
+struct BatchRun {
+  RunRecord record;
+  std::filesystem::path folder;
+  SummaryNumbers numbers;  ///< empty unless the run is complete
+
+  /// Value at a JSON pointer; nullopt where the summary has no number there.
+  std::optional<double> number(const std::string& pointer) const;
+};
+
+/// Every record of a result folder, by id. Throws InputError for a folder without records, a
+/// damaged record or a damaged summary.
+std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results);
+
+/// Whether the run has all these levels.
+bool hasLevels(const RunRecord& record, const Factors& levels);
+
+/// Runs with these levels, complete or not, in order.
+std::vector<const BatchRun*> runsWith(const std::vector<BatchRun>& runs, const Factors& levels);
 
 }  // namespace cdiff::evaluation

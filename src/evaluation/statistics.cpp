@@ -25,4 +25,52 @@ Statistics statisticsOf(const std::vector<double>& samples) {
   return result;
 }
 
+namespace {
+
+/// Values of one figure in a cell, by seed.
+using ValuesBySeed = std::map<std::string, std::vector<double>>;
+
+Statistics overSeeds(const ValuesBySeed& values) {
+  std::vector<double> means;
+  for (const auto& [seed, samples] : values) {
+    means.push_back(std::accumulate(samples.begin(), samples.end(), 0.0) /
+                    static_cast<double>(samples.size()));
+  }
+  return statisticsOf(means);
+}
+
+Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records) {
+  Cell cell;
+  cell.factors = factors;
+  std::map<std::string, ValuesBySeed> values;
+  for (const RunRecord* record : records) {
+    ++cell.runs;
+    cell.failed += record->failed();
+    cell.missing += !record->failed() && !record->complete();
+    for (const auto& [name, value] : record->figures) {
+      values[name][record->factors.at("seed")].push_back(value);
+    }
+  }
+  for (const auto& [name, by_seed] : values) cell.figures[name] = overSeeds(by_seed);
+  return cell;
+}
+
+}  // namespace
+
+std::vector<Cell> cellsOf(const std::vector<RunRecord>& records) {
+  std::vector<Factors> order;
+  std::map<Factors, std::vector<const RunRecord*>> groups;
+  for (const RunRecord& record : records) {
+    Factors factors = record.factors;
+    factors.erase("seed");
+    factors.erase("repetition");
+    auto& group = groups[factors];
+    if (group.empty()) order.push_back(factors);
+    group.push_back(&record);
+  }
+  std::vector<Cell> cells;
+  for (const Factors& factors : order) cells.push_back(cellOf(factors, groups.at(factors)));
+  return cells;
+}
+
 }  // namespace cdiff::evaluation

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Mean, standard deviation (n - 1) and half width of the 95 % interval of the mean: t_{0.975, n-1}
-/// s / sqrt(n).
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
 
+/// Mean, standard deviation (n - 1) and half width of the 95 % interval of the mean: t_{0.975, n-1}
+/// s / sqrt(n).
 struct Statistics {
   std::size_t n = 0;
   std::optional<double> mean;                ///< absent without samples
@@ -18,5 +22,18 @@ struct Statistics {
 };
 
 Statistics statisticsOf(const std::vector<double>& samples);
+
+/// The runs of a batch that differ in seed and repetition alone, and their figures over seeds.
+struct Cell {
+  Factors factors;  ///< without seed and repetition
+  std::size_t runs = 0;
+  std::size_t failed = 0;   ///< broke
+  std::size_t missing = 0;  ///< not run or interrupted
+  /// By figure. Repetitions of a seed are averaged first: n counts the seeds that have the figure.
+  std::map<std::string, Statistics> figures;
+};
+
+/// In the order in which they first appear.
+std::vector<Cell> cellsOf(const std::vector<RunRecord>& records);
 
 }  // namespace cdiff::evaluation

@@ -4,8 +4,7 @@
 
 #include "core/registry.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "guidance/collision_avoidance_objective.h"
-#include "guidance/collision_seeking_objective.h"
+#include "guidance/collision_objectives.h"
 #include "guidance/comfort_objective.h"
 #include "guidance/drivable_area_objective.h"
 #include "guidance/route_objective.h"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its pull-back
-/// (the product of its transposed Jacobian with a gradient). Layers are joined by signals.
 #pragma once
 
 #include <map>
@@ -12,6 +10,9 @@
 #include "inference/convolution.h"
 
 namespace cdiff::inference {
+
+// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its pull-back
+// (the product of its transposed Jacobian with a gradient). Layers are joined by signals.
 
 using Tensors = std::map<std::string, Tensor>;
 
@@ -153,5 +154,18 @@ class HeadBlock : public Layer {
   NormalizedConvolution block_;
   AlignedFloats zeros_;
 };
+
+// Linear layers on matrices, as convolutions of one tap over their rows.
+
+inline Convolution linearNamed(const DenoiserKernels& kernels, const Tensors& tensors,
+                               const std::string& name) {
+  return Convolution(kernels, Filter::ofLinear(tensorNamed(tensors, name + ".weight")), Spacing{},
+                     &tensorNamed(tensors, name + ".bias"));
+}
+
+/// The pull-back of a linear layer, or of some of its columns.
+inline Convolution reversedLinear(const DenoiserKernels& kernels, const Filter& filter) {
+  return Convolution(kernels, filter.transposed(), Spacing{});
+}
 
 }  // namespace cdiff::inference

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "e2e_cdiff/traffic/camera_image.h"
-#include "learning/dataset.h"
+#include "learning/samples/dataset.h"
 
 namespace cdiff::learning {
 

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The course of training as `curves.csv` in the output folder: stage, step, seconds of training,
-/// figure, value; `cdiff report --training` draws it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
-
-#include "learning/figures.h"
 
 namespace cdiff::learning {
 
+// What is recorded of a training: figures by name.
+
+/// Names and values; the unit is in the name.
+using Figures = std::map<std::string, double>;
+
+/// The course of training as `curves.csv` in the output folder: stage, step, seconds of training,
+/// figure, value; `cdiff report --training` draws it.
 class CurveLog {
  public:
   /// Keeps the rows of other stages and those of this stage up to `step`, so that a resumed stage

@@ -9,10 +9,10 @@
 #include <ostream>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/checkpoint.h"
 #include "learning/curve_log.h"
 #include "learning/optimizer.h"
-#include "learning/stage.h"
+#include "learning/task.h"
+#include "learning/training_folder.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {

@@ -1,25 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What there is to learn: the interface between this library, which runs stages, and a planner's
-/// training, which knows its samples, networks and losses.
 #pragma once
 
 #include <ATen/ATen.h>
 
 #include <atomic>
+#include <cstdint>
 #include <iosfwd>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
 #include "inference/safetensors.h"
-#include "learning/dataset.h"
-#include "learning/stage.h"
+#include "learning/curve_log.h"
+#include "learning/parameters.h"
+#include "learning/samples/dataset.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
+
+/// A loss with its parts, for the log.
+struct Loss {
+  at::Tensor total;
+  std::vector<std::pair<std::string, at::Tensor>> terms;
+};
+
+/// Weights that a stage trains; their names in checkpoints begin with `name`.
+struct TrainedPart {
+  std::string name;
+  ParameterSet* parameters;
+};
+
+/// A stage of training: which weights it trains by which loss, and how held-out samples judge it.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual const std::string& name() const = 0;
+  virtual std::vector<TrainedPart> parts() = 0;
+  virtual std::int64_t batchSize() const = 0;
+  /// The loss on the batch of a step, which is a function of seed, stage and step alone: so a
+  /// resumed run goes on as if it had never stopped.
+  virtual Loss loss(std::int64_t step) = 0;
+  /// Samples of a step, for messages.
+  virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
+  /// Figures on held-out samples.
+  virtual Figures judge() = 0;
+};
 
 /// Which checkpoints give a part of the weights.
 struct PartSource {
@@ -70,6 +99,8 @@ struct TaskTexts {
   std::string batch;  ///< samples a step where none are given
 };
 
+/// What there is to learn: the interface between this library, which runs stages, and a planner's
+/// training, which knows its samples, networks and losses.
 class Task {
  public:
   virtual ~Task() = default;
@@ -100,6 +131,30 @@ class Task {
   /// A stage, once the parts that it begins with are loaded.
   virtual std::unique_ptr<Stage> makeStage(const std::string& name) = 0;
   virtual TrainedModel finish() = 0;
+};
+
+struct TaskDescriptor {
+  std::string name;  ///< value of --task
+  std::string help;  ///< what is trained, a sentence without its full stop
+  std::shared_ptr<Task> (*make)() = nullptr;
+};
+
+/// The table of what can be trained. The program that trains fills it, one line for each task.
+class TaskRegistry {
+ public:
+  /// Throws InputError naming the planner's folder that must change: no name, no constructor, a
+  /// name that another task has.
+  void add(const TaskDescriptor& descriptor);
+  std::vector<std::string> names() const;
+  /// The task of this name; an empty name means the first of the table. Throws InputError naming
+  /// the nearest known task for an unknown name, and for an empty table.
+  const TaskDescriptor& descriptor(const std::string& name) const;
+
+  /// The task of this name with the default options; names and errors as in `descriptor`.
+  Training training(const std::string& name = "") const;
+
+ private:
+  std::vector<TaskDescriptor> tasks_;
 };
 
 }  // namespace cdiff::learning

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options of every training, whatever is learned.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,6 +14,7 @@ namespace cdiff::learning {
 
 class Task;
 
+/// Options of every training, whatever is learned.
 struct TrainingOptions {
   std::string task;            ///< name in the table of tasks
   std::string stage = "all";   ///< one of the task's | export | all
@@ -51,5 +52,13 @@ struct Training {
   /// Throws InputError naming the key.
   void validate() const;
 };
+
+// The options of an options struct on the command line: `--steps 10` for the key `steps`, a flag
+// for each key that is true or false, `--no-KEY` where it is true unless given.
+
+/// Adds an option for each field, with its meaning, unit, choices and default. What is given goes
+/// into `training`, which must outlive `program`; a value that is refused throws InputError naming
+/// option and range when the program parses.
+void addOptions(CLI::App& program, Training& training);
 
 }  // namespace cdiff::learning

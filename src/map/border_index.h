@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Exact signed distance [m] from a point of the map frame to border rings: a quadtree whose leaves
-/// list every border segment that can be nearest to any of their points.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
 #include "e2e_cdiff/map/drivable_area.h"
-#include "map/area_outline.h"
 
 namespace cdiff::map {
 
+// Union of lane strips and polygons in the map frame [m], on a millimetre grid, with narrow slits
+// closed.
+
+/// Closed ring of points; the last is joined to the first.
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// A band of constant width around a line, cut off square at its ends.
+struct Strip {
+  std::vector<Eigen::Vector2d> line;  ///< centre line, map frame [m]
+  double width = 0.0;                 ///< [m]
+};
+
+/// Rings of the union with the area on their left: outer rings counter-clockwise, holes clockwise.
+/// Slits narrower than 0.3 m (between abutting lanes, edges and junctions) are closed and holes
+/// below 1 m^2 filled, so that they make no border.
+std::vector<Ring> uniteOutlines(const std::vector<Strip>& strips,
+                                const std::vector<Ring>& polygons);
+
+/// Exact signed distance [m] from a point of the map frame to border rings: a quadtree whose leaves
+/// list every border segment that can be nearest to any of their points.
 /// Immutable after construction, so queries may run in parallel.
 class BorderIndex {
  public:

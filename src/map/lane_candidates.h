@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each
-/// point of a row.
 #pragma once
 
 #include <functional>
@@ -11,6 +9,9 @@
 #include "map/lane_graph.h"
 
 namespace cdiff::map {
+
+// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each
+// point of a row.
 
 /// A lane that a point may lie on.
 struct LaneCandidate {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One Dijkstra search over lanes from a place: driven length [m] ranks, with penalties for lane
-/// changes.
 #pragma once
 
 #include <limits>
@@ -31,6 +29,8 @@ struct SearchLimits {
   const TurnRounds* turn_rounds = nullptr;  ///< the only ones to use; nullptr: all
 };
 
+/// One Dijkstra search over lanes from a place: driven length [m] ranks, with penalties for lane
+/// changes.
 class LaneSearch {
  public:
   LaneSearch(const RoadNetwork& network, const LanePosition& start, const SearchLimits& limits);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/map/route_progress.h"
 #include "map/lane_search.h"
 #include "map/route_builder.h"
 
@@ -117,5 +118,28 @@ double Route::speedLimitAt(double arc_length) const {
 }
 
 bool Route::inJunctionAt(double arc_length) const { return in_junction_[pointIndex(arc_length)]; }
+
+RouteProgress::RouteProgress(const Route& route, double completion_percent,
+                             double completion_distance)
+    : route_(&route),
+      completion_percent_(completion_percent),
+      completion_distance_(completion_distance),
+      distance_to_end_(route.length()) {}
+
+void RouteProgress::update(const Eigen::Vector2d& position) {
+  constexpr double kWindowAhead = 15.0;
+  constexpr double kWindowBehind = 5.0;
+  const auto near = route_->path().project(position, std::max(0.0, arc_length_ - kWindowBehind),
+                                           std::min(route_->length(), arc_length_ + kWindowAhead));
+  arc_length_ = std::max(arc_length_, near.arc_length);
+  deviation_ = near.distance;
+  distance_to_end_ = (position - route_->path().points().back().head<2>()).norm();
+}
+
+double RouteProgress::percent() const {
+  const double percent = 100.0 * arc_length_ / route_->length();
+  const bool complete = percent >= completion_percent_ && distance_to_end_ <= completion_distance_;
+  return complete ? 100.0 : std::min(percent, 100.0);
+}
 
 }  // namespace cdiff::map

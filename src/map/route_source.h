@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where an ego route comes from: SUMO edges, points, or a route of a Bench2Drive file.
 #pragma once
 
 #include <string>
@@ -10,6 +9,8 @@
 #include "map/lane_graph.h"
 
 namespace cdiff::map {
+
+// Where an ego route comes from: SUMO edges, points, or a route of a Bench2Drive file.
 
 /// Exactly one of edges, points and bench2drive_file is given.
 struct RouteOptions {

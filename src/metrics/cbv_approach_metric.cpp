@@ -6,8 +6,7 @@
 
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/sample_statistics.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

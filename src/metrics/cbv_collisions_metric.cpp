@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/cbv_way.h"
-#include "metrics/collisions_per_km.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
+#include "metrics/measures/collisions_per_km.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

@@ -4,7 +4,7 @@
 
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

@@ -4,8 +4,8 @@
 
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/normality_measures.h"
+#include "metrics/measures/sample_statistics.h"
+#include "metrics/measures/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 

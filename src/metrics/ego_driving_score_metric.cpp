@@ -5,13 +5,10 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/collision_counter.h"
-#include "metrics/driving_score.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/minimum_speed.h"
-#include "metrics/outside_lanes.h"
-#include "metrics/stop_lines.h"
+#include "metrics/measures/driving_score.h"
+#include "metrics/measures/sample_statistics.h"
+#include "metrics/measures/stop_lines.h"
 
 namespace cdiff::metrics {
 

@@ -8,7 +8,6 @@
 #include "core/registry.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/shipped_metrics.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The one table of metrics and of their figures: summary, messages, report, batch columns and
-/// docs/metrics.md all follow from it.
 #pragma once
 
 #include <deque>
@@ -11,6 +9,9 @@
 #include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
+
+// The one table of metrics and of their figures: summary, messages, report, batch columns and
+// docs/metrics.md all follow from it.
 
 /// The shipped metrics in the order of src/metrics/CMakeLists.txt, then those that were registered.
 /// References stay valid.
@@ -27,5 +28,10 @@ const FigureDefinition* findFigure(const std::string& name);
 const char* toText(Direction direction);
 /// "of the ego", "of CBVs" or "of the ego and others".
 const char* toText(Subject subject);
+
+/// The metrics that come with the package. Their table is made from the list in
+/// src/metrics/CMakeLists.txt: NAME stands for NAME_metric.cpp, which defines the function
+/// nameMetric().
+std::vector<MetricDescriptor> shippedMetrics();
 
 }  // namespace cdiff::metrics

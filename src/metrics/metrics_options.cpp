@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 
@@ -48,5 +49,35 @@ std::vector<double> MetricsOptions::samples() const {
   }
   return values;
 }
+
+void InfractionOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number(
+      {"collision_repeat_time", "s", "Sooner, the same partner again is the same collision."},
+      collision_repeat_time, 0.0, 86400.0);
+  visitor.number(
+      {"collision_repeat_distance", "m", "Nearer to the last collision is the same collision."},
+      collision_repeat_distance, 0.0, 1000.0);
+  visitor.number({"collision_minimum_speed", "m/s",
+                  "An ego slower than this is not charged with a collision."},
+                 collision_minimum_speed, 0.0, 5.0);
+  visitor.number({"outside_lane_margin", "m", "Farther beyond a lane's border is outside it."},
+                 outside_lane_margin, 0.0, 10.0);
+  visitor.number(
+      {"wrong_lane_angle", "deg", "Largest angle between the ego and the lane that it is on."},
+      wrong_lane_angle, 1.0, 180.0);
+  visitor.number({"stop_sign_distance", "m", "Distance to the stop line within which to stop."},
+                 stop_sign_distance, 0.1, 50.0);
+  visitor.number({"stop_sign_speed", "m/s", "Slower than this has stopped at a stop sign."},
+                 stop_sign_speed, 0.0, 5.0);
+  visitor.integer(
+      {"speed_checkpoints", "", "Equal stretches of the route with a minimum speed each; 0: none."},
+      speed_checkpoints, 0, 1000);
+  visitor.flag({"speed_counts", "", "Whether a missed minimum speed lowers the driving score."},
+               speed_counts);
+  visitor.text({"penalty", "", "Product of factors, or 1 / (1 + sum of charges)."}, penalty,
+               {"factors", "charges"});
+}
+
+ScoreRules InfractionOptions::scoreRules() const { return {penalty == "charges", speed_counts}; }
 
 }  // namespace cdiff::metrics

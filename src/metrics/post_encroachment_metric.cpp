@@ -7,9 +7,8 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures.h"
-#include "metrics/post_encroachment.h"
-#include "metrics/sample_statistics.h"
+#include "metrics/measures/post_encroachment.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

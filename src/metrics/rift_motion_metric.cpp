@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/body_motion.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/rift_histogram.h"
-#include "metrics/shapiro_wilk.h"
+#include "metrics/measures/body_motion.h"
+#include "metrics/measures/rift_histogram.h"
+#include "metrics/measures/sample_statistics.h"
+#include "metrics/measures/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 

@@ -5,11 +5,10 @@
 #include <set>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/body_motion.h"
-#include "metrics/collisions_per_km.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/tick_share.h"
+#include "metrics/measures/body_motion.h"
+#include "metrics/measures/collisions_per_km.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in
-/// one process.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/session_measures.h"
 
 namespace cdiff::metrics {
+
+/// The figures of a session by name, each with its unit, count and, where it cannot be given, the
+/// reason; and the lists and contacts that belong to them.
+class SessionMeasures {
+ public:
+  /// The measure of a figure; one without value, "not computed", where no metric reported it.
+  Measure at(const FigureDefinition& figure) const;
+  /// Likewise by name. Throws core::InputError for a name that no metric has.
+  Measure at(const std::string& name) const;
+  /// The value of a figure that has one in every session; else 0.
+  double number(const FigureDefinition& figure) const { return at(figure).value.value_or(0.0); }
+  std::size_t count(const FigureDefinition& figure) const {
+    return static_cast<std::size_t>(number(figure));
+  }
+  /// Sets a figure; its unit is the definition's.
+  void set(const FigureDefinition& figure, Measure measure);
+
+  std::string protocol;  ///< preset whose rules the score and the infractions follow
+  std::vector<EgoContact> ego_contacts;                   ///< in order of time
+  std::map<std::string, std::vector<MetricEntry>> lists;  ///< of summary.json, by JSON pointer
+
+ private:
+  std::map<std::string, Measure> measures_;  ///< by the figure's name
+};
 
 /// Figures of one tick, for the live topic.
 struct TickMeasures {
@@ -22,6 +47,8 @@ struct TickMeasures {
   std::size_t cbv_off_road = 0;  ///< CBVs now off the drivable area
 };
 
+/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in
+/// one process.
 /// All registered metrics of one session.
 class SessionMetrics {
  public:

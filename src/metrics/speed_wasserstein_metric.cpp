@@ -5,8 +5,8 @@
 #include "core/text.h"
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_figures.h"
-#include "metrics/measures.h"
-#include "metrics/wasserstein.h"
+#include "metrics/measures/sample_statistics.h"
+#include "metrics/measures/wasserstein.h"
 
 namespace cdiff::metrics {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/interaction_measures.h"
+#include "metrics/measures/ttc_2d.h"
 
 namespace cdiff::metrics {
 namespace {

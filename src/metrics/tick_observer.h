@@ -10,7 +10,7 @@
 
 #include "e2e_cdiff/map/route_progress.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/contact_fault.h"
+#include "metrics/measures/contact_fault.h"
 
 namespace cdiff::metrics {
 

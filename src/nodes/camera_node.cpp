@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Renders what the driven vehicles see.
 #include "ros/camera_ros.h"
+#include "ros/messages/topics.h"
 #include "ros/node_main.h"
-#include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Finds the critical background vehicles of a session.
 #include "ros/cbv_identification_ros.h"
+#include "ros/messages/topics.h"
 #include "ros/node_main.h"
-#include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;

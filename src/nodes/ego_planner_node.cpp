@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Drives the ego.
+#include "ros/messages/topics.h"
 #include "ros/node_main.h"
 #include "ros/planner_ros.h"
-#include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;

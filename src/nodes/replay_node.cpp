@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Tells a recorded session again, under the traffic simulator's name, to which the other nodes
 /// listen.
+#include "ros/messages/topics.h"
 #include "ros/node_main.h"
 #include "ros/replay_ros.h"
-#include "ros/topics.h"
 
 int main(int argc, char** argv) {
   using cdiff::ros::StopSignal;

@@ -3,14 +3,178 @@
 #include "page/approach_section.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "page/plan_picture.h"
-#include "page/top_view.h"
-#include "record/image_data_uri.h"
+#include "e2e_cdiff/traffic/rollout.h"
+#include "page/pictures/charts.h"
+#include "page/pictures/top_view.h"
+#include "record/logs/front_view_log.h"
 
 namespace cdiff::page {
+namespace {
+
+using traffic::VehicleRole;
+
+constexpr double kRounding = 1e-6;  // [s]
+
+/// The plan's horizon: planned and driven states of the CBV every 0.1 s from the decision on, and
+/// where the ego was.
+struct PlanView {
+  std::vector<record::WayPoint> planned;
+  std::vector<record::WayPoint> driven;
+  std::vector<geometry::Pose2d> ego;
+  record::TimelineVehicle ego_vehicle;
+};
+
+void addEgo(const record::SessionResult& result, const record::LoggedPlan& plan, PlanView& view) {
+  for (const record::TimelineFrame& frame : result.timeline.frames()) {
+    const bool within =
+        frame.time >= plan.time - kRounding && frame.time <= plan.time + plan.horizon() + kRounding;
+    if (!within || frame.poses.empty()) continue;
+    const record::TimelinePose& pose = frame.poses.front();  // the ego comes first
+    if (pose.role != VehicleRole::kEgo) continue;
+    view.ego.push_back({{pose.x, pose.y}, static_cast<double>(pose.heading)});
+    view.ego_vehicle = result.timeline.vehicles()[pose.vehicle];
+  }
+}
+
+PlanView viewOf(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                const record::LoggedPlan& plan) {
+  PlanView view;
+  view.planned.push_back(plan.start);
+  view.driven.push_back(plan.start);
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    view.planned.push_back(plan.points[i]);
+    const double seconds = static_cast<double>(i + 1) * traffic::kRolloutStep;
+    if (const auto state = result.plans.drivenAfter(vehicle, plan, seconds)) {
+      view.driven.push_back(*state);
+    }
+  }
+  addEgo(result, plan, view);
+  return view;
+}
+
+Points positionsOf(const std::vector<record::WayPoint>& states) {
+  Points points;
+  for (const record::WayPoint& state : states) points.push_back(state.position);
+  return points;
+}
+
+Region regionOf(const PlanView& view) {
+  constexpr double kMargin = 8.0;     // [m]
+  constexpr double kEgoReach = 45.0;  // of the ego from the CBV that is still shown [m]
+  const Eigen::Vector2d start = view.planned.front().position;
+  Region region{start, start};
+  const auto include = [&](const Eigen::Vector2d& point) {
+    region.low = region.low.cwiseMin(point);
+    region.high = region.high.cwiseMax(point);
+  };
+  for (const auto* states : {&view.planned, &view.driven}) {
+    for (const record::WayPoint& state : *states) {
+      if (state.position.allFinite()) include(state.position);
+    }
+  }
+  for (const geometry::Pose2d& pose : view.ego) {
+    if ((pose.position - start).norm() < kEgoReach) include(pose.position);
+  }
+  return region.grown(kMargin);
+}
+
+std::string line(const std::string& style, const std::string& data) {
+  return data.empty() ? data : "<path class=\"" + style + "\" d=\"" + data + "\"/>\n";
+}
+
+/// A dot every 0.5 s.
+std::string dots(const std::vector<record::WayPoint>& states, const std::string& style,
+                 const MapCanvas& canvas) {
+  constexpr std::size_t kStride = 5;
+  std::string svg;
+  for (std::size_t i = kStride; i < states.size(); i += kStride) {
+    if (!states[i].position.allFinite()) continue;
+    const Eigen::Vector2d pixel = canvas.toPixels(states[i].position);
+    svg += "<circle class=\"" + style + "\" cx=\"" + core::shortNumber(pixel.x()) + "\" cy=\"" +
+           core::shortNumber(pixel.y()) + "\" r=\"3\"/>";
+  }
+  return svg + "\n";
+}
+
+std::string fromAbove(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                      const PlanView& view, const std::string& style) {
+  const MapCanvas canvas(regionOf(view), {540.0, 360.0});
+  const record::TimelineVehicle body{vehicle.vehicle_id, vehicle.dimensions.length,
+                                     vehicle.dimensions.width};
+  const auto box = [&](const record::WayPoint& state, const std::string& box_style) {
+    return vehicleSvg(body, {state.position, state.heading}, canvas, box_style);
+  };
+  std::string svg =
+      "<svg role=\"img\" aria-label=\"Plan and drive from above\" viewBox=\"0 0 540 "
+      "360\">\n" +
+      roadSvg(result.setup, canvas);
+  if (!view.ego.empty()) {
+    Points trail;
+    for (const geometry::Pose2d& pose : view.ego) trail.push_back(pose.position);
+    svg += line("trail ego", canvas.line(trail)) +
+           vehicleSvg(view.ego_vehicle, view.ego.front(), canvas, "ego");
+  }
+  svg += box(view.driven.front(), style) + box(view.driven.back(), style + " later") +
+         line("trail " + style, canvas.line(positionsOf(view.driven))) +
+         dots(view.driven, "stop " + style, canvas);
+  if (view.planned.back().position.allFinite()) {
+    svg += box(view.planned.back(), "plan-end") +
+           line("plan", canvas.line(positionsOf(view.planned))) +
+           dots(view.planned, "plan-stop", canvas);
+  }
+  return "<figure class=\"plan-view\"><figcaption>From above</figcaption>\n" + svg +
+         scaleBarSvg(canvas) + "</svg></figure>\n";
+}
+
+std::string speeds(const PlanView& view, const std::string& style) {
+  Chart chart;
+  chart.title = "Speed since the decision";
+  chart.unit = "m/s";
+  chart.own_time = true;
+  chart.least_top = 5.0;
+  chart.duration = static_cast<double>(view.planned.size() - 1) * traffic::kRolloutStep;
+  const auto series = [](const std::string& name, const std::vector<record::WayPoint>& states) {
+    ChartSeries line{name, {}};
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      line.points.emplace_back(static_cast<double>(i) * traffic::kRolloutStep, states[i].speed);
+    }
+    return line;
+  };
+  chart.series = {series("plan", view.planned), series(style, view.driven)};
+  return chartSvg(chart);
+}
+
+std::string legend(const std::string& style) {
+  const auto item = [](const std::string& line_style, const std::string& text) {
+    return "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path class=\"" +
+           line_style + "\" d=\"M1 7H27\"/></svg>" + text + "</span>\n";
+  };
+  return "<p class=\"legend\">\n" + item("plan", "planned by the CBV at this decision") +
+         item("trail " + style, "driven by the CBV") + item("trail ego", "driven by the ego") +
+         "</p>\n";
+}
+
+}  // namespace
+
+std::string planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                         const record::LoggedPlan& plan) {
+  const PlanView view = viewOf(result, vehicle, plan);
+  const std::string style = styleOf(VehicleRole::kCbv, vehicle.vehicle_id, result.cbv);
+  const double apart = (view.planned.back().position - view.driven.back().position).norm();
+  const std::string end =
+      std::isfinite(apart) ? core::formatFixed(apart, 2) + " m apart at the end" : "not finite";
+  return "<h4>Plan of the decision at " + core::formatFixed(plan.time, 2) +
+         " s against what was driven in the next " + core::formatFixed(plan.horizon(), 1) +
+         " s: " + end + "</h4>\n" + legend(style) + "<div class=\"charts\">\n" +
+         fromAbove(result, vehicle, view, style) + speeds(view, style) +
+         "</div>\n<p class=\"note\">Filled boxes: at the decision; outlined: at the plan's end. A "
+         "dot every 0.5 s. Later decisions may change the plan.</p>\n";
+}
+
 namespace {
 
 constexpr double kLookBack = 3.0;  // from the closest approach to the plan that is shown [s]

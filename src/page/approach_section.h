@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The CBVs that came nearest to the ego: what CBV and ego saw at the closest approach, and a plan
-/// from 3 s before against what was driven.
 #pragma once
 
 #include <string>
@@ -10,6 +8,16 @@
 #include "record/session_result.h"
 
 namespace cdiff::page {
+
+// One plan of a CBV against what it drove over the plan's horizon: from above (map frame), and
+// speed over the time since the decision.
+
+/// Pictures and legend as HTML, for a plan whose whole horizon was driven.
+std::string planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                         const record::LoggedPlan& plan);
+
+// The CBVs that came nearest to the ego: what CBV and ego saw at the closest approach, and a plan
+// from 3 s before against what was driven.
 
 /// At most this many CBVs are shown with pictures.
 inline constexpr std::size_t kMostApproaches = 4;

@@ -7,7 +7,7 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_figures.h"
-#include "page/histogram_chart.h"
+#include "page/pictures/charts.h"
 #include "record/session_table.h"
 
 namespace cdiff::page {

@@ -8,10 +8,9 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "page/chart_axes.h"
-#include "page/line_chart.h"
+#include "page/pictures/charts.h"
+#include "page/pictures/top_view.h"
 #include "page/report_tables.h"
-#include "page/top_view.h"
 
 namespace cdiff::page {
 namespace {

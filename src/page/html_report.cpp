@@ -11,11 +11,10 @@
 #include "page/driving_section.h"
 #include "page/guidance_section.h"
 #include "page/page_head.h"
+#include "page/pictures/session_charts.h"
 #include "page/playback.h"
 #include "page/report_style.h"
 #include "page/report_tables.h"
-#include "page/session_charts.h"
-#include "page/stage.h"
 #include "record/session_story.h"
 
 namespace cdiff::page {

@@ -11,11 +11,11 @@
 #include "metrics/session_metrics.h"
 #include "page/html_report.h"
 #include "record/junit.h"
-#include "record/plan_file.h"
+#include "record/logs/plan_log.h"
 #include "record/session_table.h"
 #include "record/session_yaml.h"
 #include "record/summary.h"
-#include "record/trace_writer.h"
+#include "record/trace_file.h"
 
 namespace cdiff::page {
 namespace {

@@ -7,9 +7,9 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "diffusion/route_tokens.h"
-#include "learning/sample_balance.h"
+#include "learning/samples/sample_order.h"
 #include "page/page_head.h"
-#include "record/image_data_uri.h"
+#include "record/logs/front_view_log.h"
 
 namespace cdiff::page {
 namespace {

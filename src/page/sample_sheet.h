@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "learning/driving_sample.h"
+#include "learning/samples/driving_sample.h"
 
 namespace cdiff::page {
 
@@ -19,8 +19,8 @@ struct CountRow {
   std::string share;
 };
 
-/// Indices of up to `count` samples of each kind (learning/sample_balance.h), evenly over the data
-/// set, by name of the kind.
+/// Indices of up to `count` samples of each kind (learning/samples/sample_order.h), evenly over the
+/// data set, by name of the kind.
 std::vector<std::pair<std::string, std::vector<std::size_t>>> samplesByKind(
     const learning::DrivingDataset& dataset, std::size_t count);
 

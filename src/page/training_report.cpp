@@ -10,8 +10,8 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "page/line_chart.h"
 #include "page/page_head.h"
+#include "page/pictures/charts.h"
 
 namespace cdiff::page {
 namespace {

@@ -11,9 +11,10 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/shapiro_wilk.h"
-#include "metrics/ttc_2d.h"
-#include "metrics/wasserstein.h"
+#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/ttc_2d.h"
+#include "metrics/measures/wasserstein.h"
+#include "metrics/metric_registry.h"
 
 namespace cdiff::record {
 namespace {
@@ -165,6 +166,18 @@ std::vector<std::string> evaluateMetricFile(const std::string& metric, const std
   throw core::InputError("unknown metric \"" + metric +
                          "\", expected ttc_2d, shapiro_wilk or wasserstein; nearest: " +
                          core::nearestName(metric, {"ttc_2d", "shapiro_wilk", "wasserstein"}));
+}
+
+std::string figureList() {
+  std::string list;
+  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
+    const std::string unit = *figure.unit ? figure.unit : "without unit";
+    list += "### `" + std::string(figure.name) + "`\n\n" + figure.label + "; " + unit + "; " +
+            metrics::toText(figure.subject) + "; " + metrics::toText(figure.direction) + "; `" +
+            figure.place + "`\n\n" + figure.definition + "\n\n";
+    if (*figure.rift_compat) list += "rift_compat: " + std::string(figure.rift_compat) + "\n\n";
+  }
+  return list;
 }
 
 }  // namespace cdiff::record

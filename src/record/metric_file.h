@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One metric for every case of a file (SI units): ttc_2d of a CSV of box pairs, shapiro_wilk and
-/// wasserstein of a JSON of samples.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace cdiff::record {
+
+// One metric for every case of a file (SI units): ttc_2d of a CSV of box pairs, shapiro_wilk and
+// wasserstein of a JSON of samples.
 
 /// One line per case in the file's order; numbers in the shortest form that reads back to the same.
 /// ttc_2d: "1: 2.35" or "1: inf" [s]. CSV with a header and the columns x_i y_i vx_i vy_i hx_i hy_i
@@ -18,5 +19,12 @@ namespace cdiff::record {
 /// JSON {"cases": [{"a": [...], "b": [...]}]}.
 /// Throws InputError naming the file, the line or case, and what was expected.
 std::vector<std::string> evaluateMetricFile(const std::string& metric, const std::string& file);
+
+// The table of a session's figures as Markdown, for docs/metrics.md and `cdiff metric
+// definitions`.
+
+/// A section a figure, in the order of summary.json: name, label, unit, subject, direction, place,
+/// definition and how RIFT's code differs.
+std::string figureList();
 
 }  // namespace cdiff::record

@@ -8,16 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "metrics/session_measures.h"
-#include "record/approach_log.h"
-#include "record/cbv_log.h"
-#include "record/driving_log.h"
-#include "record/front_view_log.h"
-#include "record/guidance_log.h"
-#include "record/late_log.h"
-#include "record/latency_log.h"
-#include "record/plan_log.h"
-#include "record/timeline.h"
+#include "metrics/session_metrics.h"
+#include "record/logs/cbv_log.h"
+#include "record/logs/driving_log.h"
+#include "record/logs/front_view_log.h"
+#include "record/logs/guidance_log.h"
+#include "record/logs/latency_log.h"
+#include "record/logs/plan_log.h"
+#include "record/logs/timeline.h"
 #include "record/verdict.h"
 #include "session/session_setup.h"
 

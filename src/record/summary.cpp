@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "metrics/known_figures.h"
 #include "metrics/metric_registry.h"
-#include "record/cbv_summary.h"
 #include "record/summary_figures.h"
 
 namespace cdiff::record {

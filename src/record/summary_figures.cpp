@@ -2,8 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/summary_figures.h"
 
+#include <cmath>
+
 #include "core/text.h"
 #include "metrics/metric_registry.h"
+#include "record/summary.h"
 
 namespace cdiff::record {
 namespace {
@@ -75,6 +78,107 @@ void addFigures(Json& object, const std::string& section,
     const std::vector<std::string> keys = core::splitText(place, '/');
     if (keys.front() == section) object[keys.back()] = entryList(entries);
   }
+}
+
+namespace {
+
+Json figuresObject(const SampleFigures& figures) {
+  return {{"mean", number(figures.mean)}, {"p95", number(figures.percentile_95)}, {"n", figures.n}};
+}
+
+Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  return {{"x", conflict.position.x()},
+          {"y", conflict.position.y()},
+          {"z", conflict.position.z()},
+          {"ego_distance_m", conflict.ego_distance},
+          {"cbv_distance_m", conflict.cbv_distance},
+          {"ego_arrival_s", conflict.ego_arrival},
+          {"cbv_arrival_s", conflict.cbv_arrival},
+          {"arrival_time_gap_s", conflict.arrivalTimeGap()},
+          {"ego_arc_length_m", conflict.ego_arc_length},
+          {"in_junction_or_beyond", atOrBeyondFirstJunction(conflict, ego_route)}};
+}
+
+/// Time of a tick without the last bit of the product: 5.8, not 5.800000000000001 [s].
+double secondsOf(std::uint64_t tick, double step) {
+  return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
+}
+
+Json selectionObject(const CbvRecord& record, const SessionResult& result) {
+  const session::SessionSetup& setup = result.setup;
+  const double step = setup.options().simulation_step;
+  Json object = {{"slot", record.slot},
+                 {"vehicle_id", record.vehicle_id},
+                 {"selected_tick", record.selected_tick},
+                 {"selected_seconds", secondsOf(record.selected_tick, step)},
+                 {"interaction_score", record.interaction_score},
+                 {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
+                 {"decisions_driven", record.decisions_driven},
+                 {"released_tick", nullptr},
+                 {"release_reason", record.release_reason},
+                 {"contact_with", nullptr},
+                 {"route_length_m", record.route_length},
+                 {"route_completion_percent", record.routeCompletionPercent()},
+                 {"conflict_point_passed", record.conflict_point_passed},
+                 {"route_completed", record.routeCompleted()}};
+  if (record.released_tick) object["released_tick"] = *record.released_tick;
+  if (const auto other = contactPartner(record, result)) object["contact_with"] = *other;
+  return object;
+}
+
+/// Plans of all CBVs against what was driven and against exact dynamics; null without plans.
+Json planObject(const SessionResult& result) {
+  if (result.plans.empty()) return nullptr;
+  Json object = Json::object();
+  for (const int seconds : {1, 2, 3}) {
+    object["displacement_" + std::to_string(seconds) + "s_m"] =
+        figuresObject(displacementFigures(result.plans, seconds));
+  }
+  const SampleFigures mismatch = mismatchFigures(result.plans);
+  object["state_mismatch_m"] = {{"mean", number(mismatch.mean)},
+                                {"p95", number(mismatch.percentile_95)},
+                                {"max", number(mismatch.maximum)},
+                                {"n", mismatch.n}};
+  return object;
+}
+
+/// Faults of planners of CBVs, by planner.
+Json cbvFaults(const std::vector<traffic::Fault>& faults) {
+  Json object = Json::object();
+  for (const traffic::Fault& fault : faults) {
+    if (fault.source.rfind("cbv:", 0) != 0) continue;
+    object[fault.source] = object.value(fault.source, 0) + 1;
+  }
+  return object;
+}
+
+}  // namespace
+
+bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  const auto& junctions = ego_route.junctionStretches();
+  return !junctions.empty() && conflict.ego_arc_length >= junctions.front().first;
+}
+
+std::optional<std::string> contactPartner(const CbvRecord& record, const SessionResult& result) {
+  const double step = result.setup.options().simulation_step;
+  const double end = record.released_tick ? static_cast<double>(*record.released_tick) * step
+                                          : result.timeline.duration();
+  return result.timeline.lastContactOf(record.vehicle_id,
+                                       static_cast<double>(record.selected_tick) * step, end);
+}
+
+Json cbvObject(const SessionResult& result) {
+  Json object = Json::object();
+  addFigures(object, "cbv", result.measures);
+  object["selections"] = Json::array();
+  for (const CbvRecord& record : result.cbv.records()) {
+    object["selections"].push_back(selectionObject(record, result));
+  }
+  object["rejected"] = Json::object();
+  for (const auto& [reason, count] : result.cbv.rejected()) object["rejected"][reason] = count;
+  object["faults"] = cbvFaults(result.faults);
+  object["plan"] = planObject(result);
+  return object;
 }
 
 }  // namespace cdiff::record

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Figures of a session as they stand in summary.json: null where absent, with the reason beside.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "metrics/session_measures.h"
+#include "metrics/session_metrics.h"
+#include "record/session_result.h"
 
 namespace cdiff::record {
+
+// Figures of a session as they stand in summary.json: null where absent, with the reason beside.
 
 using Json = nlohmann::ordered_json;
 
@@ -24,5 +26,8 @@ void addPlainFigure(Json& object, const std::string& key, const metrics::Measure
 
 /// Adds the figures, then the lists, whose place in the summary begins with "/section/".
 void addFigures(Json& object, const std::string& section, const metrics::SessionMeasures& measures);
+
+/// What summary.json says of the CBVs: their figures, selections, plans and faults.
+Json cbvObject(const SessionResult& result);
 
 }  // namespace cdiff::record

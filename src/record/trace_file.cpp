@@ -2,13 +2,104 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/trace_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string_view>
+#include <utility>
+
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/trace_writer.h"
 
 namespace cdiff::record {
+namespace {
+
+constexpr std::size_t kBufferSize = 1 << 16;  // [bytes]
+
+[[noreturn]] void failWriting(const std::filesystem::path& path) {
+  throw core::InputError("cannot write '" + path.string() + "': " + core::writeErrorText(errno) +
+                         "; check that the folder exists, is writable and has room");
+}
+
+void writeAll(int descriptor, std::string_view content, const std::filesystem::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) failWriting(path);
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void appendNumber(std::string& row, double value) {
+  row += ',';
+  row += core::formatNumber(value);
+}
+
+}  // namespace
+
+TraceWriter::TraceWriter(std::filesystem::path file) : file_(std::move(file)) {
+  temporary_ = file_.string() + ".tmp." + std::to_string(::getpid());
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) failWriting(file_);
+  buffer_.reserve(2 * kBufferSize);
+  buffer_ = kTraceHeader;
+}
+
+TraceWriter::~TraceWriter() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
+  const std::string tick = std::to_string(snapshot.tick);
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) writeRow(tick, vehicle);
+  if (buffer_.size() >= kBufferSize) flush();
+}
+
+std::string TraceWriter::finish() {
+  flush();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) failWriting(file_);
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0 || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary_.c_str());
+    errno = reason;
+    failWriting(file_);
+  }
+  return hash_.finish();
+}
+
+void TraceWriter::writeRow(const std::string& tick, const traffic::Vehicle& vehicle) {
+  buffer_ += tick;
+  buffer_ += ',';
+  buffer_ += core::csvCell(vehicle.id);
+  buffer_ += ',';
+  buffer_ += traffic::toText(vehicle.role);
+  appendNumber(buffer_, vehicle.state.position.x());
+  appendNumber(buffer_, vehicle.state.position.y());
+  appendNumber(buffer_, vehicle.state.heading);
+  appendNumber(buffer_, vehicle.state.speed);
+  if (vehicle.applied_action) {
+    appendNumber(buffer_, vehicle.applied_action->throttle);
+    appendNumber(buffer_, vehicle.applied_action->steer);
+    appendNumber(buffer_, vehicle.applied_action->brake);
+  } else {
+    buffer_ += ",,,";
+  }
+  buffer_ += '\n';
+}
+
+void TraceWriter::flush() {
+  hash_.update(buffer_);
+  writeAll(descriptor_, buffer_, file_);
+  buffer_.clear();
+}
+
 namespace {
 
 using traffic::VehicleRole;

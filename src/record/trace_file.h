@@ -1,16 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Reads trace.csv back (map frame, SI units).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/file.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::record {
+
+/// First line of the trace.
+inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";
+
+/// Writes trace.csv: a row per tick and vehicle (map frame, SI units, shortest decimals that read
+/// back to the same number), streamed to a temporary file that gets its name when it is whole.
+class TraceWriter {
+ public:
+  /// Opens the temporary file beside `file`. Throws InputError naming the path.
+  explicit TraceWriter(std::filesystem::path file);
+  /// Removes the temporary file when `finish` was not called.
+  ~TraceWriter();
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  /// Appends the rows of one tick in the snapshot's order. Command cells of vehicles that SUMO
+  /// drives stay empty.
+  void write(const traffic::TrafficSnapshot& snapshot);
+  /// Gives the file its name and answers its SHA-256. Call once.
+  std::string finish();
+
+ private:
+  void writeRow(const std::string& tick, const traffic::Vehicle& vehicle);
+  void flush();
+
+  std::filesystem::path file_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  std::string buffer_;
+  core::Sha256 hash_;
+};
+
+// Reads trace.csv back (map frame, SI units).
 
 /// One vehicle at one tick.
 struct TraceRow {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/session_measures.h"
+#include "metrics/session_metrics.h"
 #include "session/scenario_options.h"
 
 namespace cdiff::record {

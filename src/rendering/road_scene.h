@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What lies on the ground and never changes: asphalt of lanes and junctions, pavements, markings;
-/// computed once from the network, drawn where a view may see it.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <utility>
 #include <vector>
@@ -13,6 +12,12 @@
 #include "rendering/spatial_grid.h"
 
 namespace cdiff::rendering {
+
+// Triangles of a simple polygon by cutting ears off, in the plane; heights are kept.
+
+/// Triangles that fill the outline (either turning direction); a rest that is not simple is filled
+/// as a fan.
+std::vector<std::array<Eigen::Vector3d, 3>> triangulate(std::vector<Eigen::Vector3d> outline);
 
 /// A flat piece of ground (map frame [m]).
 struct Surface {
@@ -32,6 +37,8 @@ struct Marking {
   Color color = kWhitePaint;
 };
 
+/// What lies on the ground and never changes: asphalt of lanes and junctions, pavements, markings;
+/// computed once from the network, drawn where a view may see it.
 class RoadScene {
  public:
   explicit RoadScene(const map::RoadNetwork& network);

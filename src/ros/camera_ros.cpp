@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/camera_ros.h"
 
-#include "ros/conversions.h"
-#include "ros/image_conversions.h"
-#include "ros/message_checks.h"
-#include "ros/session_parts.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/image_conversions.h"
+#include "ros/messages/message_checks.h"
+#include "ros/session_graph.h"
 
 namespace cdiff::ros {
 namespace {

@@ -6,13 +6,13 @@
 
 #include "core/text.h"
 #include "record/session_table.h"
-#include "ros/conversions.h"
-#include "ros/metric_diagnostics.h"
+#include "ros/bags/replay.h"
+#include "ros/lockstep/tick_record.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/metric_reporter.h"
 #include "ros/parameters.h"
-#include "ros/replay.h"
 #include "ros/session_files.h"
-#include "ros/session_parts.h"
-#include "ros/tick_record.h"
+#include "ros/session_graph.h"
 
 namespace cdiff::ros {
 namespace {

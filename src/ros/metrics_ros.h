@@ -11,9 +11,9 @@
 
 #include "diagnostic_updater/diagnostic_updater.h"
 #include "page/result_writer.h"
-#include "ros/markers.h"
-#include "ros/metric_reporter.h"
-#include "ros/observer.h"
+#include "ros/messages/markers.h"
+#include "ros/messages/metric_reporter.h"
+#include "ros/participant.h"
 #include "video/session_video.h"
 
 namespace cdiff::ros {

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "ros/stop_signal.h"
+#include "ros/lockstep/stop_signal.h"
 
 namespace cdiff::ros {
 

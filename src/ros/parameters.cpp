@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/launched_nodes.h"
+#include "ros/lockstep/launched_nodes.h"
 #include "ros/ros.h"
 
 namespace cdiff::ros {

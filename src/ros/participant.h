@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What every node but the traffic simulator has in common: it waits for the session, reports when
-/// it is connected both ways, handles snapshots tick by tick in one thread, and leaves in order
-/// with the last one, whoever ends the session.
 #pragma once
 
 #include <deque>
@@ -15,12 +12,13 @@
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TickAck.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "ros/connections.h"
-#include "ros/heartbeat.h"
-#include "ros/message_gate.h"
+#include "ros/lockstep/heartbeat.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/tick_answers.h"
+#include "ros/messages/topics.h"
 #include "ros/ros.h"
-#include "ros/stop_signal.h"
-#include "ros/topics.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::ros {
 
@@ -30,6 +28,9 @@ enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped }
 /// What a result says of the traffic simulator that left, or fell silent for `timeout` [s].
 std::string simulatorFault(Ending ending, double timeout);
 
+/// What every node but the traffic simulator has in common: it waits for the session, reports when
+/// it is connected both ways, handles snapshots tick by tick in one thread, and leaves in order
+/// with the last one, whoever ends the session.
 class Participant {
  public:
   explicit Participant(StopSignal& stop);
@@ -128,6 +129,28 @@ class Participant {
   ::ros::WallTime reported_at_;  ///< when this node last said how it stands
   bool final_handled_ = false;
   bool over_ = false;
+};
+
+/// What metrics and recorder have in common: they listen to all answers of a tick and take it when
+/// they are complete.
+class Observer : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  /// Listens to all that the table of channels says of answers and reports for an observer of this
+  /// part; from now on a decision is complete with all that the table asks for.
+  void listenToAnswers(Party party, const session::ScenarioOptions& options);
+  /// Whether all answers to a tick are here, or nothing more of it will come: in lockstep when it
+  /// is `superseded` by a later one.
+  bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
+  const TickAnswers& answers() const { return answers_; }
+  /// Drops the answers to a tick and to those before it.
+  void forgetUntil(std::uint64_t tick) { answers_.forgetBefore(tick + 1); }
+
+ private:
+  TickAnswers answers_;
+  ::ros::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
 };
 
 }  // namespace cdiff::ros

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/recorder_ros.h"
 
-#include "ros/conversions.h"
+#include "ros/messages/conversions.h"
 
 namespace cdiff::ros {
 namespace {

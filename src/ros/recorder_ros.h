@@ -6,8 +6,8 @@
 
 #include <memory>
 
-#include "ros/bag_file.h"
-#include "ros/observer.h"
+#include "ros/bags/session_bag_writer.h"
+#include "ros/participant.h"
 
 namespace cdiff::ros {
 

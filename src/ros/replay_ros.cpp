@@ -7,15 +7,15 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/conversions.h"
-#include "ros/decision_book.h"
-#include "ros/launched_nodes.h"
-#include "ros/markers.h"
-#include "ros/replay.h"
+#include "ros/bags/replay.h"
+#include "ros/lockstep/decision_book.h"
+#include "ros/lockstep/launched_nodes.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/tick_record.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/markers.h"
 #include "ros/session_files.h"
-#include "ros/session_parts.h"
-#include "ros/spinning.h"
-#include "ros/tick_record.h"
+#include "ros/session_graph.h"
 #include "rosgraph_msgs/Clock.h"
 
 namespace cdiff::ros {

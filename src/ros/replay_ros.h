@@ -15,15 +15,14 @@
 #include <vector>
 
 #include "record/result_folder.h"
-#include "ros/connections.h"
-#include "ros/display.h"
-#include "ros/heartbeat.h"
-#include "ros/message_gate.h"
+#include "ros/bags/recorded_session.h"
+#include "ros/lockstep/heartbeat.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/participant_book.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/messages/display.h"
 #include "ros/parameters.h"
-#include "ros/participant_book.h"
-#include "ros/recorded_session.h"
 #include "ros/ros.h"
-#include "ros/stop_signal.h"
 
 namespace cdiff::ros {
 

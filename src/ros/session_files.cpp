@@ -9,9 +9,8 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "core/time_text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/launched_nodes.h"
+#include "ros/lockstep/launched_nodes.h"
 
 namespace cdiff::ros {
 namespace {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The nodes of a session by name, who of them takes part, and what their planners need.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "e2e_cdiff/SessionInfo.h"
+#include "session/session_setup.h"
 
 namespace cdiff::ros {
 
@@ -33,6 +36,7 @@ enum class Party {
   kParticipants  ///< every node but the traffic simulator
 };
 
+/// The nodes of a session by name, who of them takes part, and what their planners need.
 /// Who takes part in a session, besides the traffic simulator.
 struct SessionGraph {
   std::vector<std::string> participants;  ///< nodes that the session counts on
@@ -63,5 +67,23 @@ std::string nodeOf(Party party, const SessionGraph& graph);
 
 /// Whether a node acknowledges every tick (metrics and recorder do).
 bool isObserver(const std::string& node);
+
+// What nodes make of a SessionInfo: the setup, and who takes part.
+
+std::unique_ptr<session::SessionSetup> setupOf(const ::e2e_cdiff::SessionInfo& info);
+
+/// What launch files and parameters add to the scenario.
+struct GraphRequest {
+  bool record = false;        ///< a bag
+  bool show_cameras = false;  ///< images where no planner sees
+};
+
+/// The nodes that a scenario needs. `participants` replaces the list when it is not empty.
+SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest& request,
+                     const std::vector<std::string>& participants = {});
+/// Writes the graph into a session's message, and reads it. What the planner of the CBVs needs
+/// follows from the scenario in it.
+void putGraph(const SessionGraph& graph, ::e2e_cdiff::SessionInfo& info);
+SessionGraph graphOf(const ::e2e_cdiff::SessionInfo& info);
 
 }  // namespace cdiff::ros

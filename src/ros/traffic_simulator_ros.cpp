@@ -4,12 +4,12 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/conversions.h"
-#include "ros/launched_nodes.h"
-#include "ros/message_checks.h"
+#include "ros/lockstep/launched_nodes.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/message_checks.h"
 #include "ros/session_files.h"
-#include "ros/session_parts.h"
-#include "ros/spinning.h"
+#include "ros/session_graph.h"
 
 namespace cdiff::ros {
 namespace {

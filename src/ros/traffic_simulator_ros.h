@@ -15,19 +15,18 @@
 #include <string>
 #include <vector>
 
-#include "ros/connections.h"
-#include "ros/decision_book.h"
-#include "ros/display.h"
-#include "ros/heartbeat.h"
-#include "ros/message_gate.h"
-#include "ros/paced_answers.h"
+#include "ros/lockstep/decision_book.h"
+#include "ros/lockstep/heartbeat.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/paced_answers.h"
+#include "ros/lockstep/participant_book.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/tick_answers.h"
+#include "ros/messages/display.h"
+#include "ros/messages/topics.h"
 #include "ros/parameters.h"
-#include "ros/participant_book.h"
 #include "ros/ros.h"
 #include "ros/session_files.h"
-#include "ros/stop_signal.h"
-#include "ros/tick_answers.h"
-#include "ros/topics.h"
 #include "session/world.h"
 
 namespace cdiff::ros {

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/text.h"
-#include "ros/conversions.h"
-#include "ros/spinning.h"
-#include "ros/tick_record.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/tick_record.h"
+#include "ros/messages/conversions.h"
 #include "ros/traffic_simulator_ros.h"
 #include "rosgraph_msgs/Clock.h"
 

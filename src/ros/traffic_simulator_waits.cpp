@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "ros/conversions.h"
-#include "ros/launched_nodes.h"
+#include "ros/lockstep/launched_nodes.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/messages/conversions.h"
 #include "ros/node_main.h"
-#include "ros/spinning.h"
 #include "ros/traffic_simulator_ros.h"
 
 namespace cdiff::ros {

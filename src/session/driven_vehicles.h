@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The vehicles of a session that our own dynamics moves: the ego first, then CBVs by slot (map
-/// frame, SI units). Each holds its last action until it gets another one.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,10 +11,13 @@
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "simulation/traffic_simulator.h"
 
 namespace cdiff::session {
 
+/// The vehicles of a session that our own dynamics moves: the ego first, then CBVs by slot (map
+/// frame, SI units). Each holds its last action until it gets another one.
 class DrivenVehicles {
  public:
   explicit DrivenVehicles(const dynamics::BicycleModelOptions& options);
@@ -53,5 +55,16 @@ class DrivenVehicles {
   dynamics::BicycleModel dynamics_;
   std::vector<std::unique_ptr<Driven>> vehicles_;  ///< by slot; that of the ego is -1
 };
+
+// Contacts of the vehicles that we drive: boxes that overlap on the same level at one tick.
+
+/// Contacts of one tick, and who leaves the simulation for them.
+struct TickContacts {
+  std::vector<traffic::Contact> contacts;
+  std::vector<std::string> leaving;  ///< CBVs and background vehicles; one may be there twice
+};
+
+/// Looks at the first `driven` of the vehicles, each against all that come after it.
+TickContacts findContacts(const std::vector<traffic::Vehicle>& vehicles, std::size_t driven);
 
 }  // namespace cdiff::session

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a user asks for on a command line or in a launch file, resolved to one scenario.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,6 +10,15 @@
 
 namespace cdiff::session {
 
+// Samples of one quantity from a file, in the file's unit: one number a line, or the JSON that
+// `cdiff metric shapiro_wilk` reads.
+
+/// Lines: one finite number each; empty lines and what follows '#' are passed over. JSON (the file
+/// begins with '{'): {"cases": [{"x": [...]}, ...]}, the samples of all cases together. Throws
+/// InputError naming file, line (or case) and what was expected, also for a file without a sample.
+std::vector<double> readSamples(const std::filesystem::path& file);
+
+/// What a user asks for on a command line or in a launch file, resolved to one scenario.
 /// Empty texts mean "not given".
 struct SessionRequest {
   std::string scenario;     ///< shipped name or file

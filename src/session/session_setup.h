@@ -10,7 +10,7 @@
 
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/planning/planner.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "metrics/session_metrics.h"
 #include "session/scenario_options.h"
 

@@ -10,7 +10,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "session/contacts.h"
+#include "session/driven_vehicles.h"
 
 namespace cdiff::session {
 

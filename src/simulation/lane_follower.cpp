@@ -6,8 +6,109 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
+#include "simulation/sumo_conversion.h"
 
 namespace cdiff::simulation {
+namespace {
+
+constexpr double kSearchBehind = 15.0;  ///< window of the route around the last place [m]
+constexpr double kSearchAhead = 40.0;   ///< [m]
+constexpr double kLostDistance =
+    6.0;  ///< farther from the route than this, the whole route is searched [m]
+constexpr double kReachMargin = 0.05;  ///< within SUMO's own limit [m]
+
+}  // namespace
+
+FrontPlace DrivenWay::locate(const traffic::VehicleState& state) const {
+  constexpr double kWidestHalfLane = 3.0;  // [m]
+  FrontPlace place;
+  place.position = frontOf(state.pose(), dimensions_.length);
+  const double half_width = 0.5 * dimensions_.width;
+  const map::RoadNetwork& network = graph_->network();
+  for (const map::LaneMatch& match : network.lanesNear(
+           place.position, state.elevation, kWidestHalfLane + half_width, state.heading)) {
+    const double reach = 0.5 * network.lane(match.lane).width + half_width - kReachMargin;
+    if (match.projection.distance < reach) place.lanes.push_back(match);
+  }
+  return place;
+}
+
+bool DrivenWay::follow(const map::Route* route, const Eigen::Vector2d& front) {
+  const double length = route != nullptr ? route->length() : 0.0;
+  const bool other = route != route_ || length != route_length_;
+  if (other) {
+    route_ = route;
+    route_length_ = length;
+    route_edges_.clear();
+    if (route != nullptr) {
+      for (const std::string& edge : route->edges()) route_edges_.push_back(graph_->find(edge));
+    }
+  }
+  if (route_edges_.empty()) return other;
+  const geometry::Polyline& path = route_->path();
+  geometry::Projection here = path.project(front, std::max(0.0, progress_ - kSearchBehind),
+                                           std::min(length, progress_ + kSearchAhead));
+  if (other || here.distance > kLostDistance) here = path.project(front);
+  progress_ = here.arc_length;
+  const std::vector<double>& begins = route_->edgeBegins();
+  const auto above = std::upper_bound(begins.begin(), begins.end(), progress_);
+  progress_edge_ =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - begins.begin() - 1, 0));
+  return other;
+}
+
+std::optional<std::size_t> DrivenWay::routeIndexOf(int current,
+                                                   const std::vector<int>& edges) const {
+  const std::size_t first = progress_edge_ == 0 ? 0 : progress_edge_ - 1;
+  const std::size_t last = std::min(edges.size(), progress_edge_ + 2);
+  // The edge of the place comes first, then the one behind, then the one ahead.
+  if (progress_edge_ < last && edges[progress_edge_] == current) return progress_edge_;
+  for (std::size_t i = first; i < last; ++i) {
+    if (edges[i] == current) return i;
+  }
+  return std::nullopt;
+}
+
+std::vector<int> DrivenWay::edgesFrom(int current, double length) const {
+  std::vector<int> way = {current};
+  double ahead = 0.0;
+  std::optional<std::size_t> index = routeIndexOf(current, route_edges_);
+  if (!index && progress_edge_ < route_edges_.size() &&
+      graph_->connected(current, route_edges_[progress_edge_])) {
+    index = progress_edge_ - 1;  // just before the route: goes on with its present edge
+  }
+  if (index) {
+    for (std::size_t i = *index + 1; i < route_edges_.size(); ++i) {
+      if (ahead >= length && i > *index + 2) break;
+      if (!graph_->connected(way.back(), route_edges_[i])) break;
+      if (std::find(way.begin(), way.end(), route_edges_[i]) != way.end()) break;
+      way.push_back(route_edges_[i]);
+      ahead += graph_->length(way.back());
+    }
+  }
+  if (ahead < length || way.size() < 3) graph_->extend(way, std::max(0.0, length - ahead));
+  return way;
+}
+
+int DrivenWay::startEdge(const FrontPlace& place) const {
+  constexpr double kSameDirection = 0.5 * core::kPi;
+  for (const map::LaneMatch& match : place.lanes) {
+    const int edge = graph_->edgeOf(match.lane);
+    if (edge != kNoEdge && routeIndexOf(edge, route_edges_)) return edge;
+  }
+  for (const map::LaneMatch& match : place.lanes) {
+    const int edge = graph_->edgeOf(match.lane);
+    if (edge != kNoEdge && std::abs(match.heading_difference) < kSameDirection) return edge;
+  }
+  return kNoEdge;
+}
+
+bool DrivenWay::onWay(const FrontPlace& place, const std::vector<int>& way,
+                      double heading_limit) const {
+  return std::any_of(place.lanes.begin(), place.lanes.end(), [&](const map::LaneMatch& match) {
+    return std::abs(match.heading_difference) <= heading_limit && graph_->onWay(match.lane, way);
+  });
+}
 
 namespace {
 

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
-/// districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "suite/draws.h"
 #include "suite/road_plan.h"
 
 namespace cdiff::suite {
+
+// SUMO networks from drawn sources, by netconvert with networks/netconvert.netccfg.
+
+/// Writes FOLDER/NAME.nod.xml, .edg.xml, .con.xml (where there are connections) and .net.xml;
+/// answers the network's text, which is without netconvert's comment (date, version, paths): the
+/// same sources and SUMO version give the same bytes. Throws InputError with netconvert's own words
+/// when it fails.
+std::string buildNetwork(const RoadPlan& plan, const std::filesystem::path& folder);
+
+// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
+// districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
 
 enum class NetworkKind { kCrossing, kRoundabout, kMerge, kDistrict };
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "suite/network_generator.h"
-#include "suite/road_line.h"
+#include "suite/road_plan.h"
 
 namespace cdiff::suite {
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A road network as netconvert's plain-XML sources describe it: nodes, edges with their lines in
-/// the map frame [m], connections, and the ways through it that a route may take.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,6 +44,8 @@ struct PlannedWay {
   std::string purpose;  ///< roundabout or merge; empty: told by the angle it turns
 };
 
+/// A road network as netconvert's plain-XML sources describe it: nodes, edges with their lines in
+/// the map frame [m], connections, and the ways through it that a route may take.
 struct RoadPlan {
   std::string name;
   std::string text;  ///< one sentence about what was drawn
@@ -60,5 +60,34 @@ struct RoadPlan {
 std::string nodesXml(const RoadPlan& plan);
 std::string edgesXml(const RoadPlan& plan);
 std::string connectionsXml(const RoadPlan& plan);
+
+using Line = std::vector<Eigen::Vector3d>;
+
+/// The middle of a road, laid piece by piece from a place and heading: straights and arcs, then
+/// lines beside it and heights on it (map frame, [m], [rad]).
+class RoadLine {
+ public:
+  RoadLine(const Eigen::Vector2d& start, double heading);
+  /// Points every 5 m.
+  RoadLine& straight(double length);
+  /// `angle` positive to the left; points every 1 m.
+  RoadLine& arc(double radius, double angle);
+  const Line& points() const { return points_; }
+  double heading() const { return heading_; }
+
+ private:
+  Eigen::Vector2d position_;
+  double heading_;
+  Line points_;
+};
+
+/// The line `offset` metres to the left (right: negative), with the same heights.
+Line beside(const Line& line, double offset);
+Line reversed(Line line);
+/// Height 0 up to `begin` along the line, `height` at its end, level at both.
+Line climbing(Line line, double begin, double height);
+/// The part between two arc lengths of the line.
+Line part(const Line& line, double begin, double end);
+double lengthOf(const Line& line);
 
 }  // namespace cdiff::suite

@@ -1,16 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Whole suites from a seed: 220 training routes on 38 networks, 10 test routes on 7 others. The
-/// draws of the two come from streams of their own, so no network of one is in the other.
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "suite/network_generator.h"
 #include "suite/suite.h"
 
 namespace cdiff::suite {
+
+// What a suite consists of: its networks, and its routes in order.
+
+struct RouteWish {
+  std::string manoeuvre;
+  std::string density;
+  std::string network;  ///< empty: any, in turn
+};
+
+std::vector<NetworkSpec> networkSpecs(const std::string& kind);
+std::vector<RouteWish> routeWishes(const std::string& kind);
+
+// Whole suites from a seed: 220 training routes on 38 networks, 10 test routes on 7 others. The
+// draws of the two come from streams of their own, so no network of one is in the other.
 
 /// "test", "train".
 const std::vector<std::string>& suiteKinds();

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "page/map_canvas.h"
+#include "page/pictures/map_canvas.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"
-#include "video/video_focus.h"
+#include "video/video_ink.h"
 
 namespace cdiff::video {
 

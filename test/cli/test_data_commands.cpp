@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "cli/cdiff_command.h"
-#include "learning/task_registry.h"
+#include "learning/task.h"
 #include "planners/diffusion/training/training.h"
 
 namespace cdiff::cli {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collection/collection_scenario.h"
-#include "collection/image_schedule.h"
+#include "collection/collection_loop.h"
+#include "collection/collection_request.h"
 #include "collection/perturbed_planner.h"
 #include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/exceptions.h"

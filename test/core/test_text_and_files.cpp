@@ -13,7 +13,6 @@
 #include "core/failure.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "core/time_text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/real_data.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::diffusion {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "diffusion/cpu_denoiser.h"
+#include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "diffusion/cpu_denoiser.h"
+#include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
 #include "inference/unet_layers.h"
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/image_encoder.h"
 #include "diffusion/reference_encoder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "dynamics/action_inference.h"
+#include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::dynamics {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "dynamics/executable_action.h"
+#include "dynamics/action_rollout.h"
 
 namespace cdiff::dynamics {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/figures.h"
+#include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
 namespace {

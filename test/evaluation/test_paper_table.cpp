@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "evaluation/paper_definitions.h"
-#include "evaluation/paper_table.h"
+#include "evaluation/paper/paper_definitions.h"
+#include "evaluation/paper/paper_table.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "evaluation/process_pool.h"
+#include "evaluation/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {

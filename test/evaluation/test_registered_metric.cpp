@@ -9,9 +9,9 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "evaluation/figures.h"
+#include "evaluation/run_record.h"
 #include "page/result_writer.h"
-#include "record/figure_list.h"
+#include "record/metric_file.h"
 #include "record/seen_session.h"
 
 namespace cdiff::evaluation {

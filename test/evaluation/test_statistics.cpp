@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "evaluation/cell.h"
 #include "evaluation/run_records.h"
 #include "evaluation/statistics.h"
 

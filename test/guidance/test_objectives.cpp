@@ -7,8 +7,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "guidance/collision_avoidance_objective.h"
-#include "guidance/collision_seeking_objective.h"
+#include "guidance/collision_objectives.h"
 #include "guidance/comfort_objective.h"
 #include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"

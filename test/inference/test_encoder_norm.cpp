@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "inference/encoder_norm.h"
+#include "inference/encoder_layers.h"
 
 namespace cdiff::inference {
 namespace {

@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/random.h"
-#include "learning/driving_sample.h"
+#include "learning/samples/driving_sample.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::test {

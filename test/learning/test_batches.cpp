@@ -4,7 +4,7 @@
 
 #include "learning/batches.h"
 #include "learning/parameters.h"
-#include "learning/shard.h"
+#include "learning/samples/shard.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::learning {

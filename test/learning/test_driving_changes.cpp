@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "learning/driving_changes.h"
+#include "learning/samples/driving_sample.h"
 #include "learning/small_samples.h"
 
 namespace cdiff::learning {

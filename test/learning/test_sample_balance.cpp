@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/sample_balance.h"
+#include "learning/samples/sample_order.h"
 #include "learning/small_samples.h"
 
 namespace cdiff::learning {

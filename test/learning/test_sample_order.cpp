@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "learning/sample_order.h"
+#include "learning/samples/sample_order.h"
 
 namespace cdiff::learning {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "learning/task_registry.h"
+#include "learning/task.h"
 #include "learning/toy_task.h"
 
 namespace cdiff::learning {

@@ -8,11 +8,11 @@
 #include <sstream>
 
 #include "core/file.h"
-#include "learning/checkpoint.h"
 #include "learning/stopping_buffer.h"
-#include "learning/task_registry.h"
+#include "learning/task.h"
 #include "learning/toy_task.h"
 #include "learning/trainer.h"
+#include "learning/training_folder.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::learning {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "learning/batches.h"
-#include "learning/sample_order.h"
-#include "learning/shard.h"
+#include "learning/samples/sample_order.h"
+#include "learning/samples/shard.h"
 #include "learning/task.h"
 
 namespace cdiff::test {

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/map/road_network.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "support/real_data.h"
 
 namespace cdiff::map {

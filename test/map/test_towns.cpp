@@ -14,7 +14,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/angle.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "map/route_source.h"
 #include "support/real_data.h"
 

@@ -5,10 +5,8 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/collision_counter.h"
+#include "metrics/measures/driving_score.h"
 #include "metrics/metric_under_test.h"
-#include "metrics/minimum_speed.h"
-#include "metrics/outside_lanes.h"
 #include "support/network_text.h"
 
 namespace cdiff::metrics {

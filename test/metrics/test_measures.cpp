@@ -4,9 +4,8 @@
 
 #include <limits>
 
-#include "metrics/collisions_per_km.h"
-#include "metrics/sample_statistics.h"
-#include "metrics/tick_share.h"
+#include "metrics/measures/collisions_per_km.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 namespace {

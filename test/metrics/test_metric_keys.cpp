@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Strings that mean another thing than the figure of the same name, by file.
 const std::set<std::pair<std::string, std::string>> kOtherMeanings = {
-    {"record/cbv_summary.cpp", "cbv_distance_m"}};  // of a CBV to its conflict point
+    {"record/summary_figures.cpp", "cbv_distance_m"}};  // of a CBV to its conflict point
 
 /// Texts of sources by path below their folder.
 using Sources = std::map<std::string, std::string>;
@@ -78,9 +78,9 @@ TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
 TEST(MetricKeys, AreFoundInEveryFileThatSpellsThem) {
   const Sources sources = {{"a.cpp", "x = \"cbv_count\";"},
                            {"b.cpp", "// as cbv_count\ny = \"cbv_counts\";"},
-                           {"record/cbv_summary.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
+                           {"record/summary_figures.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
   EXPECT_EQ(filesWith(sources, "cbv_count"),
-            (std::vector<std::string>{"a.cpp", "record/cbv_summary.cpp"}));
+            (std::vector<std::string>{"a.cpp", "record/summary_figures.cpp"}));
   EXPECT_TRUE(filesWith(sources, "cbv_distance_m").empty());
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
+#include "metrics/measures/post_encroachment.h"
 #include "metrics/metric_under_test.h"
-#include "metrics/post_encroachment.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "core/text.h"
+#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/ttc_2d.h"
+#include "metrics/measures/wasserstein.h"
 #include "metrics/reference_data.h"
-#include "metrics/shapiro_wilk.h"
-#include "metrics/ttc_2d.h"
-#include "metrics/wasserstein.h"
 
 #define SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "missing: " << path

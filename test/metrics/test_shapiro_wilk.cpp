@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/shapiro_wilk.h"
+#include "metrics/measures/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 namespace {

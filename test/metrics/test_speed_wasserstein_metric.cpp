@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "metrics/measures/wasserstein.h"
 #include "metrics/metric_under_test.h"
-#include "metrics/wasserstein.h"
 
 namespace cdiff::metrics {
 namespace {

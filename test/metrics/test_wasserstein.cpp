@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/wasserstein.h"
+#include "metrics/measures/wasserstein.h"
 
 namespace cdiff::metrics {
 namespace {

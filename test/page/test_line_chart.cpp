@@ -4,8 +4,7 @@
 
 #include <limits>
 
-#include "page/chart_axes.h"
-#include "page/line_chart.h"
+#include "page/pictures/charts.h"
 
 namespace cdiff::page {
 namespace {

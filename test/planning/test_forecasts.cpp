@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "planners/course.h"
-#include "planners/pdm_lite/box_forecast.h"
-#include "planners/pdm_lite/ego_forecast.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planning/motion_forecast.h"
 
 namespace cdiff::planning {

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "metrics/metric_registry.h"
-#include "record/figure_list.h"
+#include "record/metric_file.h"
 
 namespace cdiff::record {
 namespace {

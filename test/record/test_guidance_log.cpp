@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "record/guidance_log.h"
+#include "record/logs/guidance_log.h"
 
 namespace cdiff::record {
 namespace {

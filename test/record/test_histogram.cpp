@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "page/histogram_chart.h"
-#include "record/driving_log.h"
+#include "page/pictures/charts.h"
+#include "record/logs/driving_log.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {

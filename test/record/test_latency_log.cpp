@@ -2,8 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "record/late_log.h"
-#include "record/latency_log.h"
+#include "record/logs/latency_log.h"
 
 namespace cdiff::record {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/plan_file.h"
+#include "record/logs/plan_log.h"
 #include "record/sample_session.h"
 #include "support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "record/plan_log.h"
+#include "record/logs/plan_log.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "record/reason_text.h"
 #include "record/sample_session.h"
 #include "record/session_story.h"
 

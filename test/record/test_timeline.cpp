@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "record/logs/timeline.h"
 #include "record/sample_session.h"
-#include "record/timeline.h"
 
 namespace cdiff::record {
 namespace {

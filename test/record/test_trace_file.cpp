@@ -7,7 +7,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/sample_session.h"
 #include "record/trace_file.h"
-#include "record/trace_writer.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::record {

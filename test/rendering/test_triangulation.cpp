@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "rendering/triangulation.h"
+#include "rendering/road_scene.h"
 
 namespace cdiff::rendering {
 namespace {

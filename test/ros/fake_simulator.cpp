@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "planners/diffusion/diffusion_options.h"
-#include "ros/session_parts.h"
+#include "ros/session_graph.h"
 #include "support/random_model.h"
 
 namespace cdiff::test {

@@ -14,9 +14,9 @@
 
 #include "e2e_cdiff/TickAck.h"
 #include "ros/callback_queue.h"
-#include "ros/connections.h"
-#include "ros/conversions.h"
-#include "ros/topics.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/topics.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "page/result_writer.h"
-#include "ros/session_bag.h"
+#include "ros/bags/session_bag_writer.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 #include "session/closed_loop.h"

@@ -4,12 +4,12 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/GuidanceReport.h"
-#include "ros/channel_table.h"
-#include "ros/conversions.h"
-#include "ros/recorded_channels.h"
+#include "ros/bags/recorded_channels.h"
+#include "ros/lockstep/tick_answers.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/topics.h"
 #include "ros/sample_messages.h"
-#include "ros/session_parts.h"
-#include "ros/tick_messages.h"
+#include "ros/session_graph.h"
 
 namespace cdiff::ros {
 namespace {

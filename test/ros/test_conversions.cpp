@@ -8,8 +8,8 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 #include "metrics/metric_registry.h"
-#include "ros/conversions.h"
-#include "ros/metric_diagnostics.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/metric_reporter.h"
 #include "ros/sample_messages.h"
 #include "support/network_text.h"
 

@@ -6,14 +6,14 @@
 #include <set>
 
 #include "collection/collection_loop.h"
-#include "collection/collection_scenario.h"
+#include "collection/collection_request.h"
 #include "core/file.h"
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/geometry/polyline.h"
-#include "ros/dataset_from_bag.h"
-#include "ros/session_bag.h"
+#include "ros/bags/dataset_from_bag.h"
+#include "ros/bags/session_bag_writer.h"
 #include "std_msgs/String.h"
 #include "support/sumo_network.h"
 

@@ -9,7 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "nav_msgs/Odometry.h"
 #include "nav_msgs/Path.h"
-#include "ros/dataset_from_bag.h"
+#include "ros/bags/dataset_from_bag.h"
 #include "rosbag/bag.h"
 #include "sensor_msgs/Image.h"
 #include "std_msgs/String.h"

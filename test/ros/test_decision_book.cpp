@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "ros/conversions.h"
-#include "ros/decision_book.h"
+#include "ros/lockstep/decision_book.h"
+#include "ros/lockstep/tick_record.h"
+#include "ros/messages/conversions.h"
 #include "ros/sample_messages.h"
-#include "ros/tick_record.h"
 
 namespace cdiff::ros {
 namespace {

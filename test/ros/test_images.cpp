@@ -4,10 +4,10 @@
 
 #include "boost/make_shared.hpp"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/conversions.h"
-#include "ros/image_conversions.h"
-#include "ros/image_inbox.h"
-#include "ros/planner_statistics.h"
+#include "ros/lockstep/image_inbox.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/image_conversions.h"
+#include "ros/planner_ros.h"
 #include "ros/sample_messages.h"
 
 namespace cdiff::ros {

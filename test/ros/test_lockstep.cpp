@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "ros/connections.h"
-#include "ros/conversions.h"
-#include "ros/image_conversions.h"
-#include "ros/participant_book.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/participant_book.h"
+#include "ros/lockstep/tick_answers.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/image_conversions.h"
+#include "ros/messages/topics.h"
 #include "ros/sample_messages.h"
-#include "ros/session_parts.h"
-#include "ros/tick_answers.h"
-#include "ros/topics.h"
+#include "ros/session_graph.h"
 
 namespace cdiff::ros {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <set>
 
-#include "ros/display.h"
-#include "ros/markers.h"
+#include "ros/messages/display.h"
+#include "ros/messages/markers.h"
 #include "ros/sample_messages.h"
 
 namespace cdiff::ros {

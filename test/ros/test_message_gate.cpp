@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "ros/message_checks.h"
-#include "ros/message_gate.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/messages/message_checks.h"
 
 namespace cdiff::ros {
 namespace {

@@ -10,11 +10,11 @@
 #include <random>
 #include <thread>
 
-#include "ros/connections.h"
-#include "ros/heartbeat.h"
 #include "ros/launched_session.h"
-#include "ros/participant_book.h"
-#include "ros/topics.h"
+#include "ros/lockstep/heartbeat.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/participant_book.h"
+#include "ros/messages/topics.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // Sessions beside nodes and tools that are no part of them.
-#include "ros/replay.h"
+#include "ros/bags/replay.h"
 #include "ros/session_launch.h"
 
 namespace cdiff {

@@ -5,9 +5,9 @@
 #include "core/text.h"
 #include "e2e_cdiff/DecisionRecord.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "ros/replay.h"
+#include "ros/bags/replay.h"
+#include "ros/messages/topics.h"
 #include "ros/session_launch.h"
-#include "ros/topics.h"
 #include "support/random_model.h"
 
 namespace cdiff {

@@ -4,7 +4,6 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "session/sample_file.h"
 #include "session/session_request.h"
 #include "support/temporary_folder.h"
 

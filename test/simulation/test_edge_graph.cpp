@@ -5,7 +5,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "simulation/crossing_world.h"
-#include "simulation/driven_way.h"
+#include "simulation/lane_follower.h"
 #include "simulation/sumo_conversion.h"
 
 namespace cdiff {

@@ -4,7 +4,7 @@
 // a vehicle is put (moveToXY) from lane to lane and its follower asks where its rear is.
 #include <gtest/gtest.h>
 
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "simulation/crossing_world.h"
 #include "support/real_data.h"
 

@@ -15,7 +15,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/crossing_world.h"
-#include "simulation/sumo_process.h"
+#include "simulation/sumo_link.h"
 
 namespace cdiff {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "e2e_cdiff/core/angle.h"
-#include "map/network_import.h"
+#include "map/import/network_import.h"
 #include "simulation/crossing_world.h"
 #include "simulation/demand_generator.h"
 #include "support/real_data.h"

@@ -14,7 +14,7 @@
 #include "record/verdict_cases.h"
 #include "video/session_video.h"
 #include "video/video_encoder.h"
-#include "video/video_focus.h"
+#include "video/video_ink.h"
 
 namespace cdiff::video {
 namespace {

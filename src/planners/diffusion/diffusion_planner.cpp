@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "dynamics/executable_action.h"
+#include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/random.h"
 #include "planners/diffusion/diffusion_situation.h"
 #include "planners/diffusion/guided_batch.h"
-#include "planners/diffusion/plan_choice.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {

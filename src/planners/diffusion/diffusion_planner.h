@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/image_encoder.h"
 #include "diffusion/model.h"
+#include "diffusion/network/cpu_denoiser.h"
+#include "diffusion/network/image_encoder.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/diffusion/diffusion_options.h"

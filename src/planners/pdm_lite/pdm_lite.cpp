@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamics/action_inference.h"
+#include "dynamics/action_rollout.h"
 #include "e2e_cdiff/traffic/rollout.h"
-#include "planners/pdm_lite/box_forecast.h"
+#include "planners/pdm_lite/controllers.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/idm.h"
-#include "planners/pdm_lite/longitudinal_controller.h"
 #include "planners/pdm_lite/route_rules.h"
 #include "planning/motion_forecast.h"
 

@@ -32,7 +32,7 @@
 #include <vector>
 
 #include "e2e_cdiff/planning/planner.h"
-#include "planners/pdm_lite/ego_forecast.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 
 namespace cdiff::planners {

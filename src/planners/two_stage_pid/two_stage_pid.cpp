@@ -4,6 +4,9 @@
 
 #include <utility>
 
+#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "planners/diffusion/diffusion_descriptor.h"
+
 namespace cdiff::planners {
 namespace {
 
@@ -42,6 +45,19 @@ std::vector<planning::PlannedAction> TwoStagePid::plan(
   }
   trackers_ = std::move(kept);
   return actions;
+}
+
+planning::PlannerDescriptor twoStagePidDescriptor() {
+  planning::PlannerDescriptor descriptor = diffusionDescriptor();  // which it plans with
+  descriptor.name = "two_stage_pid";
+  descriptor.title = "Two-stage trajectory-then-PID";
+  descriptor.help = "plans as the diffusion planner does; its tracker makes the actions.";
+  descriptor.options = planning::makePlannerOptions<TrajectoryTrackerOptions>;
+  descriptor.make = [](const planning::PlannerParts& parts) {
+    return std::make_unique<TwoStagePid>(makeDiffusionPlanner(parts),
+                                         parts.options.of<TrajectoryTrackerOptions>());
+  };
+  return descriptor;
 }
 
 }  // namespace cdiff::planners

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The diffusion planner with its denoised actions left out (the paper's two-stage variant): the
-/// planned states, in the vehicle's body frame, are followed by a PID tracker. Same model, guidance
-/// and noise as `diffusion`, so that only the execution differs.
 #pragma once
 
 #include <map>
@@ -15,6 +12,9 @@
 
 namespace cdiff::planners {
 
+/// The diffusion planner with its denoised actions left out (the paper's two-stage variant): the
+/// planned states, in the vehicle's body frame, are followed by a PID tracker. Same model, guidance
+/// and noise as `diffusion`, so that only the execution differs.
 class TwoStagePid : public planning::Planner {
  public:
   /// Takes over `planner`, which makes the plans.

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <functional>
 
-#include "diffusion/cpu_denoiser.h"
+#include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
 #include "diffusion/sampling_batch.h"
-#include "dynamics/executable_action.h"
+#include "dynamics/action_rollout.h"
 #include "guidance/guidance_world.h"
 #include "guidance/objective_registry.h"
 #include "planners/diffusion/guided_batch.h"

@@ -8,10 +8,9 @@
 #include <set>
 #include <utility>
 
-#include "dynamics/executable_action.h"
+#include "dynamics/action_rollout.h"
+#include "planners/diffusion/diffusion_situation.h"
 #include "planners/diffusion/guided_batch.h"
-#include "planners/diffusion/last_plan.h"
-#include "planners/diffusion/plan_choice.h"
 #include "planners/model_course.h"
 
 namespace cdiff::planners {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "planners/diffusion/last_plan.h"
+#include "planners/diffusion/diffusion_situation.h"
 
 namespace cdiff::planners {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "planners/diffusion/plan_choice.h"
+#include "planners/diffusion/guided_batch.h"
 
 namespace cdiff::planners {
 namespace {

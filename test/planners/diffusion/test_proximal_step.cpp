@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/proximal_step.h"
+#include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/reference_denoiser.h"
+#include "diffusion/sampling_batch.h"
 #include "guidance/guidance_world.h"
 #include "planners/diffusion/guided_batch.h"
 #include "support/random_model.h"

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/lateral_controller.h"
-#include "planners/pdm_lite/longitudinal_controller.h"
+#include "planners/pdm_lite/controllers.h"
 
 namespace cdiff::planners {
 namespace {

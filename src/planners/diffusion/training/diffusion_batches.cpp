@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "learning/batches.h"
-#include "learning/driving_changes.h"
-#include "learning/sample_balance.h"
+#include "learning/samples/driving_sample.h"
+#include "learning/samples/sample_order.h"
 
 namespace cdiff::planners {
 namespace {

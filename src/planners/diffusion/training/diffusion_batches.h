@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "diffusion/normalizer.h"
-#include "learning/driving_sample.h"
-#include "learning/sample_order.h"
+#include "learning/samples/driving_sample.h"
+#include "learning/samples/sample_order.h"
 #include "planners/diffusion/training/networks.h"
 
 namespace cdiff::planners {

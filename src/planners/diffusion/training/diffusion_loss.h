@@ -7,8 +7,8 @@
 #include <string>
 
 #include "diffusion/noise_schedule.h"
-#include "learning/figures.h"
-#include "learning/stage.h"
+#include "learning/curve_log.h"
+#include "learning/task.h"
 #include "planners/diffusion/training/diffusion_batches.h"
 
 namespace cdiff::planners {

@@ -8,7 +8,6 @@
 
 #include "core/text.h"
 #include "diffusion/model.h"
-#include "diffusion/model_metadata.h"
 #include "planners/diffusion/training/feature_cache.h"
 #include "planners/diffusion/training/stored_normalizer.h"
 #include "planners/diffusion/training/training.h"

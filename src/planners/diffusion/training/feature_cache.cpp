@@ -9,10 +9,10 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/image_encoder.h"
 #include "learning/batches.h"
-#include "learning/checkpoint.h"
-#include "learning/driving_changes.h"
+#include "learning/samples/driving_sample.h"
+#include "learning/training_folder.h"
 
 namespace cdiff::planners {
 namespace {

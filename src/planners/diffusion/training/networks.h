@@ -4,7 +4,7 @@
 /// that trains the encoder. Float32; B is the batch.
 #pragma once
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 #include "learning/parameters.h"
 
 namespace cdiff::planners {

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Which normalizer a run uses: weights mean something only with the one they were trained with, so
-/// it travels with every checkpoint as the fact "normalizer" (Normalizer::toJson).
 #pragma once
 
 #include "diffusion/model.h"
-#include "learning/driving_sample.h"
+#include "diffusion/normalizer.h"
+#include "learning/samples/driving_sample.h"
 #include "learning/training_options.h"
 
 namespace cdiff::planners {
+
+// The normaliser of a data set.
+
+/// Actions: throttle and brake [0, 1] -> [-1, 1], steer by twice its standard deviation over all
+/// rows. States: mean and standard deviation of each cell, at least 0.05 m, 0.01 rad and 0.1 m/s.
+/// The training samples and, if asked, their mirror images count.
+diffusion::Normalizer fitNormalizer(const learning::DrivingDataset& dataset, bool mirrored);
+
+// Which normalizer a run uses: weights mean something only with the one they were trained with, so
+// it travels with every checkpoint as the fact "normalizer" (Normalizer::toJson).
 
 /// That of the checkpoint that the run goes on with or starts from, else that of the model `init`
 /// (nullptr: none), else one fitted to the data and, if asked, its mirror images; [T, 7] each, of

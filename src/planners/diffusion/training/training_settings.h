@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "diffusion/architecture.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/options.h"
 
 namespace cdiff::planners {

@@ -5,8 +5,8 @@
 // order.
 #include <gtest/gtest.h>
 
-#include "diffusion/cpu_denoiser.h"
-#include "diffusion/image_encoder.h"
+#include "diffusion/network/cpu_denoiser.h"
+#include "diffusion/network/image_encoder.h"
 #include "planners/diffusion/training/networks.h"
 #include "support/random_model.h"
 

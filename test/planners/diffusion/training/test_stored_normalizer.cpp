@@ -5,10 +5,8 @@
 #include <string>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/checkpoint.h"
 #include "learning/small_samples.h"
 #include "learning/training_folder.h"
-#include "planners/diffusion/training/fitted_normalizer.h"
 #include "planners/diffusion/training/stored_normalizer.h"
 
 namespace cdiff::planners {

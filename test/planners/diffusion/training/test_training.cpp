@@ -8,10 +8,10 @@
 #include "core/file.h"
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/checkpoint.h"
 #include "learning/small_samples.h"
 #include "learning/stopping_buffer.h"
 #include "learning/trainer.h"
+#include "learning/training_folder.h"
 #include "planners/diffusion/training/diffusion_task.h"
 #include "planners/diffusion/training/training.h"
 

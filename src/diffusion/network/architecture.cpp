@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "diffusion/network/architecture.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "inference/strict_json.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+/// An integer size and its range, in the order of the JSON text. The ranges keep every product of
+/// sizes far below 2^63.
+struct SizeField {
+  const char* name;
+  std::int64_t Architecture::*member;
+  std::int64_t low;
+  std::int64_t high;
+};
+
+constexpr SizeField kSizes[] = {
+    {"horizon", &Architecture::horizon, 2, 1024},
+    {"diffusion_steps", &Architecture::diffusion_steps, 1, 10000},
+    {"kernel", &Architecture::kernel, 1, 31},
+    {"groups", &Architecture::groups, 1, 256},
+    {"time_width", &Architecture::time_width, 4, 4096},
+    {"image_width", &Architecture::image_width, 32, 4096},
+    {"image_height", &Architecture::image_height, 32, 4096},
+    {"image_features", &Architecture::image_features, 1, 4096},
+    {"route_points", &Architecture::route_points, 1, 1024},
+    {"route_features", &Architecture::route_features, 1, 4096},
+    {"speed_features", &Architecture::speed_features, 1, 4096},
+    {"context_width", &Architecture::context_width, 1, 4096},
+    {"state_hidden", &Architecture::state_hidden, 1, 4096},
+};
+constexpr std::int64_t kMinLevels = 2;
+constexpr std::int64_t kMaxLevels = 6;
+constexpr std::int64_t kMaxChannels = 4096;
+constexpr double kMinSpacing = 0.1;    // [m]
+constexpr double kMaxSpacing = 100.0;  // [m]
+
+[[noreturn]] void fail(const std::string& what) { throw core::InputError("architecture: " + what); }
+
+void requireInRange(const std::string& name, std::int64_t value, std::int64_t low,
+                    std::int64_t high) {
+  if (value >= low && value <= high) return;
+  fail(name + " is " + std::to_string(value) + "; " + std::to_string(low) + " to " +
+       std::to_string(high) + " was expected");
+}
+
+void requireMultiple(const std::string& name, std::int64_t value, std::int64_t divisor,
+                     const std::string& reason) {
+  if (value % divisor == 0) return;
+  fail(name + " is " + std::to_string(value) + "; a multiple of " + reason + " (" +
+       std::to_string(divisor) + ") was expected");
+}
+
+std::int64_t integerOf(const inference::Json& value, const std::string& where) {
+  const bool too_large = value.is_number_unsigned() &&
+                         value.get<std::uint64_t>() >
+                             static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (!value.is_number_integer() || too_large) {
+    throw core::InputError(where + " is " + (too_large ? value.dump() : inference::kindOf(value)) +
+                           "; an integer was expected");
+  }
+  return value.get<std::int64_t>();
+}
+
+const inference::Json& valueOf(const inference::Json& object, const std::string& key,
+                               const std::string& source) {
+  const auto found = object.find(key);
+  if (found == object.end()) {
+    throw core::InputError(source + ": the architecture lacks the key '" + key + "'");
+  }
+  return *found;
+}
+
+std::vector<std::int64_t> channelsOf(const inference::Json& value, const std::string& where) {
+  if (!value.is_array()) {
+    throw core::InputError(where + " is " + inference::kindOf(value) +
+                           "; an array of integers was expected");
+  }
+  std::vector<std::int64_t> channels;
+  for (const inference::Json& element : value)
+    channels.push_back(integerOf(element, where + " (an element)"));
+  return channels;
+}
+
+void requireKnownKeys(const inference::Json& object, const std::string& source) {
+  std::vector<std::string> known = {"channels", "route_spacing"};
+  for (const SizeField& field : kSizes) known.emplace_back(field.name);
+  const std::set<std::string> set(known.begin(), known.end());
+  for (const auto& item : object.items()) {
+    if (set.count(item.key()) > 0) continue;
+    throw core::InputError(source + ": the architecture has an unknown key '" + item.key() +
+                           "'; the nearest known one is '" + core::nearestName(item.key(), known) +
+                           "'");
+  }
+}
+
+}  // namespace
+
+void Architecture::validate() const {
+  for (const SizeField& field : kSizes) {
+    requireInRange(field.name, this->*field.member, field.low, field.high);
+  }
+  const auto levels = static_cast<std::int64_t>(channels.size());
+  requireInRange("the count of channels", levels, kMinLevels, kMaxLevels);
+  requireMultiple("horizon", horizon, std::int64_t{1} << (levels - 1), "2^(levels - 1)");
+  for (const std::int64_t channel : channels) {
+    requireInRange("an element of channels", channel, 1, kMaxChannels);
+    requireMultiple("an element of channels", channel, groups, "groups");
+  }
+  if (kernel % 2 == 0) fail("kernel is " + std::to_string(kernel) + "; an odd one was expected");
+  requireMultiple("time_width", time_width, 2, "a sine and a cosine each");
+  if (!(route_spacing >= kMinSpacing && route_spacing <= kMaxSpacing)) {
+    fail("route_spacing is " + core::formatNumber(route_spacing) + " m; " +
+         core::formatNumber(kMinSpacing) + " to " + core::formatNumber(kMaxSpacing) +
+         " was expected");
+  }
+}
+
+std::string Architecture::toJson() const {
+  nlohmann::ordered_json object;
+  for (const SizeField& field : kSizes) object[field.name] = this->*field.member;
+  object["channels"] = channels;
+  object["route_spacing"] = route_spacing;
+  return object.dump();
+}
+
+Architecture Architecture::fromJson(const std::string& text, const std::string& source) {
+  const inference::Json object = inference::parseStrictJson(text, source + ": the architecture");
+  if (!object.is_object()) {
+    throw core::InputError(source + ": the architecture is " + inference::kindOf(object) +
+                           "; an object was expected");
+  }
+  requireKnownKeys(object, source);
+  const std::string prefix = source + ": the architecture's ";
+  Architecture result;
+  for (const SizeField& field : kSizes) {
+    result.*field.member = integerOf(valueOf(object, field.name, source), prefix + field.name);
+  }
+  result.channels = channelsOf(valueOf(object, "channels", source), prefix + "channels");
+  const inference::Json& spacing = valueOf(object, "route_spacing", source);
+  if (!spacing.is_number()) {
+    throw core::InputError(prefix + "route_spacing is " + inference::kindOf(spacing) +
+                           "; a number was expected");
+  }
+  result.route_spacing = spacing.get<double>();
+  try {
+    result.validate();
+  } catch (const core::InputError& error) {
+    throw core::InputError(source + ": " + error.what());
+  }
+  return result;
+}
+
+bool operator==(const Architecture& left, const Architecture& right) {
+  for (const SizeField& field : kSizes) {
+    if (left.*field.member != right.*field.member) return false;
+  }
+  return left.channels == right.channels && left.route_spacing == right.route_spacing;
+}
+
+}  // namespace cdiff::diffusion

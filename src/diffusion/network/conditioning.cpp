@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "diffusion/network/conditioning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "inference/unet_layers.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+constexpr double kLongestPeriod = 10000.0;
+constexpr double kSpeedScale = 10.0;  // [m/s]
+
+/// e_i = sin(k w_i), e_{h+i} = cos(k w_i), w_i = exp(-ln(10000) i / (h - 1)), h half the width.
+inference::Activation sinusoids(std::int64_t steps, std::int64_t width) {
+  inference::Activation result = inference::matrix(width, steps + 1);
+  const std::int64_t half = width / 2;
+  for (std::int64_t k = 0; k <= steps; ++k) {
+    float* row = result.row(k);
+    for (std::int64_t i = 0; i < half; ++i) {
+      const double frequency = std::exp(-std::log(kLongestPeriod) * static_cast<double>(i) /
+                                        static_cast<double>(half - 1));
+      row[i] = static_cast<float>(std::sin(static_cast<double>(k) * frequency));
+      row[half + i] = static_cast<float>(std::cos(static_cast<double>(k) * frequency));
+    }
+  }
+  return result;
+}
+
+void requireSize(const char* what, std::size_t size, std::int64_t expected, std::size_t sample) {
+  if (size == static_cast<std::size_t>(expected)) return;
+  throw std::invalid_argument("context " + std::to_string(sample) + " has " + std::to_string(size) +
+                              " " + what + "; " + std::to_string(expected) + " were expected");
+}
+
+}  // namespace
+
+Conditioning::Conditioning(const inference::DenoiserKernels& kernels,
+                           const Architecture& architecture, const inference::Tensors& tensors,
+                           const std::vector<Injection>& injections)
+    : kernels_(&kernels),
+      architecture_(architecture),
+      layers_{inference::linearNamed(kernels, tensors, "route.0"),
+              inference::linearNamed(kernels, tensors, "route.2"),
+              inference::linearNamed(kernels, tensors, "speed.0"),
+              inference::linearNamed(kernels, tensors, "context.0")},
+      no_route_(inference::tensorNamed(tensors, "no_route").values) {
+  buildTimeEmbeddings(tensors);
+  buildInjections(tensors, injections);
+}
+
+void Conditioning::buildTimeEmbeddings(const inference::Tensors& tensors) {
+  const std::int64_t rows = architecture_.diffusion_steps + 1;
+  inference::Activation hidden =
+      inference::matrix(inference::tensorNamed(tensors, "time.0.bias").shape[0], rows);
+  inference::linearNamed(*kernels_, tensors, "time.0")
+      .applyToRows(sinusoids(architecture_.diffusion_steps, architecture_.time_width), hidden);
+  time_ = inference::matrix(architecture_.time_width, rows);
+  inference::linearNamed(*kernels_, tensors, "time.2").applyToRows(mished(hidden), time_);
+}
+
+void Conditioning::buildInjections(const inference::Tensors& tensors,
+                                   const std::vector<Injection>& injections) {
+  const std::int64_t width = injections.back().first + injections.back().layout.padded();
+  const inference::Activation time = mished(time_);
+  time_part_ = inference::matrix(width, time_.rows());
+  for (const Injection& injection : injections) {
+    const inference::Tensor& weight = inference::tensorNamed(tensors, injection.name + ".weight");
+    const inference::Filter time_columns =
+        inference::Filter::ofLinear(weight, 0, architecture_.time_width);
+    const inference::Filter context_columns =
+        inference::Filter::ofLinear(weight, architecture_.time_width, architecture_.context_width);
+    inference::Convolution(*kernels_, time_columns, inference::Spacing{},
+                           &inference::tensorNamed(tensors, injection.name + ".bias"))
+        .apply(time.view(), time_part_.view(0, injection.first), time.rows());
+    context_injections_.push_back(
+        {injection.first,
+         inference::Convolution(*kernels_, context_columns, inference::Spacing{})});
+  }
+}
+
+inference::Activation Conditioning::mished(const inference::Activation& input) const {
+  inference::Activation result = inference::matrix(input.channels(), input.rows());
+  inference::AlignedFloats slope(input.channels() * input.rows());
+  kernels_->mish(input.view().data, input.channels() * input.rows(), result.view().data,
+                 slope.data());
+  return result;
+}
+
+inference::Activation Conditioning::routeFeatures(const std::vector<Context>& contexts) const {
+  const auto rows = static_cast<std::int64_t>(contexts.size());
+  inference::Activation tokens = inference::matrix(2 * architecture_.route_points, rows);
+  for (std::int64_t b = 0; b < rows; ++b) {
+    const std::vector<float>& route = contexts[static_cast<std::size_t>(b)].route;
+    std::copy(route.begin(), route.end(), tokens.row(b));
+  }
+  inference::Activation hidden = inference::matrix(layers_.route0.outputs(), rows);
+  layers_.route0.applyToRows(tokens, hidden);
+  inference::Activation result = inference::matrix(architecture_.route_features, rows);
+  layers_.route2.applyToRows(mished(hidden), result);
+  for (std::int64_t b = 0; b < rows; ++b) {
+    if (!contexts[static_cast<std::size_t>(b)].route.empty()) continue;
+    std::copy(no_route_.begin(), no_route_.end(), result.row(b));
+  }
+  return result;
+}
+
+inference::Activation Conditioning::speedFeatures(const std::vector<Context>& contexts) const {
+  inference::Activation speed = inference::matrix(1, static_cast<std::int64_t>(contexts.size()));
+  for (std::size_t b = 0; b < contexts.size(); ++b) {
+    *speed.row(static_cast<std::int64_t>(b)) = static_cast<float>(contexts[b].speed / kSpeedScale);
+  }
+  inference::Activation result = inference::matrix(architecture_.speed_features, speed.rows());
+  layers_.speed0.applyToRows(speed, result);
+  return mished(result);
+}
+
+void Conditioning::requireSizes(const Context& context, std::size_t sample) const {
+  requireSize("image features", context.image_features.size(), architecture_.image_features,
+              sample);
+  if (context.route.empty()) return;
+  requireSize("route values", context.route.size(), 2 * architecture_.route_points, sample);
+}
+
+void Conditioning::setContexts(const std::vector<Context>& contexts) {
+  for (std::size_t b = 0; b < contexts.size(); ++b) requireSizes(contexts[b], b);
+  const auto rows = static_cast<std::int64_t>(contexts.size());
+  const inference::Activation route = routeFeatures(contexts);
+  const inference::Activation speed = speedFeatures(contexts);
+  inference::Activation joined = inference::matrix(
+      architecture_.image_features + architecture_.route_features + architecture_.speed_features,
+      rows);
+  for (std::int64_t b = 0; b < rows; ++b) {
+    const std::vector<float>& image = contexts[static_cast<std::size_t>(b)].image_features;
+    float* to = std::copy(image.begin(), image.end(), joined.row(b));
+    to = std::copy_n(route.row(b), architecture_.route_features, to);
+    std::copy_n(speed.row(b), architecture_.speed_features, to);
+  }
+  inference::Activation context = inference::matrix(architecture_.context_width, rows);
+  layers_.context0.applyToRows(joined, context);
+  const inference::Activation injected = mished(mished(context));  // c, then the block's own Mish
+  context_part_ = inference::matrix(time_part_.channels(), rows);
+  injection_ = inference::matrix(time_part_.channels(), rows);
+  for (const ContextInjection& part : context_injections_) {
+    part.layer.apply(injected.view(), context_part_.view(0, part.first), rows);
+  }
+}
+
+const inference::Activation& Conditioning::injection(int k) {
+  const float* time = time_part_.row(k);
+  for (std::int64_t b = 0; b < injection_.rows(); ++b) {
+    const float* context = context_part_.row(b);
+    float* to = injection_.row(b);
+    for (std::int64_t c = 0; c < injection_.channels(); ++c) to[c] = time[c] + context[c];
+  }
+  return injection_;
+}
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What conditions the denoiser (docs/network.md): time embedding of k and context c of each
+/// sample. The linear injection of Mish([time; c]) is split by columns: its time part is tabulated
+/// for every k at load, its context part computed once per set of contexts.
+#pragma once
+
+#include <vector>
+
+#include "diffusion/denoiser.h"
+#include "diffusion/network/unet.h"
+#include "inference/activation.h"
+
+namespace cdiff::diffusion {
+
+class Conditioning {
+ public:
+  Conditioning(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+               const inference::Tensors& tensors, const std::vector<Injection>& injections);
+
+  /// Throws std::invalid_argument for features or tokens of another size.
+  void setContexts(const std::vector<Context>& contexts);
+  /// A row for each sample at step k = 1..K; valid until the next call.
+  const inference::Activation& injection(int k);
+  /// [K + 1, time_width].
+  const inference::Activation& timeEmbeddings() const { return time_; }
+
+ private:
+  struct Layers {
+    inference::Convolution route0, route2, speed0, context0;
+  };
+  void buildTimeEmbeddings(const inference::Tensors& tensors);
+  void buildInjections(const inference::Tensors& tensors, const std::vector<Injection>& injections);
+  void requireSizes(const Context& context, std::size_t sample) const;
+  /// A matrix with Mish applied to each element.
+  inference::Activation mished(const inference::Activation& input) const;
+  /// Rows of route features.
+  inference::Activation routeFeatures(const std::vector<Context>& contexts) const;
+  inference::Activation speedFeatures(const std::vector<Context>& contexts) const;
+
+  const inference::DenoiserKernels* kernels_;
+  Architecture architecture_;
+  Layers layers_;
+  std::vector<float> no_route_;
+  inference::Activation time_;
+  struct ContextInjection {
+    std::int64_t first;
+    inference::Convolution layer;
+  };
+  std::vector<ContextInjection> context_injections_;
+  inference::Activation time_part_;     ///< [K + 1, injections], with the biases
+  inference::Activation context_part_;  ///< [B, injections]
+  inference::Activation injection_;     ///< [B, injections]
+};
+
+}  // namespace cdiff::diffusion

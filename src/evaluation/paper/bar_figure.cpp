@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <cmath>
+
+#include "core/markup.h"
+#include "core/text.h"
+#include "evaluation/paper/paper_figures.h"
+#include "page/pictures/charts.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+constexpr double kHalfLetter = 3.6;  // half the width of a letter of a name [px]
+
+using core::shortNumber;
+
+constexpr double kBarShare = 0.8;  // of a group's width that bars fill
+const std::string kPaperStyle = page::systemStyle(7);
+
+double topOf(const Table& table) {
+  double top = 1.0;
+  for (const auto& row : table.cells) {
+    for (const TableCell& cell : row) {
+      top = std::max(top, cell.paper.mean.value_or(0.0));
+      top = std::max(top, cell.seeds.mean.value_or(0.0) + cell.seeds.half_width.value_or(0.0));
+    }
+  }
+  return top;
+}
+
+/// Grid lines with numbers; groups have names instead of numbers.
+std::string valueGrid(const page::ChartAxes& axes) {
+  const double step = page::niceStep(axes.high() - axes.low(), 5);
+  const int lines = static_cast<int>(std::lround((axes.high() - axes.low()) / step));
+  std::string svg;
+  for (int i = 0; i <= lines; ++i) {
+    const double value = axes.low() + i * step;
+    svg += "<path class=\"grid\" d=\"M" + shortNumber(page::kChartLeft) + " " +
+           shortNumber(axes.y(value)) + "H" + shortNumber(page::kChartWidth - page::kChartRight) +
+           "\"/>" +
+           page::chartText("tick end", page::kChartLeft - 6.0, axes.y(value) + 4.0,
+                           page::axisNumber(value, step));
+  }
+  return svg + "\n";
+}
+
+std::string bar(const page::ChartAxes& axes, double left, double width, double value,
+                const std::string& style) {
+  return "<path class=\"bar " + style + "\" d=\"M" + shortNumber(axes.x(left)) + " " +
+         shortNumber(axes.y(0.0)) + "V" + shortNumber(axes.y(value)) + "H" +
+         shortNumber(axes.x(left + 0.9 * width)) + "V" + shortNumber(axes.y(0.0)) + "Z\"/>";
+}
+
+std::string interval(const page::ChartAxes& axes, double x, const Statistics& figure) {
+  if (!figure.half_width) return "";
+  return "<path class=\"error\" d=\"M" + shortNumber(axes.x(x)) + " " +
+         shortNumber(axes.y(*figure.mean - *figure.half_width)) + "V" +
+         shortNumber(axes.y(*figure.mean + *figure.half_width)) + "\"/>";
+}
+
+/// Bars of one row: per column ours and the paper's.
+std::string groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes) {
+  const auto& cells = table.cells[row];
+  const double width = kBarShare / (2.0 * static_cast<double>(cells.size()));
+  double left = static_cast<double>(row) + 0.5 * (1.0 - kBarShare);
+  std::string svg;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const TableCell& cell = cells[i];
+    if (cell.seeds.mean) {
+      svg += bar(axes, left, width, *cell.seeds.mean, page::systemStyle(i)) +
+             interval(axes, left + 0.45 * width, cell.seeds);
+    }
+    left += width;
+    if (cell.paper.mean) svg += bar(axes, left, width, *cell.paper.mean, kPaperStyle);
+    left += width;
+  }
+  const double middle = axes.x(static_cast<double>(row) + 0.5);
+  const bool empty = std::none_of(cells.begin(), cells.end(),
+                                  [](const TableCell& cell) { return cell.seeds.mean; });
+  const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
+  const std::string& name = table.definition.rows[row].name;
+  const double half = kHalfLetter * static_cast<double>(name.size());
+  svg += page::chartText("tick middle", std::clamp(middle, half, page::kChartWidth - half),
+                         page::kChartHeight - 9.0 + lower, name);
+  if (empty && !cells.empty())
+    svg +=
+        page::chartText("note middle", middle, page::kChartTop + 10.0 + lower, cells.front().note);
+  return svg + "\n";
+}
+
+/// Numbers below the bars, one line a row.
+std::vector<std::string> notesOf(const Table& table) {
+  std::vector<std::string> notes;
+  for (std::size_t row = 0; row < table.cells.size(); ++row) {
+    std::string text = table.definition.rows[row].name + ": ";
+    for (std::size_t i = 0; i < table.cells[row].size(); ++i) {
+      const TableCell& cell = table.cells[row][i];
+      const std::string paper = paperText(cell.paper);
+      text += (i > 0 ? "; " : "") + table.definition.columns[i].name + " " + cellText(cell) +
+              (paper.empty() ? "" : ", paper " + paper);
+    }
+    notes.push_back(text);
+  }
+  notes.push_back(table.definition.note);
+  return notes;
+}
+
+}  // namespace
+
+Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
+  const Table table = fillTable(definition, runs);
+  Figure figure;
+  figure.id = definition.id;
+  figure.csv = tableCsv(table);
+  figure.sheet.title = definition.title + " [" + definition.columns.front().unit + "]";
+  for (std::size_t i = 0; i < definition.columns.size(); ++i) {
+    figure.sheet.legend.emplace_back(page::systemStyle(i),
+                                     definition.columns[i].name + ", 95 % interval over seeds");
+  }
+  figure.sheet.legend.emplace_back(kPaperStyle, "as the paper prints it");
+  const page::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
+  page::Panel panel;
+  panel.width = page::kChartWidth;
+  panel.height = page::kChartHeight + 14.0;
+  panel.content = valueGrid(axes);
+  for (std::size_t row = 0; row < table.cells.size(); ++row)
+    panel.content += groupOf(table, row, axes);
+  figure.sheet.rows = {{panel}};
+  figure.sheet.notes = notesOf(table);
+  return figure;
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/paper/paper_definitions.h"
+
+#include <iterator>
+
+#include "evaluation/paper/paper_table.h"
+#include "metrics/known_figures.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace figures = metrics::figures;
+
+/// The n beside the mean of a distribution.
+std::string countBeside(const metrics::FigureDefinition& mean) {
+  const std::string place = mean.place;
+  return place.substr(0, place.rfind('/')) + "/n";
+}
+
+// Columns. Times and speeds are means of the sessions' figures; rates are weighted by what they are
+// rates of, so that they are the rate over all runs of a seed.
+
+TableColumn timeToCollision() {
+  return {"2D-TTC",
+          "s",
+          figures::kTtcMean.place,
+          countBeside(figures::kTtcMean),
+          figures::kRiftTtc.place,
+          {}};
+}
+
+TableColumn offRoadRate() {
+  return {"ORR",
+          "%",
+          figures::kCbvOffRoad.place,
+          figures::kCbvDecisions.place,
+          figures::kRiftOffRoad.place,
+          {}};
+}
+
+TableColumn collisionsPerKilometre() {
+  return {"CPK",
+          "1/km",
+          figures::kCollisionsPerKm.place,
+          figures::kCbvDistance.place,
+          figures::kRiftCollisionsPerKm.place,
+          {}};
+}
+
+std::vector<TableColumn> realism() {
+  return {
+      {"S-SW", "", figures::kSpeedShapiroWilk.place, "", figures::kRiftSpeedShapiroWilk.place, {}},
+      {"A-SW",
+       "",
+       figures::kAccelerationShapiroWilk.place,
+       "",
+       figures::kRiftAccelerationShapiroWilk.place,
+       {}},
+      {"S-WD",
+       "m/s",
+       figures::kSpeedWasserstein.place,
+       "",
+       figures::kRiftSpeedWasserstein.place,
+       {}}};
+}
+
+std::vector<TableColumn> controllabilityAndRealism() {
+  std::vector<TableColumn> columns = {timeToCollision(), offRoadRate()};
+  const std::vector<TableColumn> further = realism();
+  columns.insert(columns.end(), further.begin(), further.end());
+  return columns;
+}
+
+TableColumn drivingScore() { return {"DS", "", figures::kDrivingScore.place, "", "", {}}; }
+
+TableColumn routeCompletion() { return {"RC", "%", figures::kRouteCompletion.place, "", "", {}}; }
+
+TableRow cbvRow(const PaperSystem& system, std::vector<PaperFigure> paper) {
+  return {system.name, merged(naturalisticLevels(), cbvLevel(system)), std::move(paper), ""};
+}
+
+TableDefinition withLevels(TableDefinition table, const Factors& levels) {
+  for (TableRow& row : table.rows) row.levels = merged(levels, row.levels);
+  return table;
+}
+
+TableDefinition table1() {
+  const TableDefinition table = {
+      "table_1",
+      "Table 1. Controllability and realism under ego planner PDM-Lite",
+      "",
+      "CBV planner",
+      controllabilityAndRealism(),
+      {cbvRow(paper::kPpo, {{2.41, 1.52}, {8.82, 8.83}, {0.80, 0.01}, {0.65, 0.02}, {6.48, 0.10}}),
+       cbvRow(paper::kPluto,
+              {{2.56, 1.55}, {3.02, 3.09}, {0.84, 0.08}, {0.83, 0.12}, {6.13, 0.59}}),
+       cbvRow(paper::kRift, {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}}),
+       cbvRow(paper::kDiffusion,
+              {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
+  return withLevels(table, egoLevel(paper::kPdmLite));
+}
+
+TableDefinition table2() {
+  const TableDefinition table = {
+      "table_2",
+      "Table 2. Controllability and realism under ego planner PlanT",
+      "",
+      "CBV planner",
+      controllabilityAndRealism(),
+      {cbvRow(paper::kPpo, {{2.04, 2.08}, {4.50, 1.15}, {0.93, 0.01}, {0.94, 0.02}, {5.02, 0.19}}),
+       cbvRow(paper::kPluto,
+              {{2.59, 1.88}, {6.44, 1.57}, {0.84, 0.02}, {0.78, 0.03}, {6.20, 0.23}}),
+       cbvRow(paper::kRift, {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}}),
+       cbvRow(paper::kDiffusion,
+              {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
+  return withLevels(table, egoLevel(paper::kPlanT));
+}
+
+/// Mean and deviation of DS and RC under each ego planner of Table 3, in the order of its columns.
+constexpr double kTable3[4][8][2] = {{{89.77, 5.18},
+                                      {92.75, 3.45},
+                                      {45.43, 2.10},
+                                      {65.91, 0.72},
+                                      {71.22, 4.61},
+                                      {88.63, 1.10},
+                                      {69.42, 4.43},
+                                      {82.33, 1.61}},
+                                     {{74.32, 6.33},
+                                      {79.74, 3.51},
+                                      {42.18, 2.75},
+                                      {55.87, 4.07},
+                                      {75.02, 2.79},
+                                      {83.41, 2.69},
+                                      {72.61, 4.11},
+                                      {81.57, 1.47}},
+                                     {{93.23, 2.19},
+                                      {94.42, 1.61},
+                                      {46.76, 2.01},
+                                      {62.83, 4.08},
+                                      {77.37, 2.01},
+                                      {87.84, 4.08},
+                                      {75.67, 1.80},
+                                      {83.42, 0.39}},
+                                     {{96.49, 0.10},
+                                      {96.49, 0.10},
+                                      {51.52, 6.12},
+                                      {66.84, 1.62},
+                                      {69.59, 1.95},
+                                      {85.99, 4.71},
+                                      {76.05, 1.59},
+                                      {84.28, 0.21}}};
+
+TableDefinition table3() {
+  TableDefinition table = {
+      "table_3",
+      "Table 3. Safety-critical evaluation of driving systems under different CBV planners",
+      "CBVs are driven naturalistically; the collision-seeking variant is Figure 4.",
+      "CBV planner",
+      {},
+      {}};
+  for (std::size_t i = 0; i < std::size(kTable3); ++i) {
+    std::vector<PaperFigure> paper;
+    for (const auto& figure : kTable3[i]) paper.push_back({figure[0], figure[1]});
+    table.rows.push_back(cbvRow(paperCbvPlanners()[i], paper));
+  }
+  for (const PaperSystem& ego : paperEgoPlanners()) {
+    if (ego.planner() == paper::kDiffusion.planner()) continue;
+    for (TableColumn column : {drivingScore(), routeCompletion()}) {
+      column.name = std::string(ego.name) + " " + column.name;
+      column.levels = egoLevel(ego);
+      table.columns.push_back(column);
+    }
+  }
+  return table;
+}
+
+TableDefinition table4() {
+  const TableDefinition table = {
+      "table_4",
+      "Table 4. Two-stage trajectory-then-PID against end-to-end control",
+      "Ego planner PDM-Lite; the two drive the CBVs with the same model.",
+      "Execution",
+      {drivingScore(), routeCompletion(), timeToCollision(), offRoadRate()},
+      {cbvRow(paper::kTwoStage, {{95.08, 2.48}, {96.41, 0.21}, {2.68, 1.27}, {6.22, 0.03}}),
+       {"End-to-end control",
+        merged(naturalisticLevels(), cbvLevel(paper::kDiffusion)),
+        {{96.49, 0.10}, {96.49, 0.10}, {2.94, 1.24}, {2.17, 1.47}},
+        ""}}};
+  return withLevels(table, egoLevel(paper::kPdmLite));
+}
+
+TableDefinition table5() {
+  const auto row = [](const char* name, const char* profile, std::vector<PaperFigure> paper) {
+    return TableRow{name, merged(guidanceLevels(profile), cbvLevel(paper::kDiffusion)),
+                    std::move(paper), ""};
+  };
+  const TableDefinition table = {
+      "table_5",
+      "Table 5. Ablation of the guidance objectives",
+      "Ego planner PDM-Lite, CBV planner E2E-CDiff. Rows are guidance profiles.",
+      "Objectives",
+      controllabilityAndRealism(),
+      {row("collision + drivable + speed", "ablation_all",
+           {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}),
+       row("collision", "ablation_collision",
+           {{2.75, 1.41}, {7.05, 2.73}, {0.96, 0.01}, {0.90, 0.00}, {4.16, 0.02}}),
+       row("drivable", "ablation_drivable",
+           {{2.83, 1.20}, {3.50, 1.93}, {0.88, 0.03}, {0.77, 0.03}, {5.61, 0.38}}),
+       row("speed", "ablation_speed",
+           {{2.79, 1.25}, {6.25, 2.11}, {0.89, 0.11}, {0.83, 0.13}, {5.11, 1.50}}),
+       row("none", "none",
+           {{2.62, 1.28}, {7.31, 3.18}, {0.95, 0.01}, {0.89, 0.02}, {4.35, 0.24}})}};
+  return withLevels(table, egoLevel(paper::kPdmLite));
+}
+
+TableDefinition table6() {
+  const std::vector<PaperFigure> paper[] = {{{95.61, 1.31}, {95.61, 1.31}},
+                                            {{53.22, 1.69}, {70.55, 0.28}},
+                                            {{76.14, 1.29}, {88.96, 0.63}},
+                                            {{78.76, 2.14}, {83.03, 0.09}},
+                                            {{79.96, 1.63}, {89.91, 3.76}}};
+  TableDefinition table = {"table_6",
+                           "Table 6. Ego planners",
+                           "The paper does not say what drives the CBVs here; ours are driven by "
+                           "PDM-Lite, so that the ego's planner alone is under test.",
+                           "Ego planner",
+                           {drivingScore(), routeCompletion()},
+                           {}};
+  for (std::size_t i = 0; i < std::size(paper); ++i) {
+    const PaperSystem& ego = paperEgoPlanners()[i];
+    table.rows.push_back({ego.name, egoLevel(ego), paper[i], ""});
+  }
+  return withLevels(table, merged(cbvLevel(paper::kPdmLite), naturalisticLevels()));
+}
+
+}  // namespace
+
+std::vector<TableDefinition> paperTables() {
+  return {table1(), table2(), table3(), table4(), table5(), table6()};
+}
+
+TableDefinition collisionFigure() {
+  TableDefinition table = {
+      "figure_4",
+      "Figure 4. Collisions of CBVs per km without and with collision-seeking "
+      "guidance",
+      "The paper prints the figures of PDM-Lite alone, in its text. Unless told "
+      "otherwise, CBVs that seek collisions see the image alone, the others "
+      "know their route, too.",
+      "Ego planner",
+      {},
+      {}};
+  const auto variant = [&](const char* name, const Factors& levels) {
+    TableColumn column = collisionsPerKilometre();
+    column.name = name;
+    column.levels = merged(levels, cbvLevel(paper::kDiffusion));
+    table.columns.push_back(column);
+  };
+  variant("E2E-CDiff", naturalisticLevels());
+  variant("E2E-CDiff w/ coll", safetyCriticalLevels());
+  for (const PaperSystem& ego : paperEgoPlanners()) {
+    if (ego.planner() == paper::kDiffusion.planner()) continue;
+    table.rows.push_back({ego.name, egoLevel(ego), {}, ""});
+  }
+  table.rows.front().paper = {{5.68, {}}, {20.77, {}}};
+  return table;
+}
+
+TableDefinition latencyFigure() {
+  const std::optional<double> paper[] = {3.96, 6.46, 734.03, 379.50, 856.66};
+  TableDefinition table = {
+      "figure_8",
+      "Figure 8. Latency of ego planners per decision",
+      "Wall-clock time of a decision (as CBV planner: of all CBVs together), the image being there "
+      "already. The paper prints means; they stand beside "
+      "our medians. A seed's figure is the mean over its runs, weighted "
+      "by decisions.",
+      "Ego planner",
+      {{"p50", "ms", "/planner_latency_ms/{}/p50", "/planner_latency_ms/{}/n", "", {}},
+       {"p95", "ms", "/planner_latency_ms/{}/p95", "/planner_latency_ms/{}/n", "", {}}},
+      {}};
+  for (std::size_t i = 0; i < std::size(paper); ++i) {
+    const PaperSystem& ego = paperEgoPlanners()[i];
+    table.rows.push_back(
+        {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner())});
+  }
+  const PaperSystem cbvs[] = {paper::kDiffusion, {paper::kTwoStage.title, "two-stage PID"}};
+  for (const PaperSystem& cbv : cbvs) {
+    table.rows.push_back(
+        {"CBV: " + std::string(cbv.name), cbvLevel(cbv), {}, "cbv:" + std::string(cbv.planner())});
+  }
+  return table;
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/run_plan.h"
+#include "evaluation/run_record.h"
+#include "evaluation/statistics.h"
+
+namespace cdiff::evaluation {
+
+// The systems that the paper compares, by their names there and here, and the levels that runs of
+// them have in a batch.
+
+/// A system of the paper, whether a planner with its title is registered or not.
+struct PaperSystem {
+  const char* title;  ///< as the descriptor of its planner has it
+  const char* name;   ///< in the table
+  explicit constexpr PaperSystem(const char* a_title) : PaperSystem(a_title, a_title) {}
+  constexpr PaperSystem(const char* a_title, const char* a_name) : title(a_title), name(a_name) {}
+  /// Name of its planner here; where there is none, a level that no run has.
+  std::string planner() const;
+};
+
+namespace paper {
+inline constexpr PaperSystem kPdmLite("PDM-Lite");
+inline constexpr PaperSystem kPlanT("PlanT");
+inline constexpr PaperSystem kUniAd("UniAD");
+inline constexpr PaperSystem kVad("VAD");
+inline constexpr PaperSystem kPpo("PPO");
+inline constexpr PaperSystem kPluto("Pluto");
+inline constexpr PaperSystem kRift("RIFT");
+inline constexpr PaperSystem kDiffusion("E2E-CDiff");
+inline constexpr PaperSystem kTwoStage("Two-stage trajectory-then-PID");
+}  // namespace paper
+
+/// In the paper's order.
+const std::vector<PaperSystem>& paperEgoPlanners();
+const std::vector<PaperSystem>& paperCbvPlanners();
+/// Two-stage and end-to-end.
+const std::vector<PaperSystem>& paperExecutions();
+
+/// Levels of runs that a system drives as ego, as CBVs.
+Factors egoLevel(const PaperSystem& system);
+Factors cbvLevel(const PaperSystem& system);
+/// Levels of naturalistic runs with a guidance profile.
+Factors guidanceLevels(const char* profile);
+/// Levels of runs without and with collision-seeking guidance.
+Factors naturalisticLevels();
+Factors safetyCriticalLevels();
+/// Both; where they contradict each other, the first.
+Factors merged(Factors levels, const Factors& others);
+
+// A table of the paper as data, and its cells as a batch fills them: per seed the mean over runs
+// (weighted where the figure is a rate: the pooled rate), then mean, standard deviation and 95 %
+// interval over seeds.
+
+/// A figure that the paper prints as mean +- deviation.
+struct PaperFigure {
+  std::optional<double> mean;
+  std::optional<double> deviation;
+};
+
+struct TableColumn {
+  std::string name;  ///< the paper's
+  std::string unit;
+  std::string key;     ///< JSON pointer in a run's summary.json; "{}" stands for the row's subject
+  std::string weight;  ///< pointer likewise: weight of a run within its seed; empty: all alike
+  std::string rift_key;  ///< the figure by RIFT's definition; empty: it has none
+  Factors levels;        ///< that runs of this column have besides those of the row
+};
+
+struct TableRow {
+  std::string name;  ///< the paper's
+  Factors levels;
+  std::vector<PaperFigure> paper;  ///< by column; missing ones were not printed
+  std::string subject;
+};
+
+struct TableDefinition {
+  std::string id;     ///< "table_1", also the name of its file
+  std::string title;  ///< "Table 1. ..."
+  std::string note;   ///< how the rows are read here where the paper leaves it open
+  std::string heading;
+  std::vector<TableColumn> columns;
+  std::vector<TableRow> rows;
+};
+
+struct TableCell {
+  PaperFigure paper;
+  Statistics seeds;        ///< over seeds that have the figure
+  Statistics rift;         ///< the same by RIFT's definition; n = 0 where it has none
+  std::size_t runs = 0;    ///< of these levels, whatever became of them
+  std::size_t failed = 0;  ///< of these, that broke, were interrupted or not run
+  std::size_t used = 0;    ///< of these, that have the figure
+  std::string note;        ///< why it is empty: not implemented, not run, ...
+};
+
+struct Table {
+  TableDefinition definition;
+  std::vector<std::vector<TableCell>> cells;  ///< by row and column
+};
+
+Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs);
+
+/// A line per row, column and definition (clean, rift_compat).
+std::string tableCsv(const Table& table);
+
+/// "2.79 ± 0.10 [2.54, 3.04] (3 seeds, 30 runs)", or the note in parentheses.
+std::string cellText(const TableCell& cell);
+std::string paperText(const PaperFigure& figure);
+/// What RIFT's definition gives, or empty.
+std::string riftText(const TableCell& cell);
+
+}  // namespace cdiff::evaluation

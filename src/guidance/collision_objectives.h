@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <string>
+
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/guidance/guidance_scene.h"
+#include "e2e_cdiff/guidance/objective.h"
+
+namespace cdiff::guidance {
+
+/// ln(1 + e^x) without overflow.
+double softplus(double x);
+
+/// J_safe = sum_t softplus((d_safe - d_t) / kappa) + lambda exp(-d_t^2 / (2 sigma^2)), d_t =
+/// sqrt(|p_other - p|^2 + 0.1^2) between box centres at row t [m] (paper III-D1, "Collision
+/// Guidance"): what collision avoidance minimises and collision seeking maximises.
+/// d_safe = half diagonal of one box + half diagonal of the other + buffer: boxes whose centres are
+/// that far apart cannot touch, whatever their headings. The pull of softplus reaches a few kappa
+/// beyond d_safe and that of the bump a few sigma, so both are metres.
+struct Proximity {
+  double buffer = 0.5;  ///< [m]
+  double kappa = 2.0;   ///< softness of the safety distance [m]
+  double lambda = 1.0;  ///< height of the bump
+  double sigma = 4.0;   ///< width of the bump [m]
+
+  void describe(core::OptionsVisitor& visitor);
+  double safeDistance(const GuidanceScene& scene) const;
+  /// factor x J_safe over the rows that the other's prediction covers, and its gradient added; 0
+  /// without another vehicle, or with one on another level of a bridge.
+  double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout, double factor,
+                  traffic::Rollout& gradient) const;
+};
+
+/// J_coll = sum_t softplus((d_safe - d_t) / kappa) + lambda exp(-d_t^2 / (2 sigma^2)), see
+/// Proximity (paper III-D1, eq. 11, J_coll^safe): keeps away from the other vehicle.
+class CollisionAvoidanceObjective : public Objective {
+ public:
+  Proximity proximity;
+
+  void describe(core::OptionsVisitor& visitor) override;
+  double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                  traffic::Rollout& gradient) const override;
+  std::unique_ptr<Objective> clone() const override;
+};
+
+/// J_risk = -eta(d_ref) J_safe, d_ref = distance of the box centres now [m], J_safe see Proximity
+/// (paper III-D1, eq. 12, J_coll^risk): approaches the other vehicle once it is near.
+/// eta is 1 up to trigger_distance; beyond it 0 (hard), or falls to exactly 0 over trigger_width as
+/// 1 - 3 s^2 + 2 s^3 (smooth). J_risk is bounded below: d_t cannot be negative.
+class CollisionSeekingObjective : public Objective {
+ public:
+  Proximity proximity{0.5, 6.0, 2.0, 8.0};  ///< wide: it must pull from the trigger distance
+  std::string gate = "smooth";              ///< smooth | hard
+  double trigger_distance = 25.0;           ///< d_th [m]
+  double trigger_width = 10.0;              ///< of the smooth gate [m]
+
+  /// eta(d_ref) in [0, 1].
+  double gateAt(double distance) const;
+
+  void describe(core::OptionsVisitor& visitor) override;
+  double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                  traffic::Rollout& gradient) const override;
+  std::unique_ptr<Objective> clone() const override;
+};
+
+}  // namespace cdiff::guidance

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "map/import/network_import.h"
+
+#include <algorithm>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "map/import/netconvert.h"
+#include "map/import/vehicle_classes.h"
+
+namespace cdiff::map {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Part of the cache key: raise it when the importer makes something else of the same input.
+constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
+
+bool endsWith(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+std::vector<std::string> shippedNames(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (!core::isFolder(folder)) return names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(entry.path() / (name + ".net.xml"))) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+fs::path cachedFile(const std::string& content) {
+  const fs::path folder = core::cacheFolder() / "networks";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw core::InputError("cannot make the cache folder '" + folder.string() +
+                           "': " + error.message());
+  }
+  core::removeDeadTemporaries(folder);
+  const std::string key = core::sha256(content + "\n" + kImporterVersion);
+  return folder / (key + ".net.xml");
+}
+
+void storeUnlessThere(const fs::path& file, const std::string& text) {
+  if (fs::exists(file) && core::readFile(file, "cached network") == text) return;
+  core::writeFileAtomically(file, text);
+}
+
+bool isOpenDrive(const std::string& source, const std::string& content) {
+  return endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
+}
+
+bool isOpenStreetMap(const std::string& source, const std::string& content) {
+  constexpr std::size_t kHead = 4096;  // bytes before the first element of a file
+  return endsWith(source, ".osm") || endsWith(source, ".osm.xml") ||
+         std::string_view(content).substr(0, kHead).find("<osm") != std::string_view::npos;
+}
+
+/// A format that netconvert reads.
+struct Format {
+  const char* name;
+  const char* element;
+  std::string (*convert)(const fs::path& source);
+};
+
+void importConverted(const Format& format, const std::string& content, ImportedNetwork& network) {
+  if (content.find(format.element) == std::string::npos) {
+    throw core::InputError("network '" + network.source.string() + "': no " + format.element +
+                           "> element; an " + format.name + " file was expected");
+  }
+  network.file = cachedFile(content);
+  if (fs::exists(network.file)) {
+    network.text = core::readFile(network.file, "cached network");
+  } else {
+    network.text = format.convert(network.source);
+    core::writeFileAtomically(network.file, network.text);
+  }
+  network.changes.push_back(std::string("converted from ") + format.name + " with netconvert");
+}
+
+void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
+  if (content.size() > 1 && content[0] == '\x1f' && content[1] == '\x8b') {
+    throw core::InputError("network '" + network.source.string() +
+                           "' is compressed; unpack it with gunzip first");
+  }
+  if (content.find("<net") == std::string::npos) {
+    throw core::InputError("network '" + network.source.string() +
+                           "': no <net> element; a SUMO network (*.net.xml), OpenDRIVE (*.xodr) or "
+                           "OpenStreetMap (*.osm) was expected");
+  }
+  PermissionRewrite rewrite = dropUnknownClasses(content);
+  network.text = std::move(rewrite.text);
+  network.file = network.source;
+  if (rewrite.removed.empty()) return;
+  network.file = cachedFile(content);
+  storeUnlessThere(network.file, network.text);
+  network.changes.push_back("removed the vehicle classes " + core::joinText(rewrite.removed, " ") +
+                            " from " + std::to_string(rewrite.attributes) +
+                            " attributes, SUMO 1.15 does not know them");
+}
+
+}  // namespace
+
+fs::path networkFile(const std::string& source) {
+  if (source.empty())
+    throw core::InputError("no network was given; a file or a shipped name was expected");
+  if (core::isFile(source)) return source;
+  const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
+                    endsWith(source, ".xodr") || endsWith(source, ".osm");
+  if (path && core::isFolder(source)) {
+    throw core::InputError("network '" + source + "' is a folder; a file was expected");
+  }
+  if (path && fs::exists(source))
+    throw core::InputError("network '" + source + "' is no regular file; a file was expected");
+  if (path) throw core::InputError("network file '" + source + "' does not exist");
+  const fs::path folder = core::shareFolder() / "networks";
+  const fs::path file = folder / source / (source + ".net.xml");
+  if (core::isFile(file)) return file;
+  const std::string nearest = core::nearestName(source, shippedNames(folder));
+  throw core::InputError(
+      "network '" + source + "' is neither a file nor shipped in '" + folder.string() + "'" +
+      (nearest.empty() ? "" : "; the nearest shipped name is '" + nearest + "'"));
+}
+
+ImportedNetwork importNetwork(const std::string& source) {
+  ImportedNetwork network;
+  network.source = networkFile(source);
+  const std::string content = core::readFile(network.source, "network");
+  network.source_sha256 = core::sha256(content);
+  if (isOpenDrive(network.source.string(), content)) {
+    importConverted({"OpenDRIVE", "<OpenDRIVE", convertOpenDrive}, content, network);
+  } else if (isOpenStreetMap(network.source.string(), content)) {
+    importConverted({"OpenStreetMap", "<osm", convertOpenStreetMap}, content, network);
+  } else {
+    importSumoNetwork(content, network);
+  }
+  return network;
+}
+
+}  // namespace cdiff::map

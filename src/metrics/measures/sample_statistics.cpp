@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "metrics/measures/sample_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdiff::metrics {
+
+void SampleStatistics::add(double sample) {
+  if (!std::isfinite(sample)) return;
+  minimum_ = count_ == 0 ? sample : std::min(minimum_, sample);
+  ++count_;
+  const double step = sample - mean_;
+  mean_ += step / static_cast<double>(count_);
+  squares_ += step * (sample - mean_);
+}
+
+DistributionMeasure SampleStatistics::measure(const std::string& reason_when_empty) const {
+  Measure empty;
+  empty.n = count_;
+  empty.reason = reason_when_empty;
+  DistributionMeasure measure{empty, empty, empty};
+  if (count_ == 0) return measure;
+  measure.mean.value = mean_;
+  measure.mean.reason.clear();
+  measure.minimum.value = minimum_;
+  measure.minimum.reason.clear();
+  if (count_ < 2) {
+    measure.standard_deviation.reason = "n = 1, needs at least 2";
+    return measure;
+  }
+  measure.standard_deviation.value = std::sqrt(squares_ / static_cast<double>(count_ - 1));
+  measure.standard_deviation.reason.clear();
+  return measure;
+}
+
+void TickShare::add(bool held) {
+  ++ticks_;
+  if (held) ++held_ticks_;
+}
+
+Measure TickShare::measure(const std::string& reason_when_empty) const {
+  Measure measure;
+  measure.n = ticks_;
+  if (ticks_ == 0) {
+    measure.reason = reason_when_empty;
+    return measure;
+  }
+  measure.value = 100.0 * static_cast<double>(held_ticks_) / static_cast<double>(ticks_);
+  return measure;
+}
+
+}  // namespace cdiff::metrics

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "page/pictures/top_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/markup.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/angle.h"
+#include "page/pictures/charts.h"
+
+namespace cdiff::page {
+namespace {
+
+using traffic::VehicleRole;
+
+constexpr double kLabelHeight = 15.0;         // [pixels]
+constexpr double kLabelWidth = 70.0;          // [pixels]
+const Eigen::Vector2d kGoalLabel(10.0, 4.0);  // from the goal [pixels]
+
+std::string path(const std::string& style, const std::string& data, const std::string& title = {}) {
+  if (data.empty()) return {};
+  const std::string begin = "<path class=\"" + style + "\" d=\"" + data + "\"";
+  if (title.empty()) return begin + "/>\n";
+  return begin + "><title>" + core::escapeMarkup(title) + "</title></path>\n";
+}
+
+std::string label(double x, double y, const std::string& text) {
+  return "<text class=\"name\" x=\"" + core::shortNumber(x) + "\" y=\"" + core::shortNumber(y) +
+         "\">" + core::escapeMarkup(text) + "</text>";
+}
+
+/// Marks and names around a pixel that keep their size when the picture is zoomed.
+std::string pin(const Eigen::Vector2d& pixel, const std::string& content) {
+  return "<g transform=\"translate(" + core::shortNumber(pixel.x()) + " " +
+         core::shortNumber(pixel.y()) + ")\"><g class=\"pin\">" + content + "</g></g>\n";
+}
+
+/// Path data of the drivable area on the level of each elevation, each level once.
+std::vector<std::string> levelsAt(const std::set<int>& elevations, const map::DrivableArea& area,
+                                  const MapCanvas& canvas) {
+  std::vector<std::string> levels;
+  for (const int elevation : elevations) {
+    std::string data;
+    for (const Points& ring : area.border(elevation)) data += canvas.ring(ring);
+    const bool known = std::find(levels.begin(), levels.end(), data) != levels.end();
+    if (!known && !data.empty()) levels.push_back(data);
+  }
+  return levels;
+}
+
+/// Elevations in the picture, in whole metres: of the ego route, or of all lanes.
+std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const MapCanvas& canvas) {
+  std::set<int> elevations;
+  for (const Eigen::Vector3d& point : points) {
+    if (canvas.shows(point.head<2>())) elevations.insert(static_cast<int>(std::lround(point.z())));
+  }
+  return elevations;
+}
+
+/// Drivable area: the levels that the ego route touches, and faintly below them the others in the
+/// picture.
+std::string drivableArea(const session::SessionSetup& setup, const MapCanvas& canvas) {
+  const map::DrivableArea& area = setup.drivableArea();
+  const auto& route = setup.egoRoute().path().points();
+  const std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
+  std::set<int> elevations;
+  for (const map::Lane& lane : setup.network().lanes()) {
+    if (area.levelCount() > 1) elevations.merge(elevationsOf(lane.centerline.points(), canvas));
+  }
+  std::string svg;
+  for (const std::string& level : levelsAt(elevations, area, canvas)) {
+    if (std::find(own.begin(), own.end(), level) == own.end()) svg += path("road other", level);
+  }
+  for (const std::string& level : own) svg += path("road", level);
+  return svg;
+}
+
+std::string laneLines(const map::RoadNetwork& network, const MapCanvas& canvas) {
+  std::string data;
+  for (const map::Lane& lane : network.lanes()) {
+    if (lane.allows_cars) data += canvas.line(inPlane(lane.centerline.points()));
+  }
+  return path("lane", data);
+}
+
+std::string egoRoute(const record::SessionResult& result, const MapCanvas& canvas) {
+  const auto& points = result.setup.egoRoute().path().points();
+  if (points.empty()) return {};
+  const std::string data = canvas.line(inPlane(points));
+  const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
+  return path("route", data, "ego route") +
+         pin(goal,
+             "<circle class=\"goal\" r=\"6\"/>" + label(kGoalLabel.x(), kGoalLabel.y(), "goal"));
+}
+
+std::string conflictRoutes(const record::SessionResult& result, const MapCanvas& canvas) {
+  std::string svg;
+  for (const record::CbvRecord& record : result.cbv.records()) {
+    const std::string style = styleOf(VehicleRole::kCbv, record.vehicle_id, result.cbv);
+    svg += path("planned " + style, canvas.line(inPlane(record.route)),
+                "conflict-aware route of " + record.vehicle_id);
+  }
+  return svg;
+}
+
+/// A stretch of one vehicle's way in one role.
+struct Trail {
+  std::uint32_t vehicle = 0;
+  VehicleRole role = VehicleRole::kBackground;
+  Points points;
+};
+
+std::vector<Trail> trailsOf(const record::Timeline& timeline) {
+  std::vector<Trail> trails;
+  std::vector<std::ptrdiff_t> present(timeline.vehicles().size(), -1);  // trail of each vehicle
+  std::vector<std::size_t> last_frame(timeline.vehicles().size(), 0);
+  for (std::size_t frame = 0; frame < timeline.frames().size(); ++frame) {
+    for (const record::TimelinePose& pose : timeline.frames()[frame].poses) {
+      std::ptrdiff_t& trail = present[pose.vehicle];
+      const bool goes_on = trail >= 0 && last_frame[pose.vehicle] + 1 == frame;
+      const Trail* before = trail < 0 ? nullptr : &trails[static_cast<std::size_t>(trail)];
+      if (!goes_on || before->role != pose.role) {
+        Points start;
+        if (goes_on) start.push_back(before->points.back());
+        trail = static_cast<std::ptrdiff_t>(trails.size());
+        trails.push_back({pose.vehicle, pose.role, start});
+      }
+      trails[static_cast<std::size_t>(trail)].points.emplace_back(pose.x, pose.y);
+      last_frame[pose.vehicle] = frame;
+    }
+  }
+  return trails;
+}
+
+std::string trailPaths(const record::SessionResult& result, const MapCanvas& canvas,
+                       VehicleRole role) {
+  std::string svg;
+  for (const Trail& trail : trailsOf(result.timeline)) {
+    if (trail.role != role) continue;
+    const std::string& id = result.timeline.vehicles()[trail.vehicle].id;
+    svg += path("trail " + styleOf(role, id, result.cbv), canvas.line(trail.points), id);
+  }
+  return svg;
+}
+
+/// A vehicle's outline with its front window, nose to the right, around the origin.
+std::string vehicleShape(const record::TimelineVehicle& vehicle, double scale) {
+  const double half_length = 0.5 * vehicle.length * scale;
+  const double half_width = 0.5 * vehicle.width * scale;
+  const std::string x = core::shortNumber(half_length);
+  const std::string y = core::shortNumber(half_width);
+  return "<path d=\"M-" + x + " -" + y + "H" + x + "V" + y + "H-" + x +
+         "Z\"/><path class=\"nose\" " + "d=\"M" + core::shortNumber(0.3 * half_length) + " -" +
+         core::shortNumber(0.8 * half_width) + "L" + core::shortNumber(0.8 * half_length) + " 0L" +
+         core::shortNumber(0.3 * half_length) + " " + core::shortNumber(0.8 * half_width) + "Z\"/>";
+}
+
+std::string vehicleBox(const record::TimelinePose& pose, const record::SessionResult& result,
+                       const MapCanvas& canvas, const std::string& style) {
+  return vehicleSvg(result.timeline.vehicles()[pose.vehicle],
+                    {{pose.x, pose.y}, static_cast<double>(pose.heading)}, canvas, style,
+                    vehicleMagnification(canvas));
+}
+
+std::string startBox(const record::SessionResult& result, const MapCanvas& canvas) {
+  for (const record::TimelineFrame& frame : result.timeline.frames()) {
+    for (const record::TimelinePose& pose : frame.poses) {
+      if (pose.role != VehicleRole::kEgo) continue;
+      const Eigen::Vector2d pixel = canvas.toPixels({pose.x, pose.y});
+      return vehicleBox(pose, result, canvas, "start") + pin(pixel, label(10.0, -10.0, "start"));
+    }
+  }
+  return {};
+}
+
+std::string finalBoxes(const record::SessionResult& result, const MapCanvas& canvas) {
+  std::string svg = "<g id=\"vehicles\">\n";
+  if (!result.timeline.frames().empty()) {
+    const auto& poses = result.timeline.frames().back().poses;
+    for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {  // the ego on top
+      if (!canvas.shows({pose->x, pose->y})) continue;
+      const std::string& id = result.timeline.vehicles()[pose->vehicle].id;
+      svg += vehicleBox(*pose, result, canvas, styleOf(pose->role, id, result.cbv));
+    }
+  }
+  return svg + "</g>\n";
+}
+
+std::string conflictPoints(const record::SessionResult& result, const MapCanvas& canvas) {
+  std::string svg;
+  std::vector<Eigen::Vector2d> taken;  // places of names
+  const auto& route = result.setup.egoRoute().path().points();
+  if (!route.empty()) taken.push_back(canvas.toPixels(route.back().head<2>()) + kGoalLabel);
+  for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
+    const record::CbvRecord& record = result.cbv.records()[i];
+    const Eigen::Vector2d pixel = canvas.toPixels(record.conflict_point.position.head<2>());
+    const std::string name = "C" + std::to_string(i + 1) + " " + record.vehicle_id;
+    Eigen::Vector2d offset(10.0, -8.0);
+    const auto hidden = [&](const Eigen::Vector2d& other) {
+      const Eigen::Vector2d between = (other - pixel - offset).cwiseAbs();
+      return between.x() < kLabelWidth && between.y() < kLabelHeight;
+    };
+    while (std::any_of(taken.begin(), taken.end(), hidden)) offset.y() += kLabelHeight;
+    taken.push_back(pixel + offset);
+    svg += pin(pixel, path("conflict", "M-6 -6L6 6M6 -6L-6 6", "conflict point " + name) +
+                          label(offset.x(), offset.y(), name));
+  }
+  return svg;
+}
+
+std::string contactMarks(const record::Timeline& timeline, const MapCanvas& canvas) {
+  std::string svg;
+  for (const record::TimelineContact& contact : timeline.contacts()) {
+    if (!contact.position || !canvas.shows(*contact.position)) continue;
+    svg += pin(canvas.toPixels(*contact.position),
+               "<circle class=\"contact\" r=\"11\"><title>contact of " +
+                   core::escapeMarkup(contact.first + " and " + contact.second) + " at " +
+                   core::formatFixed(contact.time, 2) + " s</title></circle>");
+  }
+  return svg;
+}
+
+}  // namespace
+
+double vehicleMagnification(const MapCanvas& canvas) {
+  constexpr double kLeastLength = 9.0;  // of a car in the picture [pixels]
+  constexpr double kCarLength = 4.5;    // [m]
+  constexpr double kNoticeable = 1.2;   // less than this is not worth it
+  const double needed = kLeastLength / (kCarLength * canvas.scale());
+  return needed > kNoticeable ? needed : 1.0;
+}
+
+std::string styleOf(VehicleRole role, const std::string& id, const record::CbvLog& cbv) {
+  if (role == VehicleRole::kEgo) return "ego";
+  if (role == VehicleRole::kBackground) return "bg";
+  constexpr std::size_t kShades = 5;
+  std::vector<std::string> seen;
+  for (const record::CbvRecord& record : cbv.records()) {
+    if (record.vehicle_id == id) break;
+    if (std::find(seen.begin(), seen.end(), record.vehicle_id) == seen.end()) {
+      seen.push_back(record.vehicle_id);
+    }
+  }
+  return "cbv c" + std::to_string(seen.size() % kShades);
+}
+
+std::string roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas) {
+  return drivableArea(setup, canvas) + laneLines(setup.network(), canvas);
+}
+
+std::string vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                       const MapCanvas& canvas, const std::string& style, double magnification) {
+  const Eigen::Vector2d pixel = canvas.toPixels(pose.position);
+  return "<g class=\"vehicle " + style + "\" transform=\"translate(" +
+         core::shortNumber(pixel.x()) + " " + core::shortNumber(pixel.y()) + ") rotate(" +
+         core::shortNumber(-core::radiansToDegrees(pose.heading)) + ")\"><title>" +
+         core::escapeMarkup(vehicle.id) + "</title>" +
+         vehicleShape(vehicle, canvas.scale() * magnification) + "</g>\n";
+}
+
+std::string scaleBarSvg(const MapCanvas& canvas) {
+  const double metres = niceStep(200.0 / canvas.scale(), 2);
+  const double y = canvas.height() - 18.0;
+  const std::string length = core::shortNumber(metres * canvas.scale());
+  return "<g class=\"frame\">" +
+         path("scale", "M18 " + core::shortNumber(y - 5.0) + "v5h" + length + "v-5") +
+         label(24.0, y - 7.0, core::formatNumber(metres) + " m") +
+         path("north", "M" + core::shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
+         label(canvas.width() - 29.0, 46.0, "N") + "</g>\n";
+}
+
+std::string topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
+  const std::string size =
+      core::shortNumber(canvas.width()) + " " + core::shortNumber(canvas.height());
+  return "<svg id=\"top-view\" role=\"img\" aria-label=\"The session from above\" viewBox=\"0 0 " +
+         size + "\" data-magnification=\"" +
+         core::formatFixed(canvas.scale() * vehicleMagnification(canvas), 4) + "\">\n" +
+         roadSvg(result.setup, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
+         trailPaths(result, canvas, VehicleRole::kBackground) +
+         trailPaths(result, canvas, VehicleRole::kCbv) +
+         trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
+         finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
+         conflictPoints(result, canvas) + scaleBarSvg(canvas) + "</svg>\n";
+}
+
+}  // namespace cdiff::page

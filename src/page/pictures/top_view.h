@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// The session from above as one SVG element: drivable area, lanes, ego route, conflicts, trails,
+/// vehicles at the final tick.
+#pragma once
+
+#include <string>
+
+#include "page/pictures/map_canvas.h"
+
+namespace cdiff::page {
+
+std::string topViewSvg(const record::SessionResult& result, const MapCanvas& canvas);
+
+/// Drivable area and lanes alone.
+std::string roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas);
+
+/// A vehicle's box, `magnification` times as large as it is, of a CSS class.
+std::string vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                       const MapCanvas& canvas, const std::string& style,
+                       double magnification = 1.0);
+
+/// A bar of a round length and the direction of north, in the lower corners and at the top right.
+std::string scaleBarSvg(const MapCanvas& canvas);
+
+/// Its legend, as HTML.
+std::string topViewLegend(const MapCanvas& canvas);
+
+/// Factor by which vehicles are drawn larger than they are, so that they can be seen; 1 when the
+/// scale allows.
+double vehicleMagnification(const MapCanvas& canvas);
+
+/// CSS class of a vehicle in pictures and charts: "ego", "bg", or "cbv c0" to "cbv c4" by order of
+/// selection.
+std::string styleOf(traffic::VehicleRole role, const std::string& id, const record::CbvLog& cbv);
+
+}  // namespace cdiff::page

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "record/logs/cbv_log.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cbv/held_cbv.h"
+#include "record/logs/front_view_log.h"
+
+namespace cdiff::record {
+namespace {
+
+/// Arc length of the conflict point on the conflict-aware route [m]. The route rounds corners, so
+/// it lies near the distance along lanes; elsewhere the route may cross the same place again.
+double conflictArcLength(const geometry::Polyline& path, const cbv::ConflictPoint& conflict) {
+  constexpr double kSlack = 5.0;  // [m]
+  const double begin = std::clamp(0.8 * conflict.cbv_distance - kSlack, 0.0, path.length());
+  const double end = std::clamp(conflict.cbv_distance + kSlack, begin, path.length());
+  return path.project(conflict.position.head<2>(), begin, end).arc_length;
+}
+
+CbvRecord newRecord(const cbv::CbvAssignment& assignment) {
+  CbvRecord record;
+  record.slot = assignment.slot;
+  record.vehicle_id = assignment.vehicle_id;
+  record.selected_tick = assignment.selected_tick;
+  record.interaction_score = assignment.interaction_score;
+  record.conflict_point = assignment.conflict_point;
+  record.route_length = assignment.conflict_aware_route.length();
+  record.route = assignment.conflict_aware_route.path().points();
+  return record;
+}
+
+bool sameStay(const CbvRecord& record, const cbv::CbvAssignment& assignment) {
+  return record.vehicle_id == assignment.vehicle_id &&
+         record.selected_tick == assignment.selected_tick;
+}
+
+}  // namespace
+
+double CbvRecord::routeCompletionPercent() const {
+  if (release_reason == cbv::kRouteEnd) return 100.0;
+  return route_length > 0.0 ? std::min(100.0, 100.0 * arc_length / route_length) : 0.0;
+}
+
+bool CbvRecord::routeCompleted() const {
+  constexpr double kCompletePercent = 95.0;
+  return conflict_point_passed || routeCompletionPercent() >= kCompletePercent;
+}
+
+void CbvLog::observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection& selection) {
+  follow(snapshot);
+  close(selection);
+  for (const cbv::CbvAssignment& assignment : selection.assignments) {
+    CbvRecord& record = recordOf(assignment);
+    const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
+    const bool driven = vehicle != nullptr && vehicle->role == traffic::VehicleRole::kCbv;
+    if (driven) ++record.decisions_driven;
+  }
+  for (const cbv::RejectedCandidate& candidate : selection.rejected) {
+    ++rejected_[candidate.reason];
+    ++rejected_vehicles_[candidate.reason][candidate.vehicle_id];
+  }
+}
+
+CbvRecord& CbvLog::recordOf(const cbv::CbvAssignment& assignment) {
+  const auto known = open_.find(assignment.slot);
+  if (known != open_.end()) return records_[known->second.record];
+  Stay& stay = open_[assignment.slot];
+  stay.record = records_.size();
+  stay.path = assignment.conflict_aware_route.path();
+  if (!stay.path.empty()) {
+    stay.conflict_arc_length = conflictArcLength(stay.path, assignment.conflict_point);
+  }
+  records_.push_back(newRecord(assignment));
+  return records_.back();
+}
+
+void CbvLog::follow(const traffic::TrafficSnapshot& snapshot) {
+  for (const auto& [slot, stay] : open_) {
+    CbvRecord& record = records_[stay.record];
+    const traffic::Vehicle* vehicle = snapshot.find(record.vehicle_id);
+    if (vehicle == nullptr || stay.path.empty()) continue;
+    record.arc_length =
+        cbv::advancedArcLength(stay.path, record.arc_length, vehicle->state.position);
+    if (record.arc_length >= stay.conflict_arc_length) record.conflict_point_passed = true;
+  }
+}
+
+void CbvLog::close(const cbv::CbvSelection& selection) {
+  for (auto slot = open_.begin(); slot != open_.end();) {
+    CbvRecord& record = records_[slot->second.record];
+    const cbv::CbvAssignment* assignment = selection.find(slot->first);
+    if (assignment != nullptr && sameStay(record, *assignment)) {
+      ++slot;
+      continue;
+    }
+    record.released_tick = selection.tick;
+    record.release_reason = "not_stated";
+    for (const cbv::ReleasedCbv& released : selection.released) {
+      const bool same = released.slot == record.slot && released.vehicle_id == record.vehicle_id;
+      if (same) record.release_reason = released.reason;
+    }
+    slot = open_.erase(slot);
+  }
+}
+
+void ApproachLog::observe(const session::TickRecord& record) {
+  const traffic::TrafficSnapshot& snapshot = *record.snapshot;
+  if (record.selection != nullptr) images_.clear();  // a decision
+  if (record.images != nullptr) images_ = *record.images;
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego == nullptr) return;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    if (vehicle.role == traffic::VehicleRole::kCbv) compare(snapshot, *ego, vehicle);
+  }
+}
+
+const Approach* ApproachLog::find(const std::string& vehicle_id) const {
+  const auto found = index_by_id_.find(vehicle_id);
+  return found == index_by_id_.end() ? nullptr : &approaches_[found->second];
+}
+
+void ApproachLog::compare(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego,
+                          const traffic::Vehicle& cbv) {
+  if (traffic::onDifferentLevels(ego, cbv)) return;
+  const double gap = geometry::distance(ego.box(), cbv.box());
+  if (!std::isfinite(gap)) return;
+  const auto [known, added] = index_by_id_.emplace(cbv.id, approaches_.size());
+  if (added) approaches_.emplace_back();
+  Approach& best = approaches_[known->second];
+  if (!added && best.gap <= gap) return;
+  best.vehicle_id = cbv.id;
+  best.gap = gap;
+  best.center_distance = (ego.state.position - cbv.state.position).norm();
+  best.snapshot = snapshot;
+  best.cbv_image = imageOf(cbv.cbv_slot);
+  best.ego_image = imageOf(-1);
+}
+
+traffic::CameraImage ApproachLog::imageOf(int slot) const {
+  for (const session::SlotImage& seen : images_) {
+    if (seen.slot == slot && isWhole(seen.image)) return seen.image;
+  }
+  return {};
+}
+
+}  // namespace cdiff::record

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "e2e_cdiff/cbv/cbv_selection.h"
+#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "session/session_observer.h"
+
+namespace cdiff::record {
+
+/// Reason of a CBV that was still driven when the session ended.
+inline constexpr const char* kSessionEnd = "session_end";
+
+/// One stay of a vehicle in a slot.
+struct CbvRecord {
+  int slot = 0;
+  std::string vehicle_id;
+  std::uint64_t selected_tick = 0;
+  double interaction_score = 0.0;
+  cbv::ConflictPoint conflict_point;  ///< as of the selection
+  std::size_t decisions_driven =
+      0;  ///< decisions that found it driven as CBV: not yet that of its selection
+  std::optional<std::uint64_t> released_tick;  ///< absent when the session ended first
+  std::string release_reason = kSessionEnd;
+  double route_length = 0.0;           ///< of the conflict-aware route [m]
+  std::vector<Eigen::Vector3d> route;  ///< points of the conflict-aware route, map frame [m]
+  /// Reached on the conflict-aware route, as of the decisions of the stay and that of its release
+  /// [m].
+  double arc_length = 0.0;
+  bool conflict_point_passed = false;  ///< its centre came that far along the conflict-aware route
+
+  /// 100 arc_length / route_length; 100 when released because its route ended.
+  double routeCompletionPercent() const;
+  /// Released because its route ended, at least 95 % of the route driven, or the conflict point
+  /// passed.
+  bool routeCompleted() const;
+};
+
+/// What became of every vehicle that was selected as CBV: where and when, for how many decisions,
+/// how far along its conflict-aware route, why released; and how often which reason rejected a
+/// candidate.
+class CbvLog {
+ public:
+  /// One decision in order.
+  void observe(const traffic::TrafficSnapshot& snapshot, const cbv::CbvSelection& selection);
+  /// In order of selection.
+  const std::vector<CbvRecord>& records() const { return records_; }
+  /// Candidates rejected, over all decisions, by reason.
+  const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
+  /// The same for each vehicle: by reason, then by id.
+  const std::map<std::string, std::map<std::string, std::size_t>>& rejectedVehicles() const {
+    return rejected_vehicles_;
+  }
+
+ private:
+  struct Stay {
+    std::size_t record = 0;  ///< index
+    geometry::Polyline path;
+    double conflict_arc_length = 0.0;  ///< [m]
+  };
+  CbvRecord& recordOf(const cbv::CbvAssignment& assignment);
+  void follow(const traffic::TrafficSnapshot& snapshot);
+  void close(const cbv::CbvSelection& selection);
+
+  std::vector<CbvRecord> records_;
+  std::map<int, Stay> open_;  ///< slot -> its present stay
+  std::map<std::string, std::size_t> rejected_;
+  std::map<std::string, std::map<std::string, std::size_t>> rejected_vehicles_;
+};
+
+struct Approach {
+  std::string vehicle_id;
+  double gap = 0.0;              ///< between the boxes of ego and CBV [m]
+  double center_distance = 0.0;  ///< between their centres [m]
+  traffic::TrafficSnapshot snapshot;
+  traffic::CameraImage cbv_image;  ///< of the latest decision; empty when its planner does not see
+  traffic::CameraImage ego_image;  ///< likewise of the ego
+
+  double time() const { return snapshot.time; }
+};
+
+/// The closest approach of each CBV to the ego while it was driven: the tick with the smallest gap
+/// between their boxes (the first of equals), its whole snapshot, and what planners saw then.
+class ApproachLog {
+ public:
+  /// Every tick in order.
+  void observe(const session::TickRecord& record);
+  /// In the order in which the vehicles were first driven as CBVs on the ego's level.
+  const std::vector<Approach>& approaches() const { return approaches_; }
+  /// The approach of a vehicle, or nullptr.
+  const Approach* find(const std::string& vehicle_id) const;
+
+ private:
+  void compare(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego,
+               const traffic::Vehicle& cbv);
+  traffic::CameraImage imageOf(int slot) const;
+
+  std::vector<session::SlotImage> images_;  ///< of the latest decision
+  std::vector<Approach> approaches_;
+  std::unordered_map<std::string, std::size_t> index_by_id_;
+};
+
+}  // namespace cdiff::record

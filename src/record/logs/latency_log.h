@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session_observer.h"
+
+namespace cdiff::record {
+
+/// Mean, 95th percentile (nearest rank) and maximum of a sample; values that are not finite are
+/// left out.
+struct SampleFigures {
+  std::optional<double> mean;  ///< absent when n = 0, and so on
+  std::optional<double> percentile_95;
+  std::optional<double> maximum;
+  std::size_t n = 0;
+};
+
+SampleFigures figuresOf(const std::vector<double>& values);
+
+struct LatencyFigures {
+  double median = 0.0;         ///< [ms]
+  double percentile_95 = 0.0;  ///< [ms]
+  double maximum = 0.0;        ///< [ms]
+  std::size_t n = 0;           ///< decisions
+};
+
+/// The smallest sample that at least `percent` of all are not above (nearest rank). `sorted`
+/// ascends and is not empty.
+double nearestRank(const std::vector<double>& sorted, double percent);
+
+/// Wall time that each planner took per decision [ms]: median, 95th percentile (nearest rank) and
+/// maximum.
+class LatencyLog {
+ public:
+  void observe(const std::vector<session::PlannerLatency>& latencies);
+  /// By planner name.
+  std::map<std::string, LatencyFigures> figures() const;
+
+ private:
+  std::map<std::string, std::vector<double>> samples_;
+};
+
+struct LateFigures {
+  std::size_t asked = 0;          ///< answers that were due
+  std::size_t late = 0;           ///< of them, those that came after their tick
+  std::size_t missing = 0;        ///< of them, those that never came
+  std::size_t by_plan = 0;        ///< late or missing: the last plan's next action drove instead
+  std::size_t by_full_brake = 0;  ///< late or missing: full braking instead
+  std::size_t not_driven = 0;     ///< late or missing: the vehicle was not taken over yet
+  double median = 0.0;            ///< lateness of those that came late, wall time [s]
+  double percentile_95 = 0.0;     ///< [s]
+  double maximum = 0.0;           ///< [s]
+};
+
+/// Answers that came late, by planner: how many, how late, and what drove instead. Of sessions that
+/// go on without an answer that is late (real_time_factor > 0).
+class LateLog {
+ public:
+  void observe(const std::vector<session::AnswerTiming>& timings);
+  /// By planner ("cbv_identification" for the selection); empty for sessions that wait for every
+  /// answer.
+  std::map<std::string, LateFigures> figures() const;
+
+ private:
+  std::map<std::string, LateFigures> counts_;
+  std::map<std::string, std::vector<double>> lateness_;  ///< [s]
+};
+
+/// Answers of all planners that came late or never.
+std::size_t lateAnswers(const std::map<std::string, LateFigures>& figures);
+/// "342 of 802 answers came late or never and were replaced; ..." ; empty when none did.
+std::string latenessText(const std::map<std::string, LateFigures>& figures);
+
+}  // namespace cdiff::record

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "record/logs/plan_log.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/traffic/rollout.h"
+
+namespace cdiff::record {
+namespace {
+
+WayPoint wayPointOf(const traffic::VehicleState& state) {
+  return {state.position, state.heading, state.speed};
+}
+
+WayPoint between(const WayPoint& from, const WayPoint& to, double share) {
+  return {from.position + share * (to.position - from.position),
+          from.heading + share * core::wrapAngle(to.heading - from.heading),
+          from.speed + share * (to.speed - from.speed)};
+}
+
+LoggedPlan planOf(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle,
+                  const planning::PlannedAction& action) {
+  LoggedPlan plan;
+  plan.tick = snapshot.tick;
+  plan.time = snapshot.time;
+  plan.start = wayPointOf(vehicle.state);
+  plan.state_mismatch = action.state_mismatch;
+  plan.points.reserve(action.rollout.size());
+  for (const planning::RolloutPoint& point : action.rollout) {
+    plan.points.push_back(wayPointOf(point.state));
+  }
+  return plan;
+}
+
+std::vector<double> mismatches(const VehiclePlans& vehicle) {
+  std::vector<double> values;
+  for (const LoggedPlan& plan : vehicle.plans) values.push_back(plan.state_mismatch);
+  return values;
+}
+
+}  // namespace
+
+double LoggedPlan::horizon() const {
+  return static_cast<double>(points.size()) * traffic::kRolloutStep;
+}
+
+void PlanLog::observe(const session::TickRecord& record) {
+  const traffic::TrafficSnapshot& snapshot = *record.snapshot;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    if (vehicle.role != traffic::VehicleRole::kCbv) continue;
+    plansOf(vehicle).driven.emplace_back(snapshot.tick, wayPointOf(vehicle.state));
+  }
+  if (record.actions == nullptr) return;
+  for (const planning::PlannedAction& action : *record.actions) {
+    const traffic::Vehicle* vehicle = snapshot.find(action.vehicle_id);
+    if (action.slot < 0 || action.rollout.empty() || vehicle == nullptr) continue;
+    plansOf(*vehicle).plans.push_back(planOf(snapshot, *vehicle, action));
+  }
+}
+
+VehiclePlans& PlanLog::plansOf(const traffic::Vehicle& vehicle) {
+  const auto [known, added] = index_by_id_.emplace(vehicle.id, vehicles_.size());
+  if (added) vehicles_.push_back({vehicle.id, vehicle.dimensions, {}, {}});
+  return vehicles_[known->second];
+}
+
+const VehiclePlans* PlanLog::find(const std::string& vehicle_id) const {
+  const auto found = index_by_id_.find(vehicle_id);
+  return found == index_by_id_.end() ? nullptr : &vehicles_[found->second];
+}
+
+bool PlanLog::empty() const {
+  return std::all_of(vehicles_.begin(), vehicles_.end(),
+                     [](const VehiclePlans& vehicle) { return vehicle.plans.empty(); });
+}
+
+std::optional<WayPoint> PlanLog::drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
+                                             double seconds) const {
+  const double ticks = seconds / simulation_step_;
+  const auto whole = static_cast<std::uint64_t>(std::floor(ticks + 1e-6));
+  const double share = std::max(0.0, ticks - static_cast<double>(whole));
+  const std::uint64_t last = plan.tick + whole + (share > 1e-6 ? 1 : 0);
+  // The decision that selects a CBV finds it undriven still: its first driven tick is the next.
+  const auto& driven = vehicle.driven;
+  const auto begin =
+      std::lower_bound(driven.begin(), driven.end(), plan.tick,
+                       [](const auto& state, std::uint64_t tick) { return state.first < tick; });
+  if (begin == driven.end() || begin->first > plan.tick + 1) return std::nullopt;
+  if (last < begin->first) return plan.start;
+  const auto index = static_cast<std::ptrdiff_t>(last - begin->first);
+  if (driven.end() - begin <= index || (begin + index)->first != last) return std::nullopt;
+  const auto& [tick, state] = *(begin + index);
+  if (share <= 1e-6) return state;
+  const WayPoint& before = index > 0 ? (begin + index - 1)->second : plan.start;
+  return between(before, state, share);
+}
+
+const WayPoint* plannedAfter(const LoggedPlan& plan, double seconds) {
+  const auto row = static_cast<std::size_t>(std::lround(seconds / traffic::kRolloutStep));
+  return row >= 1 && row <= plan.points.size() ? &plan.points[row - 1] : nullptr;
+}
+
+std::vector<double> PlanLog::displacements(const VehiclePlans& vehicle, double seconds) const {
+  std::vector<double> values;
+  for (const LoggedPlan& plan : vehicle.plans) {
+    const WayPoint* planned = plannedAfter(plan, seconds);
+    if (planned == nullptr) continue;
+    const std::optional<WayPoint> driven = drivenAfter(vehicle, plan, seconds);
+    if (driven) values.push_back((planned->position - driven->position).norm());
+  }
+  return values;
+}
+
+const LoggedPlan* PlanLog::drivenPlanNear(const VehiclePlans& vehicle, double time) const {
+  const LoggedPlan* best = nullptr;
+  for (const LoggedPlan& plan : vehicle.plans) {
+    const bool nearer =
+        best == nullptr || std::abs(plan.time - time) < std::abs(best->time - time) - 1e-9;
+    if (nearer && drivenAfter(vehicle, plan, plan.horizon())) best = &plan;
+  }
+  return best;
+}
+
+SampleFigures displacementFigures(const PlanLog& log, double seconds) {
+  std::vector<double> values;
+  for (const VehiclePlans& vehicle : log.vehicles()) {
+    const std::vector<double> own = log.displacements(vehicle, seconds);
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  return figuresOf(values);
+}
+
+SampleFigures mismatchFigures(const PlanLog& log) {
+  std::vector<double> values;
+  for (const VehiclePlans& vehicle : log.vehicles()) {
+    const std::vector<double> own = mismatches(vehicle);
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  return figuresOf(values);
+}
+
+SampleFigures mismatchFigures(const VehiclePlans& vehicle) {
+  return figuresOf(mismatches(vehicle));
+}
+
+namespace {
+
+constexpr const char* kHeader =
+    "vehicle_id,tick,seconds,planned_x,planned_y,planned_heading,planned_speed,driven_x,driven_y,"
+    "driven_heading,driven_speed\n";
+constexpr std::size_t kStride = 4;  // rollout steps from row to row
+
+void append(std::vector<std::string>& cells, const WayPoint& point) {
+  for (const double value : {point.position.x(), point.position.y(), point.heading, point.speed})
+    cells.push_back(core::formatNumber(value));
+}
+
+std::string rowOf(const std::string& vehicle, const LoggedPlan& plan, std::size_t steps,
+                  const WayPoint& planned, const std::optional<WayPoint>& driven) {
+  // Divided by 10, not multiplied by 0.1: 1.2, not 1.2000000000000002.
+  const double seconds = static_cast<double>(steps) / (1.0 / traffic::kRolloutStep);
+  std::vector<std::string> cells = {vehicle, std::to_string(plan.tick),
+                                    core::formatNumber(seconds)};
+  append(cells, planned);
+  if (driven) {
+    append(cells, *driven);
+  } else {
+    cells.resize(cells.size() + 4);
+  }
+  return core::csvRow(cells);
+}
+
+std::optional<WayPoint> wayPointOf(const std::vector<std::string>& cells, std::size_t first) {
+  std::vector<double> values;
+  for (std::size_t i = first; i < first + 4; ++i) {
+    const auto value = core::parseNumber(cells[i]);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return WayPoint{{values[0], values[1]}, values[2], values[3]};
+}
+
+std::optional<PlanRow> rowOf(const std::string& line) {
+  const std::vector<std::string> cells = core::csvCells(line);
+  if (cells.size() != 11) return std::nullopt;
+  const auto tick = core::parseNumber(cells[1]);
+  const auto seconds = core::parseNumber(cells[2]);
+  const auto planned = wayPointOf(cells, 3);
+  if (!tick || *tick < 0.0 || !seconds || !planned) return std::nullopt;
+  return PlanRow{cells[0], static_cast<std::uint64_t>(*tick), *seconds, *planned,
+                 wayPointOf(cells, 7)};
+}
+
+}  // namespace
+
+std::string plansCsv(const PlanLog& plans) {
+  std::string text = kHeader;
+  for (const VehiclePlans& vehicle : plans.vehicles()) {
+    for (const LoggedPlan& plan : vehicle.plans) {
+      text += rowOf(vehicle.vehicle_id, plan, 0, plan.start, plan.start);
+      for (std::size_t steps = kStride; steps <= plan.points.size(); steps += kStride) {
+        const WayPoint& planned = plan.points[steps - 1];
+        if (!planned.position.allFinite()) break;
+        const double seconds = static_cast<double>(steps) * traffic::kRolloutStep;
+        text += rowOf(vehicle.vehicle_id, plan, steps, planned,
+                      plans.drivenAfter(vehicle, plan, seconds));
+      }
+    }
+  }
+  return text;
+}
+
+std::vector<PlanRow> readPlans(const std::filesystem::path& file) {
+  const auto lines = core::splitText(core::readFile(file, "plans"), '\n');
+  if (lines.empty() || lines.front() + "\n" != kHeader) {
+    throw core::InputError("'" + file.string() + "' holds no plans; its first line must be " +
+                           std::string(kHeader, std::char_traits<char>::length(kHeader) - 1));
+  }
+  std::vector<PlanRow> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto row = rowOf(lines[i]);
+    if (!row) {
+      throw core::InputError(file.string() + ":" + std::to_string(i + 1) + ": no row of plans");
+    }
+    rows.push_back(*row);
+  }
+  return rows;
+}
+
+}  // namespace cdiff::record

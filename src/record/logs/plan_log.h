@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "record/logs/latency_log.h"
+#include "session/session_observer.h"
+
+namespace cdiff::record {
+
+/// A state of a plan or a drive.
+struct WayPoint {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
+  double heading = 0.0;                                ///< [rad]
+  double speed = 0.0;                                  ///< [m/s]
+};
+
+/// A decision with a rollout: points 0.1 s apart, the first 0.1 s after the decision.
+struct LoggedPlan {
+  std::uint64_t tick = 0;
+  double time = 0.0;  ///< [s]
+  WayPoint start;     ///< where the vehicle was
+  std::vector<WayPoint> points;
+  double state_mismatch = 0.0;  ///< see planning::PlannedAction [m]
+
+  double horizon() const;  ///< [s]
+};
+
+/// One vehicle over the session.
+struct VehiclePlans {
+  std::string vehicle_id;
+  traffic::VehicleDimensions dimensions;
+  std::vector<LoggedPlan> plans;
+  std::vector<std::pair<std::uint64_t, WayPoint>> driven;  ///< (tick, state) while driven as CBV
+};
+
+/// What each CBV planned at its decisions and what it drove (map frame, SI units), and how far
+/// apart the two are: |planned(t0 + h) - driven(t0 + h)| in the plane, h seconds after the decision
+/// at t0.
+class PlanLog {
+ public:
+  explicit PlanLog(double simulation_step) : simulation_step_(simulation_step) {}
+  /// Every tick in order.
+  void observe(const session::TickRecord& record);
+
+  /// In order of the first plan or the first drive.
+  const std::vector<VehiclePlans>& vehicles() const { return vehicles_; }
+  /// The plans of a vehicle, or nullptr.
+  const VehiclePlans* find(const std::string& vehicle_id) const;
+  /// Whether any plan was logged.
+  bool empty() const;
+
+  /// Where the vehicle was `seconds` after the decision, between ticks by interpolation; nullopt
+  /// unless it was driven from the decision until then.
+  std::optional<WayPoint> drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
+                                      double seconds) const;
+  /// Over the decisions whose plan and drive reach that far [m].
+  std::vector<double> displacements(const VehiclePlans& vehicle, double seconds) const;
+  /// The plan whose whole horizon was driven and whose decision is nearest to `time` (the earlier
+  /// of equals), or nullptr.
+  const LoggedPlan* drivenPlanNear(const VehiclePlans& vehicle, double time) const;
+
+ private:
+  VehiclePlans& plansOf(const traffic::Vehicle& vehicle);
+  double simulation_step_;
+  std::vector<VehiclePlans> vehicles_;
+  std::unordered_map<std::string, std::size_t> index_by_id_;
+};
+
+/// Planned state `seconds` after the decision (a multiple of 0.1 s); nullptr beyond the plan.
+const WayPoint* plannedAfter(const LoggedPlan& plan, double seconds);
+
+/// Displacements of all vehicles together [m].
+SampleFigures displacementFigures(const PlanLog& log, double seconds);
+/// State mismatches of all plans together [m].
+SampleFigures mismatchFigures(const PlanLog& log);
+SampleFigures mismatchFigures(const VehiclePlans& vehicle);
+
+// plans.csv: planned against driven states of CBVs (map frame, SI units), a row per decision and
+// 0.4 s of the plan.
+
+/// Driven cells stay empty where the vehicle was not driven until then. At 0 s both states are
+/// where the vehicle was.
+std::string plansCsv(const PlanLog& plans);
+
+/// One row.
+struct PlanRow {
+  std::string vehicle_id;
+  std::uint64_t tick = 0;  ///< of the decision
+  double seconds = 0.0;    ///< since the decision
+  WayPoint planned;
+  std::optional<WayPoint> driven;
+};
+
+/// Rows in the file's order. Throws InputError naming file and line for anything else.
+std::vector<PlanRow> readPlans(const std::filesystem::path& file);
+
+}  // namespace cdiff::record

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "ros/bags/dataset_from_bag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collection/session_samples.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "ros/bags/driving_bag.h"
+#include "ros/bags/recorded_session.h"
+#include "ros/bags/session_bag_writer.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/topics.h"
+#include "sensor_msgs/Image.h"
+#include "session/world.h"
+
+namespace cdiff::ros {
+namespace {
+
+using collection::DriveKey;
+using core::InputError;
+
+traffic::CameraImage toImage(const sensor_msgs::Image& message, std::uint64_t tick) {
+  const std::size_t size = std::size_t{3} * message.width * message.height;
+  if (message.encoding != "rgb8" || message.step != 3 * message.width ||
+      message.data.size() != size) {
+    throw InputError("an image of tick " + std::to_string(tick) + " is '" + message.encoding +
+                     "' with " + std::to_string(message.data.size()) +
+                     " bytes; expected rgb8 with " + std::to_string(size));
+  }
+  traffic::CameraImage image;
+  image.width = static_cast<int>(message.width);
+  image.height = static_cast<int>(message.height);
+  image.tick = tick;
+  image.rgb = message.data;
+  return image;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : recording_(file, RecordedImages::kAll) {}
+
+  collection::DrivenSession read() {
+    const session::ScenarioOptions& options = recording_.setup().options();
+    session_.name = options.name + "_seed" + std::to_string(options.seed);
+    while (const auto snapshot = recording_.next()) take(*snapshot);
+    if (!recording_.findings().empty())
+      throw InputError(core::joinText(recording_.findings(), "; "));
+    session_.setup = recording_.takeSetup();
+    finish();
+    return std::move(session_);
+  }
+
+ private:
+  void take(const msgs::TrafficSnapshot& snapshot) {
+    takeTraffic(snapshot);
+    const TickAnswers& answers = recording_.answers();
+    if (const auto selection = answers.selection(snapshot.tick)) takeSelection(*selection);
+    for (int slot = kEgoSlot; slot < recording_.graph().max_cbv; ++slot) {
+      if (const auto control = answers.control(slot, snapshot.tick)) takeControl(*control);
+      if (const auto image = answers.image(slot, snapshot.tick))
+        session_.images.push_back({slot, toImage(*image, snapshot.tick)});
+    }
+  }
+
+  void takeTraffic(const msgs::TrafficSnapshot& message) {
+    traffic::TrafficSnapshot snapshot = fromMsg(message);
+    for (const traffic::Contact& contact : snapshot.contacts) {
+      session_.contacts[contact.first].push_back(snapshot.tick);
+      session_.contacts[contact.second].push_back(snapshot.tick);
+    }
+    session_.seconds = std::max(session_.seconds, snapshot.time);
+    if (snapshot.decision_tick) session_.decisions.push_back(std::move(snapshot));
+  }
+
+  void takeSelection(const msgs::CbvSelection& message) {
+    for (const msgs::CbvAssignment& assignment : message.assignments) {
+      const DriveKey key{assignment.vehicle_id, assignment.selected_tick};
+      session_.drives[message.tick][assignment.slot] = key;
+      if (session_.routes.count(key) != 0) continue;
+      msgs::CbvSelection one;
+      one.assignments.push_back(assignment);
+      session_.routes[key] =
+          fromMsg(one, recording_.setup().network()).assignments.front().conflict_aware_route;
+    }
+  }
+
+  void takeControl(const msgs::ControlAction& message) {
+    const std::string mark = kNoiseMark;
+    const std::string& planner = message.planner;
+    const bool noisy = planner.size() >= mark.size() &&
+                       planner.compare(planner.size() - mark.size(), mark.size(), mark) == 0;
+    if (noisy || !message.fault.empty())
+      session_.disturbed.insert({message.vehicle_id, message.tick});
+  }
+
+  void finish() {
+    const session::ScenarioOptions& options = session_.setup->options();
+    if (std::abs(options.decision_period - kDecisionPeriod) > 1e-9) {
+      throw InputError("its decisions are " + core::formatNumber(options.decision_period) +
+                       " s apart; samples need 0.1 s");
+    }
+    if (session_.images.empty()) throw InputError("it holds no camera images");
+    const DriveKey ego{session::kEgoId, 0};
+    session_.routes[ego] = session_.setup->egoRoute();
+    for (const traffic::TrafficSnapshot& snapshot : session_.decisions)
+      session_.drives[snapshot.tick][-1] = ego;
+  }
+
+  static constexpr double kDecisionPeriod = 0.1;  ///< of a rollout [s]
+  RecordedSession recording_;
+  collection::DrivenSession session_;
+};
+
+}  // namespace
+
+collection::DrivenSession readBagSession(const std::filesystem::path& file) {
+  Reader reader(file);
+  try {
+    return reader.read();
+  } catch (const std::exception& error) {
+    throw InputError("bag '" + file.string() + "': " + error.what());
+  }
+}
+
+using core::InputError;
+
+std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
+                                                    const collection::DatasetOptions& options,
+                                                    collection::DatasetStatistics& statistics) {
+  const collection::DrivenSession session = readBagSession(bag);
+  try {
+    return collection::samplesOf(session, options, statistics);
+  } catch (const InputError& error) {
+    throw InputError("bag '" + bag.string() + "': " + error.what());
+  }
+}
+
+std::vector<learning::DrivingSample> samplesFromDrivingBag(
+    const std::filesystem::path& bag, const collection::DriveOptions& drive_options,
+    const collection::DatasetOptions& options, collection::DatasetStatistics& statistics) {
+  drive_options.validate();
+  try {
+    const collection::RecordedDrive drive =
+        readDrivingBag(bag, drive_options, options.architecture);
+    return collection::samplesOf(drive, bag.stem().string(), drive_options, options, statistics);
+  } catch (const InputError& error) {
+    throw InputError("bag '" + bag.string() + "': " + error.what());
+  }
+}
+
+}  // namespace cdiff::ros

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A drive of one vehicle, read from a bag that somebody else recorded, whatever its topics are
+/// called.
+#pragma once
+
+#include <filesystem>
+
+#include "collection/drive_samples.h"
+#include "diffusion/network/architecture.h"
+
+namespace cdiff::ros {
+
+/// Images are cut to the aspect of the architecture's and made as small; they should see some 90
+/// degrees. Stamps are those of the headers. Throws InputError, without the file's name, for: a
+/// topic that the bag lacks (and what it has), one of another type, a message that is broken or has
+/// no orientation, a path in another frame, an encoding that is no colour.
+collection::RecordedDrive readDrivingBag(const std::filesystem::path& file,
+                                         const collection::DriveOptions& options,
+                                         const diffusion::Architecture& architecture);
+
+}  // namespace cdiff::ros

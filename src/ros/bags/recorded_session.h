@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// A session read from its bag, tick by tick, as the nodes saw it: set-up from SessionInfo, then
+/// each snapshot with the answers to it. What of the recording is missing or cannot be read is
+/// named among the faults of the snapshots that follow, and the session goes on with what there is.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "ros/bags/bag_reader.h"
+#include "ros/lockstep/tick_answers.h"
+#include "ros/messages/topics.h"
+#include "session/session_setup.h"
+
+namespace cdiff::ros {
+
+/// Source of faults that a damaged bag causes.
+inline constexpr const char* kBagSource = "bag";
+
+/// Which images of a recording are read.
+enum class RecordedImages {
+  kSeen,  ///< those that planners saw; a decision waits for them as in the session
+  kAll    ///< whatever was recorded; nothing is said of answers that are missing
+};
+
+class RecordedSession {
+ public:
+  using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
+
+  /// Throws InputError naming the file when it is no bag, or holds no session that can be read.
+  explicit RecordedSession(const std::filesystem::path& bag,
+                           RecordedImages images = RecordedImages::kSeen);
+  ~RecordedSession();
+
+  const ::e2e_cdiff::SessionInfo& info() const { return *info_; }
+  const session::SessionSetup& setup() const { return *setup_; }
+  /// The set-up to keep; call it when no further snapshot is wanted, and nothing after it.
+  std::unique_ptr<session::SessionSetup> takeSetup() { return std::move(setup_); }
+  /// Who took part; of a session that one process drove, the nodes that would have.
+  const SessionGraph& graph() const { return graph_; }
+
+  /// The next snapshot, with what was found damaged since the last one among its faults. The last
+  /// one has a final status: a recording that ends before that of its session ends as interrupted.
+  /// nullptr after that, and at once when the bag holds no usable snapshot.
+  Snapshot next();
+  /// Answers to the snapshot that `next` gave; older ones are forgotten.
+  const TickAnswers& answers() const { return answers_; }
+  /// All that was found damaged or missing so far, one sentence each. Empty for a whole recording.
+  const std::vector<std::string>& findings() const { return findings_; }
+
+ private:
+  struct Topics;
+  void readInfo();
+  bool readMessage();
+  void take(const BagMessage& message);
+  void dispatch(const Topic& topic, const BagMessage& message);
+  void takeSnapshot(const BagMessage& message);
+  void takeSelection(const BagMessage& message);
+  void takeSession(const BagMessage& message);
+  bool frontIsReady() const;
+  Snapshot handOut(const Snapshot& snapshot);
+  Snapshot unrecordedEnd();
+  void checkOrder(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+  void checkAnswers(const ::e2e_cdiff::TrafficSnapshot& snapshot);
+  void find(const std::string& text);
+  void copyDamage();
+
+  BagReader reader_;
+  RecordedImages images_;
+  std::unique_ptr<Topics> topics_;
+  std::string prefix_;
+  ::e2e_cdiff::SessionInfo::ConstPtr info_;
+  std::unique_ptr<session::SessionSetup> setup_;
+  SessionGraph graph_;
+  TickAnswers answers_;
+  std::deque<Snapshot> snapshots_;
+  Snapshot last_;                        ///< handed out
+  std::optional<std::uint64_t> newest_;  ///< largest tick read
+  std::size_t newest_hash_ = 0;          ///< of its bytes
+  std::string unanswered_;               ///< what the last decision lacked
+  bool session_over_ = false;            ///< a second session begins in the bag
+  std::size_t damage_copied_ = 0;        ///< of the reader's
+  std::size_t handed_out_ = 0;           ///< findings
+  std::vector<std::string> findings_;
+};
+
+}  // namespace cdiff::ros

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "ros/lockstep/participant_book.h"
+
+#include <algorithm>
+
+#include "ros/messages/topics.h"
+
+namespace cdiff::ros {
+
+ParticipantBook::ParticipantBook(const std::vector<std::string>& nodes) {
+  for (const std::string& node : nodes) entries_[node];
+}
+
+void ParticipantBook::note(const ::e2e_cdiff::TickAck& message, Clock::time_point now) {
+  const auto found = entries_.find(message.node);
+  if (found == entries_.end()) return;
+  Entry& entry = found->second;
+  entry.heard_at = now;
+  using Ack = ::e2e_cdiff::TickAck;
+  if (message.kind == Ack::WAITING) entry.waiting_for = message.text;
+  if (message.kind == Ack::READY) entry.ready = true;
+  if (message.kind == Ack::ACKNOWLEDGED) entry.acknowledged = message.tick;
+  if (message.kind == Ack::FINISHED) entry.finished = true;
+  if (message.kind == Ack::ERROR && !error_) error_ = Error{message.node, message.text};
+}
+
+std::vector<std::string> ParticipantBook::notReady() const {
+  std::vector<std::string> texts;
+  for (const bool silent : {true, false}) {  // a node that never came is why others wait
+    for (const auto& [node, entry] : entries_) {
+      if (entry.ready || entry.waiting_for.empty() != silent) continue;
+      texts.push_back(node +
+                      (silent ? " has not started" : " is not ready (" + entry.waiting_for + ")"));
+    }
+  }
+  return texts;
+}
+
+std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (isObserver(node) && (!entry.acknowledged || *entry.acknowledged < tick))
+      nodes.push_back(node);
+  }
+  return nodes;
+}
+
+std::uint64_t ParticipantBook::acknowledgedByAll() const {
+  std::optional<std::uint64_t> least;
+  for (const auto& [node, entry] : entries_) {
+    if (!isObserver(node)) continue;
+    const std::uint64_t tick = entry.acknowledged.value_or(0);
+    least = std::min(least.value_or(tick), tick);
+  }
+  return least.value_or(0);
+}
+
+std::vector<std::string> ParticipantBook::notFinished() const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (isObserver(node) && !entry.finished) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+bool ParticipantBook::finished(const std::string& node) const {
+  const auto found = entries_.find(node);
+  return found != entries_.end() && found->second.finished;
+}
+
+bool ParticipantBook::heard(const std::string& node) const {
+  const auto found = entries_.find(node);
+  return found != entries_.end() && found->second.heard_at;
+}
+
+std::vector<std::string> ParticipantBook::silent(double seconds, Clock::time_point now) const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, entry] : entries_) {
+    if (entry.finished || !entry.heard_at) continue;
+    if (std::chrono::duration<double>(now - *entry.heard_at).count() > seconds)
+      nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace cdiff::ros

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "ros/messages/display.h"
+
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "ros/messages/conversions.h"
+#include "ros/messages/image_conversions.h"
+#include "ros/messages/topics.h"
+
+namespace cdiff::ros {
+namespace {
+
+geometry_msgs::Quaternion toQuaternion(double heading) {
+  geometry_msgs::Quaternion quaternion;
+  quaternion.z = std::sin(0.5 * heading);
+  quaternion.w = std::cos(0.5 * heading);
+  return quaternion;
+}
+
+std::string frameOf(const traffic::Vehicle& vehicle) { return vehicle.id + "/base_link"; }
+
+geometry_msgs::TransformStamped transformBetween(const std::string& parent,
+                                                 const std::string& child, double time) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp = toStamp(time);
+  transform.header.frame_id = parent;
+  transform.child_frame_id = child;
+  return transform;
+}
+
+/// Where the camera sits: base_link lies on the road below the box's centre.
+geometry_msgs::TransformStamped mount(const traffic::Vehicle& vehicle, double time,
+                                      const rendering::CameraOptions& camera) {
+  auto transform = transformBetween(frameOf(vehicle), vehicle.id + "/camera", time);
+  transform.transform.translation.x = camera.mount_forward;
+  transform.transform.translation.z = camera.mount_height;
+  const double half_pitch =
+      0.5 * core::degreesToRadians(camera.pitch);  // about y (left): downwards
+  transform.transform.rotation.y = std::sin(half_pitch);
+  transform.transform.rotation.w = std::cos(half_pitch);
+  return transform;
+}
+
+/// REP 103: x right, y down, z forward.
+geometry_msgs::TransformStamped optical(const traffic::Vehicle& vehicle, double time) {
+  auto transform = transformBetween(vehicle.id + "/camera", opticalFrame(vehicle.id), time);
+  transform.transform.rotation.x = -0.5;
+  transform.transform.rotation.y = 0.5;
+  transform.transform.rotation.z = -0.5;
+  transform.transform.rotation.w = 0.5;
+  return transform;
+}
+
+}  // namespace
+
+nav_msgs::Odometry toOdometryMsg(const traffic::Vehicle& vehicle, double time) {
+  nav_msgs::Odometry message;
+  message.header.stamp = toStamp(time);
+  message.header.frame_id = kMapFrame;
+  message.child_frame_id = frameOf(vehicle);
+  message.pose.pose.position.x = vehicle.state.position.x();
+  message.pose.pose.position.y = vehicle.state.position.y();
+  message.pose.pose.position.z = vehicle.state.elevation;
+  message.pose.pose.orientation = toQuaternion(vehicle.state.heading);
+  message.twist.twist.linear.x = vehicle.state.speed;
+  message.twist.twist.angular.z = vehicle.yaw_rate;
+  return message;
+}
+
+Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
+  Transforms transforms;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
+    auto transform = transformBetween(kMapFrame, frameOf(vehicle), snapshot.time);
+    transform.transform.translation.x = vehicle.state.position.x();
+    transform.transform.translation.y = vehicle.state.position.y();
+    transform.transform.translation.z = vehicle.state.elevation;
+    transform.transform.rotation = toQuaternion(vehicle.state.heading);
+    transforms.push_back(transform);
+  }
+  return transforms;
+}
+
+Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
+                            const rendering::CameraOptions& camera) {
+  return {mount(vehicle, time, camera), optical(vehicle, time)};
+}
+
+tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
+                            const rendering::CameraOptions* camera) {
+  tf2_msgs::TFMessage message;
+  message.transforms = vehicleTransforms(snapshot);
+  if (camera == nullptr) return message;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera))
+      message.transforms.push_back(std::move(transform));
+  }
+  return message;
+}
+
+Display::Display(::ros::NodeHandle& node)
+    : odometry_(node.advertise<nav_msgs::Odometry>(Topic(ChannelId::kEgoOdometry).name(), 100)) {}
+
+void Display::publish(const traffic::TrafficSnapshot& snapshot) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  if (ego != nullptr && odometry_.getNumSubscribers() > 0)
+    odometry_.publish(toOdometryMsg(*ego, snapshot.time));
+  if (camera_) mountCameras(snapshot);
+  transforms_.sendTransform(vehicleTransforms(snapshot));
+}
+
+void Display::mountCameras(const traffic::TrafficSnapshot& snapshot) {
+  Transforms added;
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) continue;
+    if (!mounted_.insert(vehicle.id).second) continue;
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera_))
+      added.push_back(std::move(transform));
+  }
+  if (!added.empty()) mounts_.sendTransform(added);
+}
+
+}  // namespace cdiff::ros
