@@ -5,7 +5,6 @@
 
 #include "cli/commands.h"
 #include "cli/version.h"
-#include "core/failure.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -14,7 +14,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
 #include "record/result_folder.h"
-#include "record/session_table.h"
+#include "record/session_text.h"
 #include "session/closed_loop.h"
 #include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS

@@ -3,7 +3,6 @@
 #include <iostream>
 #include <string>
 
-#include "core/failure.h"
 #include "core/program.h"
 #include "learning/task.h"
 #include "learning/trainer.h"

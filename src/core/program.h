@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the main functions of all programs share: standard streams that are open, signals that
-/// must not end the process in the middle of a write, and stop requests as a flag.
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <string>
 #include <vector>
 
 namespace cdiff::core {
+
+// What the main functions of all programs share: standard streams that are open, signals that
+// must not end the process in the middle of a write, and stop requests as a flag.
 
 /// First statement of every main. Opens descriptors 0 to 2 on /dev/null where the caller closed
 /// them, so that no file of ours gets one of these numbers and receives what is printed. Ignores
@@ -27,5 +29,16 @@ bool stopRequested();
 
 /// A system call's error as a text: its name, and for a file beyond `ulimit -f` the limit.
 std::string writeErrorText(int error);
+
+/// What a program says, and how it exits, when an exception reaches its main function.
+struct Failure {
+  int exit_code = 2;  ///< 2 error at run time, 3 bad input, 130 interrupted
+  std::string text;   ///< for the user
+};
+
+/// The project's own errors keep their text. A path that the system refuses is bad input, named
+/// with the system's reason; memory that ran out and errors of the standard library, which say
+/// nothing to a user, are explained.
+Failure failureOf(const std::exception& error);
 
 }  // namespace cdiff::core

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "inference/activation.h"
 #include "inference/convolution.h"
 
 namespace cdiff::inference {

@@ -8,14 +8,13 @@
 #include "core/text.h"
 #include "metrics/known_figures.h"
 #include "page/approach_section.h"
-#include "page/driving_section.h"
-#include "page/guidance_section.h"
+#include "page/motion_sections.h"
 #include "page/page_head.h"
 #include "page/pictures/session_charts.h"
 #include "page/playback.h"
 #include "page/report_style.h"
 #include "page/report_tables.h"
-#include "record/session_story.h"
+#include "record/session_text.h"
 
 namespace cdiff::page {
 namespace {

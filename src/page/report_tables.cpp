@@ -9,7 +9,7 @@
 #include "metrics/known_figures.h"
 #include "metrics/metric_registry.h"
 #include "record/build_info.h"
-#include "record/session_story.h"
+#include "record/session_text.h"
 #include "record/summary.h"
 
 namespace cdiff::page {

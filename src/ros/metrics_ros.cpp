@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "core/text.h"
-#include "record/session_table.h"
+#include "record/session_text.h"
 #include "ros/bags/replay.h"
 #include "ros/lockstep/tick_record.h"
 #include "ros/messages/conversions.h"

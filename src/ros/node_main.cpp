@@ -8,7 +8,6 @@
 #include <memory>
 #include <thread>
 
-#include "core/failure.h"
 #include "core/program.h"
 #include "plugins/plugin_loader.h"
 #include "ros/ros.h"

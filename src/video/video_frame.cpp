@@ -8,7 +8,7 @@
 
 #include "core/text.h"
 #include "metrics/measures/ttc_2d.h"
-#include "record/session_story.h"
+#include "record/session_text.h"
 #include "video/video_ink.h"
 
 namespace cdiff::video {

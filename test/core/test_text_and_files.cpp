@@ -10,8 +10,8 @@
 #include <new>
 #include <vector>
 
-#include "core/failure.h"
 #include "core/file.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"

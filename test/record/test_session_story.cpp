@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "record/sample_session.h"
-#include "record/session_story.h"
+#include "record/session_text.h"
 
 namespace cdiff::record {
 namespace {

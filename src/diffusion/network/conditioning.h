@@ -9,7 +9,7 @@
 
 #include "diffusion/denoiser.h"
 #include "diffusion/network/unet.h"
-#include "inference/activation.h"
+#include "inference/convolution.h"
 
 namespace cdiff::diffusion {
 

@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "record/session_story.h"
+#include "record/session_text.h"
 
 namespace cdiff::page {
 namespace {

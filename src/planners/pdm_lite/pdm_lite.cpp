@@ -11,7 +11,6 @@
 #include "e2e_cdiff/traffic/rollout.h"
 #include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
-#include "planners/pdm_lite/idm.h"
 #include "planners/pdm_lite/route_rules.h"
 #include "planning/motion_forecast.h"
 

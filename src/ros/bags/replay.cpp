@@ -10,7 +10,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
 #include "record/result_folder.h"
-#include "record/session_table.h"
+#include "record/session_text.h"
 #include "ros/lockstep/tick_record.h"
 #include "video/session_video.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "metrics/metric_registry.h"
-#include "record/session_table.h"
+#include "record/session_text.h"
 #include "ros/messages/conversions.h"
 
 namespace cdiff::ros {
