@@ -3,6 +3,13 @@ set(CDIFF_WARNINGS -Wall -Wextra -Werror)
 # Private headers lie beside their sources: "FOLDER/name.h". Only quoted names are looked up there, so <ros/...> stays ROS's.
 set(CDIFF_PRIVATE_HEADERS "SHELL:-iquote ${PROJECT_SOURCE_DIR}/src")
 
+# Several sources of a target are compiled as one: most of a file's time goes into the headers that its neighbours read too.
+option(E2E_CDIFF_UNITY "Compile sources of a target together, six at a time" ON)
+set(CMAKE_UNITY_BUILD ${E2E_CDIFF_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
+# A program need not be linked again because a shared library that it uses was.
+set(CMAKE_LINK_DEPENDS_NO_SHARED ON)
+
 # cdiff_camel_case(SNAKE OUT): the name of a function, as in pdm_lite -> pdmLite.
 function(cdiff_camel_case snake out)
   set(camel "")

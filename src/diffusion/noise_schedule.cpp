@@ -6,19 +6,19 @@
 #include <cmath>
 #include <string>
 
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::diffusion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kOffset = 0.008;
 constexpr double kMaxBeta = 0.999;
 
 /// cos^2 of the schedule before the betas are capped, not divided by its value at 0.
 double squaredCosine(int k, int steps) {
   const double fraction = static_cast<double>(k) / static_cast<double>(steps);
-  const double cosine = std::cos((fraction + kOffset) / (1.0 + kOffset) * kPi / 2.0);
+  const double cosine = std::cos((fraction + kOffset) / (1.0 + kOffset) * core::kPi / 2.0);
   return cosine * cosine;
 }
 

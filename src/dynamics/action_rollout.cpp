@@ -39,9 +39,8 @@ namespace {
 using traffic::ControlAction;
 using traffic::Rollout;
 
-constexpr double kTick = BicycleModel::kTick;
 constexpr int kTicksPerRow = 2;
-static_assert(kTicksPerRow * kTick == traffic::kRolloutStep, "a row is two ticks");
+static_assert(kTicksPerRow * BicycleModel::kTick == traffic::kRolloutStep, "a row is two ticks");
 
 struct State {
   double x = 0.0;
@@ -73,10 +72,10 @@ State stateBefore(double initial_speed, const Rollout& rollout, Eigen::Index row
 
 /// Moves a state by one tick without its speed, in the order of operations of BicycleModel::step.
 void move(State& state, double slip, double turn, double rear_length) {
-  const double way = state.speed * kTick;
+  const double way = state.speed * BicycleModel::kTick;
   state.x += way * std::cos(state.heading + slip);
   state.y += way * std::sin(state.heading + slip);
-  state.heading += state.speed / rear_length * turn * kTick;
+  state.heading += state.speed / rear_length * turn * BicycleModel::kTick;
 }
 
 /// What a tick of a row means for the state before it.
@@ -88,15 +87,15 @@ struct TickAdjoint {
 
   void pullBack(double heading, double speed, const SpeedResponse& response, StateAdjoint& state,
                 ActionAdjoint& action) const {
-    const double way = speed * kTick;
+    const double way = speed * BicycleModel::kTick;
     const double cosine = std::cos(heading + slip);
     const double sine = std::sin(heading + slip);
     const double sideways = way * (state.y * cosine - state.x * sine);
     action.throttle += response.by_throttle * state.speed;
     action.brake += response.by_brake * state.speed;
     action.slip += sideways + state.heading * way / rear_length * grip;
-    state.speed = response.by_speed * state.speed + kTick * (state.x * cosine + state.y * sine) +
-                  state.heading * turn / rear_length * kTick;
+    state.speed = response.by_speed * state.speed + BicycleModel::kTick * (state.x * cosine + state.y * sine) +
+                  state.heading * turn / rear_length * BicycleModel::kTick;
     state.heading += sideways;
   }
 };
@@ -106,7 +105,7 @@ ActionAdjoint pullBackRow(const BicycleModel& model, const State& start,
                           const ControlAction& action, double slip, StateAdjoint& adjoint) {
   const double rear_length = model.options().rear_length;
   const TickAdjoint tick{slip, std::sin(slip), std::cos(slip), rear_length};
-  const double middle_heading = start.heading + start.speed / rear_length * tick.turn * kTick;
+  const double middle_heading = start.heading + start.speed / rear_length * tick.turn * BicycleModel::kTick;
   const SpeedResponse first = model.speedResponse(start.speed, action);
   const SpeedResponse second = model.speedResponse(first.speed, action);
   ActionAdjoint sum;

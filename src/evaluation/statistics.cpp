@@ -30,7 +30,7 @@ namespace {
 /// Values of one figure in a cell, by seed.
 using ValuesBySeed = std::map<std::string, std::vector<double>>;
 
-Statistics overSeeds(const ValuesBySeed& values) {
+Statistics meanOverSeeds(const ValuesBySeed& values) {
   std::vector<double> means;
   for (const auto& [seed, samples] : values) {
     means.push_back(std::accumulate(samples.begin(), samples.end(), 0.0) /
@@ -51,7 +51,7 @@ Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records
       values[name][record->factors.at("seed")].push_back(value);
     }
   }
-  for (const auto& [name, by_seed] : values) cell.figures[name] = overSeeds(by_seed);
+  for (const auto& [name, by_seed] : values) cell.figures[name] = meanOverSeeds(by_seed);
   return cell;
 }
 

@@ -7,17 +7,18 @@
 #include <limits>
 
 namespace cdiff::geometry {
-namespace {
 
-double reach(const OrientedBox& box, const Eigen::Vector2d& axis) {
+double halfExtent(const OrientedBox& box, const Eigen::Vector2d& axis) {
   const Eigen::Vector2d forward = direction(box.heading);
   return 0.5 * (box.length * std::abs(forward.dot(axis)) +
                 box.width * std::abs(leftNormal(forward).dot(axis)));
 }
 
+namespace {
+
 bool separates(const Eigen::Vector2d& axis, const OrientedBox& first, const OrientedBox& second) {
   const double gap = std::abs((second.center - first.center).dot(axis));
-  return gap > reach(first, axis) + reach(second, axis);
+  return gap > halfExtent(first, axis) + halfExtent(second, axis);
 }
 
 double pointToBox(const Eigen::Vector2d& point, const OrientedBox& box) {

@@ -34,36 +34,32 @@ static_assert(sizeof(Eigen::half) == 2 && sizeof(float) == 4);
 #error "safetensors are little endian; this reader copies them as they are"
 #endif
 
-[[noreturn]] void fail(const std::string& source, const std::string& what) {
-  throw core::InputError(source + ": " + what);
-}
-
 /// An open file of known size.
 class Input {
  public:
   Input(const fs::path& file, std::string source) : source_(std::move(source)) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
-    if (!fs::exists(status)) fail(source_, "no such file");
+    if (!fs::exists(status)) failOn(source_, "no such file");
     if (!fs::is_regular_file(status)) {
-      fail(source_,
+      failOn(source_,
            fs::is_directory(status) ? "is a folder; a file was expected" : "is not a regular file");
     }
     size_ = fs::file_size(file, error);
-    if (error) fail(source_, "cannot read: " + error.message());
+    if (error) failOn(source_, "cannot read: " + error.message());
     stream_.open(file, std::ios::binary);
-    if (!stream_) fail(source_, std::string("cannot read: ") + std::strerror(errno));
+    if (!stream_) failOn(source_, std::string("cannot read: ") + std::strerror(errno));
   }
 
   const std::string& source() const { return source_; }
   std::uint64_t size() const { return size_; }
   void read(char* target, std::uint64_t count) {
     stream_.read(target, static_cast<std::streamsize>(count));
-    if (!stream_) fail(source_, "truncated while it was read");
+    if (!stream_) failOn(source_, "truncated while it was read");
   }
   void goBack(std::uint64_t count) {
     stream_.seekg(-static_cast<std::streamoff>(count), std::ios::cur);
-    if (!stream_) fail(source_, "cannot read it a second time");
+    if (!stream_) failOn(source_, "cannot read it a second time");
   }
 
  private:
@@ -75,17 +71,17 @@ class Input {
 /// Length of the header [bytes]; fits the file and the limit.
 std::uint64_t readHeaderLength(Input& input) {
   if (input.size() < kLengthBytes) {
-    fail(input.source(), "truncated: " + std::to_string(input.size()) +
+    failOn(input.source(), "truncated: " + std::to_string(input.size()) +
                              " bytes; the 8 bytes of the header's length were expected");
   }
   std::uint64_t length = 0;
   input.read(reinterpret_cast<char*>(&length), kLengthBytes);
   if (length > kMaxHeader) {
-    fail(input.source(), "the header's length " + std::to_string(length) +
+    failOn(input.source(), "the header's length " + std::to_string(length) +
                              " exceeds the limit of " + std::to_string(kMaxHeader) + " bytes");
   }
   if (length > input.size() - kLengthBytes) {
-    fail(input.source(), "truncated: a header of " + std::to_string(length) +
+    failOn(input.source(), "truncated: a header of " + std::to_string(length) +
                              " bytes is announced, " + std::to_string(input.size() - kLengthBytes) +
                              " follow");
   }
@@ -97,7 +93,7 @@ SafetensorsHeader readHeader(Input& input) {
   std::string text(length, '\0');
   input.read(text.data(), length);
   if (text.empty() || text.front() != '{') {
-    fail(input.source(), "the header does not begin with '{'; a JSON object was expected");
+    failOn(input.source(), "the header does not begin with '{'; a JSON object was expected");
   }
   return parseHeader(text, input.size() - kLengthBytes - length, input.source());
 }
@@ -125,10 +121,10 @@ std::vector<float> toFloats(const std::string& bytes, TensorType type) {
 std::string checksumOf(const SafetensorsHeader& header, const std::string& source) {
   const auto found = header.metadata.find(kChecksumKey);
   if (found == header.metadata.end()) {
-    fail(source, std::string("the metadata lacks the key '") + kChecksumKey + "'");
+    failOn(source, std::string("the metadata lacks the key '") + kChecksumKey + "'");
   }
   if (found->second.size() != kChecksumDigits) {
-    fail(source, "the metadata's sha256 has " + std::to_string(found->second.size()) +
+    failOn(source, "the metadata's sha256 has " + std::to_string(found->second.size()) +
                      " characters; 64 hexadecimal digits were expected");
   }
   return found->second;
@@ -138,7 +134,7 @@ std::string checksumOf(const SafetensorsHeader& header, const std::string& sourc
 /// its begin.
 void requireChecksum(Input& input, std::uint64_t size, const std::string& expected) {
   if (size > kMaxData) {
-    fail(input.source(), "the data section of " + std::to_string(size) +
+    failOn(input.source(), "the data section of " + std::to_string(size) +
                              " bytes exceeds the limit of " + std::to_string(kMaxData) + " bytes");
   }
   core::Sha256 hash;
@@ -150,7 +146,7 @@ void requireChecksum(Input& input, std::uint64_t size, const std::string& expect
   }
   const std::string actual = hash.finish();
   if (actual != expected) {
-    fail(input.source(), "the data section's checksum is " + actual +
+    failOn(input.source(), "the data section's checksum is " + actual +
                              ", the metadata's sha256 is '" + expected + "'; the file is damaged");
   }
   input.goBack(size);
@@ -162,7 +158,7 @@ Tensor readTensor(Input& input, const TensorEntry& entry) {
   Tensor tensor{entry.shape, toFloats(bytes, entry.type)};
   for (std::size_t i = 0; i < tensor.values.size(); ++i) {
     if (std::isfinite(tensor.values[i])) continue;
-    fail(input.source(), "tensor '" + entry.name + "' holds " +
+    failOn(input.source(), "tensor '" + entry.name + "' holds " +
                              core::formatNumber(static_cast<double>(tensor.values[i])) +
                              " at element " + std::to_string(i) + "; finite values were expected");
   }

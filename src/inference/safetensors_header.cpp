@@ -10,11 +10,12 @@
 #include "inference/strict_json.h"
 
 namespace cdiff::inference {
-namespace {
 
-[[noreturn]] void fail(const std::string& source, const std::string& what) {
+void failOn(const std::string& source, const std::string& what) {
   throw core::InputError(source + ": " + what);
 }
+
+namespace {
 
 /// A size or an offset: an integer from 0 to 2^63 - 1.
 std::uint64_t naturalOf(const Json& value, const std::string& where) {
@@ -105,12 +106,12 @@ TensorEntry entryOf(const std::string& name, const Json& object, const std::stri
 
 std::map<std::string, std::string> metadataOf(const Json& object, const std::string& source) {
   if (!object.is_object()) {
-    fail(source, std::string(kMetadataKey) + " is " + kindOf(object) + "; an object was expected");
+    failOn(source, std::string(kMetadataKey) + " is " + kindOf(object) + "; an object was expected");
   }
   std::map<std::string, std::string> metadata;
   for (const auto& item : object.items()) {
     if (!item.value().is_string()) {
-      fail(source,
+      failOn(source,
            "metadata '" + item.key() + "' is " + kindOf(item.value()) + "; a string was expected");
     }
     metadata[item.key()] = item.value().get<std::string>();
@@ -128,18 +129,18 @@ void arrange(std::vector<TensorEntry>& entries, std::uint64_t data_size,
   for (const TensorEntry& entry : entries) {
     if (entry.begin != end) {
       const bool overlap = entry.begin < end;
-      fail(source, "tensor '" + entry.name + "' begins at byte " + std::to_string(entry.begin) +
+      failOn(source, "tensor '" + entry.name + "' begins at byte " + std::to_string(entry.begin) +
                        (overlap ? ", an overlap with" : ", a gap after") +
                        " the tensor before, which ends at " + std::to_string(end));
     }
     end = entry.end;
   }
   if (end > data_size) {
-    fail(source, "truncated: the tensors need " + std::to_string(end) +
+    failOn(source, "truncated: the tensors need " + std::to_string(end) +
                      " bytes after the header, the file has " + std::to_string(data_size));
   }
   if (end < data_size) {
-    fail(source, std::to_string(data_size - end) + " trailing bytes after the last tensor");
+    failOn(source, std::to_string(data_size - end) + " trailing bytes after the last tensor");
   }
 }
 
@@ -149,7 +150,7 @@ SafetensorsHeader parseHeader(std::string_view text, std::uint64_t data_size,
                               const std::string& source) {
   const Json json = parseStrictJson(text, source + ": the header");
   if (!json.is_object()) {
-    fail(source, "the header is " + kindOf(json) + "; a JSON object was expected");
+    failOn(source, "the header is " + kindOf(json) + "; a JSON object was expected");
   }
   SafetensorsHeader header;
   for (const auto& item : json.items()) {
@@ -170,15 +171,15 @@ void requireExpected(const SafetensorsHeader& header, const std::vector<TensorSh
   for (const TensorShape& tensor : expected) {
     const auto found = present.find(tensor.name);
     if (found == present.end()) {
-      fail(source, "missing tensor '" + tensor.name + "' of shape " + shapeText(tensor.shape));
+      failOn(source, "missing tensor '" + tensor.name + "' of shape " + shapeText(tensor.shape));
     }
     if (found->second->shape != tensor.shape) {
-      fail(source, "tensor '" + tensor.name + "' has shape " + shapeText(found->second->shape) +
+      failOn(source, "tensor '" + tensor.name + "' has shape " + shapeText(found->second->shape) +
                        "; " + shapeText(tensor.shape) + " was expected");
     }
     present.erase(found);
   }
-  if (!present.empty()) fail(source, "unknown tensor '" + present.begin()->first + "'");
+  if (!present.empty()) failOn(source, "unknown tensor '" + present.begin()->first + "'");
 }
 
 std::uint64_t bytesOf(TensorType type) { return type == TensorType::kF16 ? 2 : 4; }

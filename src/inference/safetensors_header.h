@@ -44,4 +44,7 @@ std::uint64_t bytesOf(TensorType type);
 /// "[3, 4]".
 std::string shapeText(const std::vector<std::int64_t>& shape);
 
+/// Throws core::InputError "SOURCE: WHAT".
+[[noreturn]] void failOn(const std::string& source, const std::string& what);
+
 }  // namespace cdiff::inference

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 using core::InputError;
 using nlohmann::json;
 
-constexpr std::string_view kMagic = "CDIFFCP1";
-constexpr std::size_t kDigestLength = 64;
+constexpr std::string_view kCheckpointMagic = "CDIFFCP1";
+constexpr std::size_t kCheckpointDigest = 64;
 
 at::Tensor takeTensor(ByteReader& reader, const std::vector<std::int64_t>& shape) {
   at::Tensor tensor = at::empty(shape, at::kFloat);
@@ -48,7 +48,7 @@ void writeCheckpoint(const fs::path& path, const Checkpoint& checkpoint) {
   json shapes = json::array();
   for (const auto& [name, tensor] : checkpoint.tensors)
     shapes.push_back({name, tensor.sizes().vec()});
-  std::string content(kMagic);
+  std::string content(kCheckpointMagic);
   putText(content, json{{"facts", checkpoint.facts}, {"tensors", shapes}}.dump());
   for (const auto& [name, tensor] : checkpoint.tensors) {
     const at::Tensor plain = tensor.detach().to(at::kCPU, at::kFloat).contiguous();
@@ -62,13 +62,13 @@ void writeCheckpoint(const fs::path& path, const Checkpoint& checkpoint) {
 Checkpoint readCheckpoint(const fs::path& path) {
   const std::string name = "checkpoint '" + path.string() + "'";
   const std::string content = core::readFile(path, "checkpoint");
-  if (content.size() < kMagic.size() + kDigestLength ||
-      content.compare(0, kMagic.size(), kMagic) != 0)
+  if (content.size() < kCheckpointMagic.size() + kCheckpointDigest ||
+      content.compare(0, kCheckpointMagic.size(), kCheckpointMagic) != 0)
     throw InputError(name + ": is not a checkpoint");
-  const std::string_view body(content.data(), content.size() - kDigestLength);
+  const std::string_view body(content.data(), content.size() - kCheckpointDigest);
   if (core::sha256(body) != content.substr(body.size()))
     throw InputError(name + ": the checksum at its end is not that of its content");
-  ByteReader reader(body, name, kMagic.size());
+  ByteReader reader(body, name, kCheckpointMagic.size());
   const json header = json::parse(reader.text(), nullptr, false);
   if (!header.is_object()) throw InputError(name + ": the header is not JSON");
   Checkpoint checkpoint;

@@ -14,7 +14,6 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGate = 1.5;           // [m] to the centre line
 constexpr double kLevelHeight = 3.0;    // [m]
 constexpr double kDistanceScale = 0.5;  // [m] a distance of so much costs 1
@@ -167,10 +166,9 @@ CheapestChoice cheapestChoice(const CandidateLayers& layers, const TransitionCos
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kHeadingScale = 0.3;  // [rad]
-constexpr double kDetour = 20.0;       // [m] lanes of a network may overlap where they join
-constexpr double kBackwards = 0.5;     // [m] a projection may fall back by so much on its lane
+constexpr double kLineHeadingScale = 0.3;  // [rad]
+constexpr double kDetour = 20.0;           // [m] lanes of a network may overlap where they join
+constexpr double kLineBackwards = 0.5;     // [m] a projection may fall back by so much on its lane
 
 /// Finds the lane of every point of a driven line.
 class RouteMatcher {
@@ -179,7 +177,7 @@ class RouteMatcher {
       : network_(network), points_(distinctPoints(points, 1e-3)) {
     const CandidateFinder finder(network_, points_);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      layers_.push_back(finder.find(points_[i], headingAt(i), kHeadingScale));
+      layers_.push_back(finder.find(points_[i], headingAt(i), kLineHeadingScale));
     }
   }
 
@@ -218,7 +216,7 @@ class RouteMatcher {
       const LaneSearch::Arrival arrival = search.arrivalAt(to.position);
       const double step = to.position.arc_length - from.position.arc_length;
       const bool same_lane = to.position.lane == from.position.lane;
-      if (same_lane && step >= -kBackwards) {
+      if (same_lane && step >= -kLineBackwards) {
         costs.push_back(squared(step - distance));
       } else if (arrival.rank < kInfinity) {
         costs.push_back(squared(arrival.driven - distance) + arrival.rank - arrival.driven);

@@ -10,7 +10,6 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 0.5;  // [m] "abreast" is only as exact as that where lanes bend
 
 }  // namespace
@@ -144,10 +143,6 @@ double LaneSearch::lengthToBegin(LaneIndex lane) const {
 namespace {
 
 constexpr double kChangeStretch = 60.0;  // [m] a change happens within so much of its lane
-
-double lengthOf(const RoadNetwork& network, LaneIndex lane) {
-  return network.lane(lane).centerline.length();
-}
 
 /// Lanes lanes[first..last] of a path that lie side by side.
 struct SideBySide {

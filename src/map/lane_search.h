@@ -10,6 +10,13 @@
 
 namespace cdiff::map {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Of a lane's centre line [m].
+inline double lengthOf(const RoadNetwork& network, LaneIndex lane) {
+  return network.lane(lane).centerline.length();
+}
+
 /// Ranking penalty of a change to the neighbour of a lane of which `available` metres are left [m]:
 /// 5, more where that is too short to change comfortably, and inside junctions.
 double laneChangePenalty(const Lane& lane, double available);

@@ -15,8 +15,8 @@ namespace cdiff::map {
 namespace {
 
 constexpr double kLowestRoutableSpeed = 2.0;  // [m/s]
-constexpr double kStubLength = 0.01;          // [m] drawn for a lane whose points all coincide
-constexpr double kDistinct = 1e-3;            // [m] points nearer than this are one
+constexpr double kDrawnLength = 0.01;         // [m] drawn for a lane whose points all coincide
+constexpr double kDistinctPoints = 1e-3;      // [m] points nearer than this are one
 constexpr double kLargestWidth = 100.0;       // [m] of a lane
 constexpr double kLargestExtent = 1e6;        // [m] between two points of a network
 
@@ -50,13 +50,13 @@ bool degenerate(const std::vector<Eigen::Vector3d>& shape) {
   for (std::size_t i = 1; i < shape.size(); ++i) {
     length = std::max(length, (shape[i] - shape[0]).head<2>().norm());
   }
-  return length < kDistinct;
+  return length < kDistinctPoints;
 }
 
-double endHeading(const std::vector<Eigen::Vector3d>& shape) {
+double headingAtEnd(const std::vector<Eigen::Vector3d>& shape) {
   for (std::size_t i = shape.size(); i-- > 1;) {
     const Eigen::Vector3d along = shape.back() - shape[i - 1];
-    if (along.head<2>().norm() >= kDistinct) return std::atan2(along.y(), along.x());
+    if (along.head<2>().norm() >= kDistinctPoints) return std::atan2(along.y(), along.x());
   }
   return 0.0;
 }
@@ -64,7 +64,7 @@ double endHeading(const std::vector<Eigen::Vector3d>& shape) {
 double beginHeading(const std::vector<Eigen::Vector3d>& shape) {
   for (std::size_t i = 1; i < shape.size(); ++i) {
     const Eigen::Vector3d along = shape[i] - shape.front();
-    if (along.head<2>().norm() >= kDistinct) return std::atan2(along.y(), along.x());
+    if (along.head<2>().norm() >= kDistinctPoints) return std::atan2(along.y(), along.x());
   }
   return 0.0;
 }
@@ -274,7 +274,7 @@ double NetworkReader::headingAround(LaneIndex index) const {
   const Lane& lane = network_.lane(index);
   for (const LaneIndex previous : lane.previous) {
     const auto& shape = shapes_[static_cast<std::size_t>(previous)];
-    if (!degenerate(shape)) return endHeading(shape);
+    if (!degenerate(shape)) return headingAtEnd(shape);
   }
   for (const LaneLink& next : lane.next) {
     const auto& shape = shapes_[static_cast<std::size_t>(next.to)];
@@ -290,7 +290,7 @@ void NetworkReader::makeCenterlines() {
     if (degenerate(shape)) {
       const Eigen::Vector2d along = geometry::direction(headingAround(static_cast<LaneIndex>(i)));
       const Eigen::Vector3d start = shape.front();
-      shape = {start, start + kStubLength * Eigen::Vector3d(along.x(), along.y(), 0.0)};
+      shape = {start, start + kDrawnLength * Eigen::Vector3d(along.x(), along.y(), 0.0)};
     }
     network_.lanes_[i].centerline = geometry::Polyline(shape);
   }

@@ -12,8 +12,6 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// A lane of one edge of the list and the cheapest way to it.
 struct EdgeLane {
   LaneIndex lane = kNoLane;

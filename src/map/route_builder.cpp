@@ -15,11 +15,7 @@ constexpr double kBlendLength = 25.0;        // [m] of a comfortable lane change
 constexpr double kSampleSpacing = 0.25;      // [m] before resampling
 constexpr std::size_t kRoundingSamples = 6;  // samples to each side of a corner that round it
 constexpr double kPointSpacing = 1.0;        // [m] of the finished route
-constexpr double kMergeDistance = 1e-3;      // [m]
-
-double lengthOf(const RoadNetwork& network, LaneIndex lane) {
-  return network.lane(lane).centerline.length();
-}
+constexpr double kSamePoint = 1e-3;          // [m]
 
 /// Connected lanes without a change, prolonged at both ends along lanes that run beside the rest of
 /// the way.
@@ -41,7 +37,7 @@ struct Run {
 
 void Run::addPoint(const Eigen::Vector3d& point) {
   const double step = points.empty() ? 0.0 : (point - points.back()).head<2>().norm();
-  if (!points.empty() && step < kMergeDistance) return;
+  if (!points.empty() && step < kSamePoint) return;
   length_ += step;
   points.push_back(point);
 }
@@ -197,7 +193,7 @@ RouteBuilder::Window RouteBuilder::windowAt(std::size_t change) const {
 }
 
 void RouteBuilder::addSample(const Eigen::Vector3d& point, LaneIndex lane) {
-  if (!points_.empty() && (point - points_.back()).head<2>().norm() < kMergeDistance) return;
+  if (!points_.empty() && (point - points_.back()).head<2>().norm() < kSamePoint) return;
   points_.push_back(point);
   lanes_.push_back(lane);
 }

@@ -13,7 +13,6 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMergeDistance = 0.1;  // [m] key points nearer than this are one
 constexpr double kHeadingScale =
     0.6;                            // [rad] towards the next key point, which may lie behind a bend

@@ -14,7 +14,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kMean = {
+constexpr FigureDefinition kEncroachmentMean = {
     "post_encroachment_mean_s",
     "/metrics/post_encroachment_s/mean",
     "Post-encroachment time, mean over CBVs",
@@ -27,7 +27,7 @@ constexpr FigureDefinition kMean = {
     "(as in FHWA's SSAM, Gettman et al. 2008).",
     "RIFT does not compute it.",
 };
-constexpr FigureDefinition kDeviation = {
+constexpr FigureDefinition kEncroachmentDeviation = {
     "post_encroachment_std_s",
     "/metrics/post_encroachment_s/std",
     "Post-encroachment time, standard deviation over CBVs",
@@ -37,7 +37,7 @@ constexpr FigureDefinition kDeviation = {
     "Standard deviation (n - 1) of the post-encroachment times of the CBVs.",
     "",
 };
-constexpr FigureDefinition kMinimum = {
+constexpr FigureDefinition kEncroachmentMinimum = {
     "post_encroachment_min_s",
     "/metrics/post_encroachment_s/min",
     "Post-encroachment time, minimum",
@@ -52,7 +52,7 @@ constexpr FigureDefinition kMinimum = {
 
 using traffic::Vehicle;
 
-bool usable(const Vehicle* vehicle) {
+bool isUsable(const Vehicle* vehicle) {
   return vehicle != nullptr && vehicle->state.position.allFinite() &&
          std::isfinite(vehicle->state.heading);
 }
@@ -101,9 +101,9 @@ class PostEncroachment final : public Metric {
     const DistributionMeasure measure =
         times.measure(cbvs_.empty() ? std::string(kNoCbv)
                                     : "no CBV was ever at one place with the ego within " + within);
-    sink.set(kMean, measure.mean);
-    sink.set(kDeviation, measure.standard_deviation);
-    sink.set(kMinimum, measure.minimum);
+    sink.set(kEncroachmentMean, measure.mean);
+    sink.set(kEncroachmentDeviation, measure.standard_deviation);
+    sink.set(kEncroachmentMinimum, measure.minimum);
     sink.setList("/cbv/post_encroachments", std::move(entries));
   }
 
@@ -120,7 +120,7 @@ class PostEncroachment final : public Metric {
   const SweptBox* extend(Track& track, const Vehicle* vehicle, double time) const {
     while (!track.ways.empty() && track.ways.front().begin < time - limit_ - 1.0)
       track.ways.pop_front();
-    const bool moved = track.last && last_time_ && usable(vehicle);
+    const bool moved = track.last && last_time_ && isUsable(vehicle);
     if (moved) {
       SweptBox way;
       way.box = vehicle->box();
@@ -131,7 +131,7 @@ class PostEncroachment final : public Metric {
       way.duration = time - *last_time_;
       track.ways.push_back(way);
     }
-    track.last = usable(vehicle) ? std::optional<Vehicle>(*vehicle) : std::nullopt;
+    track.last = isUsable(vehicle) ? std::optional<Vehicle>(*vehicle) : std::nullopt;
     return moved ? &track.ways.back() : nullptr;
   }
 
@@ -164,7 +164,7 @@ class PostEncroachment final : public Metric {
 MetricDescriptor postEncroachmentMetric() {
   return {"post_encroachment",
           "Post-encroachment time of the ego and each CBV.",
-          {kMean, kDeviation, kMinimum},
+          {kEncroachmentMean, kEncroachmentDeviation, kEncroachmentMinimum},
           [](const MetricContext& context) {
             return std::make_unique<PostEncroachment>(context.options.post_encroachment_limit);
           }};

@@ -46,7 +46,7 @@ const FigureDefinition figures::kRiftSpeedWasserstein = {
 
 namespace {
 
-constexpr FigureDefinition kAccelerationMean = {
+constexpr FigureDefinition kRiftAccelerationMean = {
     "rift_compat_acceleration_mean_mps2",
     "/metrics/rift_compat/acceleration_mean_mps2/value",
     "RIFT: acceleration, mean",
@@ -57,7 +57,7 @@ constexpr FigureDefinition kAccelerationMean = {
     "histories repeated.",
     "",
 };
-constexpr FigureDefinition kAccelerationDeviation = {
+constexpr FigureDefinition kRiftAccelerationDeviation = {
     "rift_compat_acceleration_std_mps2",
     "/metrics/rift_compat/acceleration_std_mps2/value",
     "RIFT: acceleration, standard deviation",
@@ -67,7 +67,7 @@ constexpr FigureDefinition kAccelerationDeviation = {
     "Square root of the variance of that histogram's midpoints.",
     "",
 };
-constexpr FigureDefinition kJerkMean = {
+constexpr FigureDefinition kRiftJerkMean = {
     "rift_compat_jerk_mean_mps3",
     "/metrics/rift_compat/jerk_mean_mps3/value",
     "RIFT: jerk, mean",
@@ -78,7 +78,7 @@ constexpr FigureDefinition kJerkMean = {
     "being 0, from 2 m/s^3 bins from -10 to 10, histories repeated.",
     "",
 };
-constexpr FigureDefinition kJerkDeviation = {
+constexpr FigureDefinition kRiftJerkDeviation = {
     "rift_compat_jerk_std_mps3",
     "/metrics/rift_compat/jerk_std_mps3/value",
     "RIFT: jerk, standard deviation",
@@ -88,7 +88,7 @@ constexpr FigureDefinition kJerkDeviation = {
     "Square root of the variance of that jerk histogram's midpoints.",
     "",
 };
-constexpr FigureDefinition kSpeedMean = {
+constexpr FigureDefinition kRiftSpeedMean = {
     "rift_compat_speed_mean_mps",
     "/metrics/rift_compat/speed_mean_mps/value",
     "RIFT: speed, mean",
@@ -98,7 +98,7 @@ constexpr FigureDefinition kSpeedMean = {
     "Mean speed from the midpoints of RIFT's bins below 14 m/s, histories repeated.",
     "",
 };
-constexpr FigureDefinition kSpeedDeviation = {
+constexpr FigureDefinition kRiftSpeedDeviation = {
     "rift_compat_speed_std_mps",
     "/metrics/rift_compat/speed_std_mps/value",
     "RIFT: speed, standard deviation",
@@ -136,9 +136,9 @@ class RiftMotion final : public Metric {
   }
 
   void report(MetricSink& sink) const override {
-    report(sink, speeds_, kSpeedMean, kSpeedDeviation);
-    report(sink, accelerations_, kAccelerationMean, kAccelerationDeviation);
-    report(sink, jerks_, kJerkMean, kJerkDeviation);
+    report(sink, speeds_, kRiftSpeedMean, kRiftSpeedDeviation);
+    report(sink, accelerations_, kRiftAccelerationMean, kRiftAccelerationDeviation);
+    report(sink, jerks_, kRiftJerkMean, kRiftJerkDeviation);
     sink.set(figures::kRiftSpeedShapiroWilk, normality(speeds_));
     sink.set(figures::kRiftAccelerationShapiroWilk, normality(accelerations_));
     std::optional<double> distance;
@@ -199,9 +199,9 @@ class RiftMotion final : public Metric {
 MetricDescriptor riftMotionMetric() {
   return {"rift_motion",
           "Speed, acceleration and jerk of CBVs as RIFT's code computes them.",
-          {kAccelerationMean, figures::kRiftAccelerationShapiroWilk, kAccelerationDeviation,
-           kJerkMean, kJerkDeviation, kSpeedMean, figures::kRiftSpeedShapiroWilk, kSpeedDeviation,
-           figures::kRiftSpeedWasserstein},
+          {kRiftAccelerationMean, figures::kRiftAccelerationShapiroWilk, kRiftAccelerationDeviation,
+           kRiftJerkMean, kRiftJerkDeviation, kRiftSpeedMean, figures::kRiftSpeedShapiroWilk,
+           kRiftSpeedDeviation, figures::kRiftSpeedWasserstein},
           [](const MetricContext& context) {
             return std::make_unique<RiftMotion>(context.options.decision_period);
           }};

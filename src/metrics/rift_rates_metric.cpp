@@ -46,7 +46,7 @@ constexpr FigureDefinition kReachedProgress = {
     "driven as CBV.",
     "",
 };
-constexpr FigureDefinition kUncomfortable = {
+constexpr FigureDefinition kRiftUncomfortable = {
     "rift_compat_uncomfortable_rate_percent",
     "/metrics/rift_compat/uncomfortable_rate_percent/value",
     "RIFT: UC",
@@ -79,7 +79,7 @@ class RiftRates final : public Metric {
 
   void report(MetricSink& sink) const override {
     sink.set(figures::kRiftOffRoad, off_road_.measure(kNoCbv));
-    sink.set(kUncomfortable, uncomfortable_.measure(kNoCbv));
+    sink.set(kRiftUncomfortable, uncomfortable_.measure(kNoCbv));
     sink.set(figures::kRiftCollisionsPerKm,
              collisionsPerKilometre(collided_.size(), distance_, driven_.size()));
     const std::optional<double> progress =
@@ -117,12 +117,13 @@ class RiftRates final : public Metric {
 }  // namespace
 
 MetricDescriptor riftRatesMetric() {
-  return {"rift_rates",
-          "Rates of CBVs as RIFT's code computes them.",
-          {figures::kRiftCollisionsPerKm, figures::kRiftOffRoad, kReachedProgress, kUncomfortable},
-          [](const MetricContext& context) {
-            return std::make_unique<RiftRates>(context.options.decision_period);
-          }};
+  return {
+      "rift_rates",
+      "Rates of CBVs as RIFT's code computes them.",
+      {figures::kRiftCollisionsPerKm, figures::kRiftOffRoad, kReachedProgress, kRiftUncomfortable},
+      [](const MetricContext& context) {
+        return std::make_unique<RiftRates>(context.options.decision_period);
+      }};
 }
 
 }  // namespace cdiff::metrics

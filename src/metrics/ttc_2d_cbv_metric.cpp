@@ -7,7 +7,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kMean = {
+constexpr FigureDefinition kTtcCbvMean = {
     "ttc_cbv_mean_s",
     "/metrics/ttc_2d_cbv_s/mean",
     "2D-TTC to CBVs, mean",
@@ -17,11 +17,11 @@ constexpr FigureDefinition kMean = {
     "As ttc_mean_s, of the CBVs alone.",
     "RIFT takes all vehicles.",
 };
-constexpr FigureDefinition kDeviation = {
+constexpr FigureDefinition kTtcCbvDeviation = {
     "ttc_cbv_std_s",     "/metrics/ttc_2d_cbv_s/std", "2D-TTC to CBVs, standard deviation", "s",
     Direction::kNeither, Subject::kEgoAndOthers,      "As ttc_std_s, of the CBVs alone.",   "",
 };
-constexpr FigureDefinition kMinimum = {
+constexpr FigureDefinition kTtcCbvMinimum = {
     "ttc_cbv_min_s",
     "/metrics/ttc_2d_cbv_s/min",
     "2D-TTC to CBVs, minimum",
@@ -33,7 +33,7 @@ constexpr FigureDefinition kMinimum = {
     3,
     true,
 };
-constexpr FigureDefinition kDefined = {
+constexpr FigureDefinition kTtcCbvDefined = {
     "ttc_cbv_defined_percent",
     "/metrics/ttc_2d_cbv_defined_percent/value",
     "2D-TTC to CBVs is defined",
@@ -57,10 +57,10 @@ class Ttc2dCbv final : public Metric {
     const bool no_cbv = defined_.ticks() == 0;
     const DistributionMeasure times =
         times_.measure(no_cbv ? kNoCbv : "no CBV was on a collision course with the ego");
-    sink.set(kMean, times.mean);
-    sink.set(kDeviation, times.standard_deviation);
-    sink.set(kMinimum, times.minimum);
-    sink.set(kDefined, defined_.measure(kNoCbv));
+    sink.set(kTtcCbvMean, times.mean);
+    sink.set(kTtcCbvDeviation, times.standard_deviation);
+    sink.set(kTtcCbvMinimum, times.minimum);
+    sink.set(kTtcCbvDefined, defined_.measure(kNoCbv));
   }
 
  private:
@@ -73,7 +73,7 @@ class Ttc2dCbv final : public Metric {
 MetricDescriptor ttc2dCbvMetric() {
   return {"ttc_2d_cbv",
           "2D time to collision of the ego with CBVs.",
-          {kMean, kDeviation, kMinimum, kDefined},
+          {kTtcCbvMean, kTtcCbvDeviation, kTtcCbvMinimum, kTtcCbvDefined},
           [](const MetricContext&) { return std::make_unique<Ttc2dCbv>(); }};
 }
 

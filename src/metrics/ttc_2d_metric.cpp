@@ -37,7 +37,7 @@ const FigureDefinition figures::kTtcMinimum = {
 
 namespace {
 
-constexpr FigureDefinition kDeviation = {
+constexpr FigureDefinition kTtcDeviation = {
     "ttc_std_s",
     "/metrics/ttc_2d_s/std",
     "2D-TTC, standard deviation",
@@ -47,7 +47,7 @@ constexpr FigureDefinition kDeviation = {
     "Standard deviation (n - 1) of the same values.",
     "RIFT prints the variance of its bins as if it were the deviation.",
 };
-constexpr FigureDefinition kDefined = {
+constexpr FigureDefinition kTtcDefined = {
     "ttc_defined_percent",
     "/metrics/ttc_2d_defined_percent/value",
     "2D-TTC is defined",
@@ -70,9 +70,9 @@ class Ttc2d final : public Metric {
     const DistributionMeasure times =
         times_.measure("no vehicle was on a collision course with the ego");
     sink.set(figures::kTtcMean, times.mean);
-    sink.set(kDeviation, times.standard_deviation);
+    sink.set(kTtcDeviation, times.standard_deviation);
     sink.set(figures::kTtcMinimum, times.minimum);
-    sink.set(kDefined, defined_.measure(kNoEgo));
+    sink.set(kTtcDefined, defined_.measure(kNoEgo));
   }
 
  private:
@@ -85,7 +85,7 @@ class Ttc2d final : public Metric {
 MetricDescriptor ttc2dMetric() {
   return {"ttc_2d",
           "2D time to collision of the ego with any vehicle (paper's 2D-TTC).",
-          {figures::kTtcMean, kDeviation, figures::kTtcMinimum, kDefined},
+          {figures::kTtcMean, kTtcDeviation, figures::kTtcMinimum, kTtcDefined},
           [](const MetricContext&) { return std::make_unique<Ttc2d>(); }};
 }
 

@@ -7,7 +7,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kMean = {
+constexpr FigureDefinition kTtcAxisMean = {
     "ttc_lon_lat_mean_s",
     "/metrics/ttc_lon_lat_s/mean",
     "Smaller of longitudinal and lateral TTC, mean",
@@ -19,7 +19,7 @@ constexpr FigureDefinition kMean = {
     "each valid where the other direction overlaps at that time; vehicles as for ttc_mean_s.",
     "RIFT does not report it.",
 };
-constexpr FigureDefinition kDeviation = {
+constexpr FigureDefinition kTtcAxisDeviation = {
     "ttc_lon_lat_std_s",
     "/metrics/ttc_lon_lat_s/std",
     "Smaller of longitudinal and lateral TTC, standard deviation",
@@ -29,7 +29,7 @@ constexpr FigureDefinition kDeviation = {
     "Standard deviation (n - 1) of the values behind ttc_lon_lat_mean_s.",
     "",
 };
-constexpr FigureDefinition kMinimum = {
+constexpr FigureDefinition kTtcAxisMinimum = {
     "ttc_lon_lat_min_s",
     "/metrics/ttc_lon_lat_s/min",
     "Smaller of longitudinal and lateral TTC, minimum",
@@ -39,7 +39,7 @@ constexpr FigureDefinition kMinimum = {
     "The smallest of the values behind ttc_lon_lat_mean_s.",
     "",
 };
-constexpr FigureDefinition kDefined = {
+constexpr FigureDefinition kTtcAxisDefined = {
     "ttc_lon_lat_defined_percent",
     "/metrics/ttc_lon_lat_defined_percent/value",
     "Longitudinal or lateral TTC is defined",
@@ -61,10 +61,10 @@ class TtcLonLat final : public Metric {
   void report(MetricSink& sink) const override {
     const DistributionMeasure times =
         times_.measure("no vehicle was on a collision course with the ego");
-    sink.set(kMean, times.mean);
-    sink.set(kDeviation, times.standard_deviation);
-    sink.set(kMinimum, times.minimum);
-    sink.set(kDefined, defined_.measure(kNoEgo));
+    sink.set(kTtcAxisMean, times.mean);
+    sink.set(kTtcAxisDeviation, times.standard_deviation);
+    sink.set(kTtcAxisMinimum, times.minimum);
+    sink.set(kTtcAxisDefined, defined_.measure(kNoEgo));
   }
 
  private:
@@ -77,7 +77,7 @@ class TtcLonLat final : public Metric {
 MetricDescriptor ttcLonLatMetric() {
   return {"ttc_lon_lat",
           "Time to collision of the ego by the paper's wording.",
-          {kMean, kDeviation, kMinimum, kDefined},
+          {kTtcAxisMean, kTtcAxisDeviation, kTtcAxisMinimum, kTtcAxisDefined},
           [](const MetricContext&) { return std::make_unique<TtcLonLat>(); }};
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using traffic::VehicleRole;
 
-constexpr double kRounding = 1e-6;  // [s]
+constexpr double kPlanRounding = 1e-6;  // [s]
 
 /// The plan's horizon: planned and driven states of the CBV every 0.1 s from the decision on, and
 /// where the ego was.
@@ -30,8 +30,8 @@ struct PlanView {
 
 void addEgo(const record::SessionResult& result, const record::LoggedPlan& plan, PlanView& view) {
   for (const record::TimelineFrame& frame : result.timeline.frames()) {
-    const bool within =
-        frame.time >= plan.time - kRounding && frame.time <= plan.time + plan.horizon() + kRounding;
+    const bool within = frame.time >= plan.time - kPlanRounding &&
+                        frame.time <= plan.time + plan.horizon() + kPlanRounding;
     if (!within || frame.poses.empty()) continue;
     const record::TimelinePose& pose = frame.poses.front();  // the ego comes first
     if (pose.role != VehicleRole::kEgo) continue;
@@ -148,12 +148,12 @@ std::string speeds(const PlanView& view, const std::string& style) {
   return chartSvg(chart);
 }
 
-std::string legend(const std::string& style) {
+std::string planLegend(const std::string& style) {
   const auto item = [](const std::string& line_style, const std::string& text) {
     return "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path class=\"" +
            line_style + "\" d=\"M1 7H27\"/></svg>" + text + "</span>\n";
   };
-  return "<p class=\"legend\">\n" + item("plan", "planned by the CBV at this decision") +
+  return "<p class=\"planLegend\">\n" + item("plan", "planned by the CBV at this decision") +
          item("trail " + style, "driven by the CBV") + item("trail ego", "driven by the ego") +
          "</p>\n";
 }
@@ -169,7 +169,7 @@ std::string planPictures(const record::SessionResult& result, const record::Vehi
       std::isfinite(apart) ? core::formatFixed(apart, 2) + " m apart at the end" : "not finite";
   return "<h4>Plan of the decision at " + core::formatFixed(plan.time, 2) +
          " s against what was driven in the next " + core::formatFixed(plan.horizon(), 1) +
-         " s: " + end + "</h4>\n" + legend(style) + "<div class=\"charts\">\n" +
+         " s: " + end + "</h4>\n" + planLegend(style) + "<div class=\"charts\">\n" +
          fromAbove(result, vehicle, view, style) + speeds(view, style) +
          "</div>\n<p class=\"note\">Filled boxes: at the decision; outlined: at the plan's end. A "
          "dot every 0.5 s. Later decisions may change the plan.</p>\n";

@@ -35,9 +35,9 @@ std::string chart(const std::string& title, const std::string& unit, const recor
       sampleText("CBV", cbv, unit) + "; " + sampleText("background", background, unit));
 }
 
-std::string legend() {
+std::string guidanceLegend() {
   const std::string sign = "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\">";
-  return "<p class=\"legend\">\n" + sign +
+  return "<p class=\"guidanceLegend\">\n" + sign +
          "<path class=\"bars cbv c0\" d=\"M3 13V3H25V13\"/></svg>CBVs</span>\n" + sign +
          "<path class=\"bars bg\" d=\"M3 13V3H25V13\"/></svg>background vehicles</span>\n</p>\n";
 }
@@ -50,7 +50,7 @@ std::string drivingSection(const record::SessionResult& result) {
     return "<p class=\"note\">No vehicle but the ego was seen at a decision.</p>\n";
   }
   const metrics::SessionMeasures& measures = result.measures;
-  return legend() + "<div class=\"charts\">\n" +
+  return guidanceLegend() + "<div class=\"charts\">\n" +
          chart("Speed", "m/s", log.cbv().speed, log.background().speed) +
          chart("Acceleration", "m/s²", log.cbv().acceleration, log.background().acceleration) +
          "</div>\n<p class=\"note\">One value per vehicle and decision; ± is the standard "
@@ -69,7 +69,7 @@ std::string drivingSection(const record::SessionResult& result) {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1500;  // of a line
+constexpr std::size_t kMostGuidancePoints = 1500;  // of a line
 
 std::vector<std::string> vehiclesOf(const record::GuidanceLog& log) {
   std::vector<std::string> ids;
@@ -85,7 +85,7 @@ std::vector<std::string> vehiclesOf(const record::GuidanceLog& log) {
 ChartSeries lineOf(const record::GuidanceSeries& series, const std::string& id,
                    const std::string& style, double period) {
   ChartSeries line{style, {}};
-  const std::size_t stride = 1 + series.samples.size() / kMostPoints;
+  const std::size_t stride = 1 + series.samples.size() / kMostGuidancePoints;
   std::size_t index = 0;
   double last_time = 0.0;
   for (const record::GuidanceSample& sample : series.samples) {
@@ -130,8 +130,9 @@ std::string objectiveChart(const record::SessionResult& result,
   return chartSvg(chart);
 }
 
-std::string legend(const record::SessionResult& result, const std::vector<std::string>& vehicles) {
-  std::string html = "<p class=\"legend\">\n";
+std::string guidanceLegend(const record::SessionResult& result,
+                           const std::vector<std::string>& vehicles) {
+  std::string html = "<p class=\"guidanceLegend\">\n";
   for (const std::string& id : vehicles) {
     html +=
         "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
@@ -148,7 +149,7 @@ std::string guidanceSection(const record::SessionResult& result) {
   const record::GuidanceLog& log = result.guidance;
   if (log.series().empty()) return "<p class=\"note\">No plan of a CBV was guided.</p>\n";
   const std::vector<std::string> vehicles = vehiclesOf(log);
-  std::string html = legend(result, vehicles) + "<div class=\"charts\">\n";
+  std::string html = guidanceLegend(result, vehicles) + "<div class=\"charts\">\n";
   for (const record::GuidanceSeries& series : log.series()) {
     html += objectiveChart(result, series, vehicles);
   }

@@ -109,8 +109,8 @@ std::size_t poseCount(const record::Timeline& timeline) {
   return count;
 }
 
-constexpr float kLongestTime = 100.0F;  // to a collision [s]
-constexpr double kRounding = 1e-6;      // [s]
+constexpr float kLongestFrameTime = 100.0F;  // to a collision [s]
+constexpr double kFrameRounding = 1e-6;      // [s]
 
 /// 0 where there is no number.
 long rounded(double value) { return std::isfinite(value) ? std::lround(value) : 0; }
@@ -147,7 +147,7 @@ Json momentNumbers(const record::TimelineFrame& frame) {
     numbers.push_back(pose.vehicle);
     numbers.push_back(pose.slot);
     for (const float value : {pose.throttle, pose.brake, pose.steer, pose.gap,
-                              std::min(pose.time_to_collision, kLongestTime)}) {
+                              std::min(pose.time_to_collision, kLongestFrameTime)}) {
       numbers.push_back(rounded(100.0 * static_cast<double>(value)));
     }
   }
@@ -175,7 +175,7 @@ std::size_t firstShown(const Json& times, const record::Timeline& timeline) {
   const auto& gap = timeline.smallestGap();
   std::size_t shown = times.empty() ? 0 : times.size() - 1;
   if (!gap) return shown;
-  while (shown > 0 && times[shown].get<double>() > gap->time + kRounding) --shown;
+  while (shown > 0 && times[shown].get<double>() > gap->time + kFrameRounding) --shown;
   return shown;
 }
 

@@ -38,13 +38,13 @@ std::string at(double x, double y) {
   return core::formatFixed(-y, 2) + " " + core::formatFixed(-x, 2);
 }
 
-std::string pathOf(const char* style, const std::vector<std::pair<double, double>>& points) {
+std::string samplePath(const char* style, const std::vector<std::pair<double, double>>& points) {
   std::string data = "M0 0";
   for (const auto& [x, y] : points) data += "L" + at(x, y);
   return "<path class=\"" + std::string(style) + "\" d=\"" + data + "\"/>";
 }
 
-std::string fromAbove(const learning::DrivingSample& sample) {
+std::string sampleFromAbove(const learning::DrivingSample& sample) {
   std::vector<std::pair<double, double>> way;
   for (std::size_t i = 0; i + 1 < sample.route.size(); i += 2)
     way.emplace_back(diffusion::kRouteTokenScale * sample.route[i],
@@ -60,8 +60,8 @@ std::string fromAbove(const learning::DrivingSample& sample) {
   }
   return "<svg role=\"img\" aria-label=\"from above\" viewBox=\"" + core::formatFixed(-kAside, 0) +
          " " + core::formatFixed(-kAhead, 0) + " " + core::formatFixed(2.0 * kAside, 0) + " " +
-         core::formatFixed(kAhead + kBehind, 0) + "\">" + pathOf("way", way) +
-         "<rect x=\"-1\" y=\"-2.2\" width=\"2\" height=\"4.4\"/>" + pathOf("driven", driven) +
+         core::formatFixed(kAhead + kBehind, 0) + "\">" + samplePath("way", way) +
+         "<rect x=\"-1\" y=\"-2.2\" width=\"2\" height=\"4.4\"/>" + samplePath("driven", driven) +
          dots + "</svg>";
 }
 
@@ -78,7 +78,7 @@ std::string captionOf(const learning::DrivingSample& sample) {
 
 std::string figureOf(const learning::DrivingSample& sample) {
   return "<figure class=\"sample\"><img alt=\"front view\" src=\"" +
-         record::pngDataUri(sample.image) + "\">" + fromAbove(sample) + "<figcaption>" +
+         record::pngDataUri(sample.image) + "\">" + sampleFromAbove(sample) + "<figcaption>" +
          core::escapeMarkup(captionOf(sample)) + "</figcaption></figure>\n";
 }
 

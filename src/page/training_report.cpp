@@ -22,12 +22,12 @@ constexpr const char* kHeldOut = "held_out_";
 constexpr const char* kStyles[] = {"ego", "bg", "c0 cbv", "c1 cbv", "c3 cbv"};
 
 /// Held-out figures end in what they measure.
-struct Quantity {
+struct TrainingQuantity {
   const char* ending;
   const char* title;
   const char* unit;
 };
-constexpr Quantity kQuantities[] = {
+constexpr TrainingQuantity kQuantities[] = {
     {"ade_m", "Held out: mean displacement", "m"},
     {"fde_m", "Held out: last displacement", "m"},
     {"speed_mps", "Held out: speed", "m/s"},
@@ -60,9 +60,9 @@ void addRow(const std::vector<std::string>& cells, std::vector<TrainingStage>& s
   stage.curves[cells[3]].emplace_back(stage.seconds, std::stod(cells[4]));
 }
 
-std::string legend(const std::vector<std::pair<std::string, std::string>>& items) {
+std::string curveLegend(const std::vector<std::pair<std::string, std::string>>& items) {
   if (items.size() < 2) return "";
-  std::string html = "<div class=\"legend\">";
+  std::string html = "<div class=\"curveLegend\">";
   for (const auto& [style, text] : items) {
     html +=
         "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
@@ -79,8 +79,9 @@ std::string words(std::string name) {
 }
 
 /// One chart of the named curves; empty where there are none.
-std::string chartOf(const TrainingStage& stage, const std::string& title, const std::string& unit,
-                    const std::vector<std::pair<std::string, std::string>>& named) {
+std::string curveChart(const TrainingStage& stage, const std::string& title,
+                       const std::string& unit,
+                       const std::vector<std::pair<std::string, std::string>>& named) {
   Chart chart;
   chart.title = title;
   chart.unit = unit;
@@ -93,7 +94,7 @@ std::string chartOf(const TrainingStage& stage, const std::string& title, const 
     chart.series.push_back({style, stage.curves.at(figure)});
     items.emplace_back(style, text);
   }
-  return named.empty() ? "" : "<div>" + chartSvg(chart) + legend(items) + "</div>\n";
+  return named.empty() ? "" : "<div>" + chartSvg(chart) + curveLegend(items) + "</div>\n";
 }
 
 /// Figures of the stage that satisfy a test, with the words of their names that `shown` leaves.
@@ -110,7 +111,7 @@ std::vector<std::pair<std::string, std::string>> figuresOf(const TrainingStage& 
 std::string heldOutCharts(const TrainingStage& stage) {
   std::string html;
   const std::size_t start = std::string(kHeldOut).size();
-  for (const Quantity& quantity : kQuantities) {
+  for (const TrainingQuantity& quantity : kQuantities) {
     const std::string ending = quantity.ending;
     const auto matches = [&](const std::string& figure) {
       return startsWith(figure, kHeldOut) && endsWith(figure, ending);
@@ -118,7 +119,7 @@ std::string heldOutCharts(const TrainingStage& stage) {
     const auto shown = [&](const std::string& figure) {
       return figure.substr(start, figure.size() - start - ending.size());
     };
-    html += chartOf(stage, quantity.title, quantity.unit, figuresOf(stage, matches, shown));
+    html += curveChart(stage, quantity.title, quantity.unit, figuresOf(stage, matches, shown));
   }
   return html;
 }
@@ -127,15 +128,15 @@ std::string stageSection(const TrainingStage& stage) {
   const auto losses = [](const std::string& figure) { return startsWith(figure, "loss"); };
   const auto whole = [](const std::string& figure) { return figure; };
   const auto one = [&](const char* figure, const char* title, const char* unit) {
-    return chartOf(stage, title, unit,
-                   figuresOf(
-                       stage, [&](const std::string& name) { return name == figure; }, whole));
+    return curveChart(stage, title, unit,
+                      figuresOf(
+                          stage, [&](const std::string& name) { return name == figure; }, whole));
   };
   return "<section>\n<h2>" + core::escapeMarkup(words(stage.name)) + "</h2>\n<p class=\"note\">" +
          std::to_string(stage.steps) + " steps in " + core::formatFixed(stage.seconds, 0) +
          " s; horizontally: seconds of training</p>\n<div class=\"charts\">\n" +
-         chartOf(stage, "Loss (running mean, and its terms at the time)", "",
-                 figuresOf(stage, losses, whole)) +
+         curveChart(stage, "Loss (running mean, and its terms at the time)", "",
+                    figuresOf(stage, losses, whole)) +
          heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
          one("gradient_norm", "Norm of the gradient before clipping", "") +
          one("samples_per_second", "Pace", "samples/s") + "</div>\n</section>\n";

@@ -68,7 +68,7 @@ class Row {
   std::string place_;
 };
 
-metrics::MovingBox movingBox(const Row& row, const std::string& suffix) {
+metrics::MovingBox boxOfRow(const Row& row, const std::string& suffix) {
   metrics::MovingBox moving;
   moving.box.center = {row.number("x" + suffix), row.number("y" + suffix)};
   const Eigen::Vector2d forward{row.number("hx" + suffix), row.number("hy" + suffix)};
@@ -90,8 +90,8 @@ std::vector<std::string> evaluatePairs(const std::string& file) {
   for (std::size_t line_number = 2; std::getline(stream, line); ++line_number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const Row row(columns, cellsOf(line), file + ":" + std::to_string(line_number));
-    const metrics::MovingBox first = movingBox(row, "_i");
-    const auto time = metrics::timeToCollision2d(first, movingBox(row, "_j"));
+    const metrics::MovingBox first = boxOfRow(row, "_i");
+    const auto time = metrics::timeToCollision2d(first, boxOfRow(row, "_j"));
     results.push_back(std::to_string(results.size() + 1) + ": " +
                       (time ? core::formatNumber(*time) : "inf"));
   }

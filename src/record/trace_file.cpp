@@ -111,7 +111,7 @@ std::optional<VehicleRole> roleOf(const std::string& text) {
   return std::nullopt;
 }
 
-std::optional<TraceRow> rowOf(std::string_view line) {
+std::optional<TraceRow> traceRowOf(std::string_view line) {
   const std::vector<std::string> cells = core::csvCells(line);
   if (cells.size() != 10) return std::nullopt;
   const auto tick = core::parseNumber(cells[0]);
@@ -139,7 +139,7 @@ std::vector<TraceRow> readTrace(const std::filesystem::path& file) {
     const std::size_t end = text.find('\n', begin);
     const auto row = end == std::string::npos
                          ? std::nullopt
-                         : rowOf(std::string_view(text).substr(begin, end - begin));
+                         : traceRowOf(std::string_view(text).substr(begin, end - begin));
     if (!row) {
       throw core::InputError(file.string() + ":" + std::to_string(number) +
                              ": no row of a trace (tick, id, role, finite numbers, line end)");

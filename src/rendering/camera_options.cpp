@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::rendering {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Holds the values against the ranges of `describe`.
 class RangeCheck : public core::OptionsVisitor {
@@ -65,7 +64,7 @@ void CameraOptions::validate() const {
 Intrinsics intrinsicsOf(const CameraOptions& options) {
   Intrinsics intrinsics;
   const double width = static_cast<double>(options.width);
-  intrinsics.focal_length = 0.5 * width / std::tan(options.field_of_view * kPi / 360.0);
+  intrinsics.focal_length = 0.5 * width / std::tan(options.field_of_view * core::kPi / 360.0);
   intrinsics.center_x = 0.5 * (width - 1.0);
   intrinsics.center_y = 0.5 * (static_cast<double>(options.height) - 1.0);
   return intrinsics;

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "e2e_cdiff/core/angle.h"
 #include "rendering/view.h"
 
 namespace cdiff::rendering {
 namespace {
 
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr double kThinnest = 0.5;   // [samples] half the width of a drawn line
 constexpr double kShortest = 1e-6;  // [samples] shorter lines are left out
 constexpr double kFaintest = 0.02;  // less opaque lines are left out
@@ -73,11 +73,11 @@ Canvas::Canvas(const CameraOptions& options)
 }
 
 void Canvas::makeBackground(const CameraOptions& options) {
-  const double pitch = options.pitch * kRadiansPerDegree;
+  const double pitch = options.pitch * core::kDegree;
   for (int row = 0; row < rows_; ++row) {
     // Angle above the horizon of the ray through the row's middle.
     const double angle = std::atan((middle_row_ - row) / focal_length_) - pitch;
-    const double height = std::min(1.0, std::abs(angle) / (30.0 * kRadiansPerDegree));
+    const double height = std::min(1.0, std::abs(angle) / (30.0 * core::kDegree));
     background_.push_back(angle > 0.0 ? mix(kSkyHorizon, kSkyTop, height)
                                       : mix(kGrassHorizon, kGrassNear, std::sqrt(height)));
   }

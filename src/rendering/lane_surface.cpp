@@ -152,7 +152,7 @@ std::vector<Marking> laneMarkings(const map::RoadNetwork& network) {
 
 namespace {
 
-constexpr double kPiece = 10.0;         // [m] along the lane
+constexpr double kSlopePiece = 10.0;    // [m] along the lane
 constexpr double kMostHeight = 12.0;    // [m] a slope goes at most this far down
 constexpr double kLeastHeight = 0.4;    // [m] lower roads lie on the ground
 constexpr double kSlope = 1.5;          // [m] outwards per metre down
@@ -202,7 +202,7 @@ Surface deckPiece(const CrossSection& begin, const CrossSection& end, double lat
 
 void addBorder(const map::RoadNetwork& network, const map::Lane& lane, double side, double ground,
                std::vector<Surface>& surfaces) {
-  const auto sections = crossSections(lane.centerline, 0.0, lane.centerline.length(), kPiece);
+  const auto sections = crossSections(lane.centerline, 0.0, lane.centerline.length(), kSlopePiece);
   const double border = side * 0.5 * lane.width;
   for (std::size_t i = 1; i < sections.size(); ++i) {
     const Eigen::Vector3d middle = 0.5 * (sections[i - 1].at(border) + sections[i].at(border));

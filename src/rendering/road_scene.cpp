@@ -71,9 +71,9 @@ std::vector<std::array<Eigen::Vector3d, 3>> triangulate(std::vector<Eigen::Vecto
 
 namespace {
 
-constexpr double kPiece = 12.0;          // [m] longest piece of a lane
-constexpr double kShortestLane = 0.05;   // [m]
-constexpr double kAsphaltMargin = 0.25;  // [m] beside a lane
+constexpr double kLanePiece = 12.0;        // [m] longest piece of a lane
+constexpr double kShortestSurface = 0.05;  // [m]
+constexpr double kAsphaltMargin = 0.25;    // [m] beside a lane
 
 Surface surfaceOf(const Eigen::Vector3d* corners, int count, Color color, double rank) {
   Surface surface;
@@ -89,10 +89,10 @@ Surface surfaceOf(const Eigen::Vector3d* corners, int count, Color color, double
 
 void addLane(const map::Lane& lane, std::vector<Surface>& surfaces) {
   const double length = lane.centerline.length();
-  if (length < kShortestLane || lane.width <= 0.0) return;
+  if (length < kShortestSurface || lane.width <= 0.0) return;
   const bool road = lane.allows_cars;
   const double half_width = 0.5 * lane.width + (road ? kAsphaltMargin : 0.0);
-  const auto sections = crossSections(lane.centerline, 0.0, length, kPiece);
+  const auto sections = crossSections(lane.centerline, 0.0, length, kLanePiece);
   for (std::size_t i = 1; i < sections.size(); ++i) {
     const Eigen::Vector3d corners[4] = {sections[i - 1].at(-half_width),
                                         sections[i].at(-half_width), sections[i].at(half_width),

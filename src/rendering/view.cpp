@@ -4,19 +4,17 @@
 
 #include <cmath>
 
+#include "e2e_cdiff/core/angle.h"
+
 namespace cdiff::rendering {
-namespace {
-
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
-
-}  // namespace
+namespace {}  // namespace
 
 View::View(const CameraOptions& options, const traffic::Vehicle& vehicle)
     : heading_(geometry::direction(vehicle.state.heading)),
-      pitch_cosine_(std::cos(options.pitch * kRadiansPerDegree)),
-      pitch_sine_(std::sin(options.pitch * kRadiansPerDegree)),
+      pitch_cosine_(std::cos(options.pitch * core::kDegree)),
+      pitch_sine_(std::sin(options.pitch * core::kDegree)),
       far_distance_(options.far_distance),
-      side_tangent_(std::tan(0.5 * options.field_of_view * kRadiansPerDegree)),
+      side_tangent_(std::tan(0.5 * options.field_of_view * core::kDegree)),
       side_secant_(std::sqrt(1.0 + side_tangent_ * side_tangent_)) {
   const Eigen::Vector2d mount = vehicle.state.position + options.mount_forward * heading_;
   eye_ = {mount.x(), mount.y(), vehicle.state.elevation + options.mount_height};

@@ -10,14 +10,14 @@ namespace {
 constexpr double kReportPatience =
     2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
 
-std::string bagTopic(const std::string& topic) { return ::ros::names::resolve(topic); }
+std::string resolvedTopic(const std::string& topic) { return ::ros::names::resolve(topic); }
 
 }  // namespace
 
 void RecorderRos::begin(const msgs::SessionInfo& info) {
   const session::ScenarioOptions options = optionsFromMsg(info);
   bag_ = std::make_unique<BagFile>(std::filesystem::path(info.results_folder) / "session.bag",
-                                   options, bagTopic);
+                                   options, resolvedTopic);
   bag_->write(info);
   listen<nav_msgs::Path>(ChannelId::kEgoRoute, [this](const nav_msgs::Path::ConstPtr& path) {
     if (!has_route_) bag_->write(*path);

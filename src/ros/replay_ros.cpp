@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPatience = 30.0;  // [s] of wall time for the metrics node to do its next thing
-constexpr double kFarewell = 5.0;   // [s] for its files when the replay is interrupted
+constexpr double kReplayFarewell = 5.0;     // [s] for its files when the replay is interrupted
 constexpr double kHeartbeatTimeout = 10.0;  // [s] until the metrics node takes us for lost
 constexpr double kStraggle = 0.1;           // [s] for the answers to a tick that lacks some
 
@@ -221,7 +221,7 @@ void ReplayRos::publishInterruption() {
                  traffic::SessionStatus::kInterrupted, {0, "user", "the replay was interrupted"});
   publishTick(boost::make_shared<const msgs::TrafficSnapshot>(toMsg(end)));
   const Clock::time_point begin = Clock::now();
-  while (!book_.notFinished().empty() && ::ros::ok() && secondsSince(begin) < kFarewell)
+  while (!book_.notFinished().empty() && ::ros::ok() && secondsSince(begin) < kReplayFarewell)
     spin(kSpinPeriod);
 }
 

@@ -5,8 +5,8 @@
 namespace cdiff::simulation {
 namespace {
 
-constexpr double kStanding = 0.1;  ///< [m/s]
-constexpr double kMoving = 0.5;    ///< [m/s]
+constexpr double kStandingQueue = 0.1;  ///< [m/s]
+constexpr double kMoving = 0.5;         ///< [m/s]
 constexpr double kStopLine =
     8.0;  ///< a front bumper nearer to the lane's end waits at the stop line [m]
 constexpr double kApproaching = 20.0;      ///< a vehicle nearer than this to the stop line ... [m]
@@ -88,7 +88,7 @@ WayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles,
 void RightOfWay::look(const SimulatedVehicle& vehicle, bool ours, double step) {
   const map::LaneIndex index = network_.findLane(vehicle.lane_id);
   const int known = index == map::kNoLane ? -1 : junction_of_lane_[static_cast<std::size_t>(index)];
-  if (known < 0 || vehicle.state.speed > kStanding || ours) waiting_.erase(vehicle.id);
+  if (known < 0 || vehicle.state.speed > kStandingQueue || ours) waiting_.erase(vehicle.id);
   if (known < 0) return;
   const map::Lane& lane = network_.lane(index);
   const Place place{junctions_[static_cast<std::size_t>(known)], lane,
@@ -97,11 +97,11 @@ void RightOfWay::look(const SimulatedVehicle& vehicle, bool ours, double step) {
   noteQueue(place);
   if (vehicle.id == place.junction.granted) {
     place.junction.granted_gone = false;
-    place.junction.granted_stands = vehicle.state.speed <= kStanding;
+    place.junction.granted_stands = vehicle.state.speed <= kStandingQueue;
   }
   const double moving = place.lane.internal ? kMoving : kApproachSpeed;
   if (vehicle.state.speed > moving && place.to_end < kApproaching) place.junction.moving = true;
-  if (vehicle.state.speed <= kStanding && place.to_end <= kStopLine) {
+  if (vehicle.state.speed <= kStandingQueue && place.to_end <= kStopLine) {
     consider(vehicle, place, waiting_[vehicle.id] += step);
   }
 }

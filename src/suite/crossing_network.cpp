@@ -8,12 +8,10 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kDegree = core::kPi / 180.0;
-
 /// Directions of the arms; the main road's two come first, a third stands to either side of it.
 std::vector<double> armHeadings(int arms, Draws& draws) {
-  constexpr double kMainBend = 14.0 * kDegree;
-  constexpr double kSkew = 22.0 * kDegree;
+  constexpr double kMainBend = 14.0 * core::kDegree;
+  constexpr double kSkew = 22.0 * core::kDegree;
   const double main = draws.uniform(0.0, 2.0 * core::kPi);
   std::vector<double> headings = {main, main + core::kPi + draws.uniform(-kMainBend, kMainBend)};
   const double side = draws.sign();

@@ -8,7 +8,6 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kDegree = core::kPi / 180.0;
 constexpr double kLaneWidth = 3.5;  ///< [m]
 constexpr double kMedian = 1.0;     ///< half of it [m]
 constexpr double kRampEnd = 6.0;    ///< of a ramp before the added lane [m]
@@ -54,7 +53,7 @@ class Carriageway {
     const double heading = std::atan2(along.y(), along.x());
     const Line start = beside(beginning, -(lanes_ + 0.5) * kLaneWidth);
     RoadLine ramp(start.front().head<2>(), heading + core::kPi);
-    ramp.straight(8.0).arc(draws.uniform(40.0, 90.0), draws.uniform(20.0, 45.0) * kDegree);
+    ramp.straight(8.0).arc(draws.uniform(40.0, 90.0), draws.uniform(20.0, 45.0) * core::kDegree);
     ramp.straight(draws.uniform(60.0, 90.0));
     const Line line = reversed(climbing(ramp.points(), 10.0, elevation));
     const double speed = draws.pick(std::vector<double>{11.11, 13.89});
@@ -89,7 +88,7 @@ RoadPlan drawMerge(const NetworkSpec& spec, Draws& draws) {
   const double added = draws.uniform(60.0, 110.0);
   RoadLine middle({0.0, 0.0}, draws.uniform(0.0, 2.0 * core::kPi));
   middle.straight(kBefore + added + 10.0);
-  middle.arc(draws.uniform(150.0, 400.0), draws.sign() * draws.uniform(5.0, 18.0) * kDegree);
+  middle.arc(draws.uniform(150.0, 400.0), draws.sign() * draws.uniform(5.0, 18.0) * core::kDegree);
   middle.straight(kAfter - 10.0);
   const double length = lengthOf(middle.points());
   const double speed = drawLargeSpeed(draws);

@@ -9,13 +9,12 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kDegree = core::kPi / 180.0;
-constexpr double kLaneWidth = 3.5;                ///< [m]
-constexpr double kEntryRadius = 12.0;             ///< [m]
-constexpr double kEntryAngle = 32.0 * kDegree;    ///< turned away before the ring
-constexpr double kTrim = 22.0 * kDegree;          ///< of the ring, on both sides of an arm
-constexpr double kEntryGap = 3.3;                 ///< from an entry's end to the ring's middle [m]
-constexpr double kLeastSpacing = 62.0 * kDegree;  ///< between arms
+constexpr double kRingLaneWidth = 3.5;                ///< [m]
+constexpr double kEntryRadius = 12.0;                 ///< [m]
+constexpr double kEntryAngle = 32.0 * core::kDegree;  ///< turned away before the ring
+constexpr double kTrim = 22.0 * core::kDegree;        ///< of the ring, on both sides of an arm
+constexpr double kEntryGap = 3.3;  ///< from an entry's end to the ring's middle [m]
+constexpr double kLeastSpacing = 62.0 * core::kDegree;  ///< between arms
 
 /// A roundabout of which everything is drawn; ring nodes stand where the arms' middles meet it.
 class Roundabout {
@@ -57,10 +56,10 @@ class Roundabout {
   /// From ring node i to the next, counter-clockwise.
   std::string ringEdge(int i) const { return "ring_edge" + std::to_string(i % spec_.arms); }
   static std::string arm(int i) { return "arm" + std::to_string(i); }
-  double halfRoad() const { return 0.5 * spec_.lanes * kLaneWidth; }
+  double halfRoad() const { return 0.5 * spec_.lanes * kRingLaneWidth; }
   /// Where, outside the ring's middle, entries begin to turn away [m].
   double straightFrom() const {
-    return kEntryGap + halfRoad() - 0.5 * kLaneWidth + kEntryRadius * std::sin(kEntryAngle);
+    return kEntryGap + halfRoad() - 0.5 * kRingLaneWidth + kEntryRadius * std::sin(kEntryAngle);
   }
 
   void drawAngles(Draws& draws) {

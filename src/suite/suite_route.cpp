@@ -14,7 +14,6 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kDegree = core::kPi / 180.0;
 constexpr double kMargin = 5.0;  ///< from both ends of the road [m]
 
 /// Arc lengths of the whole manoeuvre: from the first junction to the last.
@@ -39,7 +38,7 @@ double turnOf(const map::Route& route, const Stretch& stretch) {
     turn += core::wrapAngle(heading - before);
     before = heading;
   }
-  return turn / kDegree;
+  return turn / core::kDegree;
 }
 
 /// Empty when the angle is none of a manoeuvre's.

@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
-from source_copy import SourceCopy  # noqa: E402
+from source_copy import SourceCopy, environment_of  # noqa: E402
 
 BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
 # Kind, name, most files (registration included, pages of docs that a test prints apart), test programs.
@@ -32,7 +32,7 @@ def contents(root):
 
 
 def fault_of_tests(copy, programs):
-    environment = {**os.environ, "E2E_CDIFF_SHARE": str(copy.root), "SUMO_HOME": "/usr/share/sumo"}
+    environment = environment_of(copy.build, copy.root)
     for name in programs:
         program = next(path for path in copy.build.rglob(name) if path.is_file() and os.access(path, os.X_OK))
         done = subprocess.run([program], env=environment, cwd=copy.build, timeout=600, capture_output=True, text=True, check=False)

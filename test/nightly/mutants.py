@@ -19,7 +19,7 @@ import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
-from source_copy import SourceCopy  # noqa: E402
+from source_copy import SourceCopy, environment_of  # noqa: E402
 
 BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
 COPY = Path(tempfile.gettempdir()) / f"e2e_cdiff_mutants_{os.getpid()}"
@@ -28,7 +28,7 @@ COPY_BUILD = COPY / "build"
 
 def failing_test(programs):
     """The first program that fails, None when all pass."""
-    environment = {**os.environ, "E2E_CDIFF_SHARE": str(COPY), "SUMO_HOME": "/usr/share/sumo"}
+    environment = environment_of(COPY_BUILD, COPY)
     environment.setdefault("E2E_CDIFF_DATA", str(SOURCE / ".." / "shared" / "data"))
     for name in programs:
         program = next(path for path in COPY_BUILD.rglob(f"test_{name}") if path.is_file())

@@ -7,7 +7,6 @@
 their tests. `thread`: ThreadSanitizer, the tests of what runs processes and threads. ROS, libtorch and oneDNN come without
 instrumentation, so what belongs to them is left out or suppressed. Each test program is one case.
 """
-import os
 import subprocess
 import sys
 import time
@@ -15,6 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
+from source_copy import environment_of  # noqa: E402
 
 KIND, BUILD, SOURCE, RESULT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), Path(sys.argv[4])
 FLAGS = {"address": "-fsanitize=address,undefined -fno-sanitize-recover=undefined", "thread": "-fsanitize=thread"}
@@ -49,9 +49,9 @@ def build(folder):
     return names
 
 
-def run(program):
+def run(program, folder):
     """None when the program passes, else the end of what it wrote."""
-    environment = {**os.environ, **OPTIONS, "E2E_CDIFF_SHARE": str(SOURCE), "SUMO_HOME": "/usr/share/sumo"}
+    environment = {**environment_of(folder, SOURCE), **OPTIONS}
     environment.setdefault("E2E_CDIFF_DATA", str(SOURCE / ".." / "shared" / "data"))
     # Limits of wall-clock time are for programs at full speed.
     arguments = [program, "--gtest_filter=-*WithinASecond:*Memory*:*AfterTheStepTimeout"]
@@ -68,7 +68,7 @@ def main():
     cases = []
     for name in build(folder):
         begin = time.monotonic()
-        failure = run(next(path for path in folder.rglob(name) if path.is_file()))
+        failure = run(next(path for path in folder.rglob(name) if path.is_file()), folder)
         cases.append((name, time.monotonic() - begin, failure))
         print(f"{cases[-1][1]:7.1f} s  {'FAILED' if failure else 'passed'}  {name}", flush=True)
         if failure:

@@ -35,7 +35,7 @@ LEFT_OUT = [
 ]
 SMALLER = [
     (r" rviz:=true", ""),
-    (r"\[--quiet\]", "--quiet"),
+    (r"\[(--\w+)\]", r"\1"),
     (r"evaluate test_routes", "evaluate test_routes --seeds 1 --set protocol.time_limit=4 --set verdict.judge=false"),
     (r"collect --suite (\S+)", r"collect --scenarios $(ls \1/scenarios/*.yaml | head -12)"),
     (r"(collect .*?)( --duration \d+)?$", r"\1 --duration 6"),
@@ -45,7 +45,7 @@ SMALLER = [
 # Commands whose results an example begins with.
 BEFORE = {
     "docs/evaluation.md": ["cp $SOURCE/config/evaluations/smoke.yaml my_matrix.yaml", "cdiff evaluate smoke --results results/a",
-                           "cdiff evaluate smoke --seeds 7 --results results/b"],
+                           "cdiff evaluate smoke --results results/b"],
     "docs/metrics.md": ["cp $DATA/reference/ttc_2d.csv pairs.csv", "cp $DATA/reference/shapiro_wilk.json cases.json"],
     "docs/replay.md": ["cdiff run roundabout_entry --record --results results/my_run"],
 }

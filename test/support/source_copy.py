@@ -6,6 +6,12 @@ import subprocess
 LEFT_OUT = {".git", "build", "devel", "install", "results"}
 
 
+def environment_of(build, share):
+    """For programs of another build than the one whose devel/setup.bash was sourced: its libraries go first."""
+    libraries = [str(build / "devel" / "lib"), *filter(None, [os.environ.get("LD_LIBRARY_PATH")])]
+    return {**os.environ, "LD_LIBRARY_PATH": ":".join(libraries), "E2E_CDIFF_SHARE": str(share), "SUMO_HOME": "/usr/share/sumo"}
+
+
 class SourceCopy:
     """A copy at `root` with its build folder at the usual place, so that ccache knows the files."""
 

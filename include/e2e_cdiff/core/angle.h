@@ -8,6 +8,7 @@
 namespace cdiff::core {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180.0;  ///< [rad]
 
 /// The angle that equals `angle` modulo 2 pi, in (-pi, pi].
 inline double wrapAngle(double angle) {

@@ -22,6 +22,9 @@ struct OrientedBox {
   bool contains(const Eigen::Vector2d& point) const;
 };
 
+/// Half the extent of a box along a unit axis of the map frame [m].
+double halfExtent(const OrientedBox& box, const Eigen::Vector2d& axis);
+
 /// Whether two boxes share at least a point (separating axes).
 bool overlap(const OrientedBox& first, const OrientedBox& second);
 

@@ -12,6 +12,9 @@
 
 namespace cdiff::diffusion {
 
+/// Speeds enter the networks divided by it [m/s].
+inline constexpr double kSpeedScale = 10.0;
+
 struct Architecture {
   std::int64_t horizon = 32;                           ///< T, a multiple of 4
   std::int64_t diffusion_steps = 100;                  ///< K

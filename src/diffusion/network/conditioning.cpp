@@ -13,7 +13,6 @@ namespace cdiff::diffusion {
 namespace {
 
 constexpr double kLongestPeriod = 10000.0;
-constexpr double kSpeedScale = 10.0;  // [m/s]
 
 /// e_i = sin(k w_i), e_{h+i} = cos(k w_i), w_i = exp(-ln(10000) i / (h - 1)), h half the width.
 inference::Activation sinusoids(std::int64_t steps, std::int64_t width) {

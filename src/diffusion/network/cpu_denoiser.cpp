@@ -47,7 +47,7 @@ InstructionSet instructionSetNamed(const std::string& name) {
   throw core::InputError("E2E_CDIFF_ISA is '" + name + "'; plain, avx2 or avx512 was expected");
 }
 
-void requireTensors(const Model& model) {
+void requireDenoiserTensors(const Model& model) {
   model.architecture.validate();
   for (const inference::TensorShape& expected : denoiserTensors(model.architecture)) {
     if (inference::tensorNamed(model.denoiser, expected.name).shape == expected.shape) continue;
@@ -104,7 +104,7 @@ std::string CpuDenoiser::toText(InstructionSet instruction_set) {
 
 CpuDenoiser::CpuDenoiser(const Model& model, InstructionSet instruction_set) {
   const inference::DenoiserKernels& kernels = requiredKernels(instruction_set);
-  requireTensors(model);
+  requireDenoiserTensors(model);
   network_ = std::make_unique<Network>(model, kernels);
 }
 

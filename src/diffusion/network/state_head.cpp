@@ -8,8 +8,6 @@
 namespace cdiff::diffusion {
 namespace {
 
-constexpr double kSpeedScale = 10.0;  // [m/s]
-
 /// gradient *= slope.
 void multiply(const inference::Activation& gradient, const inference::Activation& slope) {
   float* values = gradient.view().data;

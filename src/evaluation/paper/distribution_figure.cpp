@@ -70,7 +70,7 @@ PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>&
   return samples;
 }
 
-std::string number(const std::optional<double>& value) {
+std::string cellOf(const std::optional<double>& value) {
   return value ? core::formatNumber(*value) : "";
 }
 
@@ -84,8 +84,8 @@ std::string rowsOf(const PlannerSamples& planner, const Sample& sample, const st
         {planner.name, quantity, unit, core::formatNumber(low),
          core::formatNumber(low + histogram.width()), std::to_string(histogram.counts()[bin]),
          core::formatNumber(histogram.share(bin) / histogram.width()),
-         std::to_string(histogram.n()), number(histogram.mean()),
-         number(histogram.standardDeviation()), number(sample.w.value), std::to_string(sample.w.n),
+         std::to_string(histogram.n()), cellOf(histogram.mean()),
+         cellOf(histogram.standardDeviation()), cellOf(sample.w.value), std::to_string(sample.w.n),
          std::to_string(planner.runs), std::to_string(planner.seeds), ""});
   }
   return text;

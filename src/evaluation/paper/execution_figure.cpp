@@ -21,7 +21,7 @@ namespace {
 using core::shortNumber;
 using record::PlanRow;
 
-constexpr const char* kHeader =
+constexpr const char* kExecutionHeader =
     "part,execution,scenario,seed,vehicle_id,tick,seconds,displacement_mean_m,displacement_p95_m,"
     "speed_difference_mean_mps,decisions,runs,seeds,planned_x,planned_y,planned_speed,driven_x,"
     "driven_y,driven_speed,note\n";
@@ -241,7 +241,7 @@ std::vector<Execution> executionsOf(const std::vector<BatchRun>& runs) {
 Figure executionFigure(const std::vector<BatchRun>& runs) {
   Figure figure;
   figure.id = "figure_7";
-  figure.csv = kHeader;
+  figure.csv = kExecutionHeader;
   figure.sheet.title = "Figure 7. Planned against executed states of CBVs";
   std::vector<Execution> executions = executionsOf(runs);
   for (std::size_t i = 0; i < executions.size(); ++i) {

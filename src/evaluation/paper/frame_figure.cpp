@@ -26,7 +26,7 @@ constexpr double kWidth = 340.0;                              // of a frame [pix
 constexpr double kHeight = 260.0;                             // [pixels]
 const Eigen::Vector2d kReach(34.0, 26.0);                     // shown around the approach [m]
 constexpr double kInteraction = 25.0;  // of centres up to which a circle is drawn [m]
-constexpr const char* kHeader =
+constexpr const char* kFrameHeader =
     "system,scenario,seed,frame,seconds,tick,vehicle_id,role,x,y,heading,speed,circled,note\n";
 
 /// Of the smallest distance between ego and CBVs in a summary.
@@ -204,7 +204,7 @@ Figure frameFigure(const std::string& id, const std::string& title,
                    const std::vector<ShownSystem>& systems, const std::vector<BatchRun>& runs) {
   Figure figure;
   figure.id = id;
-  figure.csv = kHeader;
+  figure.csv = kFrameHeader;
   figure.sheet.title = title;
   const RunsBySystem row = chosenRuns(systems, runs);
   const auto setup = setupOf(row, figure);

@@ -17,13 +17,6 @@ using geometry::OrientedBox;
 
 constexpr double kTie = 1e-6;  // closing speeds that differ by less are equal [m/s]
 
-/// Half the extent of a box along a unit axis [m].
-double reach(const OrientedBox& box, const Eigen::Vector2d& axis) {
-  const Eigen::Vector2d forward = geometry::direction(box.heading);
-  return 0.5 * (box.length * std::abs(forward.dot(axis)) +
-                box.width * std::abs(geometry::leftNormal(forward).dot(axis)));
-}
-
 /// Share of the tick at which the boxes meet; 0 when they overlapped before.
 double firstTouch(const ContactParty& ego, const ContactParty& other) {
   constexpr int kHalvings = 30;
@@ -46,7 +39,8 @@ Eigen::Vector2d normalOf(const OrientedBox& ego, const OrientedBox& other) {
   for (const OrientedBox* box : {&ego, &other}) {
     const Eigen::Vector2d forward = geometry::direction(box->heading);
     for (const Eigen::Vector2d& axis : {forward, geometry::leftNormal(forward)}) {
-      const double depth = reach(ego, axis) + reach(other, axis) - std::abs(apart.dot(axis));
+      const double depth = geometry::halfExtent(ego, axis) + geometry::halfExtent(other, axis) -
+                           std::abs(apart.dot(axis));
       if (depth >= least - kTie) continue;
       least = depth;
       normal = apart.dot(axis) < 0.0 ? Eigen::Vector2d(-axis) : axis;

@@ -30,18 +30,13 @@ Shares cut(const Shares& shares, const Eigen::Vector2d& normal, double bound) {
   return kept;
 }
 
-double reach(const OrientedBox& box, const Eigen::Vector2d& axis) {
-  const Eigen::Vector2d forward = geometry::direction(box.heading);
-  return 0.5 * (box.length * std::abs(forward.dot(axis)) +
-                box.width * std::abs(geometry::leftNormal(forward).dot(axis)));
-}
-
 /// Where the shadows of both boxes on an axis overlap.
 void cutByAxis(Shares& shares, const SweptBox& first, const SweptBox& second,
                const Eigen::Vector2d& axis) {
   const double offset = (second.box.center - first.box.center).dot(axis);
   const Eigen::Vector2d rate{-first.offset.dot(axis), second.offset.dot(axis)};
-  const double both = reach(first.box, axis) + reach(second.box, axis);
+  const double both =
+      geometry::halfExtent(first.box, axis) + geometry::halfExtent(second.box, axis);
   shares = cut(shares, rate, both - offset);
   shares = cut(shares, -rate, both + offset);
 }

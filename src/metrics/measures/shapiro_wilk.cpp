@@ -11,6 +11,11 @@
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::metrics {
+
+double normalQuantile(double probability) {
+  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
+}
+
 namespace {
 
 /// c_0 + c_1 x + c_2 x^2 + ...
@@ -18,10 +23,6 @@ double polynomial(std::initializer_list<double> coefficients, double x) {
   double sum = 0.0;
   for (auto c = std::rbegin(coefficients); c != std::rend(coefficients); ++c) sum = sum * x + *c;
   return sum;
-}
-
-double normalQuantile(double probability) {
-  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
 }
 
 double normalUpperTail(double value) { return 0.5 * std::erfc(value / std::sqrt(2.0)); }

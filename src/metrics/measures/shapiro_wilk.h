@@ -38,4 +38,7 @@ struct NormalityMeasures {
 NormalityMeasures normalityMeasures(const std::vector<double>& samples,
                                     const char* reason_when_empty);
 
+/// Quantile of the standard normal distribution at a probability in (0, 1).
+double normalQuantile(double probability);
+
 }  // namespace cdiff::metrics

@@ -214,7 +214,7 @@ void keepTimes(Interaction& interaction, const MovingBox& ego, const Vehicle& ot
   keepSmaller(interaction.rift_act, riftApproachTime(ego, box));
 }
 
-bool usable(const Vehicle& vehicle) {
+bool hasFiniteState(const Vehicle& vehicle) {
   return vehicle.state.position.allFinite() && std::isfinite(vehicle.state.heading) &&
          std::isfinite(vehicle.state.speed);
 }
@@ -224,10 +224,11 @@ bool usable(const Vehicle& vehicle) {
 Interaction interactionOf(const Vehicle& ego, const traffic::TrafficSnapshot& snapshot,
                           const InteractionOptions& options) {
   Interaction interaction;
-  if (!usable(ego)) return interaction;
+  if (!hasFiniteState(ego)) return interaction;
   const MovingBox ego_box = movingBox(ego);
   for (const Vehicle& other : snapshot.vehicles) {
-    if (&other == &ego || !usable(other) || traffic::onDifferentLevels(ego, other)) continue;
+    if (&other == &ego || !hasFiniteState(other) || traffic::onDifferentLevels(ego, other))
+      continue;
     const double distance = (other.state.position - ego.state.position).norm();
     keepNearer(interaction.nearest_distance, ego, other, distance);
     if (distance <= options.radius) keepTimes(interaction, ego_box, other, options);

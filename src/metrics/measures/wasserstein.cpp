@@ -8,11 +8,12 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
+#include "metrics/measures/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 namespace {
 
-bool usable(const std::vector<double>& samples) {
+bool allFinite(const std::vector<double>& samples) {
   return !samples.empty() && std::all_of(samples.begin(), samples.end(),
                                          [](double sample) { return std::isfinite(sample); });
 }
@@ -21,10 +22,6 @@ bool usable(const std::vector<double>& samples) {
 double distributionIntegral(double z) {
   const double share = 0.5 * std::erfc(-z / std::sqrt(2.0));
   return z * share + std::exp(-0.5 * z * z) / std::sqrt(2.0 * core::kPi);
-}
-
-double normalQuantile(double probability) {
-  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
 }
 
 /// Integral of |share - Phi(z)| from begin to end, 0 < share < 1.
@@ -46,7 +43,7 @@ double meanDistance(const std::vector<double>& samples, double place) {
 }  // namespace
 
 std::optional<double> wassersteinDistance(std::vector<double> first, std::vector<double> second) {
-  if (!usable(first) || !usable(second)) return std::nullopt;
+  if (!allFinite(first) || !allFinite(second)) return std::nullopt;
   boost::sort::pdqsort_branchless(first.begin(), first.end());
   boost::sort::pdqsort_branchless(second.begin(), second.end());
   const double first_share = 1.0 / static_cast<double>(first.size());
@@ -69,7 +66,7 @@ std::optional<double> wassersteinDistance(std::vector<double> first, std::vector
 
 std::optional<double> wassersteinDistanceToNormal(std::vector<double> samples, double mean,
                                                   double standard_deviation) {
-  if (!usable(samples) || !std::isfinite(mean) || !std::isfinite(standard_deviation) ||
+  if (!allFinite(samples) || !std::isfinite(mean) || !std::isfinite(standard_deviation) ||
       standard_deviation < 0.0) {
     return std::nullopt;
   }

@@ -12,7 +12,7 @@ namespace cdiff::page {
 namespace {
 
 // Sizes in pixels.
-constexpr double kMargin = 16.0;
+constexpr double kPanelMargin = 16.0;
 constexpr double kLine = 20.0;        // of text
 constexpr double kTitleShare = 0.66;  // a title's letters are half again as wide as a note's
 
@@ -20,10 +20,10 @@ double widthOf(const PanelSheet& sheet) {
   double width = 560.0;
   for (const auto& row : sheet.rows) {
     double own = 0.0;
-    for (const Panel& panel : row) own += panel.width + kMargin;
-    width = std::max(width, own - kMargin);
+    for (const Panel& panel : row) own += panel.width + kPanelMargin;
+    width = std::max(width, own - kPanelMargin);
   }
-  return width + 2.0 * kMargin;
+  return width + 2.0 * kPanelMargin;
 }
 
 std::string panelSvg(const Panel& panel, double x, double y) {
@@ -51,29 +51,29 @@ std::vector<std::string> wrapped(const std::string& text, double width) {
 std::string contentOf(const PanelSheet& sheet, double& y) {
   std::string svg;
   for (const std::string& line : wrapped(sheet.title, kTitleShare * widthOf(sheet))) {
-    svg += chartText("sheet-title", kMargin, y + 16.0, line) + "\n";
+    svg += chartText("sheet-title", kPanelMargin, y + 16.0, line) + "\n";
     y += kLine;
   }
   y += 0.4 * kLine;
   for (const auto& [style, text] : sheet.legend) {
-    svg += "<path class=\"key " + style + "\" d=\"M" + core::shortNumber(kMargin) + " " +
+    svg += "<path class=\"key " + style + "\" d=\"M" + core::shortNumber(kPanelMargin) + " " +
            core::shortNumber(y + 9.0) + "h26\"/>" +
-           chartText("note", kMargin + 34.0, y + 13.0, text) + "\n";
+           chartText("note", kPanelMargin + 34.0, y + 13.0, text) + "\n";
     y += kLine;
   }
   for (const auto& row : sheet.rows) {
-    double x = kMargin;
+    double x = kPanelMargin;
     double height = 0.0;
     for (const Panel& panel : row) {
       svg += panelSvg(panel, x, y);
-      x += panel.width + kMargin;
+      x += panel.width + kPanelMargin;
       height = std::max(height, panel.height);
     }
-    y += height + kLine + kMargin;
+    y += height + kLine + kPanelMargin;
   }
   for (const std::string& note : sheet.notes) {
-    for (const std::string& line : wrapped(note, widthOf(sheet) - 2.0 * kMargin)) {
-      svg += chartText("note", kMargin, y + 13.0, line) + "\n";
+    for (const std::string& line : wrapped(note, widthOf(sheet) - 2.0 * kPanelMargin)) {
+      svg += chartText("note", kPanelMargin, y + 13.0, line) + "\n";
       y += 0.8 * kLine;
     }
     y += 0.2 * kLine;
@@ -84,9 +84,9 @@ std::string contentOf(const PanelSheet& sheet, double& y) {
 std::string element(const PanelSheet& sheet, const std::string& attributes,
                     const std::string& style) {
   const double width = widthOf(sheet);
-  double height = kMargin;
+  double height = kPanelMargin;
   const std::string content = contentOf(sheet, height);
-  height += kMargin;
+  height += kPanelMargin;
   const std::string size =
       "width=\"" + core::shortNumber(width) + "\" height=\"" + core::shortNumber(height) + "\" ";
   return "<svg " + attributes + size + "class=\"sheet\" role=\"img\" aria-label=\"" +

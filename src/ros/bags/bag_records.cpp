@@ -107,8 +107,8 @@ std::string_view textIn(const BagFields& fields, std::string_view name) {
 
 namespace {
 
-constexpr std::size_t kPiece = std::size_t{1} << 20;        // [bytes]
-constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  // [bytes] of a chunk
+constexpr std::size_t kPiece = std::size_t{1} << 20;             // [bytes]
+constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 31;  // [bytes] of a chunk
 constexpr const char* kCut = "it ends before its last byte";
 
 /// A fault that leaves nothing of the chunk.
@@ -126,7 +126,7 @@ ChunkText decompressLz4(std::string_view data) {
   std::vector<char> piece(kPiece);
   ChunkText text;
   std::size_t wanted = 1;
-  while (wanted != 0 && text.bytes.size() <= kLargest) {
+  while (wanted != 0 && text.bytes.size() <= kLargestChunk) {
     std::size_t taken = data.size();
     std::size_t given = piece.size();
     wanted = LZ4F_decompress(context.get(), piece.data(), &given, data.data(), &taken, nullptr);
@@ -154,7 +154,7 @@ ChunkText decompressBz2(std::string_view data) {
   stream.next_in = const_cast<char*>(data.data());  // the library does not write there
   stream.avail_in = static_cast<unsigned int>(data.size());
   ChunkText text;
-  while (text.bytes.size() <= kLargest) {
+  while (text.bytes.size() <= kLargestChunk) {
     stream.next_out = piece.data();
     stream.avail_out = static_cast<unsigned int>(piece.size());
     const int state = BZ2_bzDecompress(&stream);
@@ -185,7 +185,7 @@ ChunkText decompressChunk(std::string_view compression, std::string_view data, s
     return refused("it has the unknown compression '" + std::string(compression.substr(0, 20)) +
                    "'");
   ChunkText text = compression == "lz4" ? decompressLz4(data) : decompressBz2(data);
-  return text.bytes.size() > kLargest ? refused("it holds more than 2 GiB") : text;
+  return text.bytes.size() > kLargestChunk ? refused("it holds more than 2 GiB") : text;
 }
 
 }  // namespace cdiff::ros

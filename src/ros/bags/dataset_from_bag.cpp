@@ -22,7 +22,7 @@ namespace {
 using collection::DriveKey;
 using core::InputError;
 
-traffic::CameraImage toImage(const sensor_msgs::Image& message, std::uint64_t tick) {
+traffic::CameraImage imageOfSession(const sensor_msgs::Image& message, std::uint64_t tick) {
   const std::size_t size = std::size_t{3} * message.width * message.height;
   if (message.encoding != "rgb8" || message.step != 3 * message.width ||
       message.data.size() != size) {
@@ -38,9 +38,10 @@ traffic::CameraImage toImage(const sensor_msgs::Image& message, std::uint64_t ti
   return image;
 }
 
-class Reader {
+class SessionReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : recording_(file, RecordedImages::kAll) {}
+  explicit SessionReader(const std::filesystem::path& file)
+      : recording_(file, RecordedImages::kAll) {}
 
   collection::DrivenSession read() {
     const session::ScenarioOptions& options = recording_.setup().options();
@@ -61,7 +62,7 @@ class Reader {
     for (int slot = kEgoSlot; slot < recording_.graph().max_cbv; ++slot) {
       if (const auto control = answers.control(slot, snapshot.tick)) takeControl(*control);
       if (const auto image = answers.image(slot, snapshot.tick))
-        session_.images.push_back({slot, toImage(*image, snapshot.tick)});
+        session_.images.push_back({slot, imageOfSession(*image, snapshot.tick)});
     }
   }
 
@@ -117,7 +118,7 @@ class Reader {
 }  // namespace
 
 collection::DrivenSession readBagSession(const std::filesystem::path& file) {
-  Reader reader(file);
+  SessionReader reader(file);
   try {
     return reader.read();
   } catch (const std::exception& error) {

@@ -45,7 +45,7 @@ traffic::VehicleState toState(const nav_msgs::Odometry& message) {
 }
 
 /// The middle of the picture with the aspect wanted, at the size wanted.
-traffic::CameraImage toImage(const cv::Mat& picture, const diffusion::Architecture& wanted) {
+traffic::CameraImage scaledImage(const cv::Mat& picture, const diffusion::Architecture& wanted) {
   const double aspect =
       static_cast<double>(wanted.image_width) / static_cast<double>(wanted.image_height);
   const int width = std::min(picture.cols, static_cast<int>(std::lround(picture.rows * aspect)));
@@ -62,10 +62,10 @@ traffic::CameraImage toImage(const cv::Mat& picture, const diffusion::Architectu
   return image;
 }
 
-class Reader {
+class DrivingBagReader {
  public:
-  Reader(const std::filesystem::path& file, const collection::DriveOptions& topics,
-         const diffusion::Architecture& architecture)
+  DrivingBagReader(const std::filesystem::path& file, const collection::DriveOptions& topics,
+                   const diffusion::Architecture& architecture)
       : reader_(file), topics_(topics), architecture_(architecture) {
     require(topics.image, {kImage, kCompressed});
     require(topics.odometry, {"nav_msgs/Odometry"});
@@ -125,11 +125,11 @@ class Reader {
       if (message.connection->type == kImage) {
         const auto image = decode<sensor_msgs::Image>(message);
         bag_.images[image->header.stamp.toSec()] =
-            toImage(cv_bridge::toCvCopy(*image, "rgb8")->image, architecture_);
+            scaledImage(cv_bridge::toCvCopy(*image, "rgb8")->image, architecture_);
       } else {
         const auto image = decode<sensor_msgs::CompressedImage>(message);
         bag_.images[image->header.stamp.toSec()] =
-            toImage(cv_bridge::toCvCopy(*image, "rgb8")->image, architecture_);
+            scaledImage(cv_bridge::toCvCopy(*image, "rgb8")->image, architecture_);
       }
     } catch (const cv_bridge::Exception& error) {
       throw InputError("an image on '" + topics_.image + "' cannot be used: " + error.what());
@@ -171,7 +171,7 @@ class Reader {
 collection::RecordedDrive readDrivingBag(const std::filesystem::path& file,
                                          const collection::DriveOptions& options,
                                          const diffusion::Architecture& architecture) {
-  return Reader(file, options, architecture).read();
+  return DrivingBagReader(file, options, architecture).read();
 }
 
 }  // namespace cdiff::ros

@@ -68,7 +68,7 @@ std::string sentence(const std::string& subject, std::uint64_t tick, bool came, 
          "; " + instead + "; further late answers are counted in late_answers";
 }
 
-std::string insteadOf(const msgs::DecidedVehicle& vehicle) {
+std::string insteadText(const msgs::DecidedVehicle& vehicle) {
   const std::string whom = "vehicle '" + vehicle.vehicle_id + "' ";
   const std::string action = "throttle " + core::formatNumber(vehicle.throttle) + ", steer " +
                              core::formatNumber(vehicle.steer) + ", brake " +
@@ -225,7 +225,7 @@ std::map<std::string, std::string> latenessTexts(const msgs::DecisionRecord& rec
   for (const msgs::DecidedVehicle& vehicle : record.vehicles) {
     if (!vehicle.asked || (vehicle.answered && vehicle.lateness <= 0.0)) continue;
     texts.try_emplace(vehicle.answer.planner, sentence("the answer", record.tick, vehicle.answered,
-                                                       vehicle.lateness, insteadOf(vehicle)));
+                                                       vehicle.lateness, insteadText(vehicle)));
   }
   return texts;
 }

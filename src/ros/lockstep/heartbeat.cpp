@@ -12,7 +12,7 @@
 namespace cdiff::ros {
 namespace {
 
-constexpr std::chrono::seconds kPeriod{1};
+constexpr std::chrono::seconds kBeatPeriod{1};
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void HeartbeatPublisher::publishUntilStopped(double timeout) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     publisher_.publish(message);
     ++message.count;
-    changed_.wait_for(lock, kPeriod, [this] { return stopping_; });
+    changed_.wait_for(lock, kBeatPeriod, [this] { return stopping_; });
   }
 }
 

@@ -16,15 +16,15 @@ namespace msgs = ::e2e_cdiff;
 
 namespace {
 
-constexpr double kFarthest = 1e7;  // [m] from the network's origin
-constexpr double kFastest = 1e3;   // [m/s]
-constexpr double kLargest = 1e3;   // [m] of a vehicle's box
+constexpr double kFarthest = 1e7;    // [m] from the network's origin
+constexpr double kFastest = 1e3;     // [m/s]
+constexpr double kLargestBox = 1e3;  // [m] of a vehicle's box
 
 bool within(double value, double limit) { return std::isfinite(value) && std::abs(value) <= limit; }
 
 bool plausible(const msgs::Vehicle& vehicle) {
   const msgs::VehicleState& state = vehicle.state;
-  const auto size = [](double value) { return value > 0.0 && value <= kLargest; };
+  const auto size = [](double value) { return value > 0.0 && value <= kLargestBox; };
   return within(state.x, kFarthest) && within(state.y, kFarthest) && within(state.z, kFarthest) &&
          within(state.heading, kFarthest) && within(state.speed, kFastest) &&
          std::isfinite(vehicle.acceleration) && std::isfinite(vehicle.yaw_rate) &&
