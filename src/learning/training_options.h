@@ -2,13 +2,16 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace cdiff::learning {
 
