@@ -33,6 +33,7 @@ target_link_libraries(e2e_cdiff_messages INTERFACE ${catkin_LIBRARIES})
 add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
 # In every language: rostopic echo reads those of Python.
 add_dependencies(e2e_cdiff_programs ${PROJECT_NAME}_generate_messages)
+add_dependencies(e2e_cdiff_session_programs ${PROJECT_NAME}_generate_messages)
 
 # Images as messages, for the layer ros alone.
 add_library(e2e_cdiff_images INTERFACE)

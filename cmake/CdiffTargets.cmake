@@ -40,18 +40,22 @@ function(cdiff_layer name)
   endif()
 endfunction()
 
-# All programs that rosrun finds, without tests and benchmarks.
+# All programs that rosrun finds, without tests and benchmarks; those of them that sessions need, without the trainer.
 add_custom_target(e2e_cdiff_programs)
+add_custom_target(e2e_cdiff_session_programs)
 
-# cdiff_program(NAME SOURCES file... LINK target...): program that rosrun finds.
+# cdiff_program(NAME [TRAINER] SOURCES file... LINK target...): program that rosrun finds.
 function(cdiff_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "TRAINER" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_compile_options(${name} PRIVATE ${CDIFF_PRIVATE_HEADERS} ${CDIFF_WARNINGS} -ffp-contract=off)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../../lib;$ORIGIN;$ORIGIN/..")
   add_dependencies(e2e_cdiff_programs ${name})
+  if(NOT ARG_TRAINER)
+    add_dependencies(e2e_cdiff_session_programs ${name})
+  endif()
   if(E2E_CDIFF_ROS)
     install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   endif()

@@ -27,8 +27,9 @@ fs::path findTrainer() {
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   const fs::path trainer = here / "cdiff_train";
   if (::access(trainer.c_str(), X_OK) == 0) return trainer;
-  throw core::InputError("no cdiff_train beside " + here.string() +
-                         ": this build is without the trainer (E2E_CDIFF_TRAINING)");
+  throw core::InputError(
+      "no cdiff_train beside " + here.string() +
+      ": the trainer is not built; run scripts/setup, or configure with E2E_CDIFF_TRAINING");
 }
 
 /// Runs to its end; a stop signal to us is one to it, which then leaves a checkpoint.
@@ -36,11 +37,11 @@ int runTrainer(const std::vector<std::string>& arguments) {
   constexpr auto kPeriod = std::chrono::milliseconds(50);
   const std::atomic<bool>& stop = core::catchStopSignals();
   evaluation::ChildProcess trainer(findTrainer(), arguments, {});
-  bool told = false;
+  bool forwarded = false;
   while (true) {
     if (const std::optional<int> code = trainer.poll()) return *code;
-    if (stop && !told) trainer.signal(SIGINT);
-    told = stop;
+    if (stop && !forwarded) trainer.signal(SIGINT);
+    forwarded = stop;
     std::this_thread::sleep_for(kPeriod);
   }
 }

@@ -4,13 +4,23 @@
 
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <future>
 #include <memory>
 #include <thread>
 
 #include "core/program.h"
 #include "plugins/plugin_loader.h"
+#include "ros/camera_ros.h"
+#include "ros/cbv_identification_ros.h"
+#include "ros/lockstep/stop_signal.h"
+#include "ros/messages/topics.h"
+#include "ros/metrics_ros.h"
+#include "ros/planner_ros.h"
+#include "ros/recorder_ros.h"
+#include "ros/replay_ros.h"
 #include "ros/ros.h"
+#include "ros/traffic_simulator_ros.h"
 
 namespace cdiff::ros {
 namespace {
@@ -28,17 +38,9 @@ int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
   }
 }
 
-}  // namespace
-
-bool masterAnswers() {
-  auto promise = std::make_shared<std::promise<bool>>();
-  std::future<bool> answer = promise->get_future();
-  std::thread([promise] { promise->set_value(::ros::master::check()); }).detach();
-  return answer.wait_for(std::chrono::seconds(2)) == std::future_status::ready && answer.get();
-}
-
+/// `without_master`, where given, gives the exit code when no ROS master answers.
 int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
-            const std::function<int()>& without_master) {
+            const std::function<int()>& without_master = {}) {
   core::prepareProgram();
   StopSignal stop;
   ::ros::init(argc, argv, name, ::ros::init_options::NoSigintHandler);
@@ -53,6 +55,57 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
   const int exit_code = runGuarded(body, stop);
   ::ros::shutdown();
   return exit_code;
+}
+
+template <class Node>
+int runNode(int argc, char** argv, const char* name) {
+  return runNode(argc, argv, name, [](StopSignal& stop) { return Node(stop).run(); });
+}
+
+}  // namespace
+
+bool masterAnswers() {
+  auto promise = std::make_shared<std::promise<bool>>();
+  std::future<bool> answer = promise->get_future();
+  std::thread([promise] { promise->set_value(::ros::master::check()); }).detach();
+  return answer.wait_for(std::chrono::seconds(2)) == std::future_status::ready && answer.get();
+}
+
+int runTrafficSimulatorNode(int argc, char** argv) {
+  return runNode(argc, argv, kTrafficSimulatorNode, runTrafficSimulator);
+}
+
+int runCbvIdentificationNode(int argc, char** argv) {
+  return runNode<CbvIdentificationRos>(argc, argv, kCbvIdentificationNode);
+}
+
+int runCameraNode(int argc, char** argv) { return runNode<CameraRos>(argc, argv, kCameraNode); }
+
+int runEgoPlannerNode(int argc, char** argv) {
+  return runNode<EgoPlannerRos>(argc, argv, kEgoPlannerNode);
+}
+
+int runCbvPlannerNode(int argc, char** argv) {
+  return runNode<CbvPlannerRos>(argc, argv, kCbvPlannerNode);
+}
+
+int runDiffusionPlannerNode(int argc, char** argv) {
+  return runNode<CbvPlannerRos>(argc, argv, kDiffusionPlannerNode);
+}
+
+int runMetricsNode(int argc, char** argv) {
+  return runNode(
+      argc, argv, kMetricsNode, [](StopSignal& stop) { return MetricsRos(stop).run(); },
+      MetricsRos::runWithoutMaster);
+}
+
+int runRecorderNode(int argc, char** argv) {
+  return runNode<RecorderRos>(argc, argv, kRecorderNode);
+}
+
+int runReplayNode(int argc, char** argv) {
+  return runNode(argc, argv, kTrafficSimulatorNode,
+                 [](StopSignal& stop) { return runReplay(stop); });
 }
 
 }  // namespace cdiff::ros

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the main functions of the nodes share: signals, ROS, and errors as one line and an exit
-/// code (as `cdiff`: 2 run time, 3 bad input).
 #pragma once
-
-#include <functional>
-
-#include "ros/lockstep/stop_signal.h"
 
 namespace cdiff::ros {
 
-/// Starts ROS under a default node name and runs `body`; `without_master`, where given, gives the
-/// exit code when no ROS master answers.
-int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
-            const std::function<int()>& without_master = {});
+// The main functions of the nodes: signals, ROS under the node's default name, plug-ins, the node,
+// and errors as one line and an exit code (as `cdiff`: 2 run time, 3 bad input). Free of ROS's
+// headers, which would take most of the time of compiling each node.
+
+int runTrafficSimulatorNode(int argc, char** argv);
+int runCbvIdentificationNode(int argc, char** argv);
+int runCameraNode(int argc, char** argv);
+int runEgoPlannerNode(int argc, char** argv);
+int runCbvPlannerNode(int argc, char** argv);
+/// cbv_planner_node under the name that it has where the CBVs' planner sees.
+int runDiffusionPlannerNode(int argc, char** argv);
+int runMetricsNode(int argc, char** argv);
+int runRecorderNode(int argc, char** argv);
+/// A recorded session under the traffic simulator's name, to which the other nodes listen.
+int runReplayNode(int argc, char** argv);
 
 /// Whether the ROS master answers within two seconds.
 bool masterAnswers();
