@@ -36,7 +36,7 @@ bool validateOne(const std::string& scenario_name, bool print) {
   } catch (const core::InputError& error) {
     const std::string text = error.what();
     const bool named = text.rfind(std::filesystem::absolute(scenario_name).string() + ":", 0) == 0;
-    std::cerr << (named ? "" : scenario_name + ": ") << text << "\n";
+    std::cerr << "cdiff: " << (named ? "" : scenario_name + ": ") << text << "\n";
     return false;
   }
 }
@@ -53,6 +53,11 @@ void printPlanners() {
               << planners::sourceOf(planner->name) << "\n    " << planner->title << ": "
               << planner->help << "\n";
   }
+  std::cout
+      << std::left << std::setw(17) << planning::kExternalPlanner << std::setw(10) << "ego"
+      << std::setw(9) << "-" << std::setw(8) << "no"
+      << "this package\n"
+      << "    a node of your own that publishes on the ego's control topic (roslaunch only)\n";
 }
 
 }  // namespace

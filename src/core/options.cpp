@@ -32,7 +32,7 @@ class LoadVisitor : public OptionsVisitor {
   void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
     const YAML::Node node = take(info);
     if (!node) return;
-    const std::string range = rangeText(formatNumber(minimum), formatNumber(maximum), info.unit);
+    const std::string range = rangeText(minimum, maximum, info.unit);
     const auto parsed = node.IsScalar() ? parseNumber(node.Scalar()) : std::nullopt;
     if (!parsed) fail(node, info.key, "a number in " + range);
     if (*parsed < minimum || *parsed > maximum) fail(node, info.key, "a number in " + range);
@@ -43,8 +43,7 @@ class LoadVisitor : public OptionsVisitor {
                std::int64_t maximum) override {
     const YAML::Node node = take(info);
     if (!node) return;
-    const std::string range =
-        rangeText(std::to_string(minimum), std::to_string(maximum), info.unit);
+    const std::string range = rangeText(minimum, maximum, info.unit);
     try {
       std::size_t used = 0;
       const std::string text = node.IsScalar() ? node.Scalar() : "";

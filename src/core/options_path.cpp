@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/text.h"
@@ -80,13 +81,11 @@ class DumpVisitor : public OptionsVisitor {
   explicit DumpVisitor(bool with_comments) : with_comments_(with_comments) {}
 
   void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
-    line(info, formatNumber(value),
-         rangeText(formatNumber(minimum), formatNumber(maximum), info.unit));
+    line(info, formatNumber(value), rangeText(minimum, maximum, info.unit));
   }
   void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
                std::int64_t maximum) override {
-    line(info, std::to_string(value),
-         rangeText(std::to_string(minimum), std::to_string(maximum), info.unit));
+    line(info, std::to_string(value), rangeText(minimum, maximum, info.unit));
   }
   void flag(const FieldInfo& info, bool& value) override {
     line(info, value ? "true" : "false", "true | false");
@@ -135,8 +134,14 @@ class DumpVisitor : public OptionsVisitor {
 
 }  // namespace
 
-std::string rangeText(const std::string& low, const std::string& high, const char* unit) {
-  return "[" + low + ", " + high + "]" + (*unit ? std::string(" ") + unit : std::string());
+std::string rangeText(double low, double high, const char* unit) {
+  const auto plain = [](double value) {
+    constexpr double kMostDigits = 1e15;
+    const bool whole = value == std::floor(value) && std::abs(value) < kMostDigits;
+    return whole ? formatFixed(value, 0) : formatNumber(value);
+  };
+  const std::string range = "[" + plain(low) + ", " + plain(high) + "]";
+  return unit[0] == '\0' ? range : range + " " + unit;
 }
 
 std::string dump(void* options, Describe describe, bool with_comments) {

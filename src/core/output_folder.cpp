@@ -67,6 +67,11 @@ std::string holderText(int descriptor) {
          content["host"] + ", since " + content["since"];
 }
 
+InputError heldBy(const fs::path& folder, int descriptor) {
+  return InputError("'" + folder.string() + "' is being written by " + holderText(descriptor) +
+                    "; wait until it has ended, or give another folder");
+}
+
 [[noreturn]] void failOn(const fs::path& path, const std::string& what, int error) {
   throw InputError("cannot " + what + " '" + path.string() + "': " + writeErrorText(error));
 }
@@ -122,6 +127,15 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& program)
   }
 }
 
+void FolderLock::requireUnlocked(const fs::path& folder) {
+  const int descriptor = ::open((folder / kFile).c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const bool held = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const InputError error = heldBy(folder, descriptor);
+  ::close(descriptor);
+  if (held) throw error;
+}
+
 FolderLock::~FolderLock() {
   ::unlink(file_.c_str());
   ::close(descriptor_);
@@ -136,10 +150,9 @@ void FolderLock::takeLock() {
   const Clock::time_point begin = Clock::now();
   while (!tryLock()) {
     if (Clock::now() - begin > kPatience) {
-      const std::string holder = holderText(descriptor_);
+      const InputError error = heldBy(folder_, descriptor_);
       ::close(descriptor_);
-      throw InputError("'" + folder_.string() + "' is being written by " + holder +
-                       "; wait until it has ended, or give another folder");
+      throw error;
     }
     ::close(descriptor_);
     std::this_thread::sleep_for(kPeriod);

@@ -18,6 +18,9 @@ class FolderLock {
   /// Name of the file.
   static constexpr const char* kFile = ".lock";
 
+  /// Throws the constructor's InputError where another process holds the folder now; makes nothing.
+  static void requireUnlocked(const std::filesystem::path& folder);
+
   /// Makes the folder and its parents. `program` names this writer to a second one ("cdiff run").
   /// Throws InputError naming host and process of the writer that holds it, or why the folder or
   /// the file cannot be made.

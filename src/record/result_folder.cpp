@@ -33,9 +33,7 @@ void removeSession(const fs::path& folder) {
   core::removeTemporaries(folder);
 }
 
-}  // namespace
-
-void requireFreeFolder(const fs::path& folder, bool overwrite) {
+void requireNoResult(const fs::path& folder, bool overwrite) {
   std::error_code error;
   if (fs::exists(folder / kBatchFile, error)) {
     throw core::InputError("'" + folder.string() + "' holds the results of a batch (" + kBatchFile +
@@ -50,9 +48,16 @@ void requireFreeFolder(const fs::path& folder, bool overwrite) {
   }
 }
 
+}  // namespace
+
+void requireFreeFolder(const fs::path& folder, bool overwrite) {
+  core::FolderLock::requireUnlocked(folder);
+  requireNoResult(folder, overwrite);
+}
+
 ResultFolder::ResultFolder(fs::path folder, const std::string& program, bool overwrite)
     : path_(std::move(folder)), lock_(path_, program) {
-  requireFreeFolder(path_, overwrite);
+  requireNoResult(path_, overwrite);
   removeSession(path_);
 }
 

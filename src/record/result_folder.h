@@ -11,8 +11,9 @@
 
 namespace cdiff::record {
 
-/// Throws InputError when the folder holds anything of a session or a batch, naming it, unless
-/// earlier sessions are to be overwritten; a batch never is. A folder that is absent is free.
+/// Throws InputError when another process writes into the folder, or when it holds anything of a
+/// session or a batch, naming it, unless earlier sessions are to be overwritten; a batch never is.
+/// A folder that is absent is free.
 void requireFreeFolder(const std::filesystem::path& folder, bool overwrite);
 
 class ResultFolder {

@@ -102,11 +102,12 @@ collection::StatisticsByName collectBags(const BagRequest& request) {
          samplesFromDrivingBag(bag, topics, options, statistics))
       writer.append(sample);
     const fs::path shard = request.results / "shards" / (bag.stem().string() + ".shard");
+    std::cerr << bag.string() << ": " << statistics.samples << " samples\n";
+    if (statistics.samples == 0) continue;
     fs::create_directories(shard.parent_path());
     writer.write(shard, {{"made_by", "cdiff collect --bags"},
                          {"bag", bag.filename().string()},
                          {"topics", core::dumpOptions(topics)}});
-    std::cerr << bag.string() << ": " << statistics.samples << " samples\n";
   }
   return all;
 }
