@@ -5,6 +5,7 @@
 """
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -68,6 +69,31 @@ class Scripts(unittest.TestCase):
     def test_setup_refuses_what_it_does_not_know(self):
         self.assertEqual(calls_of("setup", "--no-test"), [])
         self.assertEqual(calls_of("setup", "--only"), [])
+
+    @unittest.skipUnless(shutil.which("clang-format") or shutil.which("clang-format-14"), "no clang-format")
+    def test_check_reads_what_changed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "scripts").mkdir()
+            (root / "src").mkdir()
+            shutil.copy(SOURCE / "scripts" / "check", root / "scripts")
+            shutil.copy(SOURCE / ".clang-format", root)
+            git = ["git", "-C", folder, "-c", "user.name=a", "-c", "user.email=a@b"]
+
+            def check(*arguments):
+                done = subprocess.run([root / "scripts" / "check", "--format", *arguments], capture_output=True, text=True, check=False)
+                return done.returncode, done.stdout
+            (root / "src/old.cpp").write_text("int  old;\n")  # not formatted
+            subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
+            for text in ("first", "second"):
+                (root / "src/kept.cpp").write_text(f"int {text};\n")
+                subprocess.run([*git, "add", "-A"], check=True)
+                subprocess.run([*git, "commit", "-qm", text], check=True)
+            self.assertEqual(check(), (0, "clang-format: 1 files, 0 with findings\n"))  # kept.cpp
+            (root / "src/new.h").write_text("int  fresh;\n")
+            self.assertEqual(check(), (1, "src/new.h is not formatted\nclang-format: 2 files, 1 with findings\n"))
+            self.assertEqual(check("--all")[1].splitlines()[:2], ["src/new.h is not formatted", "src/old.cpp is not formatted"])
+            self.assertEqual(check("--base", "nowhere")[0], 3)
 
     def test_nightly_tests_are_left_to_nightly(self):
         def ctest(*arguments):
