@@ -93,7 +93,6 @@ class Scripts(unittest.TestCase):
         self.assertEqual(calls_of("setup", "--no-test"), [])
         self.assertEqual(calls_of("setup", "--only"), [])
 
-    @unittest.skipUnless(shutil.which("clang-format") or shutil.which("clang-format-14"), "no clang-format")
     def test_check_reads_what_changed(self):
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
@@ -112,6 +111,8 @@ class Scripts(unittest.TestCase):
                 (root / "src/kept.cpp").write_text(f"int {text};\n")
                 subprocess.run([*git, "add", "-A"], check=True)
                 subprocess.run([*git, "commit", "-qm", text], check=True)
+            if check()[0] == 77:
+                self.skipTest("no clang-format")
             self.assertEqual(check(), (0, "clang-format: 1 files, 0 with findings\n"))  # kept.cpp
             (root / "src/new.h").write_text("int  fresh;\n")
             self.assertEqual(check(), (1, "src/new.h is not formatted\nclang-format: 2 files, 1 with findings\n"))
