@@ -5,6 +5,7 @@
 """
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,6 +52,29 @@ class Scripts(unittest.TestCase):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
 
+    def test_benchmark_of_builds_counts_files_and_targets(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "src/toy").mkdir(parents=True)
+            for name in ("scripts/setup", "scripts/packages.txt", "scripts/benchmark", "benchmark/build_benchmark.py"):
+                (root / name).parent.mkdir(exist_ok=True)
+                shutil.copy(SOURCE / name, root / name)
+            (root / "CMakeLists.txt").write_text("project(toy LANGUAGES CXX)\nadd_library(toy src/toy/a.cpp src/toy/b.cpp)\n"
+                                                 "add_executable(other src/toy/c.cpp)\n")
+            for name in "abc":
+                (root / f"src/toy/{name}.cpp").write_text("int main() { return 0; }\n" if name == "c" else f"int {name}() {{ return 0; }}\n")
+            modified = (root / "src/toy/a.cpp").stat().st_mtime_ns
+            done = subprocess.run([root / "scripts/benchmark", "build", "--targets", "toy", "--touch", "src/toy/a.cpp", "--json", root / "x.json"],
+                                  env={name: value for name, value in os.environ.items() if name not in ("BUILD", "PREFIX")},
+                                  capture_output=True, text=True, timeout=120, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            values = {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
+            self.assertEqual({row["figure"]: round(row["value"], 3) for row in json.loads((root / "x.json").read_text())}, values)
+            # All of "toy" from nothing, then a.cpp alone and the library; "other" never.
+            self.assertEqual([values[f"build_{name}_{what}"] for name in ("targets", "touch_toy") for what in ("files", "targets")], [2, 1, 1, 1])
+            self.assertGreater(values["build_targets_processor"], 0.0)
+            self.assertEqual((root / "src/toy/a.cpp").stat().st_mtime_ns, modified)
+
     def test_the_benchmark_of_the_loop_needs_the_nodes(self):
         for arguments in ([], ["loop"], ["--json", "x"]):
             self.assertEqual(targets_of(calls_of("benchmark", *arguments)), [["cdiff_benchmark", "e2e_cdiff_nodes"]])
@@ -68,6 +92,32 @@ class Scripts(unittest.TestCase):
     def test_setup_refuses_what_it_does_not_know(self):
         self.assertEqual(calls_of("setup", "--no-test"), [])
         self.assertEqual(calls_of("setup", "--only"), [])
+
+    def test_check_reads_what_changed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "scripts").mkdir()
+            (root / "src").mkdir()
+            shutil.copy(SOURCE / "scripts" / "check", root / "scripts")
+            shutil.copy(SOURCE / ".clang-format", root)
+            git = ["git", "-C", folder, "-c", "user.name=a", "-c", "user.email=a@b"]
+
+            def check(*arguments):
+                done = subprocess.run([root / "scripts" / "check", "--format", *arguments], capture_output=True, text=True, check=False)
+                return done.returncode, done.stdout
+            (root / "src/old.cpp").write_text("int  old;\n")  # not formatted
+            subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
+            for text in ("first", "second"):
+                (root / "src/kept.cpp").write_text(f"int {text};\n")
+                subprocess.run([*git, "add", "-A"], check=True)
+                subprocess.run([*git, "commit", "-qm", text], check=True)
+            if check()[0] == 77:
+                self.skipTest("no clang-format")
+            self.assertEqual(check(), (0, "clang-format: 1 files, 0 with findings\n"))  # kept.cpp
+            (root / "src/new.h").write_text("int  fresh;\n")
+            self.assertEqual(check(), (1, "src/new.h is not formatted\nclang-format: 2 files, 1 with findings\n"))
+            self.assertEqual(check("--all")[1].splitlines()[:2], ["src/new.h is not formatted", "src/old.cpp is not formatted"])
+            self.assertEqual(check("--base", "nowhere")[0], 3)
 
     def test_nightly_tests_are_left_to_nightly(self):
         def ctest(*arguments):

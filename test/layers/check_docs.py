@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""Check what the documents say about the source tree: paths, links, identifiers, the folder table.
+
+    check_docs.py SOURCE RESULT.xml
+
+Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
+the files of the row; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
+"""
+import re
+import sys
+import tempfile
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import check_layers  # noqa: E402
+
+TOPS = ["src", "include", "test", "docs", "scripts", "config", "benchmark", "cmake", "examples", "launch", "msg"]
+PATH = re.compile(r"(?<![\w./-])(?:" + "|".join(TOPS) + r")/[\w./{},*-]*")
+SOURCE_NAME = re.compile(r"`([\w./-]+\.(?:cpp|h|cpp\.in|py))`")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+# Words that stand for a name of the reader's own.
+PLACEHOLDER = re.compile(r"\b(?:[A-Z]{3,}|Name)\b|[A-Z]{3,}_")
+# Files that a document has the reader make.
+MADE_BY_READER = {"src/guidance/standstill_objective.h", "src/guidance/standstill_objective.cpp"}
+TABLES = ["docs/glossary.md", "docs/notation.md"]
+
+
+def documents(source):
+    return sorted([*source.glob("*.md"), *(source / "docs").rglob("*.md"), *(source / "examples").rglob("*.md")])
+
+
+def source_names(source):
+    """Paths of all sources, each with a slash before it, to be compared by their ends."""
+    return ["/" + str(path.relative_to(source)) for top in TOPS for path in (source / top).rglob("*") if path.suffix in (".h", ".cpp", ".in", ".py")]
+
+
+def expanded(text):
+    """a.{h,cpp} -> a.h, a.cpp."""
+    found = re.search(r"\{([^{}]*)\}", text)
+    return [text] if not found else [text[:found.start()] + part + text[found.end():] for part in found.group(1).split(",")]
+
+
+def exists(source, path):
+    if path in MADE_BY_READER:
+        return True
+    parts = path.rstrip("/").split("/")
+    for index, part in enumerate(parts):
+        if PLACEHOLDER.search(part):
+            return (source / "/".join(parts[:index])).is_dir()
+    return any(source.glob(path)) if "*" in path else (source / path).exists()
+
+
+def headings(text):
+    """Anchors of a page, as GitHub makes them."""
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in re.findall(r"^#+ +(.*)$", text, re.MULTILINE)}
+
+
+def wrong_paths(source):
+    names = source_names(source)
+    for page in documents(source):
+        text = page.read_text()
+        for line, content in enumerate(text.splitlines(), 1):
+            place = f"{page.relative_to(source)}:{line}"
+            for found in PATH.finditer(content):
+                for path in expanded(found.group(0).rstrip(".,")):
+                    if not exists(source, path):
+                        yield f"{place}: there is no '{path}'"
+            for name in SOURCE_NAME.findall(content):
+                if not any(known.endswith("/" + name) for known in names) and not PLACEHOLDER.search(name) and name not in MADE_BY_READER:
+                    yield f"{place}: no source is called '{name}'"
+            for link in LINK.findall(content):
+                target, _, anchor = link.partition("#")
+                file = page.parent / target if target else page
+                if "://" in link:
+                    continue
+                if not file.exists():
+                    yield f"{place}: the link '{link}' leads nowhere"
+                elif anchor and file.suffix == ".md" and anchor not in headings(file.read_text()):
+                    yield f"{place}: '{target or page.name}' has no heading '#{anchor}'"
+
+
+def cells(line):
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip())[1:-1]]
+
+
+def wrong_identifiers(source, table):
+    """Rows whose last cell names `identifiers` and the `files` that hold them."""
+    rows = 0
+    for line, content in enumerate((source / table).read_text().splitlines(), 1):
+        if not content.startswith("|") or set(content) <= set("|-: ") or cells(content)[-1] == "In the code":
+            continue
+        rows += 1
+        words = re.findall(r"`([^`]+)`", cells(content)[-1])
+        files = [source / word for word in words if "/" in word]
+        identifiers = [part for word in words if "/" not in word for part in word.split("::")]
+        if not files or not identifiers:
+            yield f"{table}:{line}: names no {'identifier' if files else 'file'}"
+        texts = [file.read_text() for file in files if file.is_file()]
+        for file in files:
+            if not file.is_file():
+                yield f"{table}:{line}: there is no file '{file.relative_to(source)}'"
+        for identifier in identifiers:
+            if texts and not any(re.search(rf"\b{re.escape(identifier)}\b", text) for text in texts):
+                yield f"{table}:{line}: '{identifier}' does not occur in {' or '.join(str(file.relative_to(source)) for file in files)}"
+    if rows < 2:
+        yield f"{table} has no rows; its form has changed"
+
+
+def wrong_folders(source):
+    """The folder table against the tree, the arrows against the order that check_layers.py knows."""
+    text = (source / "docs/architecture.md").read_text()
+    layers = text.partition("## Layers")[2].partition("\n## ")[0]
+    rows = [cells(line)[0] for line in layers.splitlines() if line.startswith("|")][2:]
+    named = {name.strip() for row in rows for name in row.split(",") if "/" not in name}
+    there = {path.name for path in (source / "src").iterdir() if (path / "CMakeLists.txt").exists()}
+    for name in sorted(there ^ named):
+        yield f"docs/architecture.md: the folder table and src/ disagree about '{name}'"
+    for row in rows:
+        for name in row.split(","):
+            if "/" in name and not exists(source, "src/" + name.strip()):
+                yield f"docs/architecture.md: there is no folder 'src/{name.strip()}'"
+    arrows = re.search(r"```\n(.*?)```", layers, re.DOTALL)
+    drawn = [set(re.findall(r"\w+", row)) for row in (arrows.group(1) if arrows else "").split("->")]
+    order = [set(row.split()) - {"planner_training"} for row in reversed(check_layers.ORDER)]
+    if drawn != [row for row in order if row]:
+        yield "docs/architecture.md: the arrows are not the order of test/layers/check_layers.py"
+
+
+def self_test():
+    """The search finds what is wrong, and nothing else."""
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder)
+        (source / "src/map").mkdir(parents=True)
+        (source / "docs").mkdir()
+        (source / "src/map/route.h").write_text("class Route {};\n")
+        page = source / "docs/a.md"
+        page.write_text("# Two words\n`src/map/route.{h,cpp}` `map/route.h` `rout.h` `src/planners/NAME/x.h` `src/map/NAME.h` [b](b.md) [c](#two-words) [d](#two)\n"
+                        "results/test/x `src/*/route.h`\n")
+        expected = ["src/map/route.cpp", "rout.h", "src/planners/NAME/x.h", "b.md", "#two'"]
+        found = list(wrong_paths(source))
+        wrong += [f"finds {found}"] if len(found) != len(expected) else []
+        wrong += [f"misses {word}" for word in expected if not any(word in line for line in found)]
+        page.write_text("| T | In the code |\n|---|---|\n| a \\| b | `Route`, `src/map/route.h` |\n| c | `Rout`, `src/map/route.h` |\n| d | `src/map/route.h` |\n")
+        found = list(wrong_identifiers(source, "docs/a.md"))
+        if [line.split(":")[1] for line in found] != ["4", "5"]:
+            wrong.append(f"finds {found}")
+    return [f"the search goes wrong: {text}" for text in wrong]
+
+
+def main():
+    source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source)))]
+    results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
+    for _, found in results:
+        print("\n".join(found), end="\n" if found else "")
+    body = "".join(f"<testcase classname='docs' name={quoteattr(name)}>"
+                   + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>" for name, found in results)
+    result.parent.mkdir(parents=True, exist_ok=True)
+    result.write_text(f"<testsuite name='docs'>{body}</testsuite>\n")
+    return 1 if any(found for _, found in results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
