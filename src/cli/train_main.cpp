@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/program.h"
-#include "learning/task.h"
+#include "learning/task_registry.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"
 #include "planners/diffusion/training/training.h"

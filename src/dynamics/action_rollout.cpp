@@ -94,7 +94,8 @@ struct TickAdjoint {
     action.throttle += response.by_throttle * state.speed;
     action.brake += response.by_brake * state.speed;
     action.slip += sideways + state.heading * way / rear_length * grip;
-    state.speed = response.by_speed * state.speed + BicycleModel::kTick * (state.x * cosine + state.y * sine) +
+    state.speed = response.by_speed * state.speed +
+                  BicycleModel::kTick * (state.x * cosine + state.y * sine) +
                   state.heading * turn / rear_length * BicycleModel::kTick;
     state.heading += sideways;
   }
@@ -105,7 +106,8 @@ ActionAdjoint pullBackRow(const BicycleModel& model, const State& start,
                           const ControlAction& action, double slip, StateAdjoint& adjoint) {
   const double rear_length = model.options().rear_length;
   const TickAdjoint tick{slip, std::sin(slip), std::cos(slip), rear_length};
-  const double middle_heading = start.heading + start.speed / rear_length * tick.turn * BicycleModel::kTick;
+  const double middle_heading =
+      start.heading + start.speed / rear_length * tick.turn * BicycleModel::kTick;
   const SpeedResponse first = model.speedResponse(start.speed, action);
   const SpeedResponse second = model.speedResponse(first.speed, action);
   ActionAdjoint sum;

@@ -42,8 +42,8 @@ class Input {
     const fs::file_status status = fs::status(file, error);
     if (!fs::exists(status)) failOn(source_, "no such file");
     if (!fs::is_regular_file(status)) {
-      failOn(source_,
-           fs::is_directory(status) ? "is a folder; a file was expected" : "is not a regular file");
+      failOn(source_, fs::is_directory(status) ? "is a folder; a file was expected"
+                                               : "is not a regular file");
     }
     size_ = fs::file_size(file, error);
     if (error) failOn(source_, "cannot read: " + error.message());
@@ -72,18 +72,18 @@ class Input {
 std::uint64_t readHeaderLength(Input& input) {
   if (input.size() < kLengthBytes) {
     failOn(input.source(), "truncated: " + std::to_string(input.size()) +
-                             " bytes; the 8 bytes of the header's length were expected");
+                               " bytes; the 8 bytes of the header's length were expected");
   }
   std::uint64_t length = 0;
   input.read(reinterpret_cast<char*>(&length), kLengthBytes);
   if (length > kMaxHeader) {
     failOn(input.source(), "the header's length " + std::to_string(length) +
-                             " exceeds the limit of " + std::to_string(kMaxHeader) + " bytes");
+                               " exceeds the limit of " + std::to_string(kMaxHeader) + " bytes");
   }
   if (length > input.size() - kLengthBytes) {
     failOn(input.source(), "truncated: a header of " + std::to_string(length) +
-                             " bytes is announced, " + std::to_string(input.size() - kLengthBytes) +
-                             " follow");
+                               " bytes is announced, " +
+                               std::to_string(input.size() - kLengthBytes) + " follow");
   }
   return length;
 }
@@ -125,7 +125,7 @@ std::string checksumOf(const SafetensorsHeader& header, const std::string& sourc
   }
   if (found->second.size() != kChecksumDigits) {
     failOn(source, "the metadata's sha256 has " + std::to_string(found->second.size()) +
-                     " characters; 64 hexadecimal digits were expected");
+                       " characters; 64 hexadecimal digits were expected");
   }
   return found->second;
 }
@@ -135,7 +135,8 @@ std::string checksumOf(const SafetensorsHeader& header, const std::string& sourc
 void requireChecksum(Input& input, std::uint64_t size, const std::string& expected) {
   if (size > kMaxData) {
     failOn(input.source(), "the data section of " + std::to_string(size) +
-                             " bytes exceeds the limit of " + std::to_string(kMaxData) + " bytes");
+                               " bytes exceeds the limit of " + std::to_string(kMaxData) +
+                               " bytes");
   }
   core::Sha256 hash;
   std::string piece;
@@ -147,7 +148,8 @@ void requireChecksum(Input& input, std::uint64_t size, const std::string& expect
   const std::string actual = hash.finish();
   if (actual != expected) {
     failOn(input.source(), "the data section's checksum is " + actual +
-                             ", the metadata's sha256 is '" + expected + "'; the file is damaged");
+                               ", the metadata's sha256 is '" + expected +
+                               "'; the file is damaged");
   }
   input.goBack(size);
 }
@@ -159,8 +161,9 @@ Tensor readTensor(Input& input, const TensorEntry& entry) {
   for (std::size_t i = 0; i < tensor.values.size(); ++i) {
     if (std::isfinite(tensor.values[i])) continue;
     failOn(input.source(), "tensor '" + entry.name + "' holds " +
-                             core::formatNumber(static_cast<double>(tensor.values[i])) +
-                             " at element " + std::to_string(i) + "; finite values were expected");
+                               core::formatNumber(static_cast<double>(tensor.values[i])) +
+                               " at element " + std::to_string(i) +
+                               "; finite values were expected");
   }
   return tensor;
 }

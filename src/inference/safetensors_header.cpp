@@ -106,13 +106,14 @@ TensorEntry entryOf(const std::string& name, const Json& object, const std::stri
 
 std::map<std::string, std::string> metadataOf(const Json& object, const std::string& source) {
   if (!object.is_object()) {
-    failOn(source, std::string(kMetadataKey) + " is " + kindOf(object) + "; an object was expected");
+    failOn(source,
+           std::string(kMetadataKey) + " is " + kindOf(object) + "; an object was expected");
   }
   std::map<std::string, std::string> metadata;
   for (const auto& item : object.items()) {
     if (!item.value().is_string()) {
-      failOn(source,
-           "metadata '" + item.key() + "' is " + kindOf(item.value()) + "; a string was expected");
+      failOn(source, "metadata '" + item.key() + "' is " + kindOf(item.value()) +
+                         "; a string was expected");
     }
     metadata[item.key()] = item.value().get<std::string>();
   }
@@ -130,14 +131,14 @@ void arrange(std::vector<TensorEntry>& entries, std::uint64_t data_size,
     if (entry.begin != end) {
       const bool overlap = entry.begin < end;
       failOn(source, "tensor '" + entry.name + "' begins at byte " + std::to_string(entry.begin) +
-                       (overlap ? ", an overlap with" : ", a gap after") +
-                       " the tensor before, which ends at " + std::to_string(end));
+                         (overlap ? ", an overlap with" : ", a gap after") +
+                         " the tensor before, which ends at " + std::to_string(end));
     }
     end = entry.end;
   }
   if (end > data_size) {
     failOn(source, "truncated: the tensors need " + std::to_string(end) +
-                     " bytes after the header, the file has " + std::to_string(data_size));
+                       " bytes after the header, the file has " + std::to_string(data_size));
   }
   if (end < data_size) {
     failOn(source, std::to_string(data_size - end) + " trailing bytes after the last tensor");
@@ -175,7 +176,7 @@ void requireExpected(const SafetensorsHeader& header, const std::vector<TensorSh
     }
     if (found->second->shape != tensor.shape) {
       failOn(source, "tensor '" + tensor.name + "' has shape " + shapeText(found->second->shape) +
-                       "; " + shapeText(tensor.shape) + " was expected");
+                         "; " + shapeText(tensor.shape) + " was expected");
     }
     present.erase(found);
   }

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// Trains a task in its stages. Each stage starts from the averaged weights of the checkpoints in
+/// the output folder.
 #pragma once
 
 #include <atomic>
 #include <iosfwd>
-#include <map>
-#include <string>
 
-#include "learning/stage_runner.h"
-#include "learning/task.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
-
-// Writes the trained model with what it was trained on and how well it does.
-
-/// The weight files (F16), training.json and model_card.md in the output folder. `results` are the
-/// stages that ran or lie in checkpoints. Throws InputError for a file that cannot be written.
-void writeModel(const TrainingRun& run, const TrainedModel& model,
-                const std::map<std::string, StageResult>& results);
-
-// Trains a task in its stages. Each stage starts from the averaged weights of the checkpoints in
-// the output folder.
 
 /// Runs the stage, or all of them, and writes the model (weight files, `training.json`,
 /// `model_card.md`) where its parts are whole. `stop`, set from another thread or a signal, ends it

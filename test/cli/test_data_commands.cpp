@@ -7,6 +7,7 @@
 
 #include "cli/cdiff_command.h"
 #include "learning/task.h"
+#include "learning/task_registry.h"
 #include "planners/diffusion/training/training.h"
 
 namespace cdiff::cli {

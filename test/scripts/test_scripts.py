@@ -81,13 +81,14 @@ class Scripts(unittest.TestCase):
 
     def test_demo_builds_no_test_and_no_benchmark(self):
         with tempfile.TemporaryDirectory() as results:
-            self.assertEqual(targets_of(calls_of("demo", results)), [["e2e_cdiff_programs"]])
+            self.assertEqual(targets_of(calls_of("demo", results)), [["e2e_cdiff_session_programs"]])
 
     def test_those_targets_need_no_file_of_a_test(self):
-        for targets in (["cdiff_benchmark", "e2e_cdiff_nodes"], ["e2e_cdiff_programs"]):
+        for targets in (["cdiff_benchmark", "e2e_cdiff_nodes"], ["e2e_cdiff_programs"], ["e2e_cdiff_session_programs"]):
             inputs = subprocess.run(["ninja", "-C", BUILD, "-t", "inputs", *targets], check=True, capture_output=True, text=True).stdout
-            self.assertIn("src/core/CMakeFiles/e2e_cdiff_core.dir/csv.cpp.o", inputs)
+            self.assertIn("devel/lib/libe2e_cdiff_core.so", inputs)
             self.assertNotIn("test/", inputs)
+        self.assertNotIn("libe2e_cdiff_learning", inputs)
 
     def test_setup_refuses_what_it_does_not_know(self):
         self.assertEqual(calls_of("setup", "--no-test"), [])

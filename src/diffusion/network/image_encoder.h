@@ -2,82 +2,18 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <array>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "diffusion/model.h"
 #include "e2e_cdiff/traffic/camera_image.h"
-#include "inference/encoder_layers.h"
 
 namespace cdiff::diffusion {
 
-/// The layers of the image encoder (docs/network.md) over shared buffers: rgb8 pixels -> features
-/// [image_features].
-class EncoderNetwork {
- public:
-  /// Throws InputError naming a tensor that is missing or of another shape.
-  explicit EncoderNetwork(const Model& model);
-
-  const inference::MapShape& imageShape() const { return image_; }  ///< channels is 3
-  /// `rgb` is height x width x 3 bytes.
-  std::vector<float> encode(const std::uint8_t* rgb);
-
- private:
-  /// Two convolutions and a shortcut, and the buffers between them.
-  struct Block {
-    inference::EncoderConvolution conv1;
-    inference::EncoderNorm norm1;
-    inference::EncoderConvolution conv2;
-    inference::EncoderNorm norm2;
-    std::optional<inference::EncoderConvolution> down;  ///< where size or channels change
-    std::optional<inference::EncoderNorm> down_norm;
-    float* middle = nullptr;    ///< between the convolutions
-    float* shortcut = nullptr;  ///< the input, or what `down` makes of it
-    float* output = nullptr;
-  };
-
-  void makeStem(const Model& model);
-  void makeBlock(const Model& model, const std::string& name, std::int64_t channels,
-                 std::int64_t stride);
-  void makeProjection(const Model& model);
-  /// Of the last layer's output, with padding kernel / 2.
-  inference::EncoderConvolution convolution(const Model& model, const std::string& name,
-                                            std::int64_t channels, std::int64_t kernel,
-                                            std::int64_t stride);
-  inference::EncoderNorm norm(const Model& model, const std::string& name,
-                              const inference::MapShape& shape) const;
-  float* newBuffer(std::int64_t floats);
-  void bindLayers();
-  void readImage(const std::uint8_t* rgb);
-  void runBlock(const Block& block);
-  std::vector<float> project() const;
-
-  dnnl::engine engine_;
-  dnnl::stream stream_;
-  dnnl::memory::format_tag layout_;
-  inference::MapShape image_;
-  inference::MapShape shape_;  ///< of the last layer that was made
-  std::array<float, 256> pixel_values_;
-  std::optional<inference::EncoderConvolution> stem_;
-  std::optional<inference::EncoderNorm> stem_norm_;
-  std::optional<inference::EncoderPooling> pooling_;
-  std::vector<Block> blocks_;
-  std::optional<inference::EncoderConvolution> squeeze_;
-  std::vector<float> projection_;  ///< [channel x row x column, image_features]
-  std::vector<float> bias_;        ///< [image_features]
-  std::vector<dnnl::memory> buffers_;
-  float* pixels_ = nullptr;    ///< normalised, in imageLayout()
-  float* stem_map_ = nullptr;  ///< before pooling
-  float* squeezed_ = nullptr;
-};
-
+/// One per thread; reuses its buffers.
 /// The image encoder: ResNet-34 with group normalisation and a projection, rgb8 image -> features
 /// (architecture.image_features). Float32, one image at a time, so that an image's features do not
 /// depend on its neighbours.
-/// One per thread; reuses its buffers.
 class ImageEncoder {
  public:
   explicit ImageEncoder(const Model& model);

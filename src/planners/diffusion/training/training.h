@@ -3,7 +3,7 @@
 /// What the table of training tasks needs of this planner; free of torch.
 #pragma once
 
-#include "learning/task.h"
+#include "learning/task_registry.h"
 
 namespace cdiff::planners {
 
