@@ -1,18 +1,103 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Text that is safe inside XML and HTML, and coordinates as short decimals.
+/// HTML, SVG and XML that cannot be broken by the texts in them: elements are written by `element`,
+/// everything else is text and is escaped.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 namespace cdiff::core {
 
-/// `text` for content and quoted attributes: & < > " ' escaped; control characters that XML forbids
-/// and bytes that are not UTF-8 replaced by U+FFFD.
+/// `text` as it may be shown: control characters (but tab and line feed), U+FFFE and U+FFFF, bytes
+/// that are not UTF-8, and marks that turn the direction of the text around them (U+202A to U+202E,
+/// U+2066 to U+2069) become U+FFFD.
+std::string plainText(std::string_view text);
+
+/// At most `letters` characters of `plainText(text)`, the last one "…" where more were there.
+std::string cutText(std::string_view text, std::size_t letters);
+
 std::string escapeMarkup(std::string_view text);
 
 /// `value` with one decimal at most ("12", "12.3"), for pictures.
 std::string shortNumber(double value);
+
+/// Name and value of an attribute; the value is escaped when it is written.
+struct Attribute {
+  Attribute(const char* a_name, const char* a_value) : name(a_name), value(a_value) {}
+  Attribute(const char* a_name, std::string a_value) : name(a_name), value(std::move(a_value)) {}
+  /// A number with one decimal at most.
+  template <class Number, class = std::enable_if_t<std::is_arithmetic_v<Number>>>
+  Attribute(const char* a_name, Number a_value)
+      : name(a_name), value(shortNumber(static_cast<double>(a_value))) {}
+
+  const char* name;
+  std::string value;
+  bool flag = false;  ///< written as its name alone
+};
+
+/// An attribute without a value, as "hidden".
+Attribute flag(const char* name);
+
+/// A file of the source tree that the build put into the library (cmake/CdiffAssets.cmake).
+class Asset {
+ public:
+  template <std::size_t N>
+  explicit constexpr Asset(const unsigned char (&bytes)[N]) : bytes_(bytes), size_(N) {}
+  std::string_view text() const { return {reinterpret_cast<const char*>(bytes_), size_}; }
+
+ private:
+  const unsigned char* bytes_;
+  std::size_t size_;
+};
+
+/// A piece of a page: elements and text. Only the functions below make elements; text that becomes
+/// Markup is made plain (`plainText`) and & < > " ' in it are escaped, so no text can end the
+/// element or the attribute that it is in, or begin another.
+class Markup {
+ public:
+  Markup() = default;
+  Markup(const char* text);         // NOLINT(google-explicit-constructor): the way of all text
+  Markup(const std::string& text);  // NOLINT(google-explicit-constructor)
+
+  Markup& operator+=(const Markup& other);
+  bool empty() const { return markup_.empty(); }
+  /// For a file or a test; given back to Markup it would be escaped again.
+  const std::string& str() const { return markup_; }
+
+ private:
+  friend Markup element(const char*, const std::vector<Attribute>&, const Markup&);
+  friend Markup styleElement(const std::vector<const Asset*>&);
+  friend Markup scriptElement(const Asset&);
+  friend Markup jsonElement(const std::string&, std::string_view);
+  std::string markup_;
+};
+
+Markup operator+(Markup left, const Markup& right);
+
+/// `<name attributes>content</name>`. `<img ...>` and its like have no end tag; a path, circle or
+/// rect without content is closed at once.
+Markup element(const char* name, const std::vector<Attribute>& attributes = {},
+               const Markup& content = {});
+
+/// A `<style>` with the sheets in this order. They hold neither & nor <, so that it can stand in
+/// HTML and in XML.
+Markup styleElement(const std::vector<const Asset*>& sheets);
+
+/// A `<script>`. Its text has no "</script" in it.
+Markup scriptElement(const Asset& script);
+
+/// A `<script type="application/json">`; every < of the JSON text becomes \u003c.
+Markup jsonElement(const std::string& id, std::string_view json);
+
+/// `plainText(text)` for a cell or a heading of a Markdown page: in one line, without < and with |
+/// and [ marked, so that it begins neither HTML nor a link nor another cell.
+std::string markdownText(std::string_view text);
+
+/// Texts of whole files.
+std::string htmlDocument(const Markup& head, const Markup& body);
+std::string xmlDocument(const Markup& root);
 
 }  // namespace cdiff::core
