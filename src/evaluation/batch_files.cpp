@@ -10,6 +10,7 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_figures.h"
+#include "record/junit.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -70,30 +71,22 @@ Counts countOf(const std::vector<RunRecord>& records) {
   return counts;
 }
 
-std::string attribute(const std::string& name, const std::string& value) {
-  return " " + name + "=\"" + core::escapeMarkup(value) + "\"";
-}
-
-std::string caseXml(const std::string& name, const RunRecord& record) {
-  std::string text = "    <testcase" + attribute("classname", "e2e_cdiff." + name) +
-                     attribute("name", record.id) +
-                     attribute("time", core::formatFixed(record.wall_seconds, 3));
-  if (record.has(Outcome::kPassed)) return text + "/>\n";
+record::JunitCase caseOf(const RunRecord& record) {
+  using Kind = record::JunitCase::Kind;
   const std::string reasons = core::joinText(record.reasons, "; ");
+  record::JunitCase junit;
+  junit.name = record.id;
+  junit.seconds = record.wall_seconds;
+  if (record.has(Outcome::kPassed)) return junit;
   if (record.has(Outcome::kStruck) || record.has(Outcome::kNotJudged)) {  // count as passed
-    return text + ">\n      <system-out>" +
-           core::escapeMarkup(record::wordOf(record.verdict) + ": " + reasons) +
-           "</system-out>\n    </testcase>\n";
+    junit.message = record::wordOf(record.verdict) + ": " + reasons;
+    return junit;
   }
-  const std::string tag = record.failed() ? "error" : record.complete() ? "failure" : "skipped";
-  const std::string message = record.failed()     ? record.cause
-                              : record.complete() ? reasons
-                                                  : record.status;
-  text += ">\n      <" + tag;
+  junit.kind = record.failed() ? Kind::kError : record.complete() ? Kind::kFailure : Kind::kSkipped;
+  junit.message = record.failed() ? record.cause : record.complete() ? reasons : record.status;
   const bool by_rules = record.complete() && !record.decided_by.empty();
-  const std::string type = by_rules ? core::joinText(record.decided_by, ", ") : record.status;
-  if (tag != "skipped") text += attribute("type", type);
-  return text + attribute("message", message) + "/>\n    </testcase>\n";
+  junit.type = by_rules ? core::joinText(record.decided_by, ", ") : record.status;
+  return junit;
 }
 
 /// "12.3 ± 0.4 (3)": mean, standard deviation and n.
@@ -150,7 +143,7 @@ std::string cellsTable(const std::vector<Cell>& cells) {
     std::vector<std::string> fields;
     for (const std::string& factor : shown) {
       const std::string& level = cell.factors.at(factor);
-      fields.push_back(level.empty() ? "-" : level);
+      fields.push_back(level.empty() ? "-" : core::markdownText(level));
     }
     for (const std::size_t count : {cell.runs, cell.failed, cell.missing})
       fields.push_back(std::to_string(count));
@@ -174,8 +167,9 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
     text += core::csvCell(record.id);
     for (const std::string& factor : factorNames())
       text += "," + core::csvCell(record.factors.at(factor));
-    text += "," + record.status + "," + (record.complete() ? record::toText(record.verdict) : "") +
-            "," + (started ? std::to_string(record.exit_code) : "") + "," +
+    text += "," + core::csvCell(record.status) + "," +
+            (record.complete() ? record::toText(record.verdict) : "") + "," +
+            (started ? std::to_string(record.exit_code) : "") + "," +
             std::to_string(record.attempts) + "," +
             (started ? core::formatFixed(record.wall_seconds, 3) : "");
     for (const std::string& name : figureNames()) {
@@ -204,23 +198,17 @@ std::string batchSummaryJson(const std::string& name, const std::vector<RunRecor
 }
 
 std::string batchJunitXml(const std::string& name, const std::vector<RunRecord>& records) {
-  const Counts counts = countOf(records);
-  double wall = 0.0;
-  for (const RunRecord& record : records) wall += record.wall_seconds;
-  const std::string figures = attribute("tests", std::to_string(records.size())) +
-                              attribute("failures", std::to_string(counts.verdict_failed)) +
-                              attribute("errors", std::to_string(counts.failed)) +
-                              attribute("skipped", std::to_string(counts.missing)) +
-                              attribute("time", core::formatFixed(wall, 3));
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + figures +
-                     ">\n  <testsuite" + attribute("name", name) + figures + ">\n";
-  for (const RunRecord& record : records) text += caseXml(name, record);
-  return text + "  </testsuite>\n</testsuites>\n";
+  record::JunitSuite suite{name};
+  for (const RunRecord& record : records) {
+    suite.seconds += record.wall_seconds;
+    suite.cases.push_back(caseOf(record));
+  }
+  return record::junitText(suite);
 }
 
 std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>& records) {
   const Counts counts = countOf(records);
-  return "# " + name + "\n\n" + std::to_string(records.size()) +
+  return "# " + core::markdownText(name) + "\n\n" + std::to_string(records.size()) +
          " runs: " + std::to_string(counts.failed) + " failed, " + std::to_string(counts.missing) +
          " not run or interrupted, " + std::to_string(counts.verdict_failed) +
          " ended with a failed verdict, " + std::to_string(counts.struck) + " were struck, " +

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/csv.h"
+#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -84,7 +85,9 @@ std::string intervalText(const Statistics& difference) {
          core::formatFixed(*difference.mean + *difference.half_width, 3) + "]";
 }
 
-std::string levelText(const std::string& level) { return level.empty() ? "(none)" : level; }
+std::string levelText(const std::string& level) {
+  return level.empty() ? "(none)" : core::markdownText(level);
+}
 
 /// "; guidance_profile follows (A naturalistic, B safety_critical)".
 std::string followersText(const Comparison& comparison) {
@@ -98,17 +101,18 @@ std::string followersText(const Comparison& comparison) {
 
 std::string tableOf(const Comparison& comparison) {
   std::string text =
-      "## A = " + comparison.a + ", B = " + comparison.b + "\n\n" +
-      std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
+      "## A = " + core::markdownText(comparison.a) + ", B = " + core::markdownText(comparison.b) +
+      "\n\n" + std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
       " runs of A and " + std::to_string(comparison.runs_b) + " of B; paired by " +
       core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
       followersText(comparison) +
       ".\n\n| figure | pairs | mean A | mean B | B - A | 95 % interval |\n"
       "|---|---|---|---|---|---|\n";
   for (const FigureComparison& figure : comparison.figures) {
-    text += "| " + figure.figure + " | " + std::to_string(figure.difference.n) + " | " +
-            core::formatFixed(figure.mean_a, 3) + " | " + core::formatFixed(figure.mean_b, 3) +
-            " | " + core::formatFixed(*figure.difference.mean, 3) + " | " +
+    text += "| " + core::markdownText(figure.figure) + " | " + std::to_string(figure.difference.n) +
+            " | " + core::formatFixed(figure.mean_a, 3) + " | " +
+            core::formatFixed(figure.mean_b, 3) + " | " +
+            core::formatFixed(*figure.difference.mean, 3) + " | " +
             intervalText(figure.difference) + " |\n";
   }
   return text;
@@ -224,8 +228,9 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
     for (const FigureComparison& figure : comparison.figures) {
       const Statistics& difference = figure.difference;
       text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," +
-              figure.figure + "," + std::to_string(difference.n) + field(figure.mean_a) +
-              field(figure.mean_b) + field(difference.mean) + field(difference.standard_deviation);
+              core::csvCell(figure.figure) + "," + std::to_string(difference.n) +
+              field(figure.mean_a) + field(figure.mean_b) + field(difference.mean) +
+              field(difference.standard_deviation);
       const bool interval = difference.half_width.has_value();
       text += interval ? field(*difference.mean - *difference.half_width) +
                              field(*difference.mean + *difference.half_width)

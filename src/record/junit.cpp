@@ -3,6 +3,8 @@
 #include "record/junit.h"
 
 #include <algorithm>
+#include <pugixml.hpp>
+#include <sstream>
 
 #include "core/markup.h"
 #include "core/text.h"
@@ -10,61 +12,104 @@
 namespace cdiff::record {
 namespace {
 
-std::string attribute(const std::string& name, const std::string& value) {
-  return " " + name + "=\"" + core::escapeMarkup(value) + "\"";
+using Kind = JunitCase::Kind;
+
+void setAttribute(pugi::xml_node node, const char* name, const std::string& value) {
+  node.append_attribute(name).set_value(core::plainText(value).c_str());
 }
 
-/// What a case that counts as passed has to say; empty for most.
-std::string noteOf(const SessionResult& result, const Check& check) {
-  if (check.outcome == CheckOutcome::kStruck) return "struck: " + check.text;
-  const bool not_judged = result.verdict.outcome == Outcome::kNotJudged;
-  return not_judged ? "not judged: " + core::joinText(result.verdict.reasons, "; ") : "";
+void setText(pugi::xml_node node, const std::string& text) {
+  node.text().set(core::plainText(text).c_str());
 }
 
-std::string caseXml(const SessionResult& result, const Check& check) {
-  const bool session = check.name == "session";
-  std::string text = "    <testcase" +
-                     attribute("classname", "e2e_cdiff." + result.setup.options().name) +
-                     attribute("name", check.name) +
-                     attribute("time", session ? core::formatFixed(result.wall_seconds, 3) : "0");
-  const std::string note = noteOf(result, check);
-  if (check.outcome == CheckOutcome::kPassed && note.empty()) return text + "/>\n";
-  const std::string type = traffic::toText(result.status);
-  text += ">\n      ";
-  if (!note.empty()) {
-    text += "<system-out>" + core::escapeMarkup(note) + "</system-out>";
-  } else if (check.outcome == CheckOutcome::kSkipped) {
-    text += "<skipped" + attribute("message", check.text) + "/>";
-  } else {
-    const std::string tag = check.outcome == CheckOutcome::kError ? "error" : "failure";
-    text += "<" + tag + attribute("type", session ? type : check.name) +
-            attribute("message", check.text) + ">" + core::escapeMarkup(check.text) + "</" + tag +
-            ">";
+std::string secondsText(double seconds) { return core::formatFixed(seconds, 3); }
+
+void setCounts(pugi::xml_node node, const JunitSuite& suite) {
+  const auto count = [&suite](Kind kind) {
+    return std::to_string(
+        std::count_if(suite.cases.begin(), suite.cases.end(),
+                      [kind](const JunitCase& junit) { return junit.kind == kind; }));
+  };
+  setAttribute(node, "tests", std::to_string(suite.cases.size()));
+  setAttribute(node, "failures", count(Kind::kFailure));
+  setAttribute(node, "errors", count(Kind::kError));
+  setAttribute(node, "skipped", count(Kind::kSkipped));
+  setAttribute(node, "time", secondsText(suite.seconds));
+}
+
+void addCase(pugi::xml_node suite, const std::string& name, const JunitCase& junit) {
+  pugi::xml_node node = suite.append_child("testcase");
+  setAttribute(node, "classname", "e2e_cdiff." + name);
+  setAttribute(node, "name", junit.name);
+  setAttribute(node, "time", secondsText(junit.seconds));
+  if (junit.kind == Kind::kPassed) {
+    if (!junit.message.empty()) setText(node.append_child("system-out"), junit.message);
+    return;
   }
-  return text + "\n    </testcase>\n";
+  const bool skipped = junit.kind == Kind::kSkipped;
+  pugi::xml_node found = node.append_child(skipped                      ? "skipped"
+                                           : junit.kind == Kind::kError ? "error"
+                                                                        : "failure");
+  if (!skipped) setAttribute(found, "type", junit.type);
+  setAttribute(found, "message", junit.message);
+  if (!junit.text.empty()) setText(found, junit.text);
 }
 
-std::string countOf(const std::vector<Check>& checks, CheckOutcome outcome) {
-  return std::to_string(std::count_if(checks.begin(), checks.end(), [outcome](const Check& check) {
-    return check.outcome == outcome;
-  }));
+void addProperties(pugi::xml_node suite, const std::map<std::string, std::string>& properties) {
+  if (properties.empty()) return;
+  pugi::xml_node list = suite.append_child("properties");
+  for (const auto& [name, value] : properties) {
+    pugi::xml_node property = list.append_child("property");
+    setAttribute(property, "name", name);
+    setAttribute(property, "value", value);
+  }
+}
+
+/// Of a session's check. What was struck or not judged counts as passed and says so.
+JunitCase caseOf(const SessionResult& result, const Check& check) {
+  const bool session = check.name == "session";
+  JunitCase junit;
+  junit.name = check.name;
+  junit.seconds = session ? result.wall_seconds : 0.0;
+  if (check.outcome == CheckOutcome::kStruck) {
+    junit.message = "struck: " + check.text;
+  } else if (result.verdict.outcome == Outcome::kNotJudged) {
+    junit.message = "not judged: " + core::joinText(result.verdict.reasons, "; ");
+  } else if (check.outcome != CheckOutcome::kPassed) {
+    junit.kind = check.outcome == CheckOutcome::kSkipped ? Kind::kSkipped
+                 : check.outcome == CheckOutcome::kError ? Kind::kError
+                                                         : Kind::kFailure;
+    junit.type = session ? traffic::toText(result.status) : check.name;
+    junit.message = check.text;
+    junit.text = junit.kind == Kind::kSkipped ? "" : check.text;
+  }
+  return junit;
 }
 
 }  // namespace
 
+std::string junitText(const JunitSuite& suite) {
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  setAttribute(declaration, "version", "1.0");
+  setAttribute(declaration, "encoding", "UTF-8");
+  pugi::xml_node root = document.append_child("testsuites");
+  setCounts(root, suite);
+  pugi::xml_node node = root.append_child("testsuite");
+  setAttribute(node, "name", suite.name);
+  setCounts(node, suite);
+  addProperties(node, suite.properties);
+  for (const JunitCase& junit : suite.cases) addCase(node, suite.name, junit);
+  std::ostringstream text;
+  document.save(text, "  ");
+  return text.str();
+}
+
 std::string junitXml(const SessionResult& result) {
-  const std::vector<Check>& checks = result.verdict.checks;
-  const std::string counts = attribute("tests", std::to_string(checks.size())) +
-                             attribute("failures", countOf(checks, CheckOutcome::kFailed)) +
-                             attribute("errors", countOf(checks, CheckOutcome::kError)) +
-                             attribute("skipped", countOf(checks, CheckOutcome::kSkipped)) +
-                             attribute("time", core::formatFixed(result.wall_seconds, 3));
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
-                     ">\n  <testsuite" + attribute("name", result.setup.options().name) + counts +
-                     ">\n    <properties>\n      <property" + attribute("name", "verdict") +
-                     attribute("value", toText(result.verdict.outcome)) + "/>\n    </properties>\n";
-  for (const Check& check : checks) text += caseXml(result, check);
-  return text + "  </testsuite>\n</testsuites>\n";
+  JunitSuite suite{result.setup.options().name, result.wall_seconds};
+  suite.properties["verdict"] = toText(result.verdict.outcome);
+  for (const Check& check : result.verdict.checks) suite.cases.push_back(caseOf(result, check));
+  return junitText(suite);
 }
 
 }  // namespace cdiff::record

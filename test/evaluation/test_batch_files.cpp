@@ -79,11 +79,11 @@ TEST_F(BatchFiles, SummaryHasACellPerCombination) {
 TEST_F(BatchFiles, JunitTellsErrorsFailuresAndWhatWasNotRun) {
   const std::string xml = batchJunitXml("night", records_);
   expectIn("<testsuites tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
-  expectIn("<failure type=\"driving_score, red_lights\" message=\"score &lt; 30\"/>", xml);
-  expectIn("<error type=\"error\" message=\"SUMO said &quot;no&quot;, twice\"/>", xml);
+  expectIn("<failure type=\"driving_score, red_lights\" message=\"score &lt; 30\" />", xml);
+  expectIn("<error type=\"error\" message=\"SUMO said &quot;no&quot;, twice\" />", xml);
   expectIn("<system-out>struck: struck by cbv_1</system-out>", xml);
   expectIn("<system-out>not judged: no rules</system-out>", xml);
-  expectIn("<skipped message=\"not_run\"/>", xml);
+  expectIn("<skipped message=\"not_run\" />", xml);
 }
 
 TEST_F(BatchFiles, MarkdownShowsTheFactorsThatVary) {
