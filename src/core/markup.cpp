@@ -97,8 +97,6 @@ std::string shortNumber(double value) {
   return core::formatNumber(rounded == 0.0 ? 0.0 : rounded);
 }
 
-std::string escapeMarkup(std::string_view text) { return escaped(text); }
-
 Attribute flag(const char* name) {
   Attribute attribute(name, "");
   attribute.flag = true;

@@ -19,8 +19,6 @@ std::string plainText(std::string_view text);
 /// At most `letters` characters of `plainText(text)`, the last one "…" where more were there.
 std::string cutText(std::string_view text, std::size_t letters);
 
-std::string escapeMarkup(std::string_view text);
-
 /// `value` with one decimal at most ("12", "12.3"), for pictures.
 std::string shortNumber(double value);
 

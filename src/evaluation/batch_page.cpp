@@ -4,27 +4,18 @@
 #include <iterator>
 #include <map>
 
-#include "core/markup.h"
 #include "core/text.h"
+#include "evaluation/assets.h"
 #include "evaluation/batch_report.h"
 #include "metrics/known_figures.h"
-#include "page/page_head.h"
+#include "page/assets.h"
+#include "page/page_parts.h"
 
 namespace cdiff::evaluation {
 namespace {
 
-using core::escapeMarkup;
-
-constexpr const char* kPageStyle = R"CSS(
-.sheet { display: block; max-width: 100%; height: auto; border: 1px solid var(--line);
-  border-radius: 8px; margin: 8px 0 18px; }
-td .paper, td .rift { color: var(--soft); font-size: .86rem; display: block; }
-)CSS";
-
-std::string headOf(const std::string& name) {
-  return page::pageHead(name + " – evaluation", std::string(page::kPanelSheetStyle) + kPageStyle);
-}
-
+using core::element;
+using core::Markup;
 using record::Outcome;
 
 /// Outcomes of runs in the order of the page; what broke, was interrupted or did not run is an
@@ -65,7 +56,7 @@ const char* headlineOf(Outcome worst) {
   return "Not every run could be judged";
 }
 
-std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs) {
+Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs) {
   const Outcome worst = worstOf(runs);
   std::map<Outcome, std::size_t> counts;
   for (const BatchRun& run : runs) ++counts[outcomeOf(run.record)];
@@ -75,9 +66,9 @@ std::string bannerOf(const std::string& name, const std::vector<BatchRun>& runs)
                                   " were not judged, " + count(Outcome::kFailed) +
                                   " ended with a failed verdict, " + count(Outcome::kError) +
                                   " broke, were interrupted or did not run";
-  return "<header>\n<h1>" + escapeMarkup(name) + "</h1>\n<p class=\"sub\">evaluation of " +
-         std::to_string(runs.size()) + " runs</p>\n" +
-         page::pageBanner(worst, headlineOf(worst), "<p>" + counts_text + "</p>") + "</header>\n";
+  return page::pageHeader(
+      name, "evaluation of " + std::to_string(runs.size()) + " runs",
+      page::pageBanner(worst, headlineOf(worst), element("p", {}, counts_text)));
 }
 
 std::string figureText(const BatchRun& run, const std::string& name, int decimals) {
@@ -85,84 +76,73 @@ std::string figureText(const BatchRun& run, const std::string& name, int decimal
   return figure == run.record.figures.end() ? "–" : core::formatFixed(figure->second, decimals);
 }
 
-std::string runRow(const BatchRun& run) {
+void addRow(const BatchRun& run, page::HtmlTable& table) {
   const RunRecord& record = run.record;
-  const std::string link = "runs/" + record.id + "/report.html";
   const bool has_report = std::filesystem::exists(run.folder / "report.html");
-  const std::string name =
-      has_report ? "<a href=\"" + escapeMarkup(link) + "\">" + escapeMarkup(record.id) + "</a>"
-                 : escapeMarkup(record.id);
-  const std::string why = record.complete() ? core::joinText(record.reasons, "; ") : record.cause;
-  std::string html = "<tr class=\"" + std::string(record::toText(outcomeOf(record))) + "\"><td>" +
-                     name + "</td><td>" + record.status +
-                     (record.complete() ? ", " + record::wordOf(record.verdict) : "") + "</td>";
+  const std::string link = "runs/" + record.id + "/report.html";
+  const std::string status =
+      record.status + (record.complete() ? ", " + record::wordOf(record.verdict) : "");
+  std::vector<Markup> cells = {
+      has_report ? element("a", {{"href", link}}, record.id) : Markup(record.id), status};
   namespace figures = metrics::figures;
   const std::pair<const char*, int> shown[] = {
       {figures::kRouteCompletion.name, 1},  {figures::kDrivingScore.name, 1},
       {figures::kEgoCollisions.name, 0},    {figures::kCbvDecisions.name, 0},
       {figures::kCbvEgoCollisions.name, 0}, {figures::kCbvMinimumDistance.name, 1}};
-  for (const auto& [key, decimals] : shown)
-    html += "<td class=\"number\">" + figureText(run, key, decimals) + "</td>";
-  return html + "<td>" + escapeMarkup(why) + "</td></tr>\n";
+  for (const auto& [key, decimals] : shown) cells.emplace_back(figureText(run, key, decimals));
+  cells.emplace_back(record.complete() ? core::joinText(record.reasons, "; ") : record.cause);
+  table.row(cells, record::toText(outcomeOf(record)));
 }
 
-std::string runTable(const std::vector<BatchRun>& runs) {
+Markup runTable(const std::vector<BatchRun>& runs) {
   std::vector<const BatchRun*> order;
   for (const BatchRun& run : runs) order.push_back(&run);
   std::stable_sort(order.begin(), order.end(), [](const BatchRun* left, const BatchRun* right) {
     return rankOf(left->record) < rankOf(right->record);
   });
-  std::string html =
-      "<div class=\"scroll\"><table><thead><tr><th>run</th><th>status</th><th "
-      "class=\"number\">route completion [%]</th><th class=\"number\">driving score</th><th "
-      "class=\"number\">ego collisions</th><th class=\"number\">CBV decisions</th><th "
-      "class=\"number\">CBV contacts with the ego</th><th class=\"number\">closest CBV [m]</th>"
-      "<th>why</th></tr></thead><tbody>\n";
-  for (const BatchRun* run : order) html += runRow(*run);
-  return html + "</tbody></table></div>\n";
+  page::HtmlTable table({"run", "status", "#route completion [%]", "#driving score",
+                         "#ego collisions", "#CBV decisions", "#CBV contacts with the ego",
+                         "#closest CBV [m]", "why"});
+  for (const BatchRun* run : order) addRow(*run, table);
+  return table.html();
 }
 
-std::string tableCellHtml(const TableCell& cell) {
+Markup cellOf(const TableCell& cell) {
   const std::string rift = riftText(cell);
   const std::string paper = paperText(cell.paper);
-  return "<td>" + escapeMarkup(cellText(cell)) +
-         (rift.empty() ? "" : "<span class=\"rift\">RIFT: " + rift + "</span>") +
-         (paper.empty() ? "" : "<span class=\"paper\">paper: " + paper + "</span>") + "</td>";
+  Markup html = cellText(cell);
+  if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
+  if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
+  return html;
 }
 
-std::string paperTable(const Table& table) {
+Markup paperTable(const Table& table) {
   const TableDefinition& definition = table.definition;
-  std::string html =
-      "<div class=\"scroll\"><table><thead><tr><th>" + escapeMarkup(definition.heading) + "</th>";
-  for (const TableColumn& column : definition.columns) {
-    html += "<th>" + escapeMarkup(column.name) +
-            (column.unit.empty() ? "" : " [" + escapeMarkup(column.unit) + "]") + "</th>";
-  }
-  html += "</tr></thead><tbody>\n";
+  std::vector<std::string> head = {definition.heading};
+  for (const TableColumn& column : definition.columns)
+    head.push_back(column.name + (column.unit.empty() ? "" : " [" + column.unit + "]"));
+  page::HtmlTable rows(head);
   for (std::size_t i = 0; i < table.cells.size(); ++i) {
-    html += "<tr><td>" + escapeMarkup(definition.rows[i].name) + "</td>";
-    for (const TableCell& cell : table.cells[i]) html += tableCellHtml(cell);
-    html += "</tr>\n";
+    std::vector<Markup> cells = {definition.rows[i].name};
+    for (const TableCell& cell : table.cells[i]) cells.push_back(cellOf(cell));
+    rows.row(cells);
   }
-  return html + "</tbody></table></div>\n" +
-         (definition.note.empty()
-              ? ""
-              : "<p class=\"note\">" + escapeMarkup(definition.note) + "</p>\n");
+  return rows.html() + (definition.note.empty() ? Markup() : page::pageNote(definition.note));
 }
 
 }  // namespace
 
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
                       const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  std::string html = headOf(name) + "<body>\n<main>\n" + bannerOf(name, runs) +
-                     page::pageSection("Runs", runTable(runs));
+  Markup html = headerOf(name, runs) + page::pageSection("Runs", runTable(runs));
   for (const Table& table : tables)
     html += page::pageSection(table.definition.title, paperTable(table));
   for (const Figure& figure : figures) {
     html += page::pageSection(figure.sheet.title, page::sheetSvg(figure.sheet),
                               figure.wall_clock ? "wall-clock" : "");
   }
-  return html + "</main>\n</body>\n</html>\n";
+  return page::pageDocument(name + " – evaluation", {&page::kPanelSheetStyle, &kBatchPageStyle},
+                            html);
 }
 
 }  // namespace cdiff::evaluation

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/traffic/rollout.h"
+#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/front_view_log.h"
@@ -82,55 +82,53 @@ Region regionOf(const PlanView& view) {
   return region.grown(kMargin);
 }
 
-std::string line(const std::string& style, const std::string& data) {
-  return data.empty() ? data : "<path class=\"" + style + "\" d=\"" + data + "\"/>\n";
-}
-
 /// A dot every 0.5 s.
-std::string dots(const std::vector<record::WayPoint>& states, const std::string& style,
-                 const MapCanvas& canvas) {
+Markup dots(const std::vector<record::WayPoint>& states, const std::string& style,
+            const MapCanvas& canvas) {
   constexpr std::size_t kStride = 5;
-  std::string svg;
+  Markup svg;
   for (std::size_t i = kStride; i < states.size(); i += kStride) {
-    if (!states[i].position.allFinite()) continue;
-    const Eigen::Vector2d pixel = canvas.toPixels(states[i].position);
-    svg += "<circle class=\"" + style + "\" cx=\"" + core::shortNumber(pixel.x()) + "\" cy=\"" +
-           core::shortNumber(pixel.y()) + "\" r=\"3\"/>";
+    if (states[i].position.allFinite())
+      svg += svgCircle(style, canvas.toPixels(states[i].position), 3.0);
   }
   return svg + "\n";
 }
 
-std::string fromAbove(const record::SessionResult& result, const record::VehiclePlans& vehicle,
-                      const PlanView& view, const std::string& style) {
-  const MapCanvas canvas(regionOf(view), {540.0, 360.0});
+/// What was driven, with the CBV's box at both ends, and what was planned.
+Markup statesSvg(const record::VehiclePlans& vehicle, const PlanView& view,
+                 const std::string& style, const MapCanvas& canvas) {
   const record::TimelineVehicle body{vehicle.vehicle_id, vehicle.dimensions.length,
                                      vehicle.dimensions.width};
   const auto box = [&](const record::WayPoint& state, const std::string& box_style) {
     return vehicleSvg(body, {state.position, state.heading}, canvas, box_style);
   };
-  std::string svg =
-      "<svg role=\"img\" aria-label=\"Plan and drive from above\" viewBox=\"0 0 540 "
-      "360\">\n" +
-      roadSvg(result.setup, canvas);
+  const Markup driven = box(view.driven.front(), style) +
+                        box(view.driven.back(), style + " later") +
+                        svgPath("trail " + style, canvas.line(positionsOf(view.driven))) +
+                        dots(view.driven, "stop " + style, canvas);
+  if (!view.planned.back().position.allFinite()) return driven;
+  return driven + box(view.planned.back(), "plan-end") +
+         svgPath("plan", canvas.line(positionsOf(view.planned))) +
+         dots(view.planned, "plan-stop", canvas);
+}
+
+Markup fromAbove(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                 const PlanView& view, const std::string& style) {
+  const Eigen::Vector2d size(540.0, 360.0);  // [pixels]
+  const MapCanvas canvas(regionOf(view), size);
+  Markup svg = roadSvg(result.setup, canvas);
   if (!view.ego.empty()) {
     Points trail;
     for (const geometry::Pose2d& pose : view.ego) trail.push_back(pose.position);
-    svg += line("trail ego", canvas.line(trail)) +
+    svg += svgPath("trail ego", canvas.line(trail)) +
            vehicleSvg(view.ego_vehicle, view.ego.front(), canvas, "ego");
   }
-  svg += box(view.driven.front(), style) + box(view.driven.back(), style + " later") +
-         line("trail " + style, canvas.line(positionsOf(view.driven))) +
-         dots(view.driven, "stop " + style, canvas);
-  if (view.planned.back().position.allFinite()) {
-    svg += box(view.planned.back(), "plan-end") +
-           line("plan", canvas.line(positionsOf(view.planned))) +
-           dots(view.planned, "plan-stop", canvas);
-  }
-  return "<figure class=\"plan-view\"><figcaption>From above</figcaption>\n" + svg +
-         scaleBarSvg(canvas) + "</svg></figure>\n";
+  svg += statesSvg(vehicle, view, style, canvas) + scaleBarSvg(canvas);
+  return chartFigure("plan-view", "From above",
+                     svgPicture("Plan and drive from above", size, {}, svg));
 }
 
-std::string speeds(const PlanView& view, const std::string& style) {
+Markup speeds(const PlanView& view, const std::string& style) {
   Chart chart;
   chart.title = "Speed since the decision";
   chart.unit = "m/s";
@@ -148,43 +146,43 @@ std::string speeds(const PlanView& view, const std::string& style) {
   return chartSvg(chart);
 }
 
-std::string planLegend(const std::string& style) {
-  const auto item = [](const std::string& line_style, const std::string& text) {
-    return "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path class=\"" +
-           line_style + "\" d=\"M1 7H27\"/></svg>" + text + "</span>\n";
-  };
-  return "<p class=\"planLegend\">\n" + item("plan", "planned by the CBV at this decision") +
-         item("trail " + style, "driven by the CBV") + item("trail ego", "driven by the ego") +
-         "</p>\n";
+Markup planLegend(const std::string& style) {
+  return pageLegend(legendLine("plan", "planned by the CBV at this decision") +
+                    legendLine("trail " + style, "driven by the CBV") +
+                    legendLine("trail ego", "driven by the ego"));
 }
 
 }  // namespace
 
-std::string planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
-                         const record::LoggedPlan& plan) {
+Markup planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                    const record::LoggedPlan& plan) {
   const PlanView view = viewOf(result, vehicle, plan);
   const std::string style = styleOf(VehicleRole::kCbv, vehicle.vehicle_id, result.cbv);
   const double apart = (view.planned.back().position - view.driven.back().position).norm();
   const std::string end =
       std::isfinite(apart) ? core::formatFixed(apart, 2) + " m apart at the end" : "not finite";
-  return "<h4>Plan of the decision at " + core::formatFixed(plan.time, 2) +
-         " s against what was driven in the next " + core::formatFixed(plan.horizon(), 1) +
-         " s: " + end + "</h4>\n" + planLegend(style) + "<div class=\"charts\">\n" +
-         fromAbove(result, vehicle, view, style) + speeds(view, style) +
-         "</div>\n<p class=\"note\">Filled boxes: at the decision; outlined: at the plan's end. A "
-         "dot every 0.5 s. Later decisions may change the plan.</p>\n";
+  const std::string heading = "Plan of the decision at " + core::formatFixed(plan.time, 2) +
+                              " s against what was driven in the next " +
+                              core::formatFixed(plan.horizon(), 1) + " s: " + end;
+  const Markup pictures = fromAbove(result, vehicle, view, style) + speeds(view, style);
+  return element("h4", {}, heading) + "\n" + planLegend(style) +
+         element("div", {{"class", "charts"}}, "\n" + pictures) + "\n" +
+         pageNote(
+             "Filled boxes: at the decision; outlined: at the plan's end. A dot every 0.5 s. Later "
+             "decisions may change the plan.");
 }
 
 namespace {
 
 constexpr double kLookBack = 3.0;  // from the closest approach to the plan that is shown [s]
 
-std::string view(const traffic::CameraImage& image, const std::string& style,
-                 const std::string& caption) {
-  return "<figure class=\"" + style + "\"><img width=\"" + std::to_string(image.width) +
-         "\" height=\"" + std::to_string(image.height) + "\" alt=\"" + core::escapeMarkup(caption) +
-         "\" src=\"" + record::pngDataUri(image) + "\"><figcaption>" + core::escapeMarkup(caption) +
-         "</figcaption></figure>\n";
+Markup view(const traffic::CameraImage& image, const std::string& style,
+            const std::string& caption) {
+  const Markup picture = element("img", {{"width", image.width},
+                                         {"height", image.height},
+                                         {"alt", caption},
+                                         {"src", record::pngDataUri(image)}});
+  return element("figure", {{"class", style}}, picture + element("figcaption", {}, caption)) + "\n";
 }
 
 std::string speedText(const traffic::Vehicle& vehicle) {
@@ -192,51 +190,51 @@ std::string speedText(const traffic::Vehicle& vehicle) {
 }
 
 /// What a vehicle saw: for people, and as the planner got it.
-std::string views(rendering::FrontCamera& camera, const record::Approach& approach,
-                  const traffic::Vehicle& vehicle, const std::string& name,
-                  const traffic::CameraImage& seen) {
-  std::string html = view(camera.render(approach.snapshot, vehicle), "view",
-                          "From the " + name + " at " + core::formatFixed(approach.time(), 2) +
-                              " s, " + speedText(vehicle));
-  if (seen.empty()) return html;
+Markup views(rendering::FrontCamera& camera, const record::Approach& approach,
+             const traffic::Vehicle& vehicle, const std::string& name,
+             const traffic::CameraImage& seen) {
+  const Markup people = view(camera.render(approach.snapshot, vehicle), "view",
+                             "From the " + name + " at " + core::formatFixed(approach.time(), 2) +
+                                 " s, " + speedText(vehicle));
+  if (seen.empty()) return people;
   const double step_age = static_cast<double>(approach.snapshot.tick - seen.tick);
   const std::string when = step_age > 0.0 ? " at the decision " + core::formatFixed(step_age, 0) +
                                                 (step_age > 1.0 ? " ticks" : " tick") + " before"
                                           : " at this tick";
-  return html +
+  return people +
          view(seen, "view small",
               "What the planner of the " + name + " saw" + when + ": " +
                   std::to_string(seen.width) + " × " + std::to_string(seen.height) + " pixels");
 }
 
-std::string planPart(const record::SessionResult& result, const record::Approach& approach) {
+Markup planPart(const record::SessionResult& result, const record::Approach& approach) {
   const record::VehiclePlans* vehicle = result.plans.find(approach.vehicle_id);
   if (vehicle == nullptr || vehicle->plans.empty()) return {};
   const record::LoggedPlan* plan =
       result.plans.drivenPlanNear(*vehicle, approach.time() - kLookBack);
-  if (plan == nullptr) {
-    return "<p class=\"note\">It was not driven long enough to follow a whole plan.</p>\n";
-  }
+  if (plan == nullptr) return pageNote("It was not driven long enough to follow a whole plan.");
   return planPictures(result, *vehicle, *plan);
 }
 
-std::string approachPart(const record::SessionResult& result, const record::Approach& approach,
-                         rendering::FrontCamera& camera) {
+Markup approachPart(const record::SessionResult& result, const record::Approach& approach,
+                    rendering::FrontCamera& camera) {
   const traffic::Vehicle* ego = approach.snapshot.ego();
   const traffic::Vehicle* cbv = approach.snapshot.find(approach.vehicle_id);
   if (ego == nullptr || cbv == nullptr) return {};
   const std::string gap = approach.gap > 0.0
                               ? core::formatFixed(approach.gap, 2) + " m between the outlines"
                               : "the outlines overlap";
-  return "<article class=\"approach " +
-         styleOf(traffic::VehicleRole::kCbv, approach.vehicle_id, result.cbv) + "\">\n<h3>" +
-         core::escapeMarkup(approach.vehicle_id) + " at " + core::formatFixed(approach.time(), 2) +
-         " s: " + gap + "</h3>\n<p class=\"sub\">Centres " +
-         core::formatFixed(approach.center_distance, 1) + " m apart; CBV " + speedText(*cbv) +
-         ", ego " + speedText(*ego) + "</p>\n<div class=\"views\">\n" +
-         views(camera, approach, *cbv, "CBV", approach.cbv_image) +
-         views(camera, approach, *ego, "ego", approach.ego_image) + "</div>\n" +
-         planPart(result, approach) + "</article>\n";
+  const std::string heading =
+      approach.vehicle_id + " at " + core::formatFixed(approach.time(), 2) + " s: " + gap;
+  const std::string line = "Centres " + core::formatFixed(approach.center_distance, 1) +
+                           " m apart; CBV " + speedText(*cbv) + ", ego " + speedText(*ego);
+  const Markup seen = views(camera, approach, *cbv, "CBV", approach.cbv_image) +
+                      views(camera, approach, *ego, "ego", approach.ego_image);
+  const Markup content =
+      element("h3", {}, heading) + "\n" + element("p", {{"class", "sub"}}, line) + "\n" +
+      element("div", {{"class", "views"}}, "\n" + seen) + "\n" + planPart(result, approach);
+  const std::string style = styleOf(VehicleRole::kCbv, approach.vehicle_id, result.cbv);
+  return element("article", {{"class", "approach " + style}}, "\n" + content) + "\n";
 }
 
 }  // namespace
@@ -252,15 +250,15 @@ std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& 
   return shown;
 }
 
-std::string approachSection(const record::SessionResult& result) {
+Markup approachSection(const record::SessionResult& result) {
   const std::vector<const record::Approach*> shown = shownApproaches(result.approaches);
-  if (shown.empty()) return "<p class=\"note\">No CBV was driven near the ego.</p>\n";
+  if (shown.empty()) return pageNote("No CBV was driven near the ego.");
   rendering::FrontCamera camera = record::cameraForPeople(result.setup, 640, 384);
-  std::string html;
+  Markup html;
   const std::size_t count = result.approaches.approaches().size();
   if (count > shown.size()) {
-    html += "<p class=\"note\">The " + std::to_string(shown.size()) + " nearest of " +
-            std::to_string(count) + " CBVs.</p>\n";
+    html += pageNote("The " + std::to_string(shown.size()) + " nearest of " +
+                     std::to_string(count) + " CBVs.");
   }
   for (const record::Approach* approach : shown) html += approachPart(result, *approach, camera);
   return html;

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "core/markup.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {
@@ -12,9 +12,9 @@ namespace cdiff::page {
 // One plan of a CBV against what it drove over the plan's horizon: from above (map frame), and
 // speed over the time since the decision.
 
-/// Pictures and legend as HTML, for a plan whose whole horizon was driven.
-std::string planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
-                         const record::LoggedPlan& plan);
+/// Pictures and legend, for a plan whose whole horizon was driven.
+core::Markup planPictures(const record::SessionResult& result, const record::VehiclePlans& vehicle,
+                          const record::LoggedPlan& plan);
 
 // The CBVs that came nearest to the ego: what CBV and ego saw at the closest approach, and a plan
 // from 3 s before against what was driven.
@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostApproaches = 4;
 /// The approaches that are shown, smallest gap first (ties: the vehicle that was driven first).
 std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& log);
 
-/// As HTML. Renders the front views anew, at 640 x 384 pixels.
-std::string approachSection(const record::SessionResult& result);
+/// Renders the front views anew, at 640 x 384 pixels.
+core::Markup approachSection(const record::SessionResult& result);
 
 }  // namespace cdiff::page

@@ -4,24 +4,19 @@
 
 #include <algorithm>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_figures.h"
 #include "page/approach_section.h"
+#include "page/assets.h"
 #include "page/motion_sections.h"
-#include "page/page_head.h"
+#include "page/page_parts.h"
 #include "page/pictures/session_charts.h"
 #include "page/playback.h"
-#include "page/report_style.h"
 #include "page/report_tables.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {
 namespace {
-
-std::string head(const record::SessionResult& result) {
-  return pageHead(result.setup.options().name + " – session report");
-}
 
 /// What the banner says first.
 const char* headlineOf(record::Outcome outcome) {
@@ -53,39 +48,42 @@ std::string metText(const record::SessionResult& result) {
               : "' and met every rule of the scenario that applies");
 }
 
-std::string banner(const record::SessionResult& result) {
+Markup banner(const record::SessionResult& result) {
   const session::ScenarioOptions& options = result.setup.options();
   const record::Outcome outcome = result.verdict.outcome;
-  std::string content;
-  for (const std::string& reason : result.verdict.reasons)
-    content += "<p>" + core::escapeMarkup(reason) + "</p>";
-  if (outcome == record::Outcome::kPassed) content += "<p>" + metText(result) + "</p>";
-  content += "<p class=\"story\">";
-  for (const std::string& sentence : record::sessionStory(result))
-    content += core::escapeMarkup(sentence) + " ";
-  return "<header>\n<h1>" + core::escapeMarkup(options.name) + "</h1>\n<p class=\"sub\">" +
-         core::escapeMarkup(options.mode) + " · seed " + std::to_string(options.seed) + " · ego " +
-         core::escapeMarkup(options.ego_planner) + " · CBV " +
-         core::escapeMarkup(options.cbv_planner) + "</p>\n" +
-         pageBanner(outcome, headlineOf(outcome), content + "</p>") + "</header>\n";
+  Markup content;
+  for (const std::string& reason : result.verdict.reasons) content += element("p", {}, reason);
+  if (outcome == record::Outcome::kPassed) content += element("p", {}, metText(result));
+  std::string story;
+  for (const std::string& sentence : record::sessionStory(result)) story += sentence + " ";
+  content += element("p", {{"class", "story"}}, story);
+  return pageHeader(options.name,
+                    options.mode + " · seed " + std::to_string(options.seed) + " · ego " +
+                        options.ego_planner + " · CBV " + options.cbv_planner,
+                    pageBanner(outcome, headlineOf(outcome), content));
 }
 
 /// Below the verdict: a session that late answers went into cannot be repeated.
-std::string lateBanner(const record::SessionResult& result) {
+Markup lateBanner(const record::SessionResult& result) {
   const std::string text = record::latenessText(result.late);
-  if (text.empty()) return "";
-  return "<div class=\"late\" role=\"note\"><strong>Answers came late: </strong>" +
-         core::escapeMarkup(text) + ". Another run will differ.</div>\n";
+  if (text.empty()) return {};
+  return element(
+             "div", {{"class", "late"}, {"role", "note"}},
+             element("strong", {}, "Answers came late: ") + text + ". Another run will differ.") +
+         "\n";
 }
 
-std::string figure(const std::string& name, const std::string& value, const std::string& unit,
-                   const std::string& note) {
-  return "<div class=\"figure\"><span class=\"name\">" + name + "</span><span class=\"value\">" +
-         value + (unit.empty() ? "" : " <small>" + core::escapeMarkup(unit) + "</small>") +
-         "</span><span class=\"under\">" + core::escapeMarkup(note) + "</span></div>\n";
+Markup figure(const std::string& name, const std::string& value, const std::string& unit,
+              const std::string& note) {
+  const Markup number = unit.empty() ? Markup(value) : value + " " + element("small", {}, unit);
+  return element("div", {{"class", "figure"}},
+                 element("span", {{"class", "name"}}, name) +
+                     element("span", {{"class", "value"}}, number) +
+                     element("span", {{"class", "under"}}, note)) +
+         "\n";
 }
 
-std::string figure(const std::string& name, const metrics::Measure& measure, int decimals) {
+Markup figure(const std::string& name, const metrics::Measure& measure, int decimals) {
   if (!measure.value) return figure(name, "–", "", measure.reason);
   return figure(name, core::formatFixed(*measure.value, decimals), measure.unit,
                 "n = " + std::to_string(measure.n));
@@ -96,7 +94,7 @@ std::string paceText(const record::SessionResult& result) {
   return core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) + " times real time";
 }
 
-std::string egoFigures(const record::SessionResult& result) {
+Markup egoFigures(const record::SessionResult& result) {
   namespace figures = metrics::figures;
   const metrics::SessionMeasures& measures = result.measures;
   return figure("Route completion",
@@ -109,7 +107,7 @@ std::string egoFigures(const record::SessionResult& result) {
                     std::to_string(measures.count(figures::kCbvEgoCollisions)) + " with CBVs");
 }
 
-std::string cbvFigures(const metrics::SessionMeasures& measures) {
+Markup cbvFigures(const metrics::SessionMeasures& measures) {
   namespace figures = metrics::figures;
   const metrics::Measure rate = measures.at(figures::kCollisionsPerKm);
   return figure("CBVs", std::to_string(measures.count(figures::kCbvCount)), "",
@@ -120,37 +118,34 @@ std::string cbvFigures(const metrics::SessionMeasures& measures) {
          figure("CBV off-road rate", measures.at(figures::kCbvOffRoad), 2);
 }
 
-std::string figures(const record::SessionResult& result) {
+Markup figures(const record::SessionResult& result) {
   const metrics::SessionMeasures& measures = result.measures;
-  return "<div class=\"figures\">\n" + egoFigures(result) + cbvFigures(measures) +
-         figure("2D-TTC, minimum", measures.at(metrics::figures::kTtcMinimum), 2) +
-         figure("2D-TTC, mean", measures.at(metrics::figures::kTtcMean), 2) +
-         figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s",
-                paceText(result)) +
-         "</div>\n";
+  const Markup content =
+      egoFigures(result) + cbvFigures(measures) +
+      figure("2D-TTC, minimum", measures.at(metrics::figures::kTtcMinimum), 2) +
+      figure("2D-TTC, mean", measures.at(metrics::figures::kTtcMean), 2) +
+      figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", paceText(result));
+  return element("div", {{"class", "figures"}}, "\n" + content) + "\n";
 }
 
-std::string planSection(const record::PlanLog& plans) {
-  if (plans.empty()) return "<p class=\"note\">No plan of a CBV was shown.</p>\n";
+Markup planSection(const record::PlanLog& plans) {
+  if (plans.empty()) return pageNote("No plan of a CBV was shown.");
   return planTable(plans) +
-         "<p class=\"note\">Distance between where a decision's plan put the CBV and where it was, "
-         "1, 2 and 3 s later, over all decisions whose plan and drive reach that far. State "
-         "mismatch: "
-         "largest distance between planned positions and what the vehicle dynamics makes of the "
-         "planned actions.</p>\n";
+         pageNote(
+             "Distance between where a decision's plan put the CBV and where it was, 1, 2 and 3 s "
+             "later, over all decisions whose plan and drive reach that far. State mismatch: "
+             "largest distance between planned positions and what the vehicle dynamics makes of "
+             "the planned actions.");
 }
 
-std::string configuration(const record::SessionResult& result) {
-  return originTable(result) + "<details><summary>Resolved scenario</summary>\n<pre>" +
-         core::escapeMarkup(core::dumpOptions(result.setup.options())) + "</pre>\n</details>\n";
+Markup configuration(const record::SessionResult& result) {
+  const Markup content = element("summary", {}, "Resolved scenario") + "\n" +
+                         element("pre", {}, core::dumpOptions(result.setup.options())) + "\n";
+  return originTable(result) + element("details", {}, content) + "\n";
 }
 
-}  // namespace
-
-std::string htmlReport(const record::SessionResult& result) {
-  const MapCanvas canvas(sessionRegion(result));
-  return head(result) + "<body>\n<main>\n" + banner(result) + lateBanner(result) + figures(result) +
-         pageSection("What happened", stageHtml(result, canvas)) +
+Markup sections(const record::SessionResult& result, const MapCanvas& canvas) {
+  return pageSection("What happened", stageHtml(result, canvas)) +
          pageSection("Over time", sessionCharts(result)) +
          pageSection("Distributions", drivingSection(result)) +
          pageSection("Closest approach", approachSection(result)) +
@@ -165,10 +160,18 @@ std::string htmlReport(const record::SessionResult& result) {
          pageSection("Planner latency", latencyTable(result.latencies)) +
          pageSection("Late answers", lateTable(result.late)) +
          pageSection("Faults", faultTable(result.faults)) +
-         pageSection("Configuration and versions", configuration(result)) +
-         "</main>\n<script type=\"application/json\" id=\"playback\">" +
-         playbackJson(result, canvas) + "</script>\n<script>" + kReportScript +
-         "</script>\n</body>\n</html>\n";
+         pageSection("Configuration and versions", configuration(result));
+}
+
+}  // namespace
+
+std::string htmlReport(const record::SessionResult& result) {
+  const MapCanvas canvas(sessionRegion(result));
+  return pageDocument(
+      result.setup.options().name + " – session report", {},
+      banner(result) + lateBanner(result) + figures(result) + sections(result, canvas),
+      core::jsonElement("playback", playbackJson(result, canvas)) +
+          core::scriptElement(kReportScript));
 }
 
 }  // namespace cdiff::page

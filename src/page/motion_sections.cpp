@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_figures.h"
+#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "page/report_tables.h"
@@ -28,43 +28,45 @@ std::string sampleText(const std::string& who, const record::Histogram& sample,
   return text + " " + unit + ", n = " + std::to_string(sample.n());
 }
 
-std::string chart(const std::string& title, const std::string& unit, const record::Histogram& cbv,
-                  const record::Histogram& background) {
+Markup chart(const std::string& title, const std::string& unit, const record::Histogram& cbv,
+             const record::Histogram& background) {
   return histogramSvg(
       {title, unit, {{"bg", &background}, {"cbv c0", &cbv}}},
       sampleText("CBV", cbv, unit) + "; " + sampleText("background", background, unit));
 }
 
-std::string guidanceLegend() {
-  const std::string sign = "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\">";
-  return "<p class=\"guidanceLegend\">\n" + sign +
-         "<path class=\"bars cbv c0\" d=\"M3 13V3H25V13\"/></svg>CBVs</span>\n" + sign +
-         "<path class=\"bars bg\" d=\"M3 13V3H25V13\"/></svg>background vehicles</span>\n</p>\n";
+Markup drivingLegend() {
+  const auto item = [](const char* style, const char* text) {
+    return legendItem(element("path", {{"class", style}, {"d", "M3 13V3H25V13"}}), text);
+  };
+  return pageLegend(item("bars cbv c0", "CBVs") + item("bars bg", "background vehicles"));
+}
+
+/// How even the speeds and accelerations of CBVs are, and what they are compared with.
+std::string distributionText(const metrics::SessionMeasures& measures) {
+  namespace figures = metrics::figures;
+  const auto text = [&](const metrics::FigureDefinition& figure) {
+    return record::measureText(measures.at(figure), 3);
+  };
+  return "One value per vehicle and decision; ± is the standard deviation over them. Shapiro-Wilk "
+         "W of CBVs: speed " +
+         text(figures::kSpeedShapiroWilk) + ", acceleration " +
+         text(figures::kAccelerationShapiroWilk) +
+         ". Wasserstein distance of CBV speeds to background vehicles within 150 m of the ego: " +
+         text(figures::kSpeedWasserstein) + ".";
 }
 
 }  // namespace
 
-std::string drivingSection(const record::SessionResult& result) {
+Markup drivingSection(const record::SessionResult& result) {
   const record::DrivingLog& log = result.driving;
-  if (log.cbv().speed.n() + log.background().speed.n() == 0) {
-    return "<p class=\"note\">No vehicle but the ego was seen at a decision.</p>\n";
-  }
-  const metrics::SessionMeasures& measures = result.measures;
-  return guidanceLegend() + "<div class=\"charts\">\n" +
-         chart("Speed", "m/s", log.cbv().speed, log.background().speed) +
-         chart("Acceleration", "m/s²", log.cbv().acceleration, log.background().acceleration) +
-         "</div>\n<p class=\"note\">One value per vehicle and decision; ± is the standard "
-         "deviation "
-         "over them. Shapiro-Wilk W of CBVs: speed " +
-         core::escapeMarkup(
-             record::measureText(measures.at(metrics::figures::kSpeedShapiroWilk), 3)) +
-         ", acceleration " +
-         core::escapeMarkup(
-             record::measureText(measures.at(metrics::figures::kAccelerationShapiroWilk), 3)) +
-         ". Wasserstein distance of CBV speeds to background vehicles within 150 m of the ego: " +
-         core::escapeMarkup(
-             record::measureText(measures.at(metrics::figures::kSpeedWasserstein), 3)) +
-         ".</p>\n";
+  if (log.cbv().speed.n() + log.background().speed.n() == 0)
+    return pageNote("No vehicle but the ego was seen at a decision.");
+  const Markup charts =
+      chart("Speed", "m/s", log.cbv().speed, log.background().speed) +
+      chart("Acceleration", "m/s²", log.cbv().acceleration, log.background().acceleration);
+  return drivingLegend() + element("div", {{"class", "charts"}}, "\n" + charts) + "\n" +
+         pageNote(distributionText(result.measures));
 }
 
 namespace {
@@ -116,9 +118,8 @@ void setScale(Chart& chart) {
   chart.least_top = std::max(high, chart.bottom + step);
 }
 
-std::string objectiveChart(const record::SessionResult& result,
-                           const record::GuidanceSeries& series,
-                           const std::vector<std::string>& vehicles) {
+Markup objectiveChart(const record::SessionResult& result, const record::GuidanceSeries& series,
+                      const std::vector<std::string>& vehicles) {
   Chart chart;
   chart.title = series.objective + ": value of the chosen plan, unweighted";
   chart.duration = result.timeline.duration();
@@ -130,35 +131,32 @@ std::string objectiveChart(const record::SessionResult& result,
   return chartSvg(chart);
 }
 
-std::string guidanceLegend(const record::SessionResult& result,
-                           const std::vector<std::string>& vehicles) {
-  std::string html = "<p class=\"guidanceLegend\">\n";
+Markup guidanceLegend(const record::SessionResult& result,
+                      const std::vector<std::string>& vehicles) {
+  Markup items;
   for (const std::string& id : vehicles) {
-    html +=
-        "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
-        "class=\"series " +
-        styleOf(traffic::VehicleRole::kCbv, id, result.cbv) + "\" d=\"M1 7H27\"/></svg>CBV " +
-        core::escapeMarkup(id) + "</span>\n";
+    items +=
+        legendLine("series " + styleOf(traffic::VehicleRole::kCbv, id, result.cbv), "CBV " + id);
   }
-  return html + "</p>\n";
+  return pageLegend(items);
 }
 
 }  // namespace
 
-std::string guidanceSection(const record::SessionResult& result) {
+Markup guidanceSection(const record::SessionResult& result) {
   const record::GuidanceLog& log = result.guidance;
-  if (log.series().empty()) return "<p class=\"note\">No plan of a CBV was guided.</p>\n";
+  if (log.series().empty()) return pageNote("No plan of a CBV was guided.");
   const std::vector<std::string> vehicles = vehiclesOf(log);
-  std::string html = guidanceLegend(result, vehicles) + "<div class=\"charts\">\n";
+  Markup charts = "\n";
   for (const record::GuidanceSeries& series : log.series()) {
-    html += objectiveChart(result, series, vehicles);
+    charts += objectiveChart(result, series, vehicles);
   }
-  html += "</div>\n" + guidanceTable(log);
-  if (const auto share = log.trustRegion().mean) {
-    html += "<p class=\"note\">The trust region limited " + core::formatFixed(100.0 * *share, 1) +
-            " % of the guided denoising steps.</p>\n";
-  }
-  return html;
+  const Markup html = guidanceLegend(result, vehicles) +
+                      element("div", {{"class", "charts"}}, charts) + "\n" + guidanceTable(log);
+  const auto share = log.trustRegion().mean;
+  if (!share) return html;
+  return html + pageNote("The trust region limited " + core::formatFixed(100.0 * *share, 1) +
+                         " % of the guided denoising steps.");
 }
 
 }  // namespace cdiff::page

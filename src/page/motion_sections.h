@@ -2,16 +2,15 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <string>
-
+#include "core/markup.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {
 
-/// Distributions of speed and acceleration of CBVs against background vehicles, as HTML.
-std::string drivingSection(const record::SessionResult& result);
+/// Distributions of speed and acceleration of CBVs against background vehicles.
+core::Markup drivingSection(const record::SessionResult& result);
 
-/// What guidance did, as HTML: a chart of each active objective's value, and a table.
-std::string guidanceSection(const record::SessionResult& result);
+/// What guidance did: a chart of each active objective's value, and a table.
+core::Markup guidanceSection(const record::SessionResult& result);
 
 }  // namespace cdiff::page

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/markup.h"
 #include "e2e_cdiff/core/angle.h"
+#include "page/page_parts.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/front_view_log.h"
 
@@ -22,12 +22,15 @@ std::set<int> slotsOf(const record::SessionResult& result) {
   return slots;
 }
 
-std::string sight(int slot) {
+Markup sight(int slot) {
   const std::string number = std::to_string(slot);
-  return "<figure class=\"sight\" data-slot=\"" + number +
-         "\"><img width=\"320\" height=\"192\" alt=\"Front view of the CBV in slot " + number +
-         "\" hidden><p class=\"nothing\">No CBV in slot " + number + "</p><figcaption>Slot " +
-         number + "</figcaption></figure>\n";
+  const Markup content = element("img", {{"width", "320"},
+                                         {"height", "192"},
+                                         {"alt", "Front view of the CBV in slot " + number},
+                                         core::flag("hidden")}) +
+                         element("p", {{"class", "nothing"}}, "No CBV in slot " + number) +
+                         element("figcaption", {}, "Slot " + number);
+  return element("figure", {{"class", "sight"}, {"data-slot", number}}, content) + "\n";
 }
 
 /// What the pictures are, and why there are none.
@@ -44,56 +47,85 @@ std::string sightNote(const record::SessionResult& result) {
          " sees no images.";
 }
 
-std::string sights(const record::SessionResult& result) {
-  std::string html = "<div class=\"sights\">\n";
+Markup sights(const record::SessionResult& result) {
+  Markup html = "\n";
   const bool wanted = result.setup.options().report.front_view_rate > 0.0;
   if (wanted && !result.cbv.records().empty()) {
-    html += "<div id=\"sights\" hidden>\n";
-    for (const int slot : slotsOf(result)) html += sight(slot);
-    html += "</div>\n";
+    Markup views = "\n";
+    for (const int slot : slotsOf(result)) views += sight(slot);
+    html += element("div", {{"id", "sights"}, core::flag("hidden")}, views) + "\n";
   }
-  return html + "<p class=\"note\">" + core::escapeMarkup(sightNote(result)) + "</p>\n</div>\n";
+  return element("div", {{"class", "sights"}}, html + pageNote(sightNote(result))) + "\n";
 }
 
-std::string momentTable() {
-  return "<div class=\"scroll\"><table id=\"moment\" hidden><thead><tr><th scope=\"col\">Now</th>"
-         "<th scope=\"col\" class=\"number\">Speed [m/s]</th><th scope=\"col\" class=\"number\">"
-         "Throttle</th><th scope=\"col\" class=\"number\">Brake</th><th scope=\"col\" "
-         "class=\"number\">Steer</th><th scope=\"col\" class=\"number\">Gap [m]</th><th "
-         "scope=\"col\" class=\"number\">2D-TTC [s]</th></tr></thead><tbody></tbody></table></div>"
+/// The script fills its rows.
+Markup momentTable() {
+  Markup head = element("th", {{"scope", "col"}}, "Now");
+  for (const char* name : {"Speed [m/s]", "Throttle", "Brake", "Steer", "Gap [m]", "2D-TTC [s]"}) {
+    head += element("th", {{"scope", "col"}, {"class", "number"}}, name);
+  }
+  const Markup rows = element("thead", {}, element("tr", {}, head)) + element("tbody");
+  return element("div", {{"class", "scroll"}},
+                 element("table", {{"id", "moment"}, core::flag("hidden")}, rows)) +
          "\n";
 }
 
-std::string paceChoice() {
-  std::string html = "<label>Pace <select id=\"pace\">";
-  for (const char* pace : {"0.25", "0.5", "1", "2", "4"}) {
-    const bool usual = std::string(pace) == "1";
-    html += std::string("<option value=\"") + pace + (usual ? "\" selected>" : "\">") + pace +
-            "×</option>";
-  }
-  return html + "</select></label>\n";
+Markup button(const char* id, const char* text, const std::vector<core::Attribute>& more = {}) {
+  std::vector<core::Attribute> attributes = {{"type", "button"}, {"id", id}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
+  return element("button", attributes, text);
 }
 
-std::string controls() {
-  return "<div class=\"controls\" id=\"controls\" hidden>\n<div class=\"row\"><button "
-         "type=\"button\" id=\"play\">Play</button>\n<input type=\"range\" id=\"time\" min=\"0\" "
-         "value=\"0\" step=\"1\" aria-label=\"Time of the session\">\n<output id=\"now\" "
-         "for=\"time\"></output></div>\n<div class=\"row\">" +
-         paceChoice() +
-         "<span class=\"group\"><button type=\"button\" id=\"closer\" aria-label=\"Zoom in\">+"
-         "</button><button type=\"button\" id=\"farther\" aria-label=\"Zoom "
-         "out\">−</button><button "
-         "type=\"button\" id=\"whole\">Whole picture</button></span>\n<label><input "
-         "type=\"checkbox\" id=\"follow\"> Follow the ego</label></div>\n<p class=\"note "
-         "keys\">Keys: space plays and pauses, ← and → step, with shift by 1 s, Home and End. The "
-         "address with #t=12.5 opens the page at 12.5 s.</p>\n</div>\n";
+Markup paceChoice() {
+  Markup choices;
+  for (const std::string pace : {"0.25", "0.5", "1", "2", "4"}) {
+    std::vector<core::Attribute> attributes = {{"value", pace}};
+    if (pace == "1") attributes.push_back(core::flag("selected"));
+    choices += element("option", attributes, pace + "×");
+  }
+  return element("label", {}, "Pace " + element("select", {{"id", "pace"}}, choices)) + "\n";
+}
+
+Markup slider() {
+  const Markup range = element("input", {{"type", "range"},
+                                         {"id", "time"},
+                                         {"min", "0"},
+                                         {"value", "0"},
+                                         {"step", "1"},
+                                         {"aria-label", "Time of the session"}});
+  return button("play", "Play") + "\n" + range + "\n" +
+         element("output", {{"id", "now"}, {"for", "time"}});
+}
+
+Markup zoomButtons() {
+  return element("span", {{"class", "group"}},
+                 button("closer", "+", {{"aria-label", "Zoom in"}}) +
+                     button("farther", "−", {{"aria-label", "Zoom out"}}) +
+                     button("whole", "Whole picture"));
+}
+
+Markup controls() {
+  const Markup follow = element(
+      "label", {}, element("input", {{"type", "checkbox"}, {"id", "follow"}}) + " Follow the ego");
+  const Markup keys = element(
+      "p", {{"class", "note keys"}},
+      "Keys: space plays and pauses, ← and → step, with shift by 1 s, Home and End. The address "
+      "with #t=12.5 opens the page at 12.5 s.");
+  const Markup content =
+      element("div", {{"class", "row"}}, slider()) + "\n" +
+      element("div", {{"class", "row"}}, paceChoice() + zoomButtons() + "\n" + follow) + "\n" +
+      keys;
+  return element("div", {{"class", "controls"}, {"id", "controls"}, core::flag("hidden")},
+                 "\n" + content + "\n") +
+         "\n";
 }
 
 }  // namespace
 
-std::string stageHtml(const record::SessionResult& result, const MapCanvas& canvas) {
-  return "<div class=\"stage\">\n<div>\n<div class=\"map\">\n" + topViewSvg(result, canvas) +
-         "</div>\n" + controls() + momentTable() + "</div>\n" + sights(result) + "</div>\n" +
+Markup stageHtml(const record::SessionResult& result, const MapCanvas& canvas) {
+  const Markup map = element("div", {{"class", "map"}}, "\n" + topViewSvg(result, canvas)) + "\n";
+  const Markup left = element("div", {}, "\n" + map + controls() + momentTable()) + "\n";
+  return element("div", {{"class", "stage"}}, "\n" + left + sights(result)) + "\n" +
          topViewLegend(canvas);
 }
 
@@ -207,19 +239,6 @@ void addFrames(Json& data, const record::SessionResult& result, const MapCanvas&
   }
 }
 
-/// `<` never appears, so no text can end the script element.
-std::string safeInScript(const std::string& json) {
-  std::string safe;
-  for (const char letter : json) {
-    if (letter == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += letter;
-    }
-  }
-  return safe;
-}
-
 }  // namespace
 
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas) {
@@ -233,7 +252,7 @@ std::string playbackJson(const record::SessionResult& result, const MapCanvas& c
   addVehicles(data, result);
   addFrames(data, result, canvas);
   data["start"] = firstShown(data["times"], result.timeline);
-  return safeInScript(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace cdiff::page

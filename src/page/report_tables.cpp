@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_figures.h"
 #include "metrics/metric_registry.h"
+#include "page/page_parts.h"
 #include "record/build_info.h"
 #include "record/session_text.h"
 #include "record/summary.h"
@@ -22,34 +22,6 @@ std::string fixed(double value, int decimals) { return core::formatFixed(value, 
 std::string fixedOrDash(const std::optional<double>& value, int decimals) {
   return value ? fixed(*value, decimals) : "–";
 }
-
-/// Rows of plain texts under a head; a column whose name begins with '#' holds numbers.
-class Table {
- public:
-  explicit Table(const std::vector<std::string>& head) {
-    html_ = "<div class=\"scroll\"><table><thead><tr>";
-    for (const std::string& name : head) {
-      const bool number = name.front() == '#';
-      numeric_.push_back(number);
-      html_ += std::string(number ? "<th scope=\"col\" class=\"number\">" : "<th scope=\"col\">") +
-               core::escapeMarkup(number ? name.substr(1) : name) + "</th>";
-    }
-    html_ += "</tr></thead><tbody>\n";
-  }
-  void row(const std::vector<std::string>& cells, const std::string& style = {}) {
-    html_ += style.empty() ? "<tr>" : "<tr class=\"" + style + "\">";
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      html_ += std::string(numeric_[i] ? "<td class=\"number\">" : "<td>") +
-               core::escapeMarkup(cells[i]) + "</td>";
-    }
-    html_ += "</tr>\n";
-  }
-  std::string html() const { return html_ + "</tbody></table></div>\n"; }
-
- private:
-  std::vector<bool> numeric_;
-  std::string html_;
-};
 
 /// At most three ids, highest count first.
 std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& counts) {
@@ -69,7 +41,7 @@ std::string noteOf(const metrics::Measure& measure) {
   return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
 }
 
-void measureRow(Table& table, const std::string& name, const metrics::FigureDefinition& figure,
+void measureRow(HtmlTable& table, const std::string& name, const metrics::FigureDefinition& figure,
                 const metrics::SessionMeasures& measures) {
   const metrics::Measure measure = measures.at(figure);
   table.row(
@@ -80,8 +52,8 @@ void measureRow(Table& table, const std::string& name, const metrics::FigureDefi
 
 }  // namespace
 
-std::string ruleTable(const record::SessionResult& result) {
-  Table table({"Rule", "Outcome", "Found"});
+Markup ruleTable(const record::SessionResult& result) {
+  HtmlTable table({"Rule", "Outcome", "Found"});
   for (const record::Check& check : result.verdict.checks) {
     table.row({check.name, record::toText(check.outcome), check.text},
               record::toText(check.outcome));
@@ -89,15 +61,15 @@ std::string ruleTable(const record::SessionResult& result) {
   return table.html();
 }
 
-std::string metricTable(const metrics::SessionMeasures& measures) {
-  Table table({"Metric", "#Value", "Unit", "#n", "Note"});
+Markup metricTable(const metrics::SessionMeasures& measures) {
+  HtmlTable table({"Metric", "#Value", "Unit", "#n", "Note"});
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
     measureRow(table, figure.label, figure, measures);
   return table.html();
 }
 
-std::string infractionTable(const metrics::SessionMeasures& measures) {
-  Table table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
+Markup infractionTable(const metrics::SessionMeasures& measures) {
+  HtmlTable table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
   for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
     const std::vector<std::string> keys = core::splitText(figure.place, '/');
     if (keys.size() == 3 && keys[1] == "infractions")
@@ -107,13 +79,13 @@ std::string infractionTable(const metrics::SessionMeasures& measures) {
   return table.html();
 }
 
-std::string selectionTable(const record::SessionResult& result) {
+Markup selectionTable(const record::SessionResult& result) {
   if (result.cbv.records().empty()) {
-    return "<p class=\"note\">No vehicle was selected as CBV.</p>\n";
+    return pageNote("No vehicle was selected as CBV.");
   }
-  Table table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score", "#Ego to conflict [m]",
-               "#CBV to conflict [m]", "#Arrival gap [s]", "Place", "#Decisions", "#Released [s]",
-               "Why", "#Route driven [%]", "Conflict point"});
+  HtmlTable table({"Conflict", "Vehicle", "#Slot", "#Selected [s]", "#Score",
+                   "#Ego to conflict [m]", "#CBV to conflict [m]", "#Arrival gap [s]", "Place",
+                   "#Decisions", "#Released [s]", "Why", "#Route driven [%]", "Conflict point"});
   const double step = result.setup.options().simulation_step;
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) {
     const record::CbvRecord& record = result.cbv.records()[i];
@@ -135,14 +107,14 @@ std::string selectionTable(const record::SessionResult& result) {
   return table.html();
 }
 
-std::string planTable(const record::PlanLog& plans) {
-  Table table({"CBV", "#Plans", "#After 1\u00a0s: mean [m]", "#95th percentile [m]",
-               "#After 2\u00a0s: mean [m]", "#95th percentile [m]", "#After 3\u00a0s: mean [m]",
-               "#95th percentile [m]", "#State mismatch: mean [m]", "#95th percentile [m]",
-               "#maximum [m]"});
+Markup planTable(const record::PlanLog& plans) {
+  HtmlTable table({"CBV", "#Plans", "#After 1\u00a0s: mean [m]", "#95th percentile [m]",
+                   "#After 2\u00a0s: mean [m]", "#95th percentile [m]", "#After 3\u00a0s: mean [m]",
+                   "#95th percentile [m]", "#State mismatch: mean [m]", "#95th percentile [m]",
+                   "#maximum [m]"});
   for (const record::VehiclePlans& vehicle : plans.vehicles()) {
     if (vehicle.plans.empty()) continue;
-    std::vector<std::string> cells = {vehicle.vehicle_id, std::to_string(vehicle.plans.size())};
+    std::vector<Markup> cells = {vehicle.vehicle_id, std::to_string(vehicle.plans.size())};
     for (const double seconds : {1.0, 2.0, 3.0}) {
       const record::SampleFigures figures =
           record::figuresOf(plans.displacements(vehicle, seconds));
@@ -158,9 +130,9 @@ std::string planTable(const record::PlanLog& plans) {
   return table.html();
 }
 
-std::string guidanceTable(const record::GuidanceLog& log) {
-  Table table({"Objective", "#Weight", "#Mean value", "#Mean gradient norm",
-               "#Steps with the gradient capped [%]", "#Steps left out", "#Decisions"});
+Markup guidanceTable(const record::GuidanceLog& log) {
+  HtmlTable table({"Objective", "#Weight", "#Mean value", "#Mean gradient norm",
+                   "#Steps with the gradient capped [%]", "#Steps left out", "#Decisions"});
   for (const record::GuidanceSeries& series : log.series()) {
     const record::ObjectiveFigures figures = record::figuresOf(series);
     std::optional<double> capped = figures.capped_share;
@@ -172,13 +144,13 @@ std::string guidanceTable(const record::GuidanceLog& log) {
   return table.html();
 }
 
-std::string rejectionTable(const record::CbvLog& cbv) {
-  if (cbv.rejected().empty()) return "<p class=\"note\">No candidate was rejected.</p>\n";
+Markup rejectionTable(const record::CbvLog& cbv) {
+  if (cbv.rejected().empty()) return pageNote("No candidate was rejected.");
   std::vector<std::pair<std::string, std::size_t>> rows(cbv.rejected().begin(),
                                                         cbv.rejected().end());
   std::stable_sort(rows.begin(), rows.end(),
                    [](const auto& left, const auto& right) { return left.second > right.second; });
-  Table table({"Reason", "#Times, over all decisions", "#Vehicles", "Most often", "Meaning"});
+  HtmlTable table({"Reason", "#Times, over all decisions", "#Vehicles", "Most often", "Meaning"});
   for (const auto& [reason, count] : rows) {
     const auto& vehicles = cbv.rejectedVehicles().at(reason);
     table.row({reason, std::to_string(count), std::to_string(vehicles.size()),
@@ -187,14 +159,14 @@ std::string rejectionTable(const record::CbvLog& cbv) {
   return table.html();
 }
 
-std::string contactTable(const record::SessionResult& result) {
+Markup contactTable(const record::SessionResult& result) {
   const auto& all = result.timeline.contacts();
-  if (all.empty()) return "<p class=\"note\">No vehicles touched.</p>\n";
-  Table table(
+  if (all.empty()) return pageNote("No vehicles touched.");
+  HtmlTable table(
       {"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]", "#Other [m/s]"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
   for (const record::TimelineContact& contact : all) {
-    std::vector<std::string> cells = {fixed(contact.time, 2), contact.first, contact.second};
+    std::vector<Markup> cells = {fixed(contact.time, 2), contact.first, contact.second};
     const bool ego = own != result.measures.ego_contacts.end() &&
                      (contact.first == own->partner || contact.second == own->partner) &&
                      contact.time == own->seconds;
@@ -210,9 +182,10 @@ std::string contactTable(const record::SessionResult& result) {
   return table.html();
 }
 
-std::string latencyTable(const std::map<std::string, record::LatencyFigures>& latencies) {
-  if (latencies.empty()) return "<p class=\"note\">No planner was timed.</p>\n";
-  Table table({"Planner", "#Median [ms]", "#95th percentile [ms]", "#Maximum [ms]", "#Decisions"});
+Markup latencyTable(const std::map<std::string, record::LatencyFigures>& latencies) {
+  if (latencies.empty()) return pageNote("No planner was timed.");
+  HtmlTable table(
+      {"Planner", "#Median [ms]", "#95th percentile [ms]", "#Maximum [ms]", "#Decisions"});
   for (const auto& [planner, figures] : latencies) {
     table.row({planner, fixed(figures.median, 2), fixed(figures.percentile_95, 2),
                fixed(figures.maximum, 2), std::to_string(figures.n)});
@@ -220,11 +193,11 @@ std::string latencyTable(const std::map<std::string, record::LatencyFigures>& la
   return table.html();
 }
 
-std::string lateTable(const std::map<std::string, record::LateFigures>& late) {
-  if (late.empty()) return "<p class=\"note\">The session waited for every answer.</p>\n";
-  Table table({"Planner", "#Asked", "#Late", "#Never came", "#Drove on by its plan",
-               "#Braked fully", "#Not taken over yet", "#Lateness: median [s]",
-               "#95th percentile [s]", "#Maximum [s]"});
+Markup lateTable(const std::map<std::string, record::LateFigures>& late) {
+  if (late.empty()) return pageNote("The session waited for every answer.");
+  HtmlTable table({"Planner", "#Asked", "#Late", "#Never came", "#Drove on by its plan",
+                   "#Braked fully", "#Not taken over yet", "#Lateness: median [s]",
+                   "#95th percentile [s]", "#Maximum [s]"});
   for (const auto& [planner, figures] : late) {
     table.row({planner, std::to_string(figures.asked), std::to_string(figures.late),
                std::to_string(figures.missing), std::to_string(figures.by_plan),
@@ -235,22 +208,21 @@ std::string lateTable(const std::map<std::string, record::LateFigures>& late) {
   return table.html();
 }
 
-std::string faultTable(const std::vector<traffic::Fault>& faults) {
-  if (faults.empty()) return "<p class=\"note\">None.</p>\n";
-  Table table({"#Tick", "Source", "What happened"});
+Markup faultTable(const std::vector<traffic::Fault>& faults) {
+  if (faults.empty()) return pageNote("None.");
+  HtmlTable table({"#Tick", "Source", "What happened"});
   const std::size_t shown = std::min(faults.size(), kMostFaults);
   for (std::size_t i = 0; i < shown; ++i) {
     table.row({std::to_string(faults[i].tick), faults[i].source, faults[i].text});
   }
   const std::size_t left = faults.size() - shown;
   if (left == 0) return table.html();
-  return table.html() + "<p class=\"note\">" + std::to_string(left) +
-         " more are in summary.json.</p>\n";
+  return table.html() + pageNote(std::to_string(left) + " more are in summary.json.");
 }
 
-std::string originTable(const record::SessionResult& result) {
+Markup originTable(const record::SessionResult& result) {
   const map::ImportedNetwork& network = result.setup.import();
-  Table table({"What", "Is"});
+  HtmlTable table({"What", "Is"});
   table.row({"package",
              "e2e_cdiff " + record::packageVersion() + ", revision " + record::packageRevision()});
   table.row(

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Writes a session's result folder: session.yaml, trace.csv, plans.csv, summary.json, junit.xml,
-/// report.html. Observes the session and keeps nothing of wall-clock time in the trace, so the same
-/// session gives the same trace in every deployment.
 #pragma once
 
 #include <filesystem>
@@ -15,6 +12,9 @@
 
 namespace cdiff::page {
 
+/// Writes a session's result folder: session.yaml, trace.csv, plans.csv, summary.json, junit.xml,
+/// report.html. Observes the session and keeps nothing of wall-clock time in the trace, so the same
+/// session gives the same trace in every deployment.
 class ResultWriter : public session::SessionObserver {
  public:
   /// Makes the folder (and its parents), removes what an earlier session left there, writes

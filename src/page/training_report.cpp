@@ -7,10 +7,9 @@
 #include <sstream>
 
 #include "core/csv.h"
-#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "page/page_head.h"
+#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 
 namespace cdiff::page {
@@ -60,16 +59,11 @@ void addRow(const std::vector<std::string>& cells, std::vector<TrainingStage>& s
   stage.curves[cells[3]].emplace_back(stage.seconds, std::stod(cells[4]));
 }
 
-std::string curveLegend(const std::vector<std::pair<std::string, std::string>>& items) {
-  if (items.size() < 2) return "";
-  std::string html = "<div class=\"curveLegend\">";
-  for (const auto& [style, text] : items) {
-    html +=
-        "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
-        "class=\"series " +
-        style + "\" d=\"M1 7H27\"/></svg>" + core::escapeMarkup(text) + "</span>";
-  }
-  return html + "</div>\n";
+Markup curveLegend(const std::vector<std::pair<std::string, std::string>>& items) {
+  if (items.size() < 2) return {};
+  Markup rows;
+  for (const auto& [style, text] : items) rows += legendLine("series " + style, text);
+  return element("div", {{"class", "legend"}}, rows) + "\n";
 }
 
 std::string words(std::string name) {
@@ -79,9 +73,9 @@ std::string words(std::string name) {
 }
 
 /// One chart of the named curves; empty where there are none.
-std::string curveChart(const TrainingStage& stage, const std::string& title,
-                       const std::string& unit,
-                       const std::vector<std::pair<std::string, std::string>>& named) {
+Markup curveChart(const TrainingStage& stage, const std::string& title, const std::string& unit,
+                  const std::vector<std::pair<std::string, std::string>>& named) {
+  if (named.empty()) return {};
   Chart chart;
   chart.title = title;
   chart.unit = unit;
@@ -94,7 +88,7 @@ std::string curveChart(const TrainingStage& stage, const std::string& title,
     chart.series.push_back({style, stage.curves.at(figure)});
     items.emplace_back(style, text);
   }
-  return named.empty() ? "" : "<div>" + chartSvg(chart) + curveLegend(items) + "</div>\n";
+  return element("div", {}, chartSvg(chart) + curveLegend(items)) + "\n";
 }
 
 /// Figures of the stage that satisfy a test, with the words of their names that `shown` leaves.
@@ -108,8 +102,8 @@ std::vector<std::pair<std::string, std::string>> figuresOf(const TrainingStage& 
   return named;
 }
 
-std::string heldOutCharts(const TrainingStage& stage) {
-  std::string html;
+Markup heldOutCharts(const TrainingStage& stage) {
+  Markup html;
   const std::size_t start = std::string(kHeldOut).size();
   for (const TrainingQuantity& quantity : kQuantities) {
     const std::string ending = quantity.ending;
@@ -124,7 +118,7 @@ std::string heldOutCharts(const TrainingStage& stage) {
   return html;
 }
 
-std::string stageSection(const TrainingStage& stage) {
+Markup stageSection(const TrainingStage& stage) {
   const auto losses = [](const std::string& figure) { return startsWith(figure, "loss"); };
   const auto whole = [](const std::string& figure) { return figure; };
   const auto one = [&](const char* figure, const char* title, const char* unit) {
@@ -132,14 +126,16 @@ std::string stageSection(const TrainingStage& stage) {
                       figuresOf(
                           stage, [&](const std::string& name) { return name == figure; }, whole));
   };
-  return "<section>\n<h2>" + core::escapeMarkup(words(stage.name)) + "</h2>\n<p class=\"note\">" +
-         std::to_string(stage.steps) + " steps in " + core::formatFixed(stage.seconds, 0) +
-         " s; horizontally: seconds of training</p>\n<div class=\"charts\">\n" +
-         curveChart(stage, "Loss (running mean, and its terms at the time)", "",
-                    figuresOf(stage, losses, whole)) +
-         heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
-         one("gradient_norm", "Norm of the gradient before clipping", "") +
-         one("samples_per_second", "Pace", "samples/s") + "</div>\n</section>\n";
+  const Markup charts = curveChart(stage, "Loss (running mean, and its terms at the time)", "",
+                                   figuresOf(stage, losses, whole)) +
+                        heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
+                        one("gradient_norm", "Norm of the gradient before clipping", "") +
+                        one("samples_per_second", "Pace", "samples/s");
+  const std::string note = std::to_string(stage.steps) + " steps in " +
+                           core::formatFixed(stage.seconds, 0) +
+                           " s; horizontally: seconds of training";
+  return pageSection(words(stage.name),
+                     pageNote(note) + element("div", {{"class", "charts"}}, "\n" + charts) + "\n");
 }
 
 }  // namespace
@@ -167,16 +163,11 @@ std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std
 
 std::string trainingReport(const std::string& title, const std::vector<TrainingStage>& stages,
                            const std::string& card) {
-  std::string html =
-      pageHead(title + " – training") + "<body>\n<main>\n<header>\n<h1>" +
-      core::escapeMarkup(title) +
-      "</h1>\n<p class=\"sub\">course of training; errors are of the averaged weights on held-out "
-      "sessions</p>\n</header>\n";
+  Markup html = pageHeader(
+      title, "course of training; errors are of the averaged weights on held-out sessions");
   for (const TrainingStage& stage : stages) html += stageSection(stage);
-  if (!card.empty())
-    html +=
-        "<section>\n<h2>Model card</h2>\n<pre>" + core::escapeMarkup(card) + "</pre>\n</section>\n";
-  return html + "</main>\n</body>\n</html>\n";
+  if (!card.empty()) html += pageSection("Model card", element("pre", {}, card) + "\n");
+  return pageDocument(title + " – training", {}, html);
 }
 
 }  // namespace cdiff::page

@@ -42,7 +42,7 @@ TEST(HistogramChart, DrawsBarsInPercentOfEachSample) {
   second.add(4.5);
   second.add(5.5);
   const std::string svg =
-      page::histogramSvg({"Speed", "m/s", {{"a", &first}, {"b", &second}}}, "<all>");
+      page::histogramSvg({"Speed", "m/s", {{"a", &first}, {"b", &second}}}, "<all>").str();
   // Bins 4 and 5 fill the width, 42 to 528 pixels; 100 % lies at 12, 50 % at 89, 0 at 166 pixels.
   EXPECT_NE(svg.find("<path class=\"bars a\" d=\"M42 166V12H285V166H528V166Z\"/>"),
             std::string::npos)
@@ -55,7 +55,7 @@ TEST(HistogramChart, DrawsBarsInPercentOfEachSample) {
 
 TEST(HistogramChart, EmptySamplesLeaveAnEmptyChart) {
   const Histogram nothing(-1.0, 1.0, 2);
-  const std::string svg = page::histogramSvg({"Speed", "m/s", {{"a", &nothing}}}, "none");
+  const std::string svg = page::histogramSvg({"Speed", "m/s", {{"a", &nothing}}}, "none").str();
   EXPECT_EQ(svg.find("bars a"), std::string::npos);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
 #include "page/pictures/charts.h"
@@ -13,7 +12,9 @@ namespace {
 
 constexpr double kHalfLetter = 3.6;  // half the width of a letter of a name [px]
 
+using core::Markup;
 using core::shortNumber;
+using page::svgPlace;
 
 constexpr double kBarShare = 0.8;  // of a group's width that bars fill
 const std::string kPaperStyle = page::systemStyle(7);
@@ -29,42 +30,45 @@ double topOf(const Table& table) {
   return top;
 }
 
-/// Grid lines with numbers; groups have names instead of numbers.
-std::string valueGrid(const page::ChartAxes& axes) {
-  const double step = page::niceStep(axes.high() - axes.low(), 5);
-  const int lines = static_cast<int>(std::lround((axes.high() - axes.low()) / step));
-  std::string svg;
-  for (int i = 0; i <= lines; ++i) {
-    const double value = axes.low() + i * step;
-    svg += "<path class=\"grid\" d=\"M" + shortNumber(page::kChartLeft) + " " +
-           shortNumber(axes.y(value)) + "H" + shortNumber(page::kChartWidth - page::kChartRight) +
-           "\"/>" +
-           page::chartText("tick end", page::kChartLeft - 6.0, axes.y(value) + 4.0,
-                           page::axisNumber(value, step));
-  }
+Markup bar(const page::ChartAxes& axes, double left, double width, double value,
+           const std::string& style) {
+  const std::string data =
+      "M" + svgPlace(axes.x(left), axes.y(0.0)) + "V" + shortNumber(axes.y(value)) + "H" +
+      shortNumber(axes.x(left + 0.9 * width)) + "V" + shortNumber(axes.y(0.0)) + "Z";
+  return core::element("path", {{"class", "bar " + style}, {"d", data}});
+}
+
+Markup interval(const page::ChartAxes& axes, double x, const Statistics& figure) {
+  if (!figure.half_width) return {};
+  const std::string data = "M" + svgPlace(axes.x(x), axes.y(*figure.mean - *figure.half_width)) +
+                           "V" + shortNumber(axes.y(*figure.mean + *figure.half_width));
+  return core::element("path", {{"class", "error"}, {"d", data}});
+}
+
+/// A row's name, and why it has no bars.
+Markup groupText(const Table& table, std::size_t row, const page::ChartAxes& axes) {
+  const auto& cells = table.cells[row];
+  const double middle = axes.x(static_cast<double>(row) + 0.5);
+  const bool empty = std::none_of(cells.begin(), cells.end(),
+                                  [](const TableCell& cell) { return cell.seeds.mean; });
+  const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
+  const std::string& name = table.definition.rows[row].name;
+  const double half =
+      std::min(kHalfLetter * static_cast<double>(name.size()), 0.5 * page::kChartWidth);
+  Markup svg = page::chartText("tick middle", std::clamp(middle, half, page::kChartWidth - half),
+                               page::kChartHeight - 9.0 + lower, name);
+  if (empty && !cells.empty())
+    svg +=
+        page::chartText("note middle", middle, page::kChartTop + 10.0 + lower, cells.front().note);
   return svg + "\n";
 }
 
-std::string bar(const page::ChartAxes& axes, double left, double width, double value,
-                const std::string& style) {
-  return "<path class=\"bar " + style + "\" d=\"M" + shortNumber(axes.x(left)) + " " +
-         shortNumber(axes.y(0.0)) + "V" + shortNumber(axes.y(value)) + "H" +
-         shortNumber(axes.x(left + 0.9 * width)) + "V" + shortNumber(axes.y(0.0)) + "Z\"/>";
-}
-
-std::string interval(const page::ChartAxes& axes, double x, const Statistics& figure) {
-  if (!figure.half_width) return "";
-  return "<path class=\"error\" d=\"M" + shortNumber(axes.x(x)) + " " +
-         shortNumber(axes.y(*figure.mean - *figure.half_width)) + "V" +
-         shortNumber(axes.y(*figure.mean + *figure.half_width)) + "\"/>";
-}
-
 /// Bars of one row: per column ours and the paper's.
-std::string groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes) {
+Markup groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes) {
   const auto& cells = table.cells[row];
   const double width = kBarShare / (2.0 * static_cast<double>(cells.size()));
   double left = static_cast<double>(row) + 0.5 * (1.0 - kBarShare);
-  std::string svg;
+  Markup svg;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const TableCell& cell = cells[i];
     if (cell.seeds.mean) {
@@ -75,18 +79,7 @@ std::string groupOf(const Table& table, std::size_t row, const page::ChartAxes& 
     if (cell.paper.mean) svg += bar(axes, left, width, *cell.paper.mean, kPaperStyle);
     left += width;
   }
-  const double middle = axes.x(static_cast<double>(row) + 0.5);
-  const bool empty = std::none_of(cells.begin(), cells.end(),
-                                  [](const TableCell& cell) { return cell.seeds.mean; });
-  const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
-  const std::string& name = table.definition.rows[row].name;
-  const double half = kHalfLetter * static_cast<double>(name.size());
-  svg += page::chartText("tick middle", std::clamp(middle, half, page::kChartWidth - half),
-                         page::kChartHeight - 9.0 + lower, name);
-  if (empty && !cells.empty())
-    svg +=
-        page::chartText("note middle", middle, page::kChartTop + 10.0 + lower, cells.front().note);
-  return svg + "\n";
+  return svg + groupText(table, row, axes);
 }
 
 /// Numbers below the bars, one line a row.
@@ -123,7 +116,7 @@ Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>&
   page::Panel panel;
   panel.width = page::kChartWidth;
   panel.height = page::kChartHeight + 14.0;
-  panel.content = valueGrid(axes);
+  panel.content = axes.valueGrid() + "\n";
   for (std::size_t row = 0; row < table.cells.size(); ++row)
     panel.content += groupOf(table, row, axes);
   figure.sheet.rows = {{panel}};

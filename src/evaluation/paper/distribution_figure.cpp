@@ -4,7 +4,6 @@
 #include <unordered_map>
 
 #include "core/csv.h"
-#include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
 #include "metrics/measures/shapiro_wilk.h"
@@ -111,7 +110,7 @@ std::string csvOf(const std::vector<PlannerSamples>& planners) {
 /// The histogram's outline as density.
 std::string outline(const record::Histogram& histogram, const page::ChartAxes& axes) {
   using core::shortNumber;
-  std::string data = "M" + shortNumber(axes.x(histogram.low())) + " " + shortNumber(axes.y(0.0));
+  std::string data = "M" + page::svgPlace(axes.x(histogram.low()), axes.y(0.0));
   for (std::size_t bin = 0; bin < histogram.counts().size(); ++bin) {
     const double right = histogram.low() + static_cast<double>(bin + 1) * histogram.width();
     data += "V" + shortNumber(axes.y(histogram.share(bin) / histogram.width())) + "H" +
@@ -137,8 +136,8 @@ page::Panel panelOf(const std::vector<PlannerSamples>& planners, Sample PlannerS
   for (std::size_t i = planners.size(); i-- > 0;) {
     const Sample& sample = planners[i].*member;
     if (sample.values.empty()) continue;
-    panel.content += "<path class=\"series " + page::systemStyle(i) + "\" d=\"" +
-                     outline(sample.histogram, axes) + "\"/>\n";
+    panel.content +=
+        page::svgPath("series " + page::systemStyle(i), outline(sample.histogram, axes));
   }
   return panel;
 }

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "core/csv.h"
-#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper/paper_figures.h"
@@ -18,7 +17,6 @@
 namespace cdiff::evaluation {
 namespace {
 
-using core::shortNumber;
 using record::PlanRow;
 
 constexpr const char* kExecutionHeader =
@@ -126,11 +124,10 @@ page::Panel curves(const std::vector<Execution>& executions,
   for (std::size_t i = 0; i < executions.size(); ++i) {
     std::string data;
     for (const auto& [seconds, values] : executions[i].*member) {
-      data += (data.empty() ? "M" : "L") + shortNumber(axes.x(seconds)) + " " +
-              shortNumber(axes.y(*record::figuresOf(values).mean));
+      data += (data.empty() ? "M" : "L") +
+              page::svgPlace(axes.x(seconds), axes.y(*record::figuresOf(values).mean));
     }
-    if (!data.empty())
-      panel.content += "<path class=\"series " + page::systemStyle(i) + "\" d=\"" + data + "\"/>\n";
+    panel.content += page::svgPath("series " + page::systemStyle(i), data);
   }
   return panel;
 }
@@ -185,13 +182,12 @@ page::Panel examplePanel(const Execution& execution, const Plan& plan,
   const record::WayPoint& start = plan.front().planned;
   panel.title = execution.name + ": " + core::formatFixed(displacement(plan.back()), 2) +
                 " m apart after " + core::formatFixed(plan.back().seconds, 1) + " s";
-  panel.content = "<path class=\"ground\" d=\"M0 0H540V220H0Z\"/>\n" +
-                  (setup == nullptr ? std::string() : page::roadSvg(*setup, canvas)) +
-                  page::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
-                                   {start.position, start.heading}, canvas, "cbv") +
-                  "<path class=\"driven\" d=\"" + canvas.line(driven) +
-                  "\"/>\n<path class=\"plan\" d=\"" + canvas.line(planned) + "\"/>\n" +
-                  page::scaleBarSvg(canvas);
+  panel.content = page::svgPath("ground", "M0 0H540V220H0Z");
+  if (setup != nullptr) panel.content += page::roadSvg(*setup, canvas);
+  panel.content += page::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
+                                    {start.position, start.heading}, canvas, "cbv") +
+                   page::svgPath("driven", canvas.line(driven)) +
+                   page::svgPath("plan", canvas.line(planned)) + page::scaleBarSvg(canvas);
   return panel;
 }
 

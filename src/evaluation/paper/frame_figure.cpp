@@ -7,17 +7,18 @@
 #include <memory>
 
 #include "core/csv.h"
-#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper/paper_figures.h"
 #include "metrics/known_figures.h"
+#include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "record/trace_file.h"
 
 namespace cdiff::evaluation {
 namespace {
 
+using core::Markup;
 using record::TraceRow;
 using traffic::VehicleRole;
 
@@ -112,8 +113,8 @@ class FrameRow {
 
  private:
   page::Panel panelAt(std::size_t frame, std::uint64_t tick, std::string& csv) const {
-    const std::string road = setup_ == nullptr ? "" : page::roadSvg(*setup_, canvas_);
-    std::string vehicles;
+    const Markup road = setup_ == nullptr ? Markup() : page::roadSvg(*setup_, canvas_);
+    Markup vehicles;
     const TraceRow* ego = nullptr;
     const TraceRow* other = nullptr;
     for (const TraceRow& row : rows_) {
@@ -134,17 +135,18 @@ class FrameRow {
     panel.cut = true;
     panel.width = kWidth;
     panel.height = kHeight;
-    panel.content = ground() + road + vehicles + (circled ? circle(*ego, *other) : "") +
-                    (frame == 0 ? page::scaleBarSvg(canvas_) : "");
+    panel.content = ground() + road + vehicles;
+    if (circled) panel.content += circle(*ego, *other);
+    if (frame == 0) panel.content += page::scaleBarSvg(canvas_);
     return panel;
   }
 
-  static std::string ground() {
-    return "<path class=\"ground\" d=\"M0 0H" + core::shortNumber(kWidth) + "V" +
-           core::shortNumber(kHeight) + "H0Z\"/>\n";
+  static Markup ground() {
+    return page::svgPath(
+        "ground", "M0 0H" + core::shortNumber(kWidth) + "V" + core::shortNumber(kHeight) + "H0Z");
   }
 
-  std::string boxOf(const TraceRow& row) const {
+  Markup boxOf(const TraceRow& row) const {
     const traffic::VehicleDimensions size;  // the trace does not hold it
     const char* style = row.role == VehicleRole::kEgo   ? "ego"
                         : row.role == VehicleRole::kCbv ? "cbv"
@@ -153,11 +155,10 @@ class FrameRow {
                             style);
   }
 
-  std::string circle(const TraceRow& ego, const TraceRow& other) const {
+  Markup circle(const TraceRow& ego, const TraceRow& other) const {
     const Eigen::Vector2d center = canvas_.toPixels(0.5 * (ego.position + other.position));
     const double radius = (0.5 * (ego.position - other.position).norm() + 3.5) * canvas_.scale();
-    return "<circle class=\"interaction\" cx=\"" + core::shortNumber(center.x()) + "\" cy=\"" +
-           core::shortNumber(center.y()) + "\" r=\"" + core::shortNumber(radius) + "\"/>\n";
+    return page::svgCircle("interaction", center, radius) + "\n";
   }
 
   std::string csvOf(std::size_t frame, const TraceRow& row, bool circled) const {

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/markup.h"
 #include "core/text.h"
 
 namespace cdiff::page {
 namespace {
 
-constexpr double kRounding = 1e-9;   // share of a step
-constexpr double kHalfLetter = 4.0;  // half the width of a letter [px]
+constexpr double kRounding = 1e-9;             // share of a step
+constexpr double kHalfLetter = 4.0;            // half the width of a letter [px]
+constexpr std::size_t kMostLineLetters = 160;  // of a line of text in a picture
 
 }  // namespace
 
@@ -34,9 +34,40 @@ std::string axisNumber(double value, double step) {
   return core::formatNumber(rounded);
 }
 
-std::string chartText(const std::string& style, double x, double y, const std::string& content) {
-  return "<text class=\"" + style + "\" x=\"" + core::shortNumber(x) + "\" y=\"" +
-         core::shortNumber(y) + "\">" + core::escapeMarkup(content) + "</text>";
+core::Markup chartText(const std::string& style, double x, double y, const std::string& content) {
+  return core::element("text", {{"class", style}, {"x", x}, {"y", y}},
+                       core::cutText(content, kMostLineLetters));
+}
+
+core::Markup svgPath(const std::string& style, const std::string& data, const std::string& title) {
+  if (data.empty()) return {};
+  const core::Markup tip = title.empty() ? core::Markup() : core::element("title", {}, title);
+  return core::element("path", {{"class", style}, {"d", data}}, tip) + "\n";
+}
+
+core::Markup svgCircle(const std::string& style, const Eigen::Vector2d& center, double radius,
+                       const core::Markup& content) {
+  return core::element(
+      "circle", {{"class", style}, {"cx", center.x()}, {"cy", center.y()}, {"r", radius}}, content);
+}
+
+std::string svgPlace(double x, double y) {
+  return core::shortNumber(x) + " " + core::shortNumber(y);
+}
+
+core::Markup svgPicture(const std::string& title, const Eigen::Vector2d& size,
+                        const std::vector<core::Attribute>& attributes,
+                        const core::Markup& content) {
+  std::vector<core::Attribute> all = {
+      {"role", "img"}, {"aria-label", title}, {"viewBox", "0 0 " + svgPlace(size.x(), size.y())}};
+  all.insert(all.end(), attributes.begin(), attributes.end());
+  return core::element("svg", all, "\n" + content);
+}
+
+core::Markup chartFigure(const std::string& style, const std::string& caption,
+                         const core::Markup& content) {
+  const core::Markup text = core::element("figcaption", {}, caption);
+  return core::element("figure", {{"class", style}}, text + "\n" + content) + "\n";
 }
 
 ChartAxes::ChartAxes(double left, double right, double bottom, double top)
@@ -54,16 +85,21 @@ double ChartAxes::y(double value) const {
   return kChartHeight - kChartBottom - (kChartHeight - kChartTop - kChartBottom) * share;
 }
 
-std::string ChartAxes::grid(const std::string& unit) const {
-  std::string svg;
+core::Markup ChartAxes::valueGrid() const {
+  core::Markup svg;
   const int rows = static_cast<int>(std::lround((high_ - low_) / step_));
   for (int i = 0; i <= rows; ++i) {
     const double value = low_ + i * step_;
-    svg += "<path class=\"grid\" d=\"M" + core::shortNumber(kChartLeft) + " " +
-           core::shortNumber(y(value)) + "H" + core::shortNumber(kChartWidth - kChartRight) +
-           "\"/>" +
+    svg += core::element("path", {{"class", "grid"},
+                                  {"d", "M" + svgPlace(kChartLeft, y(value)) + "H" +
+                                            core::shortNumber(kChartWidth - kChartRight)}}) +
            chartText("tick end", kChartLeft - 6.0, y(value) + 4.0, axisNumber(value, step_));
   }
+  return svg;
+}
+
+core::Markup ChartAxes::grid(const std::string& unit) const {
+  core::Markup svg = valueGrid();
   const double step = niceStep(right_ - left_, 8);
   const double first = std::ceil(left_ / step - kRounding);
   const double last = std::floor(right_ / step + kRounding);
@@ -92,12 +128,8 @@ ChartAxes axesOf(const Chart& chart) {
   return {0.0, durationOf(chart), chart.bottom, top};
 }
 
-std::string pathOf(const std::string& style, const std::string& data) {
-  return data.empty() ? data : "<path class=\"series " + style + "\" d=\"" + data + "\"/>\n";
-}
-
 /// Points with a value are joined; one without neighbours is a dot.
-std::string seriesPath(const ChartSeries& series, const ChartAxes& axes) {
+core::Markup seriesPath(const ChartSeries& series, const ChartAxes& axes) {
   std::string lines;
   std::string dots;
   const auto& points = series.points;
@@ -107,49 +139,52 @@ std::string seriesPath(const ChartSeries& series, const ChartAxes& axes) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!drawn(i)) continue;
     const bool joins = i > 0 && drawn(i - 1);
-    const std::string place = core::shortNumber(axes.x(points[i].first)) + " " +
-                              core::shortNumber(axes.y(points[i].second));
+    const std::string place = svgPlace(axes.x(points[i].first), axes.y(points[i].second));
     if (joins || drawn(i + 1)) {
       lines += (joins ? "L" : "M") + place;
     } else {
       dots += "M" + place + "h0.01";
     }
   }
-  return pathOf(series.style, lines) + pathOf("dot " + series.style, dots);
+  return svgPath("series " + series.style, lines) + svgPath("series dot " + series.style, dots);
 }
 
-std::string markSvg(const ChartMark& mark, const ChartAxes& axes) {
+core::Markup markSvg(const ChartMark& mark, const ChartAxes& axes) {
   const double x = axes.x(mark.time);
   const double y = axes.y(mark.value);
   const bool right_half = x > 0.5 * kChartWidth;
   const double text_y = y > kChartTop + 24.0 ? y - 9.0 : y + 18.0;
-  return "<circle class=\"mark\" cx=\"" + core::shortNumber(x) + "\" cy=\"" + core::shortNumber(y) +
-         "\" r=\"4\"/>" +
+  return svgCircle("mark", {x, y}, 4.0) +
          chartText(right_half ? "mark-text end" : "mark-text", x, text_y, mark.text) + "\n";
 }
 
+const Eigen::Vector2d kChartSize(kChartWidth, kChartHeight);
+
 }  // namespace
 
-std::string chartSvg(const Chart& chart) {
+core::Markup timeChart(const std::string& heading, double duration, bool own_time,
+                       const core::Markup& content) {
+  const std::vector<core::Attribute> attributes = {{"data-left", kChartLeft},
+                                                   {"data-right", kChartWidth - kChartRight},
+                                                   {"data-duration", core::formatNumber(duration)}};
+  const std::string line =
+      "M0 " + core::shortNumber(kChartTop) + "V" + core::shortNumber(kChartHeight - kChartBottom);
+  const core::Markup cursor =
+      own_time ? core::Markup() : core::element("path", {{"class", "cursor"}, {"d", line}});
+  return chartFigure(own_time ? "chart own" : "chart", heading,
+                     svgPicture(heading + " over time", kChartSize, attributes, content + cursor));
+}
+
+core::Markup chartSvg(const Chart& chart) {
   const ChartAxes axes = axesOf(chart);
-  const std::string heading =
-      core::escapeMarkup(chart.title) +
-      (chart.unit.empty() ? "" : " [" + core::escapeMarkup(chart.unit) + "]");
-  std::string svg = std::string("<figure class=\"") + (chart.own_time ? "chart own" : "chart") +
-                    "\"><figcaption>" + heading + "</figcaption>\n<svg role=\"img\" aria-label=\"" +
-                    heading + " over time\" viewBox=\"0 0 " + core::shortNumber(kChartWidth) + " " +
-                    core::shortNumber(kChartHeight) + "\" data-left=\"" +
-                    core::shortNumber(kChartLeft) + "\" data-right=\"" +
-                    core::shortNumber(kChartWidth - kChartRight) + "\" data-duration=\"" +
-                    core::formatNumber(durationOf(chart)) + "\">\n" + axes.grid("s");
+  core::Markup svg = axes.grid("s");
   // The first series lies on top.
   for (auto series = chart.series.rbegin(); series != chart.series.rend(); ++series) {
     svg += seriesPath(*series, axes);
   }
   for (const ChartMark& mark : chart.marks) svg += markSvg(mark, axes);
-  if (chart.own_time) return svg + "</svg></figure>\n";
-  return svg + "<path class=\"cursor\" d=\"M0 " + core::shortNumber(kChartTop) + "V" +
-         core::shortNumber(kChartHeight - kChartBottom) + "\"/></svg></figure>\n";
+  const std::string unit = chart.unit.empty() ? "" : " [" + chart.unit + "]";
+  return timeChart(chart.title + unit, durationOf(chart), chart.own_time, svg);
 }
 
 namespace {
@@ -181,10 +216,8 @@ double largestPercent(const HistogramChart& chart) {
 
 std::string bars(const record::Histogram& sample, std::pair<std::size_t, std::size_t> bins,
                  const ChartAxes& axes) {
-  std::string data =
-      "M" +
-      core::shortNumber(axes.x(sample.low() + static_cast<double>(bins.first) * sample.width())) +
-      " " + core::shortNumber(axes.y(0.0));
+  const double left = sample.low() + static_cast<double>(bins.first) * sample.width();
+  std::string data = "M" + svgPlace(axes.x(left), axes.y(0.0));
   for (std::size_t bin = bins.first; bin < bins.second; ++bin) {
     const double right = sample.low() + static_cast<double>(bin + 1) * sample.width();
     data += "V" + core::shortNumber(axes.y(100.0 * sample.share(bin))) + "H" +
@@ -195,23 +228,19 @@ std::string bars(const record::Histogram& sample, std::pair<std::size_t, std::si
 
 }  // namespace
 
-std::string histogramSvg(const HistogramChart& chart, const std::string& caption) {
+core::Markup histogramSvg(const HistogramChart& chart, const std::string& caption) {
   const auto bins = filledBins(chart);
   const record::Histogram& shape = *chart.samples.front().second;
   const ChartAxes axes(shape.low() + static_cast<double>(bins.first) * shape.width(),
                        shape.low() + static_cast<double>(bins.second) * shape.width(), 0.0,
                        largestPercent(chart));
-  const std::string title = core::escapeMarkup(chart.title);
-  std::string svg = "<figure class=\"chart own\"><figcaption>" + title +
-                    " [% of each sample]</figcaption>\n<svg role=\"img\" aria-label=\"" + title +
-                    ": " + core::escapeMarkup(caption) + "\" viewBox=\"0 0 " +
-                    core::shortNumber(kChartWidth) + " " + core::shortNumber(kChartHeight) +
-                    "\">\n" + axes.grid(chart.unit);
+  core::Markup svg = axes.grid(chart.unit);
   for (const auto& [style, sample] : chart.samples) {
-    if (sample->n() == 0) continue;
-    svg += "<path class=\"bars " + style + "\" d=\"" + bars(*sample, bins, axes) + "\"/>\n";
+    if (sample->n() > 0) svg += svgPath("bars " + style, bars(*sample, bins, axes));
   }
-  return svg + "</svg><p class=\"note\">" + core::escapeMarkup(caption) + "</p></figure>\n";
+  return chartFigure("chart own", chart.title + " [% of each sample]",
+                     svgPicture(chart.title + ": " + caption, kChartSize, {}, svg) +
+                         core::element("p", {{"class", "note"}}, caption));
 }
 
 }  // namespace cdiff::page

@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/markup.h"
 #include "record/logs/driving_log.h"
 
 namespace cdiff::page {
@@ -24,12 +26,32 @@ double niceStep(double span, int count);
 /// A multiple of `step` in few letters: "0.3", "80k".
 std::string axisNumber(double value, double step);
 
-/// One line of text of a CSS class at a pixel.
-std::string chartText(const std::string& style, double x, double y, const std::string& content);
+// Elements of pictures (pixels, x right, y down). `style` is a CSS class, or several.
 
-/// The plane of a chart in a page: 540 x 190 pixels, values on the left, grid lines at round
-/// numbers.
-/// From quantities to pixels.
+/// One line of text; what is longer than 160 characters is cut.
+core::Markup chartText(const std::string& style, double x, double y, const std::string& content);
+
+/// A path of `data` (attribute d) with a tool tip; nothing without data.
+core::Markup svgPath(const std::string& style, const std::string& data,
+                     const std::string& title = {});
+
+core::Markup svgCircle(const std::string& style, const Eigen::Vector2d& center, double radius,
+                       const core::Markup& content = {});
+
+/// "x y", one decimal each, for path data.
+std::string svgPlace(double x, double y);
+
+/// An <svg> of `size` (width, height) with further attributes; `title` is read aloud.
+core::Markup svgPicture(const std::string& title, const Eigen::Vector2d& size,
+                        const std::vector<core::Attribute>& attributes,
+                        const core::Markup& content);
+
+/// A <figure> with a caption above its content.
+core::Markup chartFigure(const std::string& style, const std::string& caption,
+                         const core::Markup& content);
+
+/// From quantities to pixels of a chart in a page: 540 x 190 pixels, values on the left, grid lines
+/// at round numbers.
 class ChartAxes {
  public:
   /// Horizontally [left, right]; vertically from `bottom` to a round number that is at least `top`.
@@ -41,7 +63,9 @@ class ChartAxes {
   double low() const { return low_; }
   double high() const { return high_; }
   /// Grid lines and numbers of the values, and numbers along the bottom, the last with `unit`.
-  std::string grid(const std::string& unit) const;
+  core::Markup grid(const std::string& unit) const;
+  /// Those of the values alone.
+  core::Markup valueGrid() const;
 
  private:
   double left_;
@@ -78,7 +102,12 @@ struct Chart {
   bool own_time = false;  ///< its times are not the session's
 };
 
-std::string chartSvg(const Chart& chart);
+core::Markup chartSvg(const Chart& chart);
+
+/// The figure around a chart over `duration` [s]; the page's slider marks the time in it unless it
+/// has a time of its own.
+core::Markup timeChart(const std::string& heading, double duration, bool own_time,
+                       const core::Markup& content);
 
 /// Histograms with the same bins laid over each other, as one SVG element: share of each sample
 /// [%] per bin.
@@ -90,6 +119,6 @@ struct HistogramChart {
 };
 
 /// The range of values is that of the bins with anything in them. `caption` is plain text below.
-std::string histogramSvg(const HistogramChart& chart, const std::string& caption);
+core::Markup histogramSvg(const HistogramChart& chart, const std::string& caption);
 
 }  // namespace cdiff::page

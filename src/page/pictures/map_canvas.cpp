@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/markup.h"
 #include "core/text.h"
+#include "page/page_parts.h"
+#include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 
 namespace cdiff::page {
@@ -188,8 +189,7 @@ std::string MapCanvas::data(const Points& points) const {
   std::string text;
   for (const Eigen::Vector2d& point : points) {
     const Eigen::Vector2d pixel = toPixels(point);
-    text += (text.empty() ? 'M' : 'L') + core::shortNumber(pixel.x()) + " " +
-            core::shortNumber(pixel.y());
+    text += (text.empty() ? 'M' : 'L') + svgPlace(pixel.x(), pixel.y());
   }
   return text;
 }
@@ -210,39 +210,29 @@ Region sessionRegion(const record::SessionResult& result) {
 
 namespace {
 
-std::string item(const std::string& picture, const std::string& text) {
-  return "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\">" + picture +
-         "</svg>" + text + "</span>\n";
-}
-
-std::string lineItem(const std::string& style, const std::string& text) {
-  return item("<path class=\"" + style + "\" d=\"M1 7H27\"/>", text);
-}
-
-std::string boxItem(const std::string& style, const std::string& text) {
-  return item("<g class=\"vehicle " + style + "\" transform=\"translate(14 7)\"><path " +
-                  "d=\"M-10 -4H10V4H-10Z\"/><path class=\"nose\" d=\"M3 -3L8 0L3 3Z\"/></g>",
-              text);
+Markup boxItem(const std::string& style, const std::string& text) {
+  const Markup box = element("path", {{"d", "M-10 -4H10V4H-10Z"}}) +
+                     element("path", {{"class", "nose"}, {"d", "M3 -3L8 0L3 3Z"}});
+  return legendItem(
+      element("g", {{"class", "vehicle " + style}, {"transform", "translate(14 7)"}}, box), text);
 }
 
 }  // namespace
 
-std::string topViewLegend(const MapCanvas& canvas) {
-  std::string html =
-      "<p class=\"legend\">\n" + boxItem("ego", "ego") + boxItem("cbv c0", "CBV") +
-      boxItem("bg", "background") + lineItem("route", "ego route") +
-      lineItem("trail ego", "driven by the ego") + lineItem("trail cbv c0", "driven as CBV") +
-      lineItem("trail bg", "driven by background") +
-      lineItem("planned cbv c0", "conflict-aware route") +
-      item("<path class=\"conflict\" d=\"M9 2l10 10m0 -10l-10 10\"/>",
-           "conflict point as selected") +
-      item("<circle class=\"contact\" cx=\"14\" cy=\"7\" r=\"6\"/>", "contact") + "</p>\n";
+Markup topViewLegend(const MapCanvas& canvas) {
+  const Markup conflict =
+      element("path", {{"class", "conflict"}, {"d", "M9 2l10 10m0 -10l-10 10"}});
+  const Markup html = pageLegend(
+      boxItem("ego", "ego") + boxItem("cbv c0", "CBV") + boxItem("bg", "background") +
+      legendLine("route", "ego route") + legendLine("trail ego", "driven by the ego") +
+      legendLine("trail cbv c0", "driven as CBV") + legendLine("trail bg", "driven by background") +
+      legendLine("planned cbv c0", "conflict-aware route") +
+      legendItem(conflict, "conflict point as selected") +
+      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact"));
   const double magnification = vehicleMagnification(canvas);
-  if (magnification > 1.0) {
-    html += "<p class=\"note\">Vehicles are drawn " + core::formatFixed(magnification, 1) +
-            " times as large as they are.</p>\n";
-  }
-  return html;
+  if (magnification <= 1.0) return html;
+  return html + pageNote("Vehicles are drawn " + core::formatFixed(magnification, 1) +
+                         " times as large as they are.");
 }
 
 }  // namespace cdiff::page

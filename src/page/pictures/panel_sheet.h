@@ -8,11 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/markup.h"
+
 namespace cdiff::page {
 
 struct Panel {
   std::string title;
-  std::string content;  ///< SVG in pixels of the panel
+  core::Markup content;  ///< in pixels of the panel
   double width = 540.0;
   double height = 190.0;
   bool cut = false;  ///< whether what lies outside is cut off
@@ -25,15 +27,13 @@ struct PanelSheet {
   std::vector<std::string> notes = {};                           ///< a paragraph each
 };
 
-/// For a page that holds kPanelSheetStyle.
-std::string sheetSvg(const PanelSheet& sheet);
+/// For a page that holds kPanelSheetStyle (page/assets.h).
+core::Markup sheetSvg(const PanelSheet& sheet);
 
-/// A file of its own.
+/// Text of a file of its own.
 std::string sheetFile(const PanelSheet& sheet);
 
 /// CSS classes of lines and bars that belong together, for the i-th system.
 std::string systemStyle(std::size_t index);
-
-extern const char kPanelSheetStyle[];
 
 }  // namespace cdiff::page

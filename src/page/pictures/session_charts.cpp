@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/markup.h"
 #include "core/text.h"
+#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "record/session_text.h"
@@ -34,44 +34,47 @@ double secondsAt(std::uint64_t tick, const record::SessionResult& result) {
   return static_cast<double>(tick) * result.setup.options().simulation_step;
 }
 
-std::string bar(std::size_t index, const record::SessionResult& result, const Rows& rows) {
-  const record::CbvRecord& record = result.cbv.records()[index];
-  const double begin = secondsAt(record.selected_tick, result);
-  const double end = record.released_tick ? secondsAt(*record.released_tick, result)
-                                          : std::max(begin, result.timeline.duration());
-  const double x = rows.axes.x(begin);
-  const double width = rows.axes.x(end) - x;
-  const std::string name = "C" + std::to_string(index + 1) + " " + record.vehicle_id;
-  const std::string style = styleOf(traffic::VehicleRole::kCbv, record.vehicle_id, result.cbv);
-  std::string svg = "<path class=\"stay " + style + "\" d=\"M" + core::shortNumber(x) + " " +
-                    core::shortNumber(rows.y(record.slot)) + "h" + core::shortNumber(width) +
-                    "\"><title>" + core::escapeMarkup(name) + ", " + core::formatFixed(begin, 2) +
-                    " to " + core::formatFixed(end, 2) +
-                    " s: " + core::escapeMarkup(record::releaseText(record.release_reason)) +
-                    "</title></path>";
-  const double letters = 7.0 * static_cast<double>(name.size());  // [pixels]
-  const double left = std::max(kChartLeft, std::min(x, kChartWidth - kChartRight - letters));
-  return svg + chartText("mark-text", left, rows.y(record.slot) - 10.0, name) + "\n";
+double endOf(const record::CbvRecord& record, const record::SessionResult& result) {
+  return record.released_tick ? secondsAt(*record.released_tick, result)
+                              : result.timeline.duration();
 }
 
-std::string contacts(const record::SessionResult& result, const Rows& rows) {
-  std::string svg;
+Markup bar(std::size_t index, const record::SessionResult& result, const Rows& rows) {
+  const record::CbvRecord& record = result.cbv.records()[index];
+  const double begin = secondsAt(record.selected_tick, result);
+  const double end =
+      record.released_tick ? endOf(record, result) : std::max(begin, endOf(record, result));
+  const double x = rows.axes.x(begin);
+  const std::string name = "C" + std::to_string(index + 1) + " " + record.vehicle_id;
+  const std::string tip = name + ", " + core::formatFixed(begin, 2) + " to " +
+                          core::formatFixed(end, 2) +
+                          " s: " + record::releaseText(record.release_reason);
+  const Markup stay = element(
+      "path",
+      {{"class", "stay " + styleOf(traffic::VehicleRole::kCbv, record.vehicle_id, result.cbv)},
+       {"d",
+        "M" + svgPlace(x, rows.y(record.slot)) + "h" + core::shortNumber(rows.axes.x(end) - x)}},
+      element("title", {}, tip));
+  const double letters = 7.0 * static_cast<double>(name.size());  // [pixels]
+  const double left = std::max(kChartLeft, std::min(x, kChartWidth - kChartRight - letters));
+  return stay + chartText("mark-text", left, rows.y(record.slot) - 10.0, name) + "\n";
+}
+
+Markup contacts(const record::SessionResult& result, const Rows& rows) {
+  Markup svg;
   for (const record::CbvRecord& record : result.cbv.records()) {
     const double begin = secondsAt(record.selected_tick, result);
-    const double end = record.released_tick ? secondsAt(*record.released_tick, result)
-                                            : result.timeline.duration();
     for (const record::TimelineContact& contact : result.timeline.contacts()) {
       const bool own = contact.first == record.vehicle_id || contact.second == record.vehicle_id;
-      if (!own || contact.time < begin || contact.time > end) continue;
-      svg += "<circle class=\"contact\" cx=\"" + core::shortNumber(rows.axes.x(contact.time)) +
-             "\" cy=\"" + core::shortNumber(rows.y(record.slot)) + "\" r=\"7\"/>";
+      if (!own || contact.time < begin || contact.time > endOf(record, result)) continue;
+      svg += svgCircle("contact", {rows.axes.x(contact.time), rows.y(record.slot)}, 7.0);
     }
   }
   return svg;
 }
 
-std::string frame(const record::SessionResult& result, const Rows& rows) {
-  std::string svg;
+Markup frame(const record::SessionResult& result, const Rows& rows) {
+  Markup svg;
   for (int slot = 0; slot < static_cast<int>(rows.count); ++slot) {
     svg += chartText("tick end", kChartLeft - 6.0, rows.y(slot) + 4.0, std::to_string(slot));
   }
@@ -86,20 +89,12 @@ std::string frame(const record::SessionResult& result, const Rows& rows) {
 
 }  // namespace
 
-std::string slotChart(const record::SessionResult& result) {
+Markup slotChart(const record::SessionResult& result) {
   const Rows rows = rowsOf(result);
-  std::string svg =
-      "<figure class=\"chart\"><figcaption>CBV of each slot</figcaption>\n<svg role=\"img\" "
-      "aria-label=\"CBV of each slot over time\" viewBox=\"0 0 " +
-      core::shortNumber(kChartWidth) + " " + core::shortNumber(kChartHeight) + "\" data-left=\"" +
-      core::shortNumber(kChartLeft) + "\" data-right=\"" +
-      core::shortNumber(kChartWidth - kChartRight) + "\" data-duration=\"" +
-      core::formatNumber(std::max(result.timeline.duration(), 1e-3)) + "\">\n" +
-      frame(result, rows);
+  Markup svg = frame(result, rows);
   for (std::size_t i = 0; i < result.cbv.records().size(); ++i) svg += bar(i, result, rows);
-  return svg + contacts(result, rows) + "<path class=\"cursor\" d=\"M0 " +
-         core::shortNumber(kChartTop) + "V" + core::shortNumber(kChartHeight - kChartBottom) +
-         "\"/></svg></figure>\n";
+  return timeChart("CBV of each slot", std::max(result.timeline.duration(), 1e-3), false,
+                   svg + contacts(result, rows));
 }
 
 namespace {
@@ -166,7 +161,7 @@ Chart chartOf(const record::SessionResult& result, const std::vector<Subject>& s
   return chart;
 }
 
-std::string speedChart(const record::SessionResult& result, const std::vector<Subject>& subjects) {
+Markup speedChart(const record::SessionResult& result, const std::vector<Subject>& subjects) {
   Chart chart = chartOf(result, subjects, [](const record::TimelinePose& pose) {
     return static_cast<double>(pose.speed);
   });
@@ -176,7 +171,7 @@ std::string speedChart(const record::SessionResult& result, const std::vector<Su
   return chartSvg(chart);
 }
 
-std::string gapChart(const record::SessionResult& result, const std::vector<Subject>& subjects) {
+Markup gapChart(const record::SessionResult& result, const std::vector<Subject>& subjects) {
   Chart chart = chartOf(result, subjects, [](const record::TimelinePose& pose) {
     return pose.gap < 0.0F ? kNothing : static_cast<double>(pose.gap);
   });
@@ -191,7 +186,7 @@ std::string gapChart(const record::SessionResult& result, const std::vector<Subj
   return chartSvg(chart);
 }
 
-std::string collisionTimeChart(const record::SessionResult& result, std::vector<Subject> subjects) {
+Markup collisionTimeChart(const record::SessionResult& result, std::vector<Subject> subjects) {
   // The ego's line, with anyone, lies below those of the CBVs.
   std::stable_partition(subjects.begin(), subjects.end(),
                         [](const Subject& subject) { return subject.role == VehicleRole::kCbv; });
@@ -205,8 +200,8 @@ std::string collisionTimeChart(const record::SessionResult& result, std::vector<
   return chartSvg(chart);
 }
 
-std::string commandChart(const record::SessionResult& result, const std::vector<Subject>& subjects,
-                         const std::string& title, float record::TimelinePose::*command) {
+Markup commandChart(const record::SessionResult& result, const std::vector<Subject>& subjects,
+                    const std::string& title, float record::TimelinePose::*command) {
   Chart chart = chartOf(result, subjects, [command](const record::TimelinePose& pose) {
     return pose.driven ? static_cast<double>(pose.*command) : kNothing;
   });
@@ -215,33 +210,28 @@ std::string commandChart(const record::SessionResult& result, const std::vector<
   return chartSvg(chart);
 }
 
-std::string legend(const record::SessionResult& result, const std::vector<Subject>& subjects) {
-  std::string html = "<p class=\"legend\">\n";
+Markup subjectLegend(const record::SessionResult& result, const std::vector<Subject>& subjects) {
+  Markup items;
   for (const Subject& subject : subjects) {
-    html +=
-        "<span class=\"item\"><svg viewBox=\"0 0 28 14\" aria-hidden=\"true\"><path "
-        "class=\"series " +
-        styleOf(subject.role, subject.id, result.cbv) + "\" d=\"M1 7H27\"/></svg>" +
-        (subject.role == VehicleRole::kEgo ? "ego" : "CBV " + core::escapeMarkup(subject.id)) +
-        "</span>\n";
+    items += legendLine("series " + styleOf(subject.role, subject.id, result.cbv),
+                        subject.role == VehicleRole::kEgo ? "ego" : "CBV " + subject.id);
   }
-  return html + "</p>\n";
+  return pageLegend(items);
 }
 
 }  // namespace
 
-std::string sessionCharts(const record::SessionResult& result) {
+Markup sessionCharts(const record::SessionResult& result) {
   const std::vector<Subject> subjects = subjectsOf(result);
-  if (subjects.empty()) return "<p class=\"note\">No vehicle was driven.</p>\n";
-  std::string html =
-      legend(result, subjects) + "<div class=\"charts\">\n" + speedChart(result, subjects);
-  if (result.timeline.smallestGap()) html += gapChart(result, subjects);
-  html += collisionTimeChart(result, subjects);
-  if (!result.cbv.records().empty()) html += slotChart(result);
-  return html + commandChart(result, subjects, "Throttle", &record::TimelinePose::throttle) +
-         commandChart(result, subjects, "Brake", &record::TimelinePose::brake) +
-         commandChart(result, subjects, "Steering, positive left", &record::TimelinePose::steer) +
-         "</div>\n";
+  if (subjects.empty()) return pageNote("No vehicle was driven.");
+  Markup charts = "\n" + speedChart(result, subjects);
+  if (result.timeline.smallestGap()) charts += gapChart(result, subjects);
+  charts += collisionTimeChart(result, subjects);
+  if (!result.cbv.records().empty()) charts += slotChart(result);
+  charts += commandChart(result, subjects, "Throttle", &record::TimelinePose::throttle) +
+            commandChart(result, subjects, "Brake", &record::TimelinePose::brake) +
+            commandChart(result, subjects, "Steering, positive left", &record::TimelinePose::steer);
+  return subjectLegend(result, subjects) + element("div", {{"class", "charts"}}, charts) + "\n";
 }
 
 }  // namespace cdiff::page

@@ -2,8 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <string>
-
+#include "core/markup.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {
@@ -12,11 +11,11 @@ namespace cdiff::page {
 // CBV touched somebody.
 
 /// As one HTML figure, for a session with CBVs.
-std::string slotChart(const record::SessionResult& result);
+core::Markup slotChart(const record::SessionResult& result);
 
 // Charts of a session: speeds, distance between ego and CBVs, commands.
 
 /// All charts with their common legend, as HTML.
-std::string sessionCharts(const record::SessionResult& result);
+core::Markup sessionCharts(const record::SessionResult& result);
 
 }  // namespace cdiff::page

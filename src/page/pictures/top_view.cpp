@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "page/pictures/charts.h"
@@ -14,28 +13,27 @@
 namespace cdiff::page {
 namespace {
 
+using core::element;
+using core::Markup;
 using traffic::VehicleRole;
 
 constexpr double kLabelHeight = 15.0;         // [pixels]
 constexpr double kLabelWidth = 70.0;          // [pixels]
+constexpr std::size_t kMostNameLetters = 40;  // of a name in the picture
 const Eigen::Vector2d kGoalLabel(10.0, 4.0);  // from the goal [pixels]
 
-std::string path(const std::string& style, const std::string& data, const std::string& title = {}) {
-  if (data.empty()) return {};
-  const std::string begin = "<path class=\"" + style + "\" d=\"" + data + "\"";
-  if (title.empty()) return begin + "/>\n";
-  return begin + "><title>" + core::escapeMarkup(title) + "</title></path>\n";
+Markup label(double x, double y, const std::string& text) {
+  return chartText("name", x, y, core::cutText(text, kMostNameLetters));
 }
 
-std::string label(double x, double y, const std::string& text) {
-  return "<text class=\"name\" x=\"" + core::shortNumber(x) + "\" y=\"" + core::shortNumber(y) +
-         "\">" + core::escapeMarkup(text) + "</text>";
+std::string translated(const Eigen::Vector2d& pixel) {
+  return "translate(" + svgPlace(pixel.x(), pixel.y()) + ")";
 }
 
 /// Marks and names around a pixel that keep their size when the picture is zoomed.
-std::string pin(const Eigen::Vector2d& pixel, const std::string& content) {
-  return "<g transform=\"translate(" + core::shortNumber(pixel.x()) + " " +
-         core::shortNumber(pixel.y()) + ")\"><g class=\"pin\">" + content + "</g></g>\n";
+Markup pin(const Eigen::Vector2d& pixel, const Markup& content) {
+  const Markup held = element("g", {{"class", "pin"}}, content);
+  return element("g", {{"transform", translated(pixel)}}, held) + "\n";
 }
 
 /// Path data of the drivable area on the level of each elevation, each level once.
@@ -62,7 +60,7 @@ std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const Map
 
 /// Drivable area: the levels that the ego route touches, and faintly below them the others in the
 /// picture.
-std::string drivableArea(const session::SessionSetup& setup, const MapCanvas& canvas) {
+Markup drivableArea(const session::SessionSetup& setup, const MapCanvas& canvas) {
   const map::DrivableArea& area = setup.drivableArea();
   const auto& route = setup.egoRoute().path().points();
   const std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
@@ -70,38 +68,38 @@ std::string drivableArea(const session::SessionSetup& setup, const MapCanvas& ca
   for (const map::Lane& lane : setup.network().lanes()) {
     if (area.levelCount() > 1) elevations.merge(elevationsOf(lane.centerline.points(), canvas));
   }
-  std::string svg;
+  Markup svg;
   for (const std::string& level : levelsAt(elevations, area, canvas)) {
-    if (std::find(own.begin(), own.end(), level) == own.end()) svg += path("road other", level);
+    if (std::find(own.begin(), own.end(), level) == own.end()) svg += svgPath("road other", level);
   }
-  for (const std::string& level : own) svg += path("road", level);
+  for (const std::string& level : own) svg += svgPath("road", level);
   return svg;
 }
 
-std::string laneLines(const map::RoadNetwork& network, const MapCanvas& canvas) {
+Markup laneLines(const map::RoadNetwork& network, const MapCanvas& canvas) {
   std::string data;
   for (const map::Lane& lane : network.lanes()) {
     if (lane.allows_cars) data += canvas.line(inPlane(lane.centerline.points()));
   }
-  return path("lane", data);
+  return svgPath("lane", data);
 }
 
-std::string egoRoute(const record::SessionResult& result, const MapCanvas& canvas) {
+Markup egoRoute(const record::SessionResult& result, const MapCanvas& canvas) {
   const auto& points = result.setup.egoRoute().path().points();
   if (points.empty()) return {};
   const std::string data = canvas.line(inPlane(points));
   const Eigen::Vector2d goal = canvas.toPixels(points.back().head<2>());
-  return path("route", data, "ego route") +
-         pin(goal,
-             "<circle class=\"goal\" r=\"6\"/>" + label(kGoalLabel.x(), kGoalLabel.y(), "goal"));
+  return svgPath("route", data, "ego route") +
+         pin(goal, element("circle", {{"class", "goal"}, {"r", "6"}}) +
+                       label(kGoalLabel.x(), kGoalLabel.y(), "goal"));
 }
 
-std::string conflictRoutes(const record::SessionResult& result, const MapCanvas& canvas) {
-  std::string svg;
+Markup conflictRoutes(const record::SessionResult& result, const MapCanvas& canvas) {
+  Markup svg;
   for (const record::CbvRecord& record : result.cbv.records()) {
     const std::string style = styleOf(VehicleRole::kCbv, record.vehicle_id, result.cbv);
-    svg += path("planned " + style, canvas.line(inPlane(record.route)),
-                "conflict-aware route of " + record.vehicle_id);
+    svg += svgPath("planned " + style, canvas.line(inPlane(record.route)),
+                   "conflict-aware route of " + record.vehicle_id);
   }
   return svg;
 }
@@ -135,37 +133,37 @@ std::vector<Trail> trailsOf(const record::Timeline& timeline) {
   return trails;
 }
 
-std::string trailPaths(const record::SessionResult& result, const MapCanvas& canvas,
-                       VehicleRole role) {
-  std::string svg;
+Markup trailPaths(const record::SessionResult& result, const MapCanvas& canvas, VehicleRole role) {
+  Markup svg;
   for (const Trail& trail : trailsOf(result.timeline)) {
     if (trail.role != role) continue;
     const std::string& id = result.timeline.vehicles()[trail.vehicle].id;
-    svg += path("trail " + styleOf(role, id, result.cbv), canvas.line(trail.points), id);
+    svg += svgPath("trail " + styleOf(role, id, result.cbv), canvas.line(trail.points), id);
   }
   return svg;
 }
 
 /// A vehicle's outline with its front window, nose to the right, around the origin.
-std::string vehicleShape(const record::TimelineVehicle& vehicle, double scale) {
+Markup vehicleShape(const record::TimelineVehicle& vehicle, double scale) {
   const double half_length = 0.5 * vehicle.length * scale;
   const double half_width = 0.5 * vehicle.width * scale;
   const std::string x = core::shortNumber(half_length);
   const std::string y = core::shortNumber(half_width);
-  return "<path d=\"M-" + x + " -" + y + "H" + x + "V" + y + "H-" + x +
-         "Z\"/><path class=\"nose\" " + "d=\"M" + core::shortNumber(0.3 * half_length) + " -" +
-         core::shortNumber(0.8 * half_width) + "L" + core::shortNumber(0.8 * half_length) + " 0L" +
-         core::shortNumber(0.3 * half_length) + " " + core::shortNumber(0.8 * half_width) + "Z\"/>";
+  const std::string box = "M-" + x + " -" + y + "H" + x + "V" + y + "H-" + x + "Z";
+  const std::string nose = "M" + svgPlace(0.3 * half_length, -0.8 * half_width) + "L" +
+                           core::shortNumber(0.8 * half_length) + " 0L" +
+                           svgPlace(0.3 * half_length, 0.8 * half_width) + "Z";
+  return element("path", {{"d", box}}) + element("path", {{"class", "nose"}, {"d", nose}});
 }
 
-std::string vehicleBox(const record::TimelinePose& pose, const record::SessionResult& result,
-                       const MapCanvas& canvas, const std::string& style) {
+Markup vehicleBox(const record::TimelinePose& pose, const record::SessionResult& result,
+                  const MapCanvas& canvas, const std::string& style) {
   return vehicleSvg(result.timeline.vehicles()[pose.vehicle],
                     {{pose.x, pose.y}, static_cast<double>(pose.heading)}, canvas, style,
                     vehicleMagnification(canvas));
 }
 
-std::string startBox(const record::SessionResult& result, const MapCanvas& canvas) {
+Markup startBox(const record::SessionResult& result, const MapCanvas& canvas) {
   for (const record::TimelineFrame& frame : result.timeline.frames()) {
     for (const record::TimelinePose& pose : frame.poses) {
       if (pose.role != VehicleRole::kEgo) continue;
@@ -176,8 +174,8 @@ std::string startBox(const record::SessionResult& result, const MapCanvas& canva
   return {};
 }
 
-std::string finalBoxes(const record::SessionResult& result, const MapCanvas& canvas) {
-  std::string svg = "<g id=\"vehicles\">\n";
+Markup finalBoxes(const record::SessionResult& result, const MapCanvas& canvas) {
+  Markup svg = "\n";
   if (!result.timeline.frames().empty()) {
     const auto& poses = result.timeline.frames().back().poses;
     for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {  // the ego on top
@@ -186,11 +184,11 @@ std::string finalBoxes(const record::SessionResult& result, const MapCanvas& can
       svg += vehicleBox(*pose, result, canvas, styleOf(pose->role, id, result.cbv));
     }
   }
-  return svg + "</g>\n";
+  return element("g", {{"id", "vehicles"}}, svg) + "\n";
 }
 
-std::string conflictPoints(const record::SessionResult& result, const MapCanvas& canvas) {
-  std::string svg;
+Markup conflictPoints(const record::SessionResult& result, const MapCanvas& canvas) {
+  Markup svg;
   std::vector<Eigen::Vector2d> taken;  // places of names
   const auto& route = result.setup.egoRoute().path().points();
   if (!route.empty()) taken.push_back(canvas.toPixels(route.back().head<2>()) + kGoalLabel);
@@ -205,20 +203,20 @@ std::string conflictPoints(const record::SessionResult& result, const MapCanvas&
     };
     while (std::any_of(taken.begin(), taken.end(), hidden)) offset.y() += kLabelHeight;
     taken.push_back(pixel + offset);
-    svg += pin(pixel, path("conflict", "M-6 -6L6 6M6 -6L-6 6", "conflict point " + name) +
+    svg += pin(pixel, svgPath("conflict", "M-6 -6L6 6M6 -6L-6 6", "conflict point " + name) +
                           label(offset.x(), offset.y(), name));
   }
   return svg;
 }
 
-std::string contactMarks(const record::Timeline& timeline, const MapCanvas& canvas) {
-  std::string svg;
+Markup contactMarks(const record::Timeline& timeline, const MapCanvas& canvas) {
+  Markup svg;
   for (const record::TimelineContact& contact : timeline.contacts()) {
     if (!contact.position || !canvas.shows(*contact.position)) continue;
+    const std::string text = "contact of " + contact.first + " and " + contact.second + " at " +
+                             core::formatFixed(contact.time, 2) + " s";
     svg += pin(canvas.toPixels(*contact.position),
-               "<circle class=\"contact\" r=\"11\"><title>contact of " +
-                   core::escapeMarkup(contact.first + " and " + contact.second) + " at " +
-                   core::formatFixed(contact.time, 2) + " s</title></circle>");
+               element("circle", {{"class", "contact"}, {"r", "11"}}, element("title", {}, text)));
   }
   return svg;
 }
@@ -247,43 +245,47 @@ std::string styleOf(VehicleRole role, const std::string& id, const record::CbvLo
   return "cbv c" + std::to_string(seen.size() % kShades);
 }
 
-std::string roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas) {
+Markup roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas) {
   return drivableArea(setup, canvas) + laneLines(setup.network(), canvas);
 }
 
-std::string vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
-                       const MapCanvas& canvas, const std::string& style, double magnification) {
-  const Eigen::Vector2d pixel = canvas.toPixels(pose.position);
-  return "<g class=\"vehicle " + style + "\" transform=\"translate(" +
-         core::shortNumber(pixel.x()) + " " + core::shortNumber(pixel.y()) + ") rotate(" +
-         core::shortNumber(-core::radiansToDegrees(pose.heading)) + ")\"><title>" +
-         core::escapeMarkup(vehicle.id) + "</title>" +
-         vehicleShape(vehicle, canvas.scale() * magnification) + "</g>\n";
+Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                  const MapCanvas& canvas, const std::string& style, double magnification) {
+  const std::string place = translated(canvas.toPixels(pose.position)) + " rotate(" +
+                            core::shortNumber(-core::radiansToDegrees(pose.heading)) + ")";
+  return element("g", {{"class", "vehicle " + style}, {"transform", place}},
+                 element("title", {}, vehicle.id) +
+                     vehicleShape(vehicle, canvas.scale() * magnification)) +
+         "\n";
 }
 
-std::string scaleBarSvg(const MapCanvas& canvas) {
+Markup scaleBarSvg(const MapCanvas& canvas) {
   const double metres = niceStep(200.0 / canvas.scale(), 2);
   const double y = canvas.height() - 18.0;
   const std::string length = core::shortNumber(metres * canvas.scale());
-  return "<g class=\"frame\">" +
-         path("scale", "M18 " + core::shortNumber(y - 5.0) + "v5h" + length + "v-5") +
-         label(24.0, y - 7.0, core::formatNumber(metres) + " m") +
-         path("north", "M" + core::shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z") +
-         label(canvas.width() - 29.0, 46.0, "N") + "</g>\n";
+  const Markup bar = svgPath("scale", "M18 " + core::shortNumber(y - 5.0) + "v5h" + length + "v-5");
+  const Markup north =
+      svgPath("north", "M" + core::shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z");
+  return element("g", {{"class", "frame"}},
+                 bar + label(24.0, y - 7.0, core::formatNumber(metres) + " m") + north +
+                     label(canvas.width() - 29.0, 46.0, "N")) +
+         "\n";
 }
 
-std::string topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
-  const std::string size =
-      core::shortNumber(canvas.width()) + " " + core::shortNumber(canvas.height());
-  return "<svg id=\"top-view\" role=\"img\" aria-label=\"The session from above\" viewBox=\"0 0 " +
-         size + "\" data-magnification=\"" +
-         core::formatFixed(canvas.scale() * vehicleMagnification(canvas), 4) + "\">\n" +
-         roadSvg(result.setup, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
-         trailPaths(result, canvas, VehicleRole::kBackground) +
-         trailPaths(result, canvas, VehicleRole::kCbv) +
-         trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
-         finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
-         conflictPoints(result, canvas) + scaleBarSvg(canvas) + "</svg>\n";
+Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
+  const Markup content = roadSvg(result.setup, canvas) + egoRoute(result, canvas) +
+                         conflictRoutes(result, canvas) +
+                         trailPaths(result, canvas, VehicleRole::kBackground) +
+                         trailPaths(result, canvas, VehicleRole::kCbv) +
+                         trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
+                         finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
+                         conflictPoints(result, canvas) + scaleBarSvg(canvas);
+  const double magnification = canvas.scale() * vehicleMagnification(canvas);
+  return svgPicture(
+             "The session from above", {canvas.width(), canvas.height()},
+             {{"id", "top-view"}, {"data-magnification", core::formatFixed(magnification, 4)}},
+             content) +
+         "\n";
 }
 
 }  // namespace cdiff::page

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The session from above as one SVG element: drivable area, lanes, ego route, conflicts, trails,
-/// vehicles at the final tick.
+/// vehicles at the final tick. Names in it are cut to 40 characters; tool tips hold them whole.
 #pragma once
 
 #include <string>
 
+#include "core/markup.h"
 #include "page/pictures/map_canvas.h"
 
 namespace cdiff::page {
 
-std::string topViewSvg(const record::SessionResult& result, const MapCanvas& canvas);
+core::Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas);
 
 /// Drivable area and lanes alone.
-std::string roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas);
+core::Markup roadSvg(const session::SessionSetup& setup, const MapCanvas& canvas);
 
 /// A vehicle's box, `magnification` times as large as it is, of a CSS class.
-std::string vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
-                       const MapCanvas& canvas, const std::string& style,
-                       double magnification = 1.0);
+core::Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d& pose,
+                        const MapCanvas& canvas, const std::string& style,
+                        double magnification = 1.0);
 
 /// A bar of a round length and the direction of north, in the lower corners and at the top right.
-std::string scaleBarSvg(const MapCanvas& canvas);
+core::Markup scaleBarSvg(const MapCanvas& canvas);
 
 /// Its legend, as HTML.
-std::string topViewLegend(const MapCanvas& canvas);
+core::Markup topViewLegend(const MapCanvas& canvas);
 
 /// Factor by which vehicles are drawn larger than they are, so that they can be seen; 1 when the
 /// scale allows.

@@ -1,10 +1,3 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Copyright (c) 2026 The e2e_cdiff authors
-#include "page/report_style.h"
-
-namespace cdiff::page {
-
-const char kReportScript[] = R"JS(
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("playback").textContent);
@@ -166,9 +159,9 @@ const char kReportScript[] = R"JS(
   };
   const show = function (frame) {
     slider.value = Math.min(Math.max(frame, 0), last);
-    video::draw(Number(slider.value));
+    draw(Number(slider.value));
   };
-  const go = function (frame) { video::stop(); show(frame); address(); };
+  const go = function (frame) { stop(); show(frame); address(); };
   const begin = function () {
     began = performance.now();
     offset = data.times[Number(slider.value)];
@@ -179,10 +172,10 @@ const char kReportScript[] = R"JS(
     let frame = Number(slider.value);
     while (frame < last && data.times[frame + 1] <= time) ++frame;
     if (frame !== Number(slider.value)) show(frame);
-    if (frame === last) video::stop(); else requestAnimationFrame(tick);
+    if (frame === last) stop(); else requestAnimationFrame(tick);
   };
   const toggle = function () {
-    if (playing) { video::stop(); return; }
+    if (playing) { stop(); return; }
     if (Number(slider.value) === last) show(0);
     playing = true;
     play.textContent = "Pause";
@@ -217,7 +210,7 @@ const char kReportScript[] = R"JS(
   follow.addEventListener("change", function () {
     if (follow.checked && zoom < 2) zoom = 3;
     look();
-    video::draw(Number(slider.value));
+    draw(Number(slider.value));
   });
 
   let grip = null;
@@ -251,7 +244,7 @@ const char kReportScript[] = R"JS(
 
   const fromAddress = function () {
     const asked = /^#t=(\d+(?:\.\d+)?)$/.exec(location.hash);
-    if (asked) { video::stop(); show(frameAt(Number(asked[1]))); }
+    if (asked) { stop(); show(frameAt(Number(asked[1]))); }
     return asked !== null;
   };
   window.addEventListener("hashchange", fromAddress);
@@ -264,6 +257,3 @@ const char kReportScript[] = R"JS(
   layer.replaceChildren();
   if (!fromAddress()) show(data.start);
 })();
-)JS";
-
-}  // namespace cdiff::page

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+/// What HTML pages are made of: the document with its style sheets, headings, sections, the banner
+/// with an outcome, tables, legends.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/markup.h"
+#include "record/verdict.h"
+
+namespace cdiff::page {
+
+using core::element;
+using core::Markup;
+
+/// Text of a self-contained page: `content` in <main>, then `end`. The `styles` follow the common
+/// sheet.
+std::string pageDocument(const std::string& title, const std::vector<const core::Asset*>& styles,
+                         const Markup& content, const Markup& end = {});
+
+/// The page's heading, a line in small letters, and what follows them.
+Markup pageHeader(const std::string& title, const std::string& line, const Markup& rest = {});
+
+/// A <section> with a heading; `style`: its class, or none.
+Markup pageSection(const std::string& title, const Markup& content, const std::string& style = "");
+
+/// The sign of an outcome and `headline`, in its colours, above `content`.
+Markup pageBanner(record::Outcome outcome, const std::string& headline, const Markup& content);
+
+/// A paragraph in soft colour.
+Markup pageNote(const std::string& text);
+
+/// A row of a legend: a picture of 28 x 14 pixels, and text.
+Markup legendItem(const Markup& picture, const std::string& text);
+/// The same with a line of a CSS class.
+Markup legendLine(const std::string& style, const std::string& text);
+/// Around such rows.
+Markup pageLegend(const Markup& items);
+
+/// Rows under a head; a column whose name begins with '#' holds numbers. Long words are broken by
+/// the style sheet.
+class HtmlTable {
+ public:
+  /// Without names: no head.
+  explicit HtmlTable(const std::vector<std::string>& head);
+
+  /// As many cells as the head has; `style`: a class, or none.
+  void row(const std::vector<Markup>& cells, const std::string& style = {});
+  Markup html() const;
+
+ private:
+  std::vector<bool> numeric_;
+  Markup head_;
+  Markup rows_;
+};
+
+}  // namespace cdiff::page
