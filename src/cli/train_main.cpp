@@ -5,10 +5,9 @@
 #include <string>
 
 #include "core/program.h"
-#include "learning/task_registry.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"
-#include "planners/diffusion/training/training.h"
+#include "planners/trainings.h"
 
 namespace {
 
@@ -16,13 +15,6 @@ enum ExitCode : int { kPassed = 0, kBadInput = 3 };
 
 constexpr const char* kCommand = "cdiff train";  // which starts this program
 constexpr std::size_t kNameColumn = 40;          // of --help, wide enough for names and defaults
-
-/// The table of what can be trained: a new task is one more line. The first is the default.
-cdiff::learning::TaskRegistry knownTasks() {
-  cdiff::learning::TaskRegistry tasks;
-  tasks.add(cdiff::planners::diffusionTraining());
-  return tasks;
-}
 
 /// The value of --task, which decides what the other options are; empty: not given.
 std::string taskNamed(int argc, char** argv) {
@@ -36,7 +28,7 @@ std::string taskNamed(int argc, char** argv) {
 }
 
 int trainAsAsked(int argc, char** argv) {
-  const cdiff::learning::TaskRegistry tasks = knownTasks();
+  const cdiff::learning::TaskRegistry tasks = cdiff::planners::packageTrainings();
   cdiff::learning::Training training = tasks.training(taskNamed(argc, argv));
   CLI::App program{tasks.descriptor(training.options.task).help, kCommand};
   program.get_formatter()->column_width(kNameColumn);

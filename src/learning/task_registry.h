@@ -16,7 +16,7 @@ struct TaskDescriptor {
   std::shared_ptr<Task> (*make)() = nullptr;
 };
 
-/// The table of what can be trained. The program that trains fills it, one line for each task.
+/// The table of what can be trained. The program that trains fills it from the list of planners.
 class TaskRegistry {
  public:
   /// Throws InputError naming the planner's folder that must change: no name, no constructor, a

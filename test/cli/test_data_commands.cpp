@@ -6,9 +6,7 @@
 #include <sstream>
 
 #include "cli/cdiff_command.h"
-#include "learning/task.h"
-#include "learning/task_registry.h"
-#include "planners/diffusion/training/training.h"
+#include "planners/trainings.h"
 
 namespace cdiff::cli {
 namespace {
@@ -96,8 +94,8 @@ TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
     EXPECT_NE(line[40], ' ') << line;
   }
   // A field a line, and no line but those.
-  learning::TaskRegistry tasks;
-  tasks.add(planners::diffusionTraining());
+  const learning::TaskRegistry tasks = planners::packageTrainings();
+  EXPECT_EQ(tasks.names().front(), "diffusion");
   const std::string fields = core::dumpOptions(tasks.training());
   EXPECT_EQ(options, static_cast<std::size_t>(std::count(fields.begin(), fields.end(), '\n')))
       << output();

@@ -16,7 +16,7 @@ RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
             r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"learning", "planner_training"}),
-    "planner training": (r"/src/planners/[a-z_]+/training/", {"planner_training", "cli"}),
+    "planner training": (r"/src/planners/[a-z_0-9]+/training/", {"planner_training"}),
     "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"inference", "diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
     "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "ros"}),
@@ -46,14 +46,14 @@ def records_of_make(build):
 
 def layer_of_folder(folder):
     """Layer of a folder below src: its first part, and planner_training for planners/NAME/training."""
-    return "planner_training" if re.fullmatch(r"planners/[a-z_]+/training", folder) else folder.split("/")[0]
+    return "planner_training" if re.fullmatch(r"planners/[a-z_0-9]+/training", folder) else folder.split("/")[0]
 
 
 def layer_of(record):
     """Layer of an object file; in a catkin workspace its path begins with the package's folder."""
     if "examples/" in record:
         return "examples"
-    found = re.search(r"(?:^|/)src/([a-z_/]+)/CMakeFiles/", record)
+    found = re.search(r"(?:^|/)src/([a-z_0-9/]+)/CMakeFiles/", record)
     return layer_of_folder(found.group(1)) if found else None
 
 
@@ -63,7 +63,7 @@ def violations(layer, headers, source, build):
         for name, (pattern, allowed) in RESTRICTED.items():
             if layer not in allowed and re.search(pattern, path):
                 yield f"reads {name}'s header {path}"
-        inside = re.search(re.escape(source) + r"/(?:include/e2e_cdiff|src)/([a-z_/]+)/", path)
+        inside = re.search(re.escape(source) + r"/(?:include/e2e_cdiff|src)/([a-z_0-9/]+)/", path)
         if inside and RANK.get(layer_of_folder(inside.group(1)), -1) > RANK.get(layer, 99):
             yield f"reads {path}, which is of a higher layer"
 

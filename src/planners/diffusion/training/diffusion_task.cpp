@@ -10,7 +10,6 @@
 #include "diffusion/model.h"
 #include "planners/diffusion/training/feature_cache.h"
 #include "planners/diffusion/training/stored_normalizer.h"
-#include "planners/diffusion/training/training.h"
 
 namespace cdiff::planners {
 namespace {

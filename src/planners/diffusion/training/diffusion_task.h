@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "learning/task.h"
+#include "learning/task_registry.h"
 #include "planners/diffusion/training/diffusion_stages.h"
 #include "planners/diffusion/training/training_settings.h"
 
@@ -41,5 +42,8 @@ class DiffusionTask : public learning::Task {
   std::unique_ptr<TrainingState> state_;
   FeatureCache cache_;  ///< of stage `denoiser`
 };
+
+/// The task "diffusion".
+learning::TaskDescriptor diffusionTraining();
 
 }  // namespace cdiff::planners

@@ -13,7 +13,6 @@
 #include "learning/trainer.h"
 #include "learning/training_folder.h"
 #include "planners/diffusion/training/diffusion_task.h"
-#include "planners/diffusion/training/training.h"
 
 namespace cdiff::planners {
 namespace {
