@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Add a thing of each kind with scripts/add in a copy of the source, count the files that it takes, build it and run its tests.
+The learned planner is trained on a few samples, too, and drives with the weights that come of it.
 
     additions.py BUILD SOURCE RESULT.xml
 """
@@ -19,6 +20,7 @@ BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 # Kind, name, most files (registration included, pages of docs that a test prints apart), test programs.
 ADDITIONS = [
     ("planner", "night_rider", 4, ["test_planners_night_rider", "test_planners_registry"]),
+    ("learned_planner", "night_pilot", 9, ["test_planners_night_pilot", "test_planners_registry", "test_learning_task_registry"]),
     ("objective", "night_axis", 3, ["test_guidance_objective_gradients", "test_guidance_guidance_options"]),
     ("metric", "night_speed", 2, ["test_metrics_night_speed_metric", "test_metrics_metric_registry", "test_metrics_metric_keys"]),
     ("topic", "night_report", 3, ["test_ros_channels"]),
@@ -41,6 +43,28 @@ def fault_of_tests(copy, programs):
     return None
 
 
+def fault_of_training(copy, name):
+    """Collects a few samples, trains a learned planner on them and lets it drive; before that it must say what it lacks."""
+    built, output = copy.ninja(["cdiff", "cdiff_train"])
+    if not built:
+        return "does not build:\n" + output[-3000:]
+    data, weights, results = copy.root / "results" / "data", copy.root / "weights" / name, copy.root / "results" / "run"
+    drive = ["run", "crossing_straight", "--set", f"ego_planner={name}", "--set", "protocol.time_limit=5", "--set", "verdict.judge=false",
+             "--results", results]
+    train = ["train", "--task", name, "--data", data / "shards", "--output", weights, "--steps", "20", "--validation-share", "0", "--device", "cpu"]
+    for arguments, code, expected in [
+            (drive, 3, f"cdiff train --task {name}"),
+            (["collect", "--scenarios", "crossing_straight", "--duration", "10", "--results", data], 0, ""),
+            (train, 0, f"model written to {weights}"),
+            (drive, 0, f"ego {name}")]:
+        done = subprocess.run([copy.build / "devel/lib/e2e_cdiff/cdiff", *arguments], env=environment_of(copy.build, copy.root), cwd=copy.root,
+                              timeout=300, capture_output=True, text=True, check=False)
+        output = done.stdout + done.stderr
+        if done.returncode != code or expected not in output:
+            return f"cdiff {arguments[0]}: exit code {done.returncode}, {code} was expected:\n{output[-2000:]}"
+    return None
+
+
 def fault_of(copy, kind, name, most, programs):
     before = contents(copy.root)
     done = subprocess.run([copy.root / "scripts/add", kind, name], capture_output=True, text=True, check=False)
@@ -51,7 +75,10 @@ def fault_of(copy, kind, name, most, programs):
     if not 0 < len(touched) <= most:
         return f"takes {len(touched)} files, at most {most} were expected: {', '.join(touched)}"
     built, output = copy.ninja(programs)
-    return fault_of_tests(copy, programs) if built else "does not build:\n" + output[-3000:]
+    if not built:
+        return "does not build:\n" + output[-3000:]
+    fault = fault_of_tests(copy, programs)
+    return fault_of_training(copy, name) if kind == "learned_planner" and not fault else fault
 
 
 def main():
