@@ -9,7 +9,6 @@ namespace cdiff::guidance {
 namespace {
 
 constexpr double kSmallDistance = 0.1;  // [m] gives the distance a derivative where centres meet
-constexpr double kLevelHeight = 2.5;    // [m] as traffic::onDifferentLevels
 
 /// Derivative of softplus.
 double logistic(double x) {
@@ -43,7 +42,7 @@ double Proximity::safeDistance(const GuidanceScene& scene) const {
 double Proximity::evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
                            double factor, traffic::Rollout& gradient) const {
   if (scene.other == nullptr) return 0.0;
-  if (std::abs(scene.other->now.elevation - scene.state.elevation) > kLevelHeight) return 0.0;
+  if (traffic::onDifferentLevels(scene.other->now.elevation, scene.state.elevation)) return 0.0;
   const double safe_distance = safeDistance(scene);
   const auto known = static_cast<Eigen::Index>(scene.other->predicted.size());
   double sum = 0.0;

@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "session/world.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::session {
 namespace {
@@ -68,7 +68,7 @@ void checkDemandFile(const std::string& file) {
   if (!routes) throw InputError("demand file '" + file + "': no <routes> element");
   requireFinite(routes, file);
   for (const pugi::xml_node& element : routes.children()) {
-    if (std::string(element.attribute("id").value()) != kEgoId) continue;
+    if (std::string(element.attribute("id").value()) != traffic::kEgoId) continue;
     throw InputError("demand file '" + file + "': <" + element.name() +
                      " id=\"ego\">: this id is the ego's; choose another");
   }

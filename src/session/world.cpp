@@ -37,8 +37,9 @@ void World::placeEgo() {
   const traffic::VehicleState state{start.head<2>(), start.z(), route.path().headingAt(0.0),
                                     setup_.options().route.start_speed};
   background_.clearStart(state);
-  driven_.addEgo(kEgoId, route, state);
-  simulator_->addDriven(kEgoId, traffic::VehicleDimensions(), driven_.find(kEgoId).value());
+  driven_.addEgo(traffic::kEgoId, route, state);
+  simulator_->addDriven(traffic::kEgoId, traffic::VehicleDimensions(),
+                        driven_.find(traffic::kEgoId).value());
   stepSimulator();
 }
 

@@ -18,9 +18,6 @@
 
 namespace cdiff::session {
 
-/// Id of the ego in every snapshot.
-inline constexpr const char* kEgoId = "ego";
-
 class World {
  public:
   /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterwards

@@ -140,7 +140,6 @@ constexpr double kRouteLength = 800.0;  ///< [m]
 constexpr double kUsualSpeed =
     8.0;  ///< wished at the start, or 0.7 of the limit when that is more [m/s]
 constexpr int kTriesPerCall = 12;
-constexpr double kLevelHeight = 2.5;  ///< [m]
 
 constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {
     {{4.2, 1.75, 1.50}, {4.5, 1.80, 1.50}, {4.8, 1.85, 1.45}, {5.2, 1.95, 1.85}}};
@@ -214,7 +213,7 @@ bool DemandGenerator::allowed(const Start& start, const Eigen::Vector2d& ego_pos
   const double distance = (start.position - ego_position).norm();
   if (distance > options_.radius - 0.5 * kLongest)
     return false;  // its centre counts, half a length behind
-  const bool same_level = std::abs(start.elevation - ego_elevation) < kLevelHeight;
+  const bool same_level = std::abs(start.elevation - ego_elevation) < traffic::kLevelHeight;
   return warm_up || distance > kOutOfSight || (!same_level && distance > 0.5 * kOutOfSight);
 }
 

@@ -41,7 +41,7 @@ class ContactWorld {
       selection.assignments.back().vehicle_id = id;
       selection.assignments.back().conflict_aware_route = setup_.egoRoute();
     }
-    world_.advance(&selection, {{-1, kEgoId, ego, {}}});
+    world_.advance(&selection, {{-1, traffic::kEgoId, ego, {}}});
   }
   /// As `advance`, with the vehicle set to `place` as it is taken over.
   void takeOverAt(const std::string& id, const Eigen::Vector2d& place) {
@@ -104,14 +104,14 @@ Texts runInto(ContactWorld& contact, const std::string& taken, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     bool touched = false;
     for (const traffic::Vehicle& vehicle : contact.now().vehicles)
-      touched = touched || (vehicle.id != kEgoId && contact.overlapsEgo(vehicle));
+      touched = touched || (vehicle.id != traffic::kEgoId && contact.overlapsEgo(vehicle));
     const Texts at = pairs(contact.now());
     EXPECT_EQ(at.size(), touched ? 1u : 0u) << "tick " << contact.now().tick;
     all.insert(all.end(), at.begin(), at.end());
     const std::vector<traffic::Contact> before = contact.now().contacts;
     contact.advance(taken, {1.0, 0.0, 0.0});
     for (const traffic::Contact& pair : before) {
-      const std::string& other = pair.first == kEgoId ? pair.second : pair.first;
+      const std::string& other = pair.first == traffic::kEgoId ? pair.second : pair.first;
       EXPECT_EQ(contact.car(other), nullptr) << other << " stays after its contact";
       EXPECT_EQ(contact.now().removed, Texts{other});
     }
@@ -160,7 +160,7 @@ TEST(Contacts, OfACbvWithABackgroundVehicleRemoveBothAndLeaveTheEgoAlone) {
   EXPECT_EQ(pairs(contact.now()), Texts{"back front"});
   contact.advance("back");
   EXPECT_EQ(contact.now().vehicles.size(), 1u);
-  EXPECT_EQ(contact.now().vehicles.front().id, kEgoId);
+  EXPECT_EQ(contact.now().vehicles.front().id, traffic::kEgoId);
   EXPECT_EQ(contact.now().removed, (Texts{"back", "front"}));
 }
 

@@ -48,6 +48,9 @@ enum class VehicleRole { kEgo, kCbv, kBackground };
 /// "ego", "cbv" or "background".
 const char* toText(VehicleRole role);
 
+/// Id of the ego in every snapshot.
+inline constexpr const char* kEgoId = "ego";
+
 /// One vehicle of a snapshot.
 struct Vehicle {
   std::string id;  ///< stable over the session
@@ -66,10 +69,12 @@ struct Vehicle {
   }
 };
 
+/// Elevations farther apart than this [m] are different levels: lower than any bridge, higher than
+/// any slope within a vehicle's length.
+inline constexpr double kLevelHeight = 2.5;
+
 /// Whether two elevations [m] are so far apart that boxes there cannot touch (bridges).
 inline bool onDifferentLevels(double first_elevation, double second_elevation) {
-  constexpr double kLevelHeight =
-      2.5;  // [m] lower than any bridge, higher than any slope within a vehicle's length
   return std::abs(first_elevation - second_elevation) > kLevelHeight;
 }
 

@@ -8,13 +8,13 @@
 #include "collection/session_samples.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "ros/bags/driving_bag.h"
 #include "ros/bags/recorded_session.h"
 #include "ros/bags/session_bag_writer.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/topics.h"
 #include "sensor_msgs/Image.h"
-#include "session/world.h"
 
 namespace cdiff::ros {
 namespace {
@@ -104,7 +104,7 @@ class SessionReader {
                        " s apart; samples need 0.1 s");
     }
     if (session_.images.empty()) throw InputError("it holds no camera images");
-    const DriveKey ego{session::kEgoId, 0};
+    const DriveKey ego{traffic::kEgoId, 0};
     session_.routes[ego] = session_.setup->egoRoute();
     for (const traffic::TrafficSnapshot& snapshot : session_.decisions)
       session_.drives[snapshot.tick][-1] = ego;
