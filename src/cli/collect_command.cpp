@@ -103,11 +103,11 @@ collection::StatisticsByName conclude(const CollectArguments& arguments,
 }
 
 int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
-  int code = kPassed;
+  int code = ExitCode::kPassed;
   for (const evaluation::ProcessJob& job : jobs) {
-    if (job.exit_code == kPassed) continue;
-    if (job.exit_code != kBadInput) return kRunTimeError;
-    code = kBadInput;
+    if (job.exit_code == ExitCode::kPassed) continue;
+    if (job.exit_code != ExitCode::kBadInput) return ExitCode::kRunTimeError;
+    code = ExitCode::kBadInput;
   }
   return code;
 }
@@ -130,7 +130,7 @@ int convertBags(const CollectArguments& arguments) {
   const auto statistics = ros::collectBags(request);
   collection::describeDataset(request.results, collection::sumOf(statistics));
   collection::requireSamples(statistics, "bag", "longer bags");
-  return kPassed;
+  return ExitCode::kPassed;
 }
 
 std::vector<evaluation::ProcessJob> jobsOf(const std::vector<CollectRequest>& sessions) {
@@ -161,10 +161,10 @@ int collect(const CollectArguments& arguments) {
               << "\n";
   };
   evaluation::runProcesses("/proc/self/exe", jobs, arguments.jobs, stop, ended);
-  const int code = stop ? kInterrupted : exitCode(jobs);
+  const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);
   if (!arguments.request.images) return code;
   const auto statistics = conclude(arguments, sessions);
-  if (code == kPassed)
+  if (code == ExitCode::kPassed)
     collection::requireSamples(statistics, "session", "longer sessions (--duration)");
   return code;
 }
@@ -228,7 +228,7 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   addCommonOptions(*session, *request);
   session->callback([request, &exit_code] {
     ros::collectSession(*request, core::catchStopSignals());
-    exit_code = kPassed;
+    exit_code = ExitCode::kPassed;
   });
 }
 

@@ -5,15 +5,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/exit_code.h"
+
 namespace cdiff::cli {
 
-enum ExitCode : int {
-  kPassed = 0,
-  kVerdictFailed = 1,
-  kRunTimeError = 2,
-  kBadInput = 3,
-  kInterrupted = 130
-};
+using core::ExitCode;
 
 void addRunCommand(CLI::App& program, int& exit_code);
 void addEvaluateCommand(CLI::App& program, int& exit_code);

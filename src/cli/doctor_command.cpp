@@ -123,7 +123,7 @@ void addDoctorCommand(CLI::App& program_app, int& exit_code) {
     for (const Finding& finding : findings) {
       std::cout << (finding.good ? "ok    " : "wrong ") << finding.subject << ": " << finding.text
                 << "\n";
-      if (!finding.good) exit_code = kRunTimeError;
+      if (!finding.good) exit_code = ExitCode::kRunTimeError;
     }
     std::cout << "shipped scenarios: " << session::shippedScenarios().size() << "\n";
   });

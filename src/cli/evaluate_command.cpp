@@ -113,13 +113,14 @@ void prepareFolder(const fs::path& folder, const MatrixOptions& matrix, bool ove
 }
 
 int exitCodeOf(const std::vector<RunRecord>& records) {
-  if (core::stopRequested()) return kInterrupted;
-  int exit_code = kPassed;
+  if (core::stopRequested()) return ExitCode::kInterrupted;
+  int exit_code = ExitCode::kPassed;
   for (const RunRecord& record : records) {
-    const bool bad_input = record.failed() && record.exit_code == kBadInput;
-    if (!record.complete() && !bad_input) return kRunTimeError;
-    if (bad_input) exit_code = kBadInput;
-    if (record.has(record::Outcome::kFailed) && exit_code == kPassed) exit_code = kVerdictFailed;
+    const bool bad_input = record.failed() && record.exit_code == ExitCode::kBadInput;
+    if (!record.complete() && !bad_input) return ExitCode::kRunTimeError;
+    if (bad_input) exit_code = ExitCode::kBadInput;
+    if (record.has(record::Outcome::kFailed) && exit_code == ExitCode::kPassed)
+      exit_code = ExitCode::kVerdictFailed;
   }
   return exit_code;
 }

@@ -43,7 +43,7 @@ void addImportCommand(CLI::App& program, int& exit_code) {
   command->add_option("--output", *output, "Also write the network to this file");
   command->callback([source, output, &exit_code] {
     importOne(*source, *output);
-    exit_code = kPassed;
+    exit_code = ExitCode::kPassed;
   });
 }
 

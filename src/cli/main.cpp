@@ -56,14 +56,15 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.set_version_flag("--version", cdiff::cli::versionText,
                            "Print version, revision, SUMO's version and instruction sets");
-  int exit_code = cdiff::cli::kPassed;
+  int exit_code = cdiff::cli::ExitCode::kPassed;
   addCommands(program, exit_code);
   try {
     requireKnownCommand(program, argc, argv);
     loadPluginsFor(argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? cdiff::cli::kPassed : cdiff::cli::kBadInput;
+    return program.exit(error) == 0 ? cdiff::cli::ExitCode::kPassed
+                                    : cdiff::cli::ExitCode::kBadInput;
   } catch (const std::exception& error) {
     const cdiff::core::Failure failure = cdiff::core::failureOf(error);
     std::cerr << "cdiff: " << failure.text << "\n";

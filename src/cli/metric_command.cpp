@@ -21,7 +21,7 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
       ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein", "definitions"}));
   command->add_option("file", *file, "Cases as CSV or JSON (not for definitions)");
   command->callback([metric, file, &exit_code] {
-    exit_code = kPassed;
+    exit_code = ExitCode::kPassed;
     if (*metric == "definitions") {
       std::cout << record::figureList();
       return;

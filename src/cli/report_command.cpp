@@ -75,7 +75,7 @@ int makeTables(const fs::path& results) {
   core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
   evaluation::writeBatchReport(results, matrix.name);
   std::cout << "tables, figures and page: " << (results / "index.html").string() << "\n";
-  return kPassed;
+  return ExitCode::kPassed;
 }
 
 int report(const ReportArguments& arguments) {
@@ -85,7 +85,7 @@ int report(const ReportArguments& arguments) {
   if (!arguments.training.empty()) {
     const fs::path page = writeTrainingPage(arguments.training);
     std::cout << "curves of the training: " << page.string() << "\n";
-    return kPassed;
+    return ExitCode::kPassed;
   }
   if (!arguments.tables.empty()) return makeTables(arguments.tables);
   const std::vector<evaluation::Comparison> comparisons = compare(arguments);
@@ -94,7 +94,7 @@ int report(const ReportArguments& arguments) {
   const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
                                              : fs::path(arguments.csv);
   core::writeFileAtomically(csv, evaluation::comparisonCsv(comparisons));
-  return kPassed;
+  return ExitCode::kPassed;
 }
 
 }  // namespace

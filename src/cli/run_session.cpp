@@ -26,7 +26,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool isJudged(int exit_code) { return exit_code == kPassed || exit_code == kVerdictFailed; }
+bool isJudged(int exit_code) {
+  return exit_code == ExitCode::kPassed || exit_code == ExitCode::kVerdictFailed;
+}
 
 /// The record of a session that never began.
 void recordFailedStart(page::ResultWriter& writer, const std::string& text) {
@@ -115,7 +117,7 @@ class VideoRecord {
     if (!video_) return exit_code;
     video_->finish(writer.result());
     tell();
-    return told_ && isJudged(exit_code) ? static_cast<int>(kRunTimeError) : exit_code;
+    return told_ && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
   }
 
  private:
@@ -167,7 +169,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   finishResult(writer, secondsSince(begin));
   const int exit_code = video.finish(writer, writer.exitCode());
   printTable(writer, output);
-  return !bag_error.empty() && isJudged(exit_code) ? static_cast<int>(kRunTimeError) : exit_code;
+  return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
 }
 
 }  // namespace

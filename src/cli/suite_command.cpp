@@ -53,7 +53,7 @@ void addSuiteCommand(CLI::App& program, int& exit_code) {
     if (seed->count() == 0) arguments->seed = suite::defaultSeed(arguments->kind);
     std::cout << countsTable(
         suite::generateSuite(arguments->kind, arguments->seed, arguments->results));
-    exit_code = kPassed;
+    exit_code = ExitCode::kPassed;
   });
 }
 

@@ -58,7 +58,7 @@ fs::path outputOf(const std::vector<std::string>& arguments) {
 
 int trainAndDraw(const std::vector<std::string>& arguments) {
   const int code = runTrainer(arguments);
-  if (code == kBadInput) return code;  // the folder may be another training's
+  if (code == ExitCode::kBadInput) return code;  // the folder may be another training's
   const fs::path output = outputOf(arguments);
   if (output.empty() || !fs::exists(output / "curves.csv")) return code;
   try {

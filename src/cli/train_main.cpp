@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string>
 
+#include "core/exit_code.h"
 #include "core/program.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"
@@ -11,7 +12,7 @@
 
 namespace {
 
-enum ExitCode : int { kPassed = 0, kBadInput = 3 };
+using cdiff::core::ExitCode;
 
 constexpr const char* kCommand = "cdiff train";  // which starts this program
 constexpr std::size_t kNameColumn = 40;          // of --help, wide enough for names and defaults
@@ -37,10 +38,10 @@ int trainAsAsked(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kPassed : kBadInput;
+    return program.exit(error) == 0 ? ExitCode::kPassed : ExitCode::kBadInput;
   }
   cdiff::learning::train(training, cdiff::core::catchStopSignals(), std::cout);
-  return kPassed;
+  return ExitCode::kPassed;
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
     if (*list) return printPlanners();
     const auto names = scenarios->empty() ? session::shippedScenarios() : *scenarios;
     for (const std::string& name : names) {
-      if (!validateOne(name, *print)) exit_code = kBadInput;
+      if (!validateOne(name, *print)) exit_code = ExitCode::kBadInput;
     }
   });
 }

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/exit_code.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -190,7 +191,7 @@ void GuardedProcess::kill() {
 
 int GuardedProcess::exitCode() {
   const int signal = endSignal();
-  if (signal != 0) return 128 + signal;
+  if (signal != 0) return ExitCode::kSignal + signal;
   const std::lock_guard<std::mutex> lock(mutex_);
   return reaped_ ? WEXITSTATUS(status_) : -1;
 }

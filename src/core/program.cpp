@@ -88,10 +88,6 @@ std::string writeErrorText(int error) {
 
 namespace {
 
-constexpr int kRunTimeError = 2;
-constexpr int kBadInput = 3;
-constexpr int kInterrupted = 130;
-
 template <class Type>
 const Type* as(const std::exception& error) {
   return dynamic_cast<const Type*>(&error);
@@ -108,22 +104,23 @@ std::string pathText(const std::filesystem::filesystem_error& error) {
 
 Failure failureOf(const std::exception& error) {
   const std::string text = error.what();
-  if (as<InputError>(error) != nullptr) return {kBadInput, text};
-  if (as<Interrupted>(error) != nullptr) return {kInterrupted, text};
-  if (as<Error>(error) != nullptr) return {kRunTimeError, text};
+  if (as<InputError>(error) != nullptr) return {ExitCode::kBadInput, text};
+  if (as<Interrupted>(error) != nullptr) return {ExitCode::kInterrupted, text};
+  if (as<Error>(error) != nullptr) return {ExitCode::kRunTimeError, text};
   if (const auto* path = as<std::filesystem::filesystem_error>(error))
-    return {kBadInput, pathText(*path)};
+    return {ExitCode::kBadInput, pathText(*path)};
   if (as<std::bad_alloc>(error) != nullptr || as<std::length_error>(error) != nullptr) {
     return {
-        kRunTimeError,
+        ExitCode::kRunTimeError,
         "out of memory: the input asks for more than this machine can give; check its sizes, or "
         "use a machine with more memory"};
   }
   if (as<std::logic_error>(error) != nullptr) {
-    return {kRunTimeError, "internal error (" + text +
-                               "); please report it together with the command and its input"};
+    return {
+        ExitCode::kRunTimeError,
+        "internal error (" + text + "); please report it together with the command and its input"};
   }
-  return {kRunTimeError, text};
+  return {ExitCode::kRunTimeError, text};
 }
 
 }  // namespace cdiff::core

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/exit_code.h"
+
 namespace cdiff::core {
 
 // What the main functions of all programs share: standard streams that are open, signals that
@@ -32,8 +34,8 @@ std::string writeErrorText(int error);
 
 /// What a program says, and how it exits, when an exception reaches its main function.
 struct Failure {
-  int exit_code = 2;  ///< 2 error at run time, 3 bad input, 130 interrupted
-  std::string text;   ///< for the user
+  int exit_code = ExitCode::kRunTimeError;
+  std::string text;  ///< for the user
 };
 
 /// The project's own errors keep their text. A path that the system refuses is bad input, named

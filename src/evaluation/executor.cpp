@@ -10,6 +10,7 @@
 #include <memory>
 #include <thread>
 
+#include "core/exit_code.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -19,10 +20,9 @@ namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
+using core::ExitCode;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kRunTimeError = 2;  // exit codes of `cdiff run`
-constexpr int kInterrupted = 130;
 constexpr std::chrono::milliseconds kPollPeriod{20};
 
 double secondsSince(Clock::time_point begin) {
@@ -39,7 +39,9 @@ std::string lastLine(const fs::path& log) {
 std::string causeOf(int exit_code, const std::string& fault, const fs::path& log) {
   if (!fault.empty()) return fault;
   const std::string line = lastLine(log);
-  if (exit_code > 128) return "the process ended by signal " + std::to_string(exit_code - 128);
+  if (exit_code > ExitCode::kSignal) {
+    return "the process ended by signal " + std::to_string(exit_code - ExitCode::kSignal);
+  }
   return "exit code " + std::to_string(exit_code) + (line.empty() ? "" : ": " + line);
 }
 
@@ -174,7 +176,7 @@ class Executor {
     record.exit_code = exit_code;
     record.wall_seconds = secondsSince(attempt.begin);
     describeEnd(record, attempt);
-    const bool died = exit_code == kRunTimeError || exit_code > 128;
+    const bool died = exit_code == ExitCode::kRunTimeError || exit_code > ExitCode::kSignal;
     const bool again = record.failed() && died && !attempt.timed_out && !stop_ &&
                        record.attempts <= options_.retries;
     if (again) {
@@ -209,8 +211,9 @@ class Executor {
       return;
     }
     const SummaryFacts facts = factsIn(folder);
-    if (record.exit_code == kInterrupted || interrupted_at_) record.status = "interrupted";
-    if (record.exit_code != 0 && record.exit_code != 1) {
+    if (record.exit_code == ExitCode::kInterrupted || interrupted_at_)
+      record.status = "interrupted";
+    if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
       if (record.failed())
         record.cause = causeOf(record.exit_code, facts.fault, folder / "log.txt");
       return;

@@ -5,13 +5,14 @@
 #include <iostream>
 #include <map>
 
+#include "core/exit_code.h"
 #include "ros/session_files.h"
 
 int main(int argc, char** argv) {
   constexpr int kFirstArgument = 4;
   if (argc < kFirstArgument) {
     std::cerr << "usage: unstarted_session error|interrupted SOURCE TEXT [NAME:=VALUE]...\n";
-    return 3;
+    return cdiff::core::ExitCode::kBadInput;
   }
   std::map<std::string, std::string> arguments;
   for (int i = kFirstArgument; i < argc; ++i) {

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <utility>
 
+#include "core/exit_code.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/verdict.h"
 
@@ -41,9 +42,9 @@ Outcome outcomeOf(const std::string& text) {
 }
 
 int exitCodeOf(Outcome outcome) {
-  if (outcome == Outcome::kInterrupted) return 130;
-  if (outcome == Outcome::kError) return 2;
-  return outcome == Outcome::kFailed ? 1 : 0;
+  if (outcome == Outcome::kInterrupted) return core::ExitCode::kInterrupted;
+  if (outcome == Outcome::kError) return core::ExitCode::kRunTimeError;
+  return outcome == Outcome::kFailed ? core::ExitCode::kVerdictFailed : core::ExitCode::kPassed;
 }
 
 const char* toText(CheckOutcome outcome) {

@@ -31,8 +31,7 @@ std::string wordOf(Outcome outcome);
 std::string capitalsOf(Outcome outcome);
 /// Throws InputError for any other text.
 Outcome outcomeOf(const std::string& text);
-/// Of `cdiff`, scripts/session and the file exit_code: 0 passed, struck and not judged; 1 failed;
-/// 2 error; 130 interrupted.
+/// One of core::ExitCode: of `cdiff`, scripts/session and the file exit_code.
 int exitCodeOf(Outcome outcome);
 
 enum class CheckOutcome { kPassed, kStruck, kFailed, kError, kSkipped };

@@ -27,7 +27,7 @@ class CameraRos : public Participant {
     return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;
   }
   bool leavesOut() const override { return graph().paced; }
-  int conclude(Ending) override { return 0; }
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   struct Output {

@@ -21,7 +21,7 @@ class CbvIdentificationRos : public Participant {
   void begin(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
-  int conclude(Ending) override { return 0; }
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   void takeRoute(const nav_msgs::Path& path);

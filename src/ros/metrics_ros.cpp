@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/metrics_ros.h"
 
+#include <algorithm>
 #include <iostream>
 
+#include "core/exit_code.h"
 #include "core/text.h"
 #include "record/session_text.h"
 #include "ros/bags/replay.h"
@@ -120,9 +122,9 @@ int MetricsRos::conclude(Ending ending) {
 
 int MetricsRos::concludeUnstarted(Ending ending) {
   Parameters parameters = Parameters::ofNode(kTrafficSimulatorNode);
-  if (!parameters.empty() && takeRefusal()) return 3;
+  if (!parameters.empty() && takeRefusal()) return core::ExitCode::kBadInput;
   if (parameters.empty()) parameters = launchParameters();
-  if (parameters.empty()) return 2;
+  if (parameters.empty()) return core::ExitCode::kRunTimeError;
   return writeUnstartedResult(
       parameters, traffic::SessionStatus::kError,
       {0, kTrafficSimulatorNode,
@@ -131,7 +133,7 @@ int MetricsRos::concludeUnstarted(Ending ending) {
 
 int MetricsRos::runWithoutMaster() {
   const Parameters parameters = launchParameters();
-  if (parameters.empty()) return 2;
+  if (parameters.empty()) return core::ExitCode::kRunTimeError;
   return writeUnstartedResult(parameters, traffic::SessionStatus::kError,
                               {0, "rosmaster", "the ROS master does not answer any more"});
 }
@@ -141,7 +143,7 @@ int MetricsRos::finishVideo(int exit_code) {
   video_->finish(writer_->result());
   if (video_->error().empty()) return exit_code;
   ROS_ERROR("%s; the other results are not affected", video_->error().c_str());
-  return exit_code < 2 ? 2 : exit_code;
+  return std::max(exit_code, core::ExitCode::kRunTimeError);
 }
 
 }  // namespace cdiff::ros

@@ -9,6 +9,7 @@
 #include <memory>
 #include <thread>
 
+#include "core/exit_code.h"
 #include "core/program.h"
 #include "plugins/plugin_loader.h"
 #include "ros/camera_ros.h"
@@ -47,7 +48,7 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
   if (!::ros::master::check()) {
     ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
               ::ros::master::getURI().c_str());
-    return without_master ? without_master() : 2;
+    return without_master ? without_master() : core::ExitCode::kRunTimeError;
   }
   ::ros::master::setRetryTimeout(::ros::WallDuration(kMasterPatience));
   ::ros::start();  // else ROS would end with the last node handle, and an error after that would

@@ -69,7 +69,7 @@ void Participant::listen(const Topic& topic, const TakeMessage& take) {
 int Participant::run() {
   try {
     if (const auto ending = waitForSession()) {
-      if (*ending == Ending::kStopped) return 0;
+      if (*ending == Ending::kStopped) return core::ExitCode::kPassed;
       const int exit_code = concludeUnstarted(*ending);
       if (*ending == Ending::kSimulatorSilent) endSilentSimulator();
       return exit_code;
@@ -86,7 +86,7 @@ int Participant::standBy() {
   ROS_DEBUG("%s: the session does not need this node", name_.c_str());
   session_input_.shutdown();
   while (::ros::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) spin();
-  return 0;
+  return core::ExitCode::kPassed;
 }
 
 /// Returns how it ended where no session has begun.
@@ -205,7 +205,7 @@ int Participant::fail(const std::string& text) {
         !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
     if (ended) break;
   }
-  return 2;
+  return core::ExitCode::kRunTimeError;
 }
 
 void Participant::tell(std::uint8_t kind, std::uint64_t tick, const std::string& text) {

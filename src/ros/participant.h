@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/exit_code.h"
 #include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TickAck.h"
@@ -59,7 +60,7 @@ class Participant {
   virtual int conclude(Ending ending) = 0;
   /// The traffic simulator has ended, or hangs, before it published a session; returns the exit
   /// code.
-  virtual int concludeUnstarted(Ending) { return 0; }
+  virtual int concludeUnstarted(Ending) { return core::ExitCode::kPassed; }
 
   /// Throws std::logic_error unless the topic's messages are of that type, as `listen` does.
   template <class Message>

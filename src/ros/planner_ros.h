@@ -57,7 +57,7 @@ class EgoPlannerRos : public Participant {
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
   bool leavesOut() const override { return graph().paced; }
-  int conclude(Ending) override { return 0; }
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   std::unique_ptr<session::SessionSetup> setup_;
@@ -80,7 +80,7 @@ class CbvPlannerRos : public Participant {
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
   bool leavesOut() const override { return graph().paced; }
-  int conclude(Ending) override { return 0; }
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
 
  private:
   void listenToInputs();

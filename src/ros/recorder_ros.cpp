@@ -55,7 +55,8 @@ bool RecorderRos::handle(const Snapshot& snapshot, bool superseded) {
 
 int RecorderRos::conclude(Ending ending) {
   bag_->finish();
-  return ending == Ending::kSimulatorGone || ending == Ending::kSimulatorSilent ? 2 : 0;
+  const bool lost = ending == Ending::kSimulatorGone || ending == Ending::kSimulatorSilent;
+  return lost ? core::ExitCode::kRunTimeError : core::ExitCode::kPassed;
 }
 
 }  // namespace cdiff::ros

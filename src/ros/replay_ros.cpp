@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/exit_code.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/bags/replay.h"
@@ -228,10 +229,10 @@ void ReplayRos::publishInterruption() {
 int ReplayRos::finish() {
   for (const std::string& finding : session_.findings())
     ROS_WARN("bag '%s': %s", bag_.c_str(), finding.c_str());
-  if (!failed_ && (stop_.raised() || !::ros::ok())) return 130;
-  if (!failed_ && session_.findings().empty()) return 0;
-  writeExitCode(results_, 2);
-  return 2;
+  if (!failed_ && (stop_.raised() || !::ros::ok())) return core::ExitCode::kInterrupted;
+  if (!failed_ && session_.findings().empty()) return core::ExitCode::kPassed;
+  writeExitCode(results_, core::ExitCode::kRunTimeError);
+  return core::ExitCode::kRunTimeError;
 }
 
 int runReplay(StopSignal& stop) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "core/exit_code.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -74,7 +75,8 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
   try {
     enterFolder(parameters.text("folder"));
     folder = askedFolder(parameters);
-    if (!folder.empty() && writtenByThisLaunch(folder / "exit_code")) return 2;
+    if (!folder.empty() && writtenByThisLaunch(folder / "exit_code"))
+      return core::ExitCode::kRunTimeError;
     requireKnownLaunchArguments();  // else it would be the result of another session than was meant
     const auto options = session::resolveRequest(sessionRequest(parameters));
     folder = resultFolder(parameters.text("results"), options);
@@ -87,7 +89,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
   } catch (const core::InputError& error) {
     std::cerr << error.what() << std::endl;
     writeRefusal(folder);
-    return 3;
+    return core::ExitCode::kBadInput;
   }
 }
 
@@ -99,13 +101,12 @@ void writeExitCode(const fs::path& folder, int exit_code) {
 }
 
 void writeRefusal(const fs::path& folder) {
-  constexpr int kBadInput = 3;
-  writeExitCode({}, kBadInput);
+  writeExitCode({}, core::ExitCode::kBadInput);
   if (folder.empty()) return;
   try {
     record::requireFreeFolder(folder, false);
     const core::FolderLock lock(folder, kDeployment);
-    writeExitCode(folder, kBadInput);
+    writeExitCode(folder, core::ExitCode::kBadInput);
   } catch (const core::InputError&) {
     // Another session's folder, or none can be made: what is wrong is printed in any case.
   }

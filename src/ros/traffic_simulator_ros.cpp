@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/traffic_simulator_ros.h"
 
+#include "core/exit_code.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/lockstep/launched_nodes.h"
@@ -53,7 +54,7 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
 
 int TrafficSimulatorRos::run() {
   begin_ = Clock::now();
-  if (!startWorld()) return 2;
+  if (!startWorld()) return core::ExitCode::kRunTimeError;
   advertise();
   listen();
   publishSession();
@@ -222,8 +223,10 @@ int runTrafficSimulator(StopSignal& stop) {
 }
 
 int TrafficSimulatorRos::exitCode() const {
-  if (world_->snapshot().status == SessionStatus::kError) return 2;
-  return world_->snapshot().status == SessionStatus::kInterrupted ? 130 : 0;
+  const SessionStatus status = world_->snapshot().status;
+  if (status == SessionStatus::kError) return core::ExitCode::kRunTimeError;
+  return status == SessionStatus::kInterrupted ? core::ExitCode::kInterrupted
+                                               : core::ExitCode::kPassed;
 }
 
 }  // namespace cdiff::ros

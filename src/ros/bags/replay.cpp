@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/exit_code.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"
@@ -105,7 +106,7 @@ ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::
   if (video) video->finish(writer.result());
   const std::string video_error = video ? video->error() : "";
   const bool whole = session.findings().empty() && video_error.empty();
-  return {whole ? writer.exitCode() : 2,
+  return {whole ? writer.exitCode() : core::ExitCode::kRunTimeError,
           writer.table() + record::fileRow("video", results / video::kVideoFile),
           session.findings(), video_error, writer.failure()};
 }
