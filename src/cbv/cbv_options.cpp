@@ -2,41 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cbv/cbv_options.h"
 
-#include <algorithm>
-
+#include "core/option_ranges.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::cbv {
 namespace {
-
-/// Checks values that were set in code against the same description that files are loaded by.
-class RangeCheck : public core::OptionsVisitor {
- public:
-  void number(const core::FieldInfo& info, double& value, double minimum, double maximum) override {
-    if (value >= minimum && value <= maximum) return;
-    fail(info, core::formatNumber(value),
-         "a number in [" + core::formatNumber(minimum) + ", " + core::formatNumber(maximum) + "]");
-  }
-  void text(const core::FieldInfo& info, std::string& value,
-            const std::vector<std::string>& choices) override {
-    if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-    fail(info, "'" + value + "'", "one of {" + core::joinText(choices, ", ") + "}");
-  }
-  void integer(const core::FieldInfo&, std::int64_t&, std::int64_t, std::int64_t) override {}
-  void flag(const core::FieldInfo&, bool&) override {}
-  void list(const core::FieldInfo&, std::vector<std::string>&) override {}
-  void points(const core::FieldInfo&, std::vector<Eigen::Vector3d>&) override {}
-  bool enter(const core::FieldInfo&) override { return true; }
-  void leave() override {}
-
- private:
-  [[noreturn]] static void fail(const core::FieldInfo& info, const std::string& value,
-                                const std::string& expected) {
-    throw core::InputError("CBV option '" + std::string(info.key) + "' is " + value +
-                           "; expected " + expected);
-  }
-};
 
 void describeGates(CbvOptions& options, core::OptionsVisitor& visitor) {
   visitor.number({"search_radius", "m", "Farthest candidate from the ego, centre to centre."},
@@ -111,9 +82,7 @@ void CbvOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 void CbvOptions::validate() const {
-  RangeCheck check;
-  CbvOptions copy = *this;
-  copy.describe(check);
+  core::requireRanges(*this, "CBV");
   if (minimum_distance >= search_radius) {
     throw core::InputError(
         "CBV option 'minimum_distance' is " + core::formatNumber(minimum_distance) +

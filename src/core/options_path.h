@@ -15,7 +15,7 @@ namespace cdiff::core::detail {
 std::string resolvePath(const std::string& key, const std::string& source, void* options,
                         Describe describe);
 
-/// How loading and dumping of options write a range of values: "[0, 10000000] m".
+/// How loading, checking and dumping of options write a range of values: "[0, 10000000] m".
 std::string rangeText(double low, double high, const char* unit);
 
 }  // namespace cdiff::core::detail

@@ -4,41 +4,10 @@
 
 #include <cmath>
 
-#include "core/text.h"
+#include "core/option_ranges.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::rendering {
-namespace {
-
-/// Holds the values against the ranges of `describe`.
-class RangeCheck : public core::OptionsVisitor {
- public:
-  void number(const core::FieldInfo& info, double& value, double minimum, double maximum) override {
-    if (value >= minimum && value <= maximum) return;
-    fail(info, core::formatNumber(value), core::formatNumber(minimum), core::formatNumber(maximum));
-  }
-  void integer(const core::FieldInfo& info, std::int64_t& value, std::int64_t minimum,
-               std::int64_t maximum) override {
-    if (value >= minimum && value <= maximum) return;
-    fail(info, std::to_string(value), std::to_string(minimum), std::to_string(maximum));
-  }
-  void flag(const core::FieldInfo&, bool&) override {}
-  void text(const core::FieldInfo&, std::string&, const std::vector<std::string>&) override {}
-  void list(const core::FieldInfo&, std::vector<std::string>&) override {}
-  void points(const core::FieldInfo&, std::vector<Eigen::Vector3d>&) override {}
-  bool enter(const core::FieldInfo&) override { return true; }
-  void leave() override {}
-
- private:
-  [[noreturn]] static void fail(const core::FieldInfo& info, const std::string& value,
-                                const std::string& minimum, const std::string& maximum) {
-    throw core::InputError(std::string("camera: ") + info.key + " is " + value +
-                           ", but must lie in [" + minimum + ", " + maximum + "]");
-  }
-};
-
-}  // namespace
 
 void CameraOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"width", "px", "Width of the image."}, width, 1, 4096);
@@ -55,11 +24,7 @@ void CameraOptions::describe(core::OptionsVisitor& visitor) {
                blind);
 }
 
-void CameraOptions::validate() const {
-  CameraOptions copy = *this;
-  RangeCheck check;
-  copy.describe(check);
-}
+void CameraOptions::validate() const { core::requireRanges(*this, "camera"); }
 
 Intrinsics intrinsicsOf(const CameraOptions& options) {
   Intrinsics intrinsics;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "core/option_ranges.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 
@@ -133,6 +134,23 @@ TEST(Options, OverrideErrorsNameTheSource) {
   EXPECT_THROW(overrideOption("radius", "--set", options), InputError);
   EXPECT_THROW(overrideOption("radios=3", "--set", options), InputError);
   EXPECT_THROW(overrideOption("seed=101", "--set", options), InputError);
+}
+
+TEST(Options, ValuesSetInCodeAreHeldAgainstTheirRanges) {
+  OuterOptions options;
+  EXPECT_NO_THROW(requireRanges(options, "outer"));
+  options.inner.radius = 100.5;
+  try {
+    requireRanges(options, "outer");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "outer option 'inner.radius' is 100.5; expected a number in [0, 100] m");
+  }
+  options.inner.radius = 100.0;
+  options.inner.ranking = "farthest";
+  EXPECT_THROW(requireRanges(options, "outer"), InputError);
+  EXPECT_EQ(options.inner.ranking, "farthest") << "nothing is changed";
 }
 
 TEST(Options, DumpReadsBackToTheSameText) {

@@ -25,19 +25,24 @@ TEST(CameraOptions, DefaultsAreValid) { EXPECT_EQ(errorOf({}), "no error"); }
 TEST(CameraOptions, ErrorsNameKeyAndValue) {
   CameraOptions options;
   options.width = 0;
-  EXPECT_EQ(errorOf(options), "camera: width is 0, but must lie in [1, 4096]");
+  EXPECT_EQ(errorOf(options),
+            "camera option 'width' is 0; expected a whole number in [1, 4096] px");
   options = {};
   options.height = -3;
-  EXPECT_EQ(errorOf(options), "camera: height is -3, but must lie in [1, 4096]");
+  EXPECT_EQ(errorOf(options),
+            "camera option 'height' is -3; expected a whole number in [1, 4096] px");
   options = {};
   options.field_of_view = 180.0;
-  EXPECT_EQ(errorOf(options), "camera: field_of_view is 180, but must lie in [10, 170]");
+  EXPECT_EQ(errorOf(options),
+            "camera option 'field_of_view' is 180; expected a number in [10, 170] deg");
   options = {};
   options.supersampling = 0;
-  EXPECT_EQ(errorOf(options), "camera: supersampling is 0, but must lie in [1, 8]");
+  EXPECT_EQ(errorOf(options),
+            "camera option 'supersampling' is 0; expected a whole number in [1, 8]");
   options = {};
   options.far_distance = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(errorOf(options), "camera: far_distance is nan, but must lie in [5, 1000]");
+  EXPECT_EQ(errorOf(options),
+            "camera option 'far_distance' is nan; expected a number in [5, 1000] m");
 }
 
 TEST(CameraOptions, LoadsFromYaml) {
