@@ -234,6 +234,26 @@ fs::path shareFolder() {
       "the package's config folder was not found; set E2E_CDIFF_SHARE to the folder that holds it");
 }
 
+std::vector<std::string> shippedNames(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+fs::path shippedOrFile(const fs::path& folder, const std::string& name_or_file,
+                       const std::string& what) {
+  if (isFile(name_or_file)) return fs::absolute(name_or_file);
+  const fs::path shipped = folder / (name_or_file + ".yaml");
+  if (isFile(shipped)) return shipped;
+  const std::vector<std::string> known = shippedNames(folder);
+  throw InputError(what + " '" + name_or_file + "' is neither a file nor a shipped " + what +
+                   "; the nearest shipped one is '" + nearestName(name_or_file, known) +
+                   "' (all: " + joinText(known, ", ") + ")");
+}
+
 fs::path sumoHome() {
   const char* given = std::getenv("SUMO_HOME");
   std::error_code error;

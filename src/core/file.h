@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cdiff::core {
 
@@ -70,6 +71,15 @@ class Sha256 {
 /// installed share folder beside this library, else the source tree. Throws InputError when none
 /// holds config/.
 std::filesystem::path shareFolder();
+
+/// Names of the YAML files in a folder, without their ending, sorted.
+std::vector<std::string> shippedNames(const std::filesystem::path& folder);
+
+/// `name_or_file` itself, made absolute, where it is a file, else `folder`/NAME.yaml. `folder` is
+/// one below shareFolder(); `what` is what it holds ("scenario"). Throws InputError naming the
+/// nearest shipped name.
+std::filesystem::path shippedOrFile(const std::filesystem::path& folder,
+                                    const std::string& name_or_file, const std::string& what);
 
 /// What SUMO's programs need as SUMO_HOME: the environment's folder where there is one, else the
 /// package's own, which holds type maps.

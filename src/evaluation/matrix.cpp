@@ -20,17 +20,6 @@ using core::InputError;
 
 fs::path matrixFolder() { return core::shareFolder() / "config" / "evaluations"; }
 
-fs::path findMatrix(const std::string& name_or_file) {
-  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
-  const fs::path shipped = matrixFolder() / (name_or_file + ".yaml");
-  if (core::isFile(shipped)) return shipped;
-  const std::vector<std::string> known = shippedMatrices();
-  throw InputError("evaluation '" + name_or_file +
-                   "' is neither a file nor a shipped evaluation; the nearest shipped one is '" +
-                   core::nearestName(name_or_file, known) +
-                   "' (all: " + core::joinText(known, ", ") + ")");
-}
-
 bool isThere(const fs::path& path) { return core::isFile(path) || core::isFolder(path); }
 
 /// A name stays when there is nothing of that name in the folder.
@@ -77,7 +66,7 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 MatrixOptions loadMatrix(const std::string& name_or_file) {
-  const fs::path file = findMatrix(name_or_file);
+  const fs::path file = core::shippedOrFile(matrixFolder(), name_or_file, "evaluation");
   MatrixOptions matrix;
   matrix.name = file.stem().string();
   core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
@@ -90,14 +79,7 @@ MatrixOptions loadMatrix(const std::string& name_or_file) {
   return matrix;
 }
 
-std::vector<std::string> shippedMatrices() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(matrixFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shippedMatrices() { return core::shippedNames(matrixFolder()); }
 
 std::string identityOf(const MatrixOptions& matrix) {
   const MatrixOptions defaults;
@@ -108,9 +90,6 @@ std::string identityOf(const MatrixOptions& matrix) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
-using core::InputError;
 
 std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) {
   std::vector<ScenarioLevel> levels;

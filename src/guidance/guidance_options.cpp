@@ -25,17 +25,6 @@ constexpr std::int64_t kLastDiffusionStep = 10000;
 
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
 
-fs::path findProfile(const std::string& name_or_file) {
-  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
-  const fs::path shipped = profileFolder() / (name_or_file + ".yaml");
-  if (core::isFile(shipped)) return shipped;
-  const std::vector<std::string> known = shippedProfiles();
-  throw InputError("guidance profile '" + name_or_file +
-                   "' is neither a file nor a shipped profile; the nearest shipped one is '" +
-                   core::nearestName(name_or_file, known) +
-                   "' (all: " + core::joinText(known, ", ") + ")");
-}
-
 /// For values that were set in code, past the ranges of describe().
 void requireRange(const std::string& key, double value, double maximum) {
   if (value >= 0.0 && value <= maximum) return;
@@ -165,7 +154,7 @@ void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int
 }
 
 GuidanceOptions loadProfile(const std::string& name_or_file) {
-  const fs::path file = findProfile(name_or_file);
+  const fs::path file = core::shippedOrFile(profileFolder(), name_or_file, "guidance profile");
   GuidanceOptions options;
   core::loadOptions({file.string(), core::readFile(file, "guidance profile")}, options);
   try {
@@ -176,13 +165,6 @@ GuidanceOptions loadProfile(const std::string& name_or_file) {
   return options;
 }
 
-std::vector<std::string> shippedProfiles() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(profileFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shippedProfiles() { return core::shippedNames(profileFolder()); }
 
 }  // namespace cdiff::guidance

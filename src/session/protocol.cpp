@@ -75,14 +75,7 @@ ProtocolOptions loadProtocol(const std::string& preset) {
   return options;
 }
 
-std::vector<std::string> shippedProtocols() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(protocolFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shippedProtocols() { return core::shippedNames(protocolFolder()); }
 
 double longestTime(const ProtocolOptions& options, const map::Route& route) {
   double time = options.time_limit;

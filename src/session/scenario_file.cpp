@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <algorithm>
 #include <filesystem>
 
 #include "core/file.h"
-#include "core/text.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "session/scenario_options.h"
 
 namespace cdiff::session {
 namespace {
 
 namespace fs = std::filesystem;
-using core::InputError;
 
 fs::path scenarioFolder() { return core::shareFolder() / "config" / "scenarios"; }
-
-fs::path findScenario(const std::string& name_or_file) {
-  if (core::isFile(name_or_file)) return fs::absolute(name_or_file);
-  const fs::path shipped = scenarioFolder() / (name_or_file + ".yaml");
-  if (core::isFile(shipped)) return shipped;
-  const std::vector<std::string> known = shippedScenarios();
-  throw InputError("scenario '" + name_or_file +
-                   "' is neither a file nor a shipped scenario; the nearest shipped one is '" +
-                   core::nearestName(name_or_file, known) +
-                   "' (all: " + core::joinText(known, ", ") + ")");
-}
 
 bool looksLikeFile(const std::string& text) {
   return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
@@ -47,7 +32,7 @@ std::string resolveFile(const std::string& file, const fs::path& scenario_folder
 }  // namespace
 
 ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base) {
-  const fs::path file = findScenario(name_or_file);
+  const fs::path file = core::shippedOrFile(scenarioFolder(), name_or_file, "scenario");
   ScenarioOptions options = base;
   options.name = file.stem().string();
   core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
@@ -63,13 +48,6 @@ ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOpti
   return options;
 }
 
-std::vector<std::string> shippedScenarios() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(scenarioFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shippedScenarios() { return core::shippedNames(scenarioFolder()); }
 
 }  // namespace cdiff::session

@@ -185,6 +185,24 @@ TEST(File, AtomicWriteThatFailsLeavesNothingBehind) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(File, AShippedNameOrAFileIsFoundOrTheNearestNamed) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"smoke.yaml", "paper.yaml", "notes.txt"})
+    writeFileAtomically(folder.path() / name, "");
+  EXPECT_EQ(shippedNames(folder.path()), (std::vector<std::string>{"paper", "smoke"}));
+  EXPECT_EQ(shippedOrFile(folder.path(), "smoke", "matrix"), folder.path() / "smoke.yaml");
+  const std::string file = (folder.path() / "notes.txt").string();
+  EXPECT_EQ(shippedOrFile(folder.path(), file, "matrix"), file);
+  try {
+    shippedOrFile(folder.path(), "smok", "matrix");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "matrix 'smok' is neither a file nor a shipped matrix; the nearest shipped one is "
+                 "'smoke' (all: paper, smoke)");
+  }
+}
+
 TEST(File, ATemporaryFolderThatCannotBeWrittenToIsRefused) {
   const test::TemporaryFolder folder;
   std::filesystem::permissions(
