@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numeric>
 
 #include "cli/commands.h"
 #include "collection/dataset_statistics.h"
 #include "core/file.h"
 #include "core/output_folder.h"
+#include "core/process_pool.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/child_process.h"
 #include "ros/bags/bag_collection.h"
 #include "suite/suite.h"
 
@@ -102,9 +104,16 @@ collection::StatisticsByName conclude(const CollectArguments& arguments,
   return statistics;
 }
 
-int exitCode(const std::vector<evaluation::ProcessJob>& jobs) {
+/// A session to drive in a process of its own.
+struct SessionJob {
+  std::string name;
+  std::vector<std::string> words;           ///< arguments
+  int exit_code = ExitCode::kRunTimeError;  ///< until it has ended
+};
+
+int exitCode(const std::vector<SessionJob>& jobs) {
   int code = ExitCode::kPassed;
-  for (const evaluation::ProcessJob& job : jobs) {
+  for (const SessionJob& job : jobs) {
     if (job.exit_code == ExitCode::kPassed) continue;
     if (job.exit_code != ExitCode::kBadInput) return ExitCode::kRunTimeError;
     code = ExitCode::kBadInput;
@@ -133,8 +142,8 @@ int convertBags(const CollectArguments& arguments) {
   return ExitCode::kPassed;
 }
 
-std::vector<evaluation::ProcessJob> jobsOf(const std::vector<CollectRequest>& sessions) {
-  std::vector<evaluation::ProcessJob> jobs;
+std::vector<SessionJob> jobsOf(const std::vector<CollectRequest>& sessions) {
+  std::vector<SessionJob> jobs;
   for (const CollectRequest& request : sessions) {
     const std::string name = collection::sessionName(collection::resolveCollection(request));
     const bool done = fs::exists(collection::shardFile(request, name)) &&
@@ -146,21 +155,33 @@ std::vector<evaluation::ProcessJob> jobsOf(const std::vector<CollectRequest>& se
   return jobs;
 }
 
+void driveSessions(std::vector<SessionJob>& jobs, int at_a_time, const std::atomic<bool>& stop) {
+  std::deque<std::size_t> numbers(jobs.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  std::size_t done = 0;
+  core::PoolCalls calls;
+  calls.start = [&](std::size_t i) { return core::ProcessJob{"/proc/self/exe", jobs[i].words}; };
+  calls.ended = [&](const core::ProcessEnd& end) {
+    SessionJob& job = jobs[end.job];
+    job.exit_code = end.exit_code;
+    std::cerr << ++done << "/" << jobs.size() << " " << job.name << " exit code " << job.exit_code
+              << "\n";
+    return false;
+  };
+  core::PoolLimits limits;
+  limits.at_a_time = at_a_time;
+  core::runProcesses(std::move(numbers), limits, stop, calls);
+}
+
 int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
   core::temporaryFolder();  // without one each session would fail
   const core::FolderLock lock(arguments.request.results, kLockedBy);
   removeHalves(arguments.request.results);
-  std::vector<evaluation::ProcessJob> jobs = jobsOf(sessions);
-  std::size_t done = 0;
+  std::vector<SessionJob> jobs = jobsOf(sessions);
   const std::atomic<bool>& stop = core::catchStopSignals();
-  const auto ended = [&](const evaluation::ProcessJob& job) {
-    ++done;
-    std::cerr << done << "/" << jobs.size() << " " << job.name << " exit code " << job.exit_code
-              << "\n";
-  };
-  evaluation::runProcesses("/proc/self/exe", jobs, arguments.jobs, stop, ended);
+  driveSessions(jobs, arguments.jobs, stop);
   const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);
   if (!arguments.request.images) return code;
   const auto statistics = conclude(arguments, sessions);

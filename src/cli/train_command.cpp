@@ -2,19 +2,16 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/training_page.h"
+#include "core/process_pool.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/child_process.h"
 
 namespace cdiff::cli {
 namespace {
@@ -27,23 +24,22 @@ fs::path findTrainer() {
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   const fs::path trainer = here / "cdiff_train";
   if (::access(trainer.c_str(), X_OK) == 0) return trainer;
-  throw core::InputError(
-      "no cdiff_train beside " + here.string() +
-      ": the trainer is not built; run scripts/setup, or configure with E2E_CDIFF_TRAINING");
+  throw core::InputError("no cdiff_train beside " + here.string() +
+                         ": this build is without the trainer (E2E_CDIFF_TRAINING)");
 }
 
 /// Runs to its end; a stop signal to us is one to it, which then leaves a checkpoint.
 int runTrainer(const std::vector<std::string>& arguments) {
-  constexpr auto kPeriod = std::chrono::milliseconds(50);
-  const std::atomic<bool>& stop = core::catchStopSignals();
-  evaluation::ChildProcess trainer(findTrainer(), arguments, {});
-  bool forwarded = false;
-  while (true) {
-    if (const std::optional<int> code = trainer.poll()) return *code;
-    if (stop && !forwarded) trainer.signal(SIGINT);
-    forwarded = stop;
-    std::this_thread::sleep_for(kPeriod);
-  }
+  const fs::path trainer = findTrainer();
+  int exit_code = ExitCode::kInterrupted;  // if it is not even started
+  core::PoolCalls calls;
+  calls.start = [&](std::size_t) { return core::ProcessJob{trainer, arguments}; };
+  calls.ended = [&](const core::ProcessEnd& end) {
+    exit_code = end.exit_code;
+    return false;
+  };
+  core::runProcesses({0}, {}, core::catchStopSignals(), calls);
+  return exit_code;
 }
 
 /// Folder given as --output; empty if there is none.

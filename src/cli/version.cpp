@@ -2,11 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cli/version.h"
 
-#include <array>
-#include <cstdio>
-
+#include "core/guarded_process.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "record/build_info.h"
 
 namespace cdiff::cli {
@@ -14,15 +13,17 @@ namespace {
 
 /// First line that `sumo --version` prints, e.g. "Eclipse SUMO sumo Version 1.15.0".
 std::string sumoVersion() {
-  std::array<char, 256> line{};
-  FILE* pipe = ::popen("sumo --version 2>/dev/null", "r");
-  if (pipe == nullptr) return {};
-  const bool read = std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr;
-  while (std::fgetc(pipe) != EOF) {
+  constexpr double kPatience = 10.0;  // [s]
+  const core::ProcessOutput output;
+  try {
+    core::GuardedProcess sumo(core::findProgram("sumo", "sumo"), {"--version"}, {},
+                              {{}, -1, output.descriptor()});
+    sumo.waitForEnd(kPatience);
+  } catch (const core::Error&) {
+    return {};
   }
-  ::pclose(pipe);
-  std::string text = read ? line.data() : "";
-  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const std::string printed = output.end();
+  const std::string text = printed.substr(0, printed.find('\n'));
   return text.substr(text.find_last_of(' ') + 1);
 }
 

@@ -4,10 +4,12 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -22,6 +24,7 @@ namespace cdiff::core {
 namespace {
 
 constexpr std::chrono::milliseconds kGuardPeriod{50};
+constexpr off_t kLogReserve = 4096;  // [bytes]
 
 std::int64_t steadyNanoseconds() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -34,6 +37,12 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
   for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
   return pointers;
+}
+
+std::vector<std::string> ourEnvironment() {
+  std::vector<std::string> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) variables.emplace_back(*entry);
+  return variables;
 }
 
 bool isProgram(const std::filesystem::path& file) {
@@ -58,8 +67,8 @@ std::filesystem::path findProgram(const std::string& name, const std::string& pa
 
 std::vector<std::string> environmentWith(const std::string& name, const std::string& value) {
   std::vector<std::string> variables = {name + "=" + value};
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    if (std::string(*entry).rfind(name + "=", 0) != 0) variables.emplace_back(*entry);
+  for (std::string& entry : ourEnvironment()) {
+    if (entry.rfind(name + "=", 0) != 0) variables.push_back(std::move(entry));
   }
   return variables;
 }
@@ -68,15 +77,35 @@ std::string signalText(int signal) {
   return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
 }
 
+ProcessOutput::ProcessOutput() : descriptor_(::memfd_create("process output", MFD_CLOEXEC)) {}
+
+ProcessOutput::~ProcessOutput() { ::close(descriptor_); }
+
+std::string ProcessOutput::end(std::size_t most) const {
+  const off_t size = ::lseek(descriptor_, 0, SEEK_END);
+  std::string text(std::min(static_cast<std::size_t>(std::max<off_t>(size, 0)), most), '\0');
+  const off_t begin = size - static_cast<off_t>(text.size());
+  const ssize_t count = ::pread(descriptor_, text.data(), text.size(), begin);
+  text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return text;
+}
+
 /// What the child runs, laid out before the fork: between fork and exec only async-signal-safe
 /// calls are allowed.
 struct GuardedProcess::Image {
   std::string program;
   std::vector<std::string> arguments;
   std::vector<std::string> environment;
-  std::string log;
-  int input;
-  int output;
+  ProcessStreams streams;
+
+  int openLog() const {
+    if (streams.log.empty()) return -1;
+    const int mode = streams.append ? O_APPEND : O_TRUNC;
+    const int log = ::open(streams.log.c_str(), O_WRONLY | O_CREAT | mode, 0644);
+    // Room for the last words on a disk that fills up meanwhile; what is not used is not kept.
+    if (log >= 0 && !streams.append) (void)::fallocate(log, FALLOC_FL_KEEP_SIZE, 0, kLogReserve);
+    return log;
+  }
 
   /// Runs in the child and does not return.
   [[noreturn]] void execute(pid_t parent, char* const* argv, char* const* envp) const {
@@ -86,8 +115,8 @@ struct GuardedProcess::Image {
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    const int from = input >= 0 ? input : ::open("/dev/null", O_RDONLY);
-    const int to = output >= 0 ? output : ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    const int from = streams.input >= 0 ? streams.input : ::open("/dev/null", O_RDONLY);
+    const int to = streams.output >= 0 ? streams.output : openLog();
     if (from >= 0) ::dup2(from, STDIN_FILENO);
     if (to >= 0) {
       ::dup2(to, STDOUT_FILENO);
@@ -103,8 +132,8 @@ GuardedProcess::GuardedProcess(const std::filesystem::path& program,
                                const std::vector<std::string>& arguments,
                                const std::vector<std::string>& environment,
                                const ProcessStreams& streams) {
-  Image image{program.string(),     arguments,     environment,
-              streams.log.string(), streams.input, streams.output};
+  Image image{program.string(), arguments, environment.empty() ? ourEnvironment() : environment,
+              streams};
   image.arguments.insert(image.arguments.begin(), program.string());
   guardian_ = std::thread([this, image] { guard(image); });
   std::unique_lock<std::mutex> lock(mutex_);
@@ -147,25 +176,33 @@ void GuardedProcess::guard(const Image& image) {
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) own.execute(parent, argv.data(), envp.data());
-  publish(child, child < 0 ? errno : 0);
+  const int error = child < 0 ? errno : 0;
+  if (child > 0) ::setpgid(child, child);  // whichever of the two comes first
+  publish(child, error);
   if (child < 0) return;
   std::unique_lock<std::mutex> lock(mutex_);
   while (!changed_.wait_for(lock, kGuardPeriod, [this] { return stopping_; })) {
     const std::int64_t deadline = deadline_.load();
     if (deadline == 0 || steadyNanoseconds() < deadline || reaped_) continue;
     deadline_missed_.store(true);
-    ::kill(id_, SIGKILL);
+    ::kill(-id_, SIGKILL);
   }
 }
 
 bool GuardedProcess::reap(bool wait) {
   if (reaped_) return true;
-  pid_t answer = 0;
+  siginfo_t end{};
+  int answer = 0;
   do {
-    answer = ::waitpid(id_, &status_, wait ? 0 : WNOHANG);
+    answer =
+        ::waitid(P_PID, static_cast<id_t>(id_), &end, WEXITED | WNOWAIT | (wait ? 0 : WNOHANG));
   } while (answer < 0 && errno == EINTR);
-  reaped_ = answer != 0;  // an error means that someone else reaped it
-  return reaped_;
+  if (answer == 0 && end.si_pid == 0) return false;
+  reaped_ = true;  // an error means that someone else reaped it
+  if (answer != 0) return true;
+  ::kill(-id_, SIGKILL);  // what it left behind
+  ::waitpid(id_, &status_, 0);
+  return true;
 }
 
 bool GuardedProcess::ended() {
@@ -182,10 +219,14 @@ bool GuardedProcess::waitForEnd(double seconds) {
   return true;
 }
 
-void GuardedProcess::kill() {
+void GuardedProcess::signal(int number) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (reaped_) return;
-  ::kill(id_, SIGKILL);
+  if (!reaped_) ::kill(-id_, number);
+}
+
+void GuardedProcess::kill() {
+  signal(SIGKILL);
+  const std::lock_guard<std::mutex> lock(mutex_);
   reap(true);
 }
 

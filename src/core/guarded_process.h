@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A child process that never outlives us, even when we are killed, and that is ended when a
-/// deadline [s of wall time] passes: the only way out of a blocking call to a child that has
-/// frozen. Also where programs are found, and what environment they get.
 #pragma once
 
 #include <sys/types.h>
@@ -30,17 +27,36 @@ std::string signalText(int signal);
 
 /// Where a child's standard streams lead. Descriptors are ours and stay open here.
 struct ProcessStreams {
-  std::filesystem::path log = {};  ///< output and errors are appended to it, unless `output` is set
+  std::filesystem::path log = {};  ///< of output and errors unless `output` is set; empty: as ours
   int input = -1;                  ///< descriptor to read from; -1: /dev/null
   int output = -1;                 ///< descriptor of output and errors
+  bool append = true;  ///< to what the log holds; else it is made anew, with room for last words
 };
 
+/// What a program prints, kept in memory: its descriptor is that of ProcessStreams::output.
+class ProcessOutput {
+ public:
+  ProcessOutput();
+  ~ProcessOutput();
+  ProcessOutput(const ProcessOutput&) = delete;
+  ProcessOutput& operator=(const ProcessOutput&) = delete;
+  int descriptor() const { return descriptor_; }
+  /// The last bytes of what was printed so far, at most `most`.
+  std::string end(std::size_t most = 4000) const;
+
+ private:
+  int descriptor_;
+};
+
+/// A child process in a process group of its own that never outlives us, even when we are killed,
+/// and that is ended when a deadline [s of wall time] passes: the only way out of a blocking call
+/// to a child that has frozen. Whatever of its group is left when it ends is ended, too.
 class GuardedProcess {
  public:
-  /// Starts `program` in a process group of its own. A guardian thread starts the child and lives
-  /// as long as this object, because the kernel ends the child together with the thread that
-  /// started it. `environment` holds "NAME=value". Throws SimulatorError when the process cannot be
-  /// made.
+  /// Starts `program`; exit code 127 when it cannot be executed. A guardian thread starts the child
+  /// and lives as long as this object, because the kernel ends the child together with the thread
+  /// that started it. `environment` holds "NAME=value"; empty: ours. Throws SimulatorError when the
+  /// process cannot be made.
   GuardedProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  const std::vector<std::string>& environment, const ProcessStreams& streams);
   /// Ends and reaps the child.
@@ -53,6 +69,8 @@ class GuardedProcess {
   bool ended();
   /// Waits until it has ended, at most `seconds`; answers whether it has.
   bool waitForEnd(double seconds);
+  /// Sends a signal to its group; nothing where it has ended.
+  void signal(int number);
   /// Ends and reaps the child.
   void kill();
   /// Its exit code, or 128 + the signal that ended it; -1 while it runs.

@@ -3,31 +3,20 @@
 #include "evaluation/executor.h"
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <deque>
 #include <map>
-#include <memory>
-#include <thread>
 
 #include "core/exit_code.h"
 #include "core/file.h"
+#include "core/process_pool.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/child_process.h"
 
 namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
 using core::ExitCode;
-using Clock = std::chrono::steady_clock;
-
-constexpr std::chrono::milliseconds kPollPeriod{20};
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// The last line that a run wrote; empty when there is none.
 std::string lastLine(const fs::path& log) {
@@ -45,14 +34,6 @@ std::string causeOf(int exit_code, const std::string& fault, const fs::path& log
   return "exit code " + std::to_string(exit_code) + (line.empty() ? "" : ": " + line);
 }
 
-/// One attempt under way.
-struct Attempt {
-  std::size_t index = 0;  ///< of the run
-  std::unique_ptr<ChildProcess> process;
-  Clock::time_point begin = Clock::now();
-  bool timed_out = false;
-};
-
 class Executor {
  public:
   Executor(const std::vector<PlannedRun>& plan, const ExecutorOptions& options,
@@ -62,13 +43,9 @@ class Executor {
   std::vector<RunRecord> execute() {
     for (std::size_t i = 0; i < plan_.size(); ++i) enqueue(i);
     announceRuns();
-    while (!active_.empty() || (!queue_.empty() && !stop_)) {
-      startRuns();
-      if (stop_) interruptRuns();
-      killLateRuns();
-      collectEnded();
-      if (!active_.empty()) std::this_thread::sleep_for(kPollPeriod);
-    }
+    core::runProcesses(queue_, {options_.jobs, options_.timeout, options_.grace}, stop_,
+                       {[this](std::size_t index) { return start(index); },
+                        [this](const core::ProcessEnd& end) { return finish(end); }});
     return std::move(records_);
   }
 
@@ -118,73 +95,31 @@ class Executor {
     }
   }
 
-  void startRuns() {
-    while (!stop_ && !queue_.empty() && static_cast<int>(active_.size()) < options_.jobs) {
-      const std::size_t index = queue_.front();
-      queue_.pop_front();
-      start(index);
-    }
-  }
-
-  void start(std::size_t index) {
+  core::ProcessJob start(std::size_t index) {
     const fs::path folder = folderOf(index);
     std::error_code ignored;
     fs::remove(folder / "summary.json", ignored);
     core::removeTemporaries(folder);
     core::writeFileAtomically(folder / "scenario.yaml", plan_[index].scenario_text);
-    const std::vector<std::string> words = {"run",           (folder / "scenario.yaml").string(),
-                                            "--quiet",       "--results",
-                                            folder.string(), "--overwrite"};
     ++records_[index].attempts;
-    Attempt attempt;
-    attempt.index = index;
-    attempt.process = std::make_unique<ChildProcess>(options_.program, words, folder / "log.txt");
-    active_.push_back(std::move(attempt));
+    return {options_.program,
+            {"run", (folder / "scenario.yaml").string(), "--quiet", "--results", folder.string(),
+             "--overwrite"},
+            folder / "log.txt"};
   }
 
-  void killLateRuns() {
-    const bool grace_over = interrupted_at_ && secondsSince(*interrupted_at_) > options_.grace;
-    for (Attempt& attempt : active_) {
-      const bool late = secondsSince(attempt.begin) > options_.timeout;
-      if (attempt.timed_out || (!late && !grace_over)) continue;
-      attempt.timed_out = late && !grace_over;
-      attempt.process->signal(SIGKILL);
-    }
-  }
-
-  void interruptRuns() {
-    if (interrupted_at_) return;
-    interrupted_at_ = Clock::now();
-    for (const Attempt& attempt : active_) attempt.process->signal(SIGINT);
-  }
-
-  void collectEnded() {
-    for (std::size_t i = 0; i < active_.size();) {
-      const auto exit_code = active_[i].process->poll();
-      if (!exit_code) {
-        ++i;
-        continue;
-      }
-      const Attempt attempt = std::move(active_[i]);
-      active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
-      finish(attempt, *exit_code);
-    }
-  }
-
-  void finish(const Attempt& attempt, int exit_code) {
-    RunRecord& record = records_[attempt.index];
-    record.exit_code = exit_code;
-    record.wall_seconds = secondsSince(attempt.begin);
-    describeEnd(record, attempt);
-    const bool died = exit_code == ExitCode::kRunTimeError || exit_code > ExitCode::kSignal;
-    const bool again = record.failed() && died && !attempt.timed_out && !stop_ &&
-                       record.attempts <= options_.retries;
-    if (again) {
-      queue_.push_front(attempt.index);
-      return;
-    }
-    core::writeFileAtomically(folderOf(attempt.index) / "record.json", recordJson(record));
+  /// Takes the end of an attempt; answers whether the run gets another.
+  bool finish(const core::ProcessEnd& end) {
+    RunRecord& record = records_[end.job];
+    record.exit_code = end.exit_code;
+    record.wall_seconds = end.seconds;
+    describeEnd(record, end);
+    const bool died = end.exit_code == ExitCode::kRunTimeError || end.exit_code > ExitCode::kSignal;
+    if (record.failed() && died && !end.timed_out && !stop_ && record.attempts <= options_.retries)
+      return true;
+    core::writeFileAtomically(folderOf(end.job) / "record.json", recordJson(record));
     if (options_.ended) options_.ended(record, false);
+    return false;
   }
 
   /// What the run's summary says; only a fault where it cannot be read, nothing where there is
@@ -202,16 +137,16 @@ class Executor {
   }
 
   /// Status, cause and figures.
-  void describeEnd(RunRecord& record, const Attempt& attempt) const {
-    const fs::path folder = folderOf(attempt.index);
+  void describeEnd(RunRecord& record, const core::ProcessEnd& end) const {
+    const fs::path folder = folderOf(end.job);
     record.cause.clear();
     record.status = "error";
-    if (attempt.timed_out) {
+    if (end.timed_out) {
       record.cause = "timed out: killed after " + core::formatNumber(options_.timeout) + " s";
       return;
     }
     const SummaryFacts facts = factsIn(folder);
-    if (record.exit_code == ExitCode::kInterrupted || interrupted_at_)
+    if (record.exit_code == ExitCode::kInterrupted || end.interrupted)
       record.status = "interrupted";
     if (record.exit_code != ExitCode::kPassed && record.exit_code != ExitCode::kVerdictFailed) {
       if (record.failed())
@@ -238,8 +173,6 @@ class Executor {
   std::vector<std::size_t> resumed_;                          ///< runs that were complete already
   std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
   std::deque<std::size_t> queue_;
-  std::vector<Attempt> active_;
-  std::optional<Clock::time_point> interrupted_at_;
 };
 
 }  // namespace

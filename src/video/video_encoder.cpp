@@ -3,7 +3,6 @@
 #include "video/video_encoder.h"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -47,28 +46,18 @@ fs::path findEncoder() {
   }
 }
 
-/// The end of what was written to a descriptor, in one line.
-std::string lastWords(int descriptor) {
-  constexpr off_t kMost = 600;
-  const off_t size = ::lseek(descriptor, 0, SEEK_END);
-  if (size <= 0) return {};
-  std::string text(static_cast<std::size_t>(std::min(size, kMost)), '\0');
-  const ssize_t read =
-      ::pread(descriptor, text.data(), text.size(), size - static_cast<off_t>(text.size()));
-  text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
+/// The end of what was printed, in one line.
+std::string lastWords(const core::ProcessOutput& output) {
+  std::string text = output.end(600);
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (char& letter : text) {
-    if (letter == '\n') letter = ' ';
-  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
 }  // namespace
 
 VideoEncoder::VideoEncoder(fs::path file, const VideoFormat& format)
-    : file_(std::move(file)),
-      temporary_(file_.string() + ".tmp." + std::to_string(::getpid())),
-      messages_(::memfd_create("ffmpeg messages", MFD_CLOEXEC)) {
+    : file_(std::move(file)), temporary_(file_.string() + ".tmp." + std::to_string(::getpid())) {
   std::error_code ignored;
   fs::remove(file_, ignored);
   try {
@@ -90,10 +79,10 @@ void VideoEncoder::start(const VideoFormat& format) {
   input_ = ends[0];
   ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
   try {
-    process_ =
-        std::make_unique<core::GuardedProcess>(program, commandLine(format, temporary_),
-                                               core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
-                                               core::ProcessStreams{{}, ends[1], messages_});
+    process_ = std::make_unique<core::GuardedProcess>(
+        program, commandLine(format, temporary_),
+        core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
+        core::ProcessStreams{{}, ends[1], messages_.descriptor()});
   } catch (...) {
     ::close(ends[1]);
     throw;
@@ -141,8 +130,6 @@ int VideoEncoder::wait() {
 void VideoEncoder::stop() {
   closeInput();
   process_.reset();
-  if (messages_ >= 0) ::close(messages_);
-  messages_ = -1;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
 }
@@ -150,7 +137,7 @@ void VideoEncoder::stop() {
 void VideoEncoder::fail(const std::string& text) {
   closeInput();
   if (process_) wait();
-  const std::string words = messages_ >= 0 ? lastWords(messages_) : std::string();
+  const std::string words = lastWords(messages_);
   stop();
   throw core::SimulatorError("video '" + file_.string() + "' was not written: ffmpeg: " + text +
                              (words.empty() ? "" : ": " + words));

@@ -49,8 +49,8 @@ class VideoEncoder {
   std::filesystem::path file_;
   std::filesystem::path temporary_;
   std::unique_ptr<core::GuardedProcess> process_;
-  int input_ = -1;     ///< our end of the socket
-  int messages_ = -1;  ///< what the program says of errors
+  int input_ = -1;                ///< our end of the socket
+  core::ProcessOutput messages_;  ///< what the program says of errors
 };
 
 }  // namespace cdiff::video

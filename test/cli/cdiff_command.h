@@ -5,13 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/file.h"
-#include "evaluation/child_process.h"
+#include "support/program_run.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::test {
@@ -24,13 +22,7 @@ class CdiffCommand : public testing::Test {
     return run(CDIFF_PROGRAM, arguments);
   }
   int run(const std::string& program, const std::vector<std::string>& arguments) const {
-    evaluation::ChildProcess process(program, arguments, scratch_.path() / "output");
-    std::optional<int> exit_code = process.poll();
-    while (!exit_code) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      exit_code = process.poll();
-    }
-    return *exit_code;
+    return ProgramRun(program, arguments, scratch_.path() / "output").wait();
   }
   std::string output() const { return core::readFile(scratch_.path() / "output", "output"); }
   void expectOutput(const std::string& part) const {

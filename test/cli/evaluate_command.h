@@ -11,7 +11,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "evaluation/child_process.h"
+#include "support/program_run.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::test {
@@ -25,16 +25,7 @@ class EvaluateCommand : public testing::Test {
   std::string folder(const std::string& name) const { return (scratch_.path() / name).string(); }
   /// Runs cdiff; its output is in output() afterwards.
   int cdiff(const std::vector<std::string>& arguments) const {
-    evaluation::ChildProcess process(CDIFF_PROGRAM, arguments, scratch_.path() / "output");
-    return waitFor(process);
-  }
-  static int waitFor(evaluation::ChildProcess& process) {
-    std::optional<int> exit_code = process.poll();
-    while (!exit_code) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      exit_code = process.poll();
-    }
-    return *exit_code;
+    return ProgramRun(CDIFF_PROGRAM, arguments, scratch_.path() / "output").wait();
   }
   std::string output() const { return core::readFile(scratch_.path() / "output", "output"); }
   void expectOutput(const std::string& part) const {

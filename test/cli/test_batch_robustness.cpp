@@ -63,9 +63,9 @@ class BatchRobustness : public test::EvaluateCommand {
   /// Runs a shell script with its own mounts; false where the machine does not allow them.
   bool inOwnMounts(const std::string& script, int& exit_code) const {
     const auto run = [&](const std::string& text) {
-      ChildProcess process("/usr/bin/unshare", {"-rm", "/bin/sh", "-c", text},
-                           scratch_.path() / "output");
-      return waitFor(process);
+      test::ProgramRun process("/usr/bin/unshare", {"-rm", "/bin/sh", "-c", text},
+                               scratch_.path() / "output");
+      return process.wait();
     };
     const std::string mount = "mount -t tmpfs -o size=200k none " + folder("small") + " && ";
     fs::create_directories(folder("small"));
@@ -81,14 +81,15 @@ TEST_F(BatchRobustness, KilledAndResumedItGivesTheSameFiles) {
   const std::string resumed = folder("resumed");
   ASSERT_EQ(cdiff({"evaluate", matrix, "--results", whole, "--jobs", "2"}), 0) << output();
   {
-    ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", resumed, "--jobs", "2"},
-                         scratch_.path() / "output");
+    test::ProgramRun process(CDIFF_PROGRAM,
+                             {"evaluate", matrix, "--results", resumed, "--jobs", "2"},
+                             scratch_.path() / "output");
     while (completeRuns(resumed) < 2) {
-      ASSERT_FALSE(process.poll()) << "the batch ended before it was killed\n" << output();
+      ASSERT_FALSE(process.ended()) << "the batch ended before it was killed\n" << output();
       pause();
     }
     process.signal(SIGKILL);  // its process alone: runs have groups of their own
-    EXPECT_EQ(waitFor(process), 128 + SIGKILL);
+    EXPECT_EQ(process.wait(), 128 + SIGKILL);
   }
   for (int i = 0; i < 500 && !processesWith(resumed).empty(); ++i) pause();
   EXPECT_TRUE(processesWith(resumed).empty()) << "runs outlive the batch";
@@ -145,16 +146,16 @@ TEST_F(BatchRobustness, RepeatsARunWhoseSumoWasKilled) {
             "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nretries: 1\nset: "
             "[protocol.time_limit=2, at_most=1, verdict.judge=false]\n");
   const std::string results = folder("results");
-  ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results},
-                       scratch_.path() / "output");
+  test::ProgramRun process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results},
+                           scratch_.path() / "output");
   pid_t sumo = 0;
-  while (sumo == 0 && !process.poll()) {
+  while (sumo == 0 && !process.ended()) {
     for (const pid_t run : processesWith(results + "/runs/arterial_exit")) sumo = sumoOf(run);
     if (sumo == 0) pause();
   }
   ASSERT_NE(sumo, 0) << output();
   ASSERT_EQ(::kill(sumo, SIGKILL), 0);
-  EXPECT_EQ(waitFor(process), 0) << output();
+  EXPECT_EQ(process.wait(), 0) << output();
   const auto records = readRecords(results);
   EXPECT_EQ(records.front().status, "timed_out");  // the protocol's 2 s
   EXPECT_EQ(records.front().attempts, 2);

@@ -73,14 +73,14 @@ TEST_F(EvaluateCommand, EndsCleanlyWhenInterrupted) {
                                    "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nseeds: "
                                    "[1, 2]\nset: [at_most=1]\n");
   const fs::path results = folder("results");
-  ChildProcess process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
-                       scratch_.path() / "output");
+  test::ProgramRun process(CDIFF_PROGRAM, {"evaluate", matrix, "--results", results.string()},
+                           scratch_.path() / "output");
   while (!fs::exists(results / "runs" / "arterial_exit__seed1" / "session.yaml")) {
-    ASSERT_FALSE(process.poll()) << output();
+    ASSERT_FALSE(process.ended()) << output();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   process.signal(SIGINT);
-  EXPECT_EQ(waitFor(process), 130) << output();
+  EXPECT_EQ(process.wait(), 130) << output();
   EXPECT_EQ(lines(results / "runs.csv"), 3U);
   const std::string csv = core::readFile(results / "runs.csv", "runs");
   EXPECT_NE(csv.find(",interrupted,"), std::string::npos) << csv;

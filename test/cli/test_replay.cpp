@@ -2,13 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <thread>
 
 #include "core/file.h"
-#include "evaluation/child_process.h"
+#include "support/program_run.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
@@ -27,11 +25,7 @@ class ReplayCommand : public testing::Test {
 
   /// Exit code of a program.
   int run(const std::string& program, const std::vector<std::string>& arguments) const {
-    ChildProcess process(program, arguments, scratch_.path() / "output");
-    std::optional<int> exit_code = process.poll();
-    for (; !exit_code; exit_code = process.poll())
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return *exit_code;
+    return test::ProgramRun(program, arguments, scratch_.path() / "output").wait();
   }
   int replay() const {
     return run(CDIFF_PROGRAM, {"replay", bag().string(), "--results", replayed().string()});

@@ -59,8 +59,8 @@ class ResultFolder : public test::EvaluateCommand {
     words.insert(words.end(), {"/bin/sh", "-c", script});
     const std::string program = words.front();
     words.erase(words.begin());
-    ChildProcess process(program, words, scratch_.path() / "output");
-    return waitFor(process);
+    test::ProgramRun process(program, words, scratch_.path() / "output");
+    return process.wait();
   }
   std::string line(const std::vector<std::string>& words) const {
     return std::string(CDIFF_PROGRAM) + " " + core::joinText(words, " ");
@@ -124,16 +124,16 @@ TEST_F(ResultFolder, AnEarlierResultIsReplacedOnlyWhenAsked) {
 }
 
 TEST_F(ResultFolder, ASecondWriterIsRefusedAndHangUpInterruptsTheFirst) {
-  ChildProcess first(CDIFF_PROGRAM, run(watched()), scratch_.path() / "first");
+  test::ProgramRun first(CDIFF_PROGRAM, run(watched()), scratch_.path() / "first");
   ASSERT_TRUE(waitUntil([&] { return fs::exists(results() + "/session.yaml"); }));
   std::vector<std::string> second = run(seconds(1));
   second.push_back("--overwrite");
   EXPECT_EQ(cdiff(second), 3);
   expectOutput("is being written by 'cdiff run', process ");
   expectOutput(" on host ");
-  ASSERT_FALSE(first.poll());
+  ASSERT_FALSE(first.ended());
   first.signal(SIGHUP);
-  EXPECT_EQ(waitFor(first), 130);
+  EXPECT_EQ(first.wait(), 130);
   EXPECT_EQ(summary()["status"], "interrupted");
   EXPECT_EQ(summary()["trace_sha256"],
             core::sha256(core::readFile(results() + "/trace.csv", "trace")));
@@ -144,10 +144,10 @@ TEST_F(ResultFolder, WhatAKilledSessionLeavesEndsWithItOrIsRemovedByTheNext) {
   std::vector<std::string> words = run(watched());
   words.push_back("--video");
   {
-    ChildProcess process(CDIFF_PROGRAM, words, scratch_.path() / "output");
+    test::ProgramRun process(CDIFF_PROGRAM, words, scratch_.path() / "output");
     ASSERT_TRUE(waitUntil([&] { return holds("ffmpeg_process") && holds("trace.csv.tmp."); }));
     process.signal(SIGKILL);
-    EXPECT_EQ(waitFor(process), 128 + SIGKILL);
+    EXPECT_EQ(process.wait(), 128 + SIGKILL);
   }
   const pid_t encoder = std::stoi(core::readFile(folder("ffmpeg_process"), "process"));
   EXPECT_TRUE(waitUntil([&] { return !isAlive(encoder); })) << "ffmpeg outlives the session";
@@ -201,12 +201,12 @@ TEST_F(ResultFolder, NetconvertEndsWithUsWhateverEndsUs) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
     fs::remove(folder("converter"));
     std::vector<std::string> words = run({"--network", network});
-    ChildProcess process(CDIFF_PROGRAM, words, scratch_.path() / "output");
+    test::ProgramRun process(CDIFF_PROGRAM, words, scratch_.path() / "output");
     ASSERT_TRUE(waitUntil(
         [&] { return fs::exists(folder("converter")) && fs::file_size(folder("converter")) > 1; }));
     const pid_t converter = std::stoi(core::readFile(folder("converter"), "process"));
     process.signal(signal);
-    EXPECT_EQ(waitFor(process), signal == SIGKILL ? 128 + SIGKILL : 130) << signal;
+    EXPECT_EQ(process.wait(), signal == SIGKILL ? 128 + SIGKILL : 130) << signal;
     EXPECT_TRUE(waitUntil([&] { return !isAlive(converter); })) << signal;
   }
   EXPECT_FALSE(fs::exists(results()));

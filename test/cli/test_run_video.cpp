@@ -2,11 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "core/file.h"
-#include "evaluation/child_process.h"
+#include "support/program_run.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {
@@ -16,13 +13,7 @@ namespace fs = std::filesystem;
 
 int exitCodeOf(const fs::path& program, const std::vector<std::string>& arguments,
                const fs::path& output) {
-  ChildProcess process(program, arguments, output);
-  std::optional<int> exit_code = process.poll();
-  while (!exit_code) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    exit_code = process.poll();
-  }
-  return *exit_code;
+  return test::ProgramRun(program, arguments, output).wait();
 }
 
 /// One session of 3 simulated seconds into a folder of `scratch`.

@@ -23,7 +23,7 @@ LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "r
 # Nothing of memory or threads is in these that the others do not run too, and with a sanitizer they take many minutes.
 SLOW = {"test_suite_suite_generator", "test_suite_shipped_suite", "test_diffusion_planner_guided_plans", "test_diffusion_planner_modes",
         "test_planners_mirror_symmetry", "test_diffusion_safetensors_memory", "test_session_soak"}
-THREADED = ["test_evaluation_executor", "test_evaluation_process_pool", "test_simulation_sumo_loss", "test_diffusion_image_encoder",
+THREADED = ["test_evaluation_executor", "test_core_process_pool", "test_simulation_sumo_loss", "test_diffusion_image_encoder",
             "test_video_session_video"]
 OPTIONS = {"ASAN_OPTIONS": "detect_leaks=1:abort_on_error=0", "UBSAN_OPTIONS": "print_stacktrace=1",
            "TSAN_OPTIONS": "halt_on_error=0:exitcode=66:second_deadlock_stack=1"}

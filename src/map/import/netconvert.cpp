@@ -2,10 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "map/import/netconvert.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cstdlib>
 
 #include "core/file.h"
@@ -27,35 +23,12 @@ double netconvertLimit() {
                          "'; expected seconds above 0");
 }
 
-/// What a program prints, kept in memory.
-class Output {
- public:
-  Output() : descriptor_(::memfd_create("netconvert", MFD_CLOEXEC)) {}
-  ~Output() { ::close(descriptor_); }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-  int descriptor() const { return descriptor_; }
-  /// Its end.
-  std::string text() const {
-    constexpr off_t kMost = 4000;
-    const off_t size = ::lseek(descriptor_, 0, SEEK_END);
-    std::string text(static_cast<std::size_t>(std::min(size, kMost)), '\0');
-    const off_t begin = size - static_cast<off_t>(text.size());
-    const ssize_t count = ::pread(descriptor_, text.data(), text.size(), begin);
-    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
-    return text;
-  }
-
- private:
-  int descriptor_;
-};
-
 }  // namespace
 
 void runNetconvert(const std::vector<std::string>& arguments, const std::string& subject) {
   constexpr double kStopPeriod = 0.1;  // [s]
   const double limit = netconvertLimit();
-  const Output output;
+  const core::ProcessOutput output;
   core::GuardedProcess process(core::findProgram("netconvert", "sumo"), arguments,
                                core::environmentWith("SUMO_HOME", core::sumoHome().string()),
                                core::ProcessStreams{{}, -1, output.descriptor()});
@@ -70,10 +43,10 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
   }
   if (process.endSignal() != 0)
     throw core::InputError(subject + ": netconvert crashed: " + process.endText() + ": " +
-                           output.text());
+                           output.end());
   if (process.exitCode() == 0) return;
   throw core::InputError(subject + ": netconvert could not convert it (" + process.endText() +
-                         "): " + output.text());
+                         "): " + output.end());
 }
 
 namespace {
