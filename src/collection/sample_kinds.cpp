@@ -16,7 +16,7 @@ namespace {
 using learning::kMoving;
 using learning::kStanding;
 
-constexpr double kTurn = 15.0 * core::kDegree;  // of heading over the horizon [rad]
+constexpr double kTurn = core::degreesToRadians(15.0);  // of heading over the horizon [rad]
 
 constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
 constexpr const char* kStopReasons[] = {"none", "light", "leader", "yielding", "other"};

@@ -18,8 +18,8 @@ struct SampleSurroundings {
   double arc_length = 0.0;  ///< on the route [m]
 };
 
-constexpr double kOffCourse = 0.4;                // [m]
-constexpr double kOffTurn = 5.0 * core::kDegree;  // [rad]
+constexpr double kOffCourse = 0.4;                        // [m]
+constexpr double kOffTurn = core::degreesToRadians(5.0);  // [rad]
 
 struct SampleKinds {
   std::uint8_t maneuver = 0;                       ///< as Sample::maneuver

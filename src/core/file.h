@@ -4,6 +4,7 @@
 /// files lie.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -49,7 +50,10 @@ void removeTemporaries(const std::filesystem::path& folder);
 /// The same in a folder that others may write into: only that of processes that are gone.
 void removeDeadTemporaries(const std::filesystem::path& folder);
 
-/// SHA-256 of `content` as 64 lower-case hexadecimal digits.
+/// Length of a SHA-256 in hexadecimal digits.
+inline constexpr std::size_t kSha256Digits = 64;
+
+/// SHA-256 of `content` as lower-case hexadecimal digits.
 std::string sha256(std::string_view content);
 
 /// Incremental SHA-256 of a stream of texts.
@@ -60,7 +64,7 @@ class Sha256 {
   Sha256(const Sha256&) = delete;
   Sha256& operator=(const Sha256&) = delete;
   void update(std::string_view text);
-  /// 64 lower-case hexadecimal digits; the object is spent afterwards.
+  /// Lower-case hexadecimal digits; the object is spent afterwards.
   std::string finish();
 
  private:

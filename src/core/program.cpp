@@ -28,16 +28,15 @@ bool isIgnored(int signal) {
   return (action.sa_flags & SA_SIGINFO) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// A signal that nobody handles yet.
-void ignore(int signal) {
+}  // namespace
+
+void ignoreSignal(int signal) {
   struct sigaction action {};
   ::sigaction(signal, nullptr, &action);
   if ((action.sa_flags & SA_SIGINFO) != 0 || action.sa_handler != SIG_DFL) return;
   action.sa_handler = SIG_IGN;
   ::sigaction(signal, &action, nullptr);
 }
-
-}  // namespace
 
 void prepareProgram() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
@@ -49,8 +48,8 @@ void prepareProgram() {
       ::close(opened);
     }
   }
-  ignore(SIGPIPE);
-  ignore(SIGXFSZ);
+  ignoreSignal(SIGPIPE);
+  ignoreSignal(SIGXFSZ);
 }
 
 std::vector<int> stopSignals() {

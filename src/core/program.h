@@ -19,6 +19,9 @@ namespace cdiff::core {
 /// SIGPIPE and SIGXFSZ: a write to a closed pipe or beyond `ulimit -f` is an error with a message.
 void prepareProgram();
 
+/// Ignores a signal; a handler that someone set stays.
+void ignoreSignal(int signal);
+
 /// The signals that ask a program to stop in order: SIGINT, SIGTERM, and SIGHUP unless it is
 /// ignored, as under nohup.
 std::vector<int> stopSignals();

@@ -18,7 +18,6 @@ using core::InputError;
 using nlohmann::json;
 
 constexpr std::string_view kCheckpointMagic = "CDIFFCP1";
-constexpr std::size_t kCheckpointDigest = 64;
 
 at::Tensor takeTensor(ByteReader& reader, const std::vector<std::int64_t>& shape) {
   at::Tensor tensor = at::empty(shape, at::kFloat);
@@ -62,10 +61,10 @@ void writeCheckpoint(const fs::path& path, const Checkpoint& checkpoint) {
 Checkpoint readCheckpoint(const fs::path& path) {
   const std::string name = "checkpoint '" + path.string() + "'";
   const std::string content = core::readFile(path, "checkpoint");
-  if (content.size() < kCheckpointMagic.size() + kCheckpointDigest ||
+  if (content.size() < kCheckpointMagic.size() + core::kSha256Digits ||
       content.compare(0, kCheckpointMagic.size(), kCheckpointMagic) != 0)
     throw InputError(name + ": is not a checkpoint");
-  const std::string_view body(content.data(), content.size() - kCheckpointDigest);
+  const std::string_view body(content.data(), content.size() - core::kSha256Digits);
   if (core::sha256(body) != content.substr(body.size()))
     throw InputError(name + ": the checksum at its end is not that of its content");
   ByteReader reader(body, name, kCheckpointMagic.size());

@@ -7,7 +7,6 @@
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::rendering {
-namespace {}  // namespace
 
 View::View(const CameraOptions& options, const traffic::Vehicle& vehicle)
     : heading_(geometry::direction(vehicle.state.heading)),

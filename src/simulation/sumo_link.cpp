@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/file.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -186,20 +187,6 @@ std::string SumoProcess::refusal() const {
   return text + (assertion.empty() ? "" : ": assertion " + assertion);
 }
 
-namespace {
-
-/// libtraci writes to SUMO's socket also when SUMO is gone; the signal would end our process. A
-/// handler that someone set stays.
-void ignoreBrokenPipes() {
-  struct sigaction present {};
-  ::sigaction(SIGPIPE, nullptr, &present);
-  if ((present.sa_flags & SA_SIGINFO) != 0 || present.sa_handler != SIG_DFL) return;
-  present.sa_handler = SIG_IGN;
-  ::sigaction(SIGPIPE, &present, nullptr);
-}
-
-}  // namespace
-
 SumoLink::Guard::Guard(SumoLink& link) : link_(link) {
   sigset_t all;
   sigfillset(&all);
@@ -217,7 +204,7 @@ SumoLink::SumoLink(const SumoCommand& command, double call_timeout)
     : sumo_(command),
       limit_(command.start_timeout),
       label_("sumo_" + std::to_string(sumo_.process().id()) + "_" + std::to_string(sumo_.port())) {
-  ignoreBrokenPipes();
+  core::ignoreSignal(SIGPIPE);  // libtraci writes to the socket of a SUMO that is gone, too
   connect();
   loaded_ = true;
   limit_ = call_timeout;

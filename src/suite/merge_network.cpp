@@ -8,11 +8,10 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kLaneWidth = 3.5;  ///< [m]
-constexpr double kMedian = 1.0;     ///< half of it [m]
-constexpr double kRampEnd = 6.0;    ///< of a ramp before the added lane [m]
-constexpr double kBefore = 130.0;   ///< main road before the first ramp [m]
-constexpr double kAfter = 130.0;    ///< and after the last [m]
+constexpr double kMedian = 1.0;    ///< half of it [m]
+constexpr double kRampEnd = 6.0;   ///< of a ramp before the added lane [m]
+constexpr double kBefore = 130.0;  ///< main road before the first ramp [m]
+constexpr double kAfter = 130.0;   ///< and after the last [m]
 
 /// One direction of the main road with its on-ramp.
 class Carriageway {

@@ -70,7 +70,7 @@ Line ArmShape::draw(const Eigen::Vector2d& start, double heading, double speed,
   road.straight(draws.uniform(kStraight, kStraight + 20.0));
   const double length = draws.uniform(60.0, 90.0);
   const double radius = draws.uniform(1.0, 2.0) * speed * speed / kSideways;
-  const double angle = draws.uniform(15.0, 50.0) * core::kPi / 180.0;
+  const double angle = core::degreesToRadians(draws.uniform(15.0, 50.0));
   if (draws.chance(kBendShare)) road.arc(radius, side_ * angle);
   road.straight(length);
   const double height = draws.sign() * draws.uniform(2.0, 5.0);

@@ -11,6 +11,9 @@
 
 namespace cdiff::suite {
 
+/// Width of every lane [m], as networks/netconvert.netccfg has it.
+inline constexpr double kLaneWidth = 3.5;
+
 RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws);
 RoadPlan drawRoundabout(const NetworkSpec& spec, Draws& draws);
 RoadPlan drawMerge(const NetworkSpec& spec, Draws& draws);

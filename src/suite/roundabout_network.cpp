@@ -9,7 +9,6 @@
 namespace cdiff::suite {
 namespace {
 
-constexpr double kRingLaneWidth = 3.5;                ///< [m]
 constexpr double kEntryRadius = 12.0;                 ///< [m]
 constexpr double kEntryAngle = 32.0 * core::kDegree;  ///< turned away before the ring
 constexpr double kTrim = 22.0 * core::kDegree;        ///< of the ring, on both sides of an arm
@@ -56,10 +55,10 @@ class Roundabout {
   /// From ring node i to the next, counter-clockwise.
   std::string ringEdge(int i) const { return "ring_edge" + std::to_string(i % spec_.arms); }
   static std::string arm(int i) { return "arm" + std::to_string(i); }
-  double halfRoad() const { return 0.5 * spec_.lanes * kRingLaneWidth; }
+  double halfRoad() const { return 0.5 * spec_.lanes * kLaneWidth; }
   /// Where, outside the ring's middle, entries begin to turn away [m].
   double straightFrom() const {
-    return kEntryGap + halfRoad() - 0.5 * kRingLaneWidth + kEntryRadius * std::sin(kEntryAngle);
+    return kEntryGap + halfRoad() - 0.5 * kLaneWidth + kEntryRadius * std::sin(kEntryAngle);
   }
 
   void drawAngles(Draws& draws) {

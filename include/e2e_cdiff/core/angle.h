@@ -19,7 +19,7 @@ inline double wrapAngle(double angle) {
 /// Signed smallest rotation that turns `from` into `to`, in (-pi, pi].
 inline double angleDifference(double to, double from) { return wrapAngle(to - from); }
 
-inline double degreesToRadians(double degrees) { return degrees * kPi / 180.0; }
-inline double radiansToDegrees(double radians) { return radians * 180.0 / kPi; }
+constexpr double degreesToRadians(double degrees) { return degrees * kPi / 180.0; }
+constexpr double radiansToDegrees(double radians) { return radians * 180.0 / kPi; }
 
 }  // namespace cdiff::core

@@ -66,8 +66,8 @@ struct SeedSum {
 };
 
 /// `key` over the seeds of complete runs; runs without it, or of weight 0, are passed over.
-Statistics overSeeds(const std::vector<const BatchRun*>& runs, const std::string& key,
-                     const std::string& weight, std::size_t& used) {
+Statistics weightedOverSeeds(const std::vector<const BatchRun*>& runs, const std::string& key,
+                             const std::string& weight, std::size_t& used) {
   std::map<std::string, SeedSum> seeds;
   used = 0;
   for (const BatchRun* run : runs) {
@@ -108,8 +108,9 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   cell.runs = own.size();
   for (const BatchRun* run : own) cell.failed += !run->record.complete();
   const std::string weight = withSubject(column.weight, row.subject);
-  if (!column.rift_key.empty()) cell.rift = overSeeds(own, column.rift_key, weight, cell.used);
-  cell.seeds = overSeeds(own, withSubject(column.key, row.subject), weight, cell.used);
+  if (!column.rift_key.empty())
+    cell.rift = weightedOverSeeds(own, column.rift_key, weight, cell.used);
+  cell.seeds = weightedOverSeeds(own, withSubject(column.key, row.subject), weight, cell.used);
   if (!cell.seeds.mean) cell.note = reasonOf(levels, cell);
   return cell;
 }

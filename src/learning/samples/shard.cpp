@@ -52,8 +52,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::InputError;
 
-constexpr std::string_view kMagic = "CDIFFSHD";
-constexpr std::size_t kDigestLength = 64;
+constexpr std::string_view kShardMagic = "CDIFFSHD";
 
 }  // namespace
 
@@ -66,7 +65,7 @@ void ShardWriter::append(const Sample& sample) {
 
 void ShardWriter::write(const fs::path& path, const std::map<std::string, std::string>& facts) {
   header_.facts = facts;
-  std::string content(kMagic);
+  std::string content(kShardMagic);
   putValue(content, kShardVersion);
   putText(content, headerText(header_));
   content += body_;
@@ -78,15 +77,15 @@ void ShardWriter::write(const fs::path& path, const std::map<std::string, std::s
 
 ShardReader::ShardReader(const fs::path& path)
     : name_("shard '" + path.string() + "'"), content_(core::readFile(path, "shard")) {
-  if (content_.size() < kMagic.size() + 8 + kDigestLength)
+  if (content_.size() < kShardMagic.size() + 8 + core::kSha256Digits)
     throw InputError(name_ + ": truncated: " + std::to_string(content_.size()) + " bytes");
   ByteReader reader(content_, name_);
-  if (reader.take(kMagic.size()) != kMagic) throw InputError(name_ + ": is not a shard");
+  if (reader.take(kShardMagic.size()) != kShardMagic) throw InputError(name_ + ": is not a shard");
   const auto version = reader.value<std::uint32_t>();
   header_ = readShardHeader(version, std::string(reader.text()), name_);
   const std::size_t begin = reader.place();
-  sha256_ = content_.substr(content_.size() - kDigestLength);
-  content_.resize(content_.size() - kDigestLength);
+  sha256_ = content_.substr(content_.size() - core::kSha256Digits);
+  content_.resize(content_.size() - core::kSha256Digits);
   findSamples(begin);
   if (core::sha256(content_) != sha256_)
     throw InputError(name_ + ": the checksum at its end is not that of its content");
