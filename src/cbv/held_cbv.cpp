@@ -10,9 +10,7 @@ namespace cdiff::cbv {
 
 double advancedArcLength(const geometry::Polyline& path, double arc_length,
                          const Eigen::Vector2d& position, double far_off) {
-  constexpr double kWindowAhead = 15.0;
-  const double window_end = std::min(path.length(), arc_length + kWindowAhead);
-  auto nearest = path.project(position, arc_length, window_end);
+  auto nearest = path.projectNear(position, arc_length, {0.0, map::kRouteWindow.ahead});
   if (nearest.distance > far_off) {
     const auto anywhere = path.project(position, arc_length, path.length());
     if (anywhere.distance <= far_off) nearest = anywhere;

@@ -23,9 +23,9 @@ inline constexpr const char* kGone = "gone";
 /// Life cycle "reselect": no conflict for lost_conflict_time.
 inline constexpr const char* kConflictLost = "conflict_lost";
 
-/// Arc length [m] reached on a path by a vehicle that was at `arc_length`: looks 15 m ahead, and
-/// along the whole rest of the path when the vehicle is more than `far_off` metres from what lies
-/// there (it was not followed continuously). Never less than `arc_length`.
+/// Arc length [m] reached on a path by a vehicle that was at `arc_length`: looks as far ahead as
+/// map::kRouteWindow, and along the whole rest of the path when the vehicle is more than `far_off`
+/// metres from what lies there (it was not followed continuously). Never less than `arc_length`.
 double advancedArcLength(const geometry::Polyline& path, double arc_length,
                          const Eigen::Vector2d& position, double far_off = 30.0);
 

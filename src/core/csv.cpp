@@ -28,6 +28,10 @@ std::string csvCell(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string csvNumber(const std::optional<double>& value) {
+  return value ? formatNumber(*value) : "";
+}
+
 std::string csvRow(const std::vector<std::string>& cells) {
   std::string row;
   for (std::size_t i = 0; i < cells.size(); ++i) row += (i > 0 ? "," : "") + csvCell(cells[i]);

@@ -5,6 +5,7 @@
 /// number) gets an apostrophe in front, which reading takes away again.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,9 @@ namespace cdiff::core {
 
 /// `text` as one cell.
 std::string csvCell(const std::string& text);
+
+/// A number as one cell, empty where there is none.
+std::string csvNumber(const std::optional<double>& value);
 
 /// The cells as one row with its line end.
 std::string csvRow(const std::vector<std::string>& cells);

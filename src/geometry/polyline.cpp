@@ -75,6 +75,17 @@ Projection Polyline::project(const Eigen::Vector2d& point, double begin, double 
   return best;
 }
 
+std::pair<double, double> Polyline::around(double arc_length, const SearchWindow& window) const {
+  return {std::clamp(arc_length - window.behind, 0.0, length()),
+          std::clamp(arc_length + window.ahead, 0.0, length())};
+}
+
+Projection Polyline::projectNear(const Eigen::Vector2d& point, double arc_length,
+                                 const SearchWindow& window) const {
+  const auto [begin, end] = around(arc_length, window);
+  return project(point, begin, end);
+}
+
 Polyline Polyline::slice(double begin, double end) const {
   std::vector<Eigen::Vector3d> part = {pointAt(begin)};
   for (std::size_t i = 0; i < points_.size(); ++i) {

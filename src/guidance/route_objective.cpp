@@ -11,8 +11,7 @@ namespace cdiff::guidance {
 namespace {
 
 // Part of the route that a rollout can be near, so that a loop's other pass is not taken [m].
-constexpr double kBehind = 10.0;
-constexpr double kAhead = 80.0;
+constexpr geometry::SearchWindow kReach{10.0, 80.0};
 
 /// Signed offset from the route, positive left, and its gradient on the map.
 struct Offset {
@@ -22,8 +21,7 @@ struct Offset {
 };
 
 Offset offsetFrom(const map::Route& route, double arc_length, const Eigen::Vector2d& position) {
-  const double begin = std::clamp(arc_length - kBehind, 0.0, route.length());
-  const double end = std::clamp(arc_length + kAhead, 0.0, route.length());
+  const auto [begin, end] = route.path().around(arc_length, kReach);
   const geometry::Projection nearest = route.path().project(position, begin, end);
   const Eigen::Vector2d away = position - route.path().positionAt(nearest.arc_length);
   const Eigen::Vector2d left = geometry::leftNormal(geometry::direction(nearest.heading));

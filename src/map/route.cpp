@@ -127,10 +127,7 @@ RouteProgress::RouteProgress(const Route& route, double completion_percent,
       distance_to_end_(route.length()) {}
 
 void RouteProgress::update(const Eigen::Vector2d& position) {
-  constexpr double kWindowAhead = 15.0;
-  constexpr double kWindowBehind = 5.0;
-  const auto near = route_->path().project(position, std::max(0.0, arc_length_ - kWindowBehind),
-                                           std::min(route_->length(), arc_length_ + kWindowAhead));
+  const auto near = route_->path().projectNear(position, arc_length_, kRouteWindow);
   arc_length_ = std::max(arc_length_, near.arc_length);
   deviation_ = near.distance;
   distance_to_end_ = (position - route_->path().points().back().head<2>()).norm();

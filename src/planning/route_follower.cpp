@@ -63,12 +63,10 @@ void RouteFollower::start(const map::Route& route, const Eigen::Vector2d& positi
 }
 
 void RouteFollower::update(const map::Route& route, const Eigen::Vector2d& position, double reach) {
-  constexpr double kWindowAhead = 15.0;
-  constexpr double kWindowBehind = 5.0;
   if (!knows(route)) start(route, position);
-  const double ahead = std::max(kWindowAhead, reach);
-  const double found =
-      extendedProjection(route, position, arc_length_ - kWindowBehind, arc_length_ + ahead);
+  const double ahead = std::max(map::kRouteWindow.ahead, reach);
+  const double found = extendedProjection(route, position, arc_length_ - map::kRouteWindow.behind,
+                                          arc_length_ + ahead);
   arc_length_ = std::max(arc_length_, found);
 }
 

@@ -22,9 +22,9 @@ double extendedProjection(const map::Route& route, const Eigen::Vector2d& positi
 /// content.
 class RouteFollower {
  public:
-  /// Moves to `position`: at most 15 m, or `reach` where that is more, ahead of the last arc
-  /// length. Starts again when the route is not the one of the last call: at its first 20 m if they
-  /// pass within 3 m, else at its nearest point.
+  /// Moves to `position`: at most as far as kRouteWindow, or `reach` where that is more, ahead of
+  /// the last arc length. Starts again when the route is not the one of the last call: at its first
+  /// 20 m if they pass within 3 m, else at its nearest point.
   void update(const map::Route& route, const Eigen::Vector2d& position, double reach = 0.0);
   /// Farthest arc length so far [m]; may exceed the route's length.
   double arcLength() const { return arc_length_; }

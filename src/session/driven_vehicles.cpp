@@ -41,14 +41,13 @@ std::string faultText(const planning::PlannedAction& planned) {
 }  // namespace
 
 void DrivenVehicles::Driven::move(const dynamics::BicycleModel& dynamics, double step) {
-  constexpr double kWindow = 30.0;  // [m] of route around the last place
+  constexpr geometry::SearchWindow kWindow{30.0, 30.0};
   if (!action) action = traffic::ControlAction::failSafe();
   const traffic::VehicleState before = state;
   state = dynamics.step(before, *action, step);
   acceleration = (state.speed - before.speed) / step;
   yaw_rate = core::angleDifference(state.heading, before.heading) / step;
-  const auto near = route.path().project(state.position, std::max(0.0, arc_length - kWindow),
-                                         std::min(route.length(), arc_length + kWindow));
+  const auto near = route.path().projectNear(state.position, arc_length, kWindow);
   arc_length = near.arc_length;
   state.elevation = near.elevation;
 }

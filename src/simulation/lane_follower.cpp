@@ -11,8 +11,7 @@
 namespace cdiff::simulation {
 namespace {
 
-constexpr double kSearchBehind = 15.0;  ///< window of the route around the last place [m]
-constexpr double kSearchAhead = 40.0;   ///< [m]
+constexpr geometry::SearchWindow kSearch{15.0, 40.0};  ///< of the route around the last place
 constexpr double kLostDistance =
     6.0;  ///< farther from the route than this, the whole route is searched [m]
 constexpr double kReachMargin = 0.05;  ///< within SUMO's own limit [m]
@@ -46,8 +45,7 @@ bool DrivenWay::follow(const map::Route* route, const Eigen::Vector2d& front) {
   }
   if (route_edges_.empty()) return other;
   const geometry::Polyline& path = route_->path();
-  geometry::Projection here = path.project(front, std::max(0.0, progress_ - kSearchBehind),
-                                           std::min(length, progress_ + kSearchAhead));
+  geometry::Projection here = path.projectNear(front, progress_, kSearch);
   if (other || here.distance > kLostDistance) here = path.project(front);
   progress_ = here.arc_length;
   const std::vector<double>& begins = route_->edgeBegins();

@@ -45,6 +45,14 @@ TEST(Polyline, ProjectionWithinWindow) {
   EXPECT_DOUBLE_EQ(windowed.arc_length, 12.0);
 }
 
+TEST(Polyline, ProjectionNearAnArcLength) {
+  // Nearest of all is arc length 13; 4 m ahead of 6 the window ends at 10, the corner.
+  EXPECT_DOUBLE_EQ(corner().projectNear({10.0, 3.0}, 6.0, {5.0, 15.0}).arc_length, 13.0);
+  EXPECT_DOUBLE_EQ(corner().projectNear({10.0, 3.0}, 6.0, {5.0, 4.0}).arc_length, 10.0);
+  EXPECT_EQ(corner().around(18.0, {5.0, 15.0}), std::make_pair(13.0, 20.0));
+  EXPECT_EQ(corner().around(3.0, {5.0, 15.0}), std::make_pair(0.0, 18.0));
+}
+
 TEST(Polyline, SliceAndResample) {
   const Polyline part = corner().slice(5.0, 15.0);
   EXPECT_DOUBLE_EQ(part.length(), 10.0);

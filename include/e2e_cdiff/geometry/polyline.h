@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "e2e_cdiff/geometry/pose.h"
@@ -19,6 +20,12 @@ struct Projection {
   double distance = 0.0;   ///< to the nearest point, in the plane [m]
   double elevation = 0.0;  ///< of the nearest point [m]
   double heading = 0.0;    ///< of the nearest segment [rad]
+};
+
+/// Part of a line around an arc length, in which a vehicle is looked for that was there before [m].
+struct SearchWindow {
+  double behind = 0.0;
+  double ahead = 0.0;
 };
 
 class Polyline {
@@ -43,6 +50,11 @@ class Polyline {
   Projection project(const Eigen::Vector2d& point) const;
   /// Nearest point among those with an arc length in [begin, end].
   Projection project(const Eigen::Vector2d& point, double begin, double end) const;
+  /// First and last arc length of the window around `arc_length`, clamped to the ends.
+  std::pair<double, double> around(double arc_length, const SearchWindow& window) const;
+  /// Nearest point among those in the window around `arc_length`.
+  Projection projectNear(const Eigen::Vector2d& point, double arc_length,
+                         const SearchWindow& window) const;
   /// The part between two arc lengths (end > begin).
   Polyline slice(double begin, double end) const;
   /// Points every `spacing` metres from the start, the end included.

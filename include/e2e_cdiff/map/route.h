@@ -11,6 +11,10 @@
 
 namespace cdiff::map {
 
+/// Where on its route a vehicle is looked for after a tick or a decision: farther than it drives in
+/// between, nearer than a route usually comes back to itself.
+inline constexpr geometry::SearchWindow kRouteWindow{5.0, 15.0};
+
 class Route {
  public:
   Route() = default;

@@ -7,8 +7,7 @@
 
 namespace cdiff::map {
 
-/// Farthest arc length reached by moving along the route (each update looks at most 15 m ahead of
-/// it).
+/// Farthest arc length reached by moving along the route (each update looks into kRouteWindow).
 class RouteProgress {
  public:
   /// `route` must outlive the object. 100 % when at least `completion_percent` of the length is

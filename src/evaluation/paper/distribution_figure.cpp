@@ -69,23 +69,20 @@ PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>&
   return samples;
 }
 
-std::string cellOf(const std::optional<double>& value) {
-  return value ? core::formatNumber(*value) : "";
-}
-
 std::string rowsOf(const PlannerSamples& planner, const Sample& sample, const std::string& quantity,
                    const std::string& unit) {
   std::string text;
   const record::Histogram& histogram = sample.histogram;
   for (std::size_t bin = 0; bin < histogram.counts().size(); ++bin) {
     const double low = histogram.low() + static_cast<double>(bin) * histogram.width();
-    text += core::csvRow(
-        {planner.name, quantity, unit, core::formatNumber(low),
-         core::formatNumber(low + histogram.width()), std::to_string(histogram.counts()[bin]),
-         core::formatNumber(histogram.share(bin) / histogram.width()),
-         std::to_string(histogram.n()), cellOf(histogram.mean()),
-         cellOf(histogram.standardDeviation()), cellOf(sample.w.value), std::to_string(sample.w.n),
-         std::to_string(planner.runs), std::to_string(planner.seeds), ""});
+    text += core::csvRow({planner.name, quantity, unit, core::formatNumber(low),
+                          core::formatNumber(low + histogram.width()),
+                          std::to_string(histogram.counts()[bin]),
+                          core::formatNumber(histogram.share(bin) / histogram.width()),
+                          std::to_string(histogram.n()), core::csvNumber(histogram.mean()),
+                          core::csvNumber(histogram.standardDeviation()),
+                          core::csvNumber(sample.w.value), std::to_string(sample.w.n),
+                          std::to_string(planner.runs), std::to_string(planner.seeds), ""});
   }
   return text;
 }

@@ -115,10 +115,6 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   return cell;
 }
 
-std::string number(const std::optional<double>& value) {
-  return value ? core::formatNumber(*value) : "";
-}
-
 std::string csvLine(const Table& table, std::size_t row, std::size_t column, bool rift) {
   const TableCell& cell = table.cells[row][column];
   const Statistics& figure = rift ? cell.rift : cell.seeds;
@@ -129,14 +125,15 @@ std::string csvLine(const Table& table, std::size_t row, std::size_t column, boo
     low = *figure.mean - *figure.half_width;
     high = *figure.mean + *figure.half_width;
   }
-  return core::csvRow(
-      {table.definition.rows[row].name, head.name, head.unit, rift ? "rift_compat" : "clean",
-       number(cell.paper.mean), number(cell.paper.deviation), number(figure.mean),
-       number(figure.standard_deviation), number(low), number(high), std::to_string(figure.n),
-       std::to_string(cell.runs), std::to_string(cell.used), std::to_string(cell.failed),
-       figure.mean         ? ""
-       : cell.note.empty() ? "no run has this figure"
-                           : cell.note});
+  return core::csvRow({table.definition.rows[row].name, head.name, head.unit,
+                       rift ? "rift_compat" : "clean", core::csvNumber(cell.paper.mean),
+                       core::csvNumber(cell.paper.deviation), core::csvNumber(figure.mean),
+                       core::csvNumber(figure.standard_deviation), core::csvNumber(low),
+                       core::csvNumber(high), std::to_string(figure.n), std::to_string(cell.runs),
+                       std::to_string(cell.used), std::to_string(cell.failed),
+                       figure.mean         ? ""
+                       : cell.note.empty() ? "no run has this figure"
+                                           : cell.note});
 }
 
 std::string statisticsText(const Statistics& figure) {
