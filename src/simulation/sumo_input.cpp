@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "simulation/sumo_input.h"
 
+#include <pugixml.hpp>
+
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -94,12 +96,16 @@ std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSessio
 bool namesDemand(const std::string& sentence, const SumoSession& session) {
   if (session.demand_file.empty()) return false;
   const std::string demand = core::readFile(session.demand_file, "demand");
+  pugi::xml_document document;
+  document.load_buffer(demand.data(), demand.size());
   const std::vector<std::string> parts = core::splitText(" " + sentence, '\'');
   for (std::size_t i = 1; i < parts.size(); i += 2) {
     const std::string flow = parts[i].substr(0, parts[i].rfind('.'));
-    for (const std::string& id : {parts[i], flow}) {
-      if (demand.find("id=\"" + id + "\"") != std::string::npos) return true;
-    }
+    const auto has_name = [&](const pugi::xml_node& node) {
+      const std::string id = node.attribute("id").value();
+      return !id.empty() && (id == parts[i] || id == flow);
+    };
+    if (document.find_node(has_name)) return true;
   }
   return false;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <pugixml.hpp>
+#include <sstream>
 
 #include "core/text.h"
 #include "e2e_cdiff/geometry/polyline.h"
@@ -13,21 +15,53 @@ namespace {
 
 constexpr int kDecimals = 2;
 
-std::string attribute(const char* name, const std::string& value) {
-  return std::string(" ") + name + "=\"" + value + "\"";
-}
-
 std::string number(double value) {
   const std::string text = core::formatFixed(value, kDecimals);
   return text == "-0.00" ? "0.00" : text;
 }
 
-std::string head(const RoadPlan& plan) {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<!-- SPDX-License-Identifier: BSD-3-Clause -->\n"
-         "<!-- Copyright (c) 2026 The e2e_cdiff authors -->\n<!-- " +
-         plan.text + " -->\n";
-}
+/// One of the plain-XML files: its head, and elements without children below its root.
+class SourceFile {
+ public:
+  SourceFile(const RoadPlan& plan, const char* root) {
+    pugi::xml_node declaration = document_.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    addComment("SPDX-License-Identifier: BSD-3-Clause");
+    addComment("Copyright (c) 2026 The e2e_cdiff authors");
+    addComment(plan.text);
+    root_ = document_.append_child(root);
+  }
+
+  /// Begins an element; `set` gives it attributes.
+  SourceFile& add(const char* name) {
+    element_ = root_.append_child(name);
+    return *this;
+  }
+  SourceFile& set(const char* name, const std::string& value) {
+    element_.append_attribute(name) = value.c_str();
+    return *this;
+  }
+
+  std::string text() const {
+    std::ostringstream stream;
+    document_.save(stream, "    ");
+    // pugixml has a blank in front of "/>"; texts hold no such sign, attributes have it escaped.
+    std::string text = stream.str();
+    for (std::size_t at = text.find(" />"); at != std::string::npos; at = text.find(" />", at))
+      text.erase(at, 1);
+    return text;
+  }
+
+ private:
+  void addComment(const std::string& text) {
+    document_.append_child(pugi::node_comment).set_value((" " + text + " ").c_str());
+  }
+
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+  pugi::xml_node element_;
+};
 
 std::string shapeText(const std::vector<Eigen::Vector3d>& shape) {
   std::vector<std::string> points;
@@ -36,51 +70,47 @@ std::string shapeText(const std::vector<Eigen::Vector3d>& shape) {
   return core::joinText(points, " ");
 }
 
-std::string edgeXml(const PlanEdge& edge) {
-  std::string text = "    <edge" + attribute("id", edge.id) + attribute("from", edge.from) +
-                     attribute("to", edge.to) + attribute("numLanes", std::to_string(edge.lanes)) +
-                     attribute("speed", number(edge.speed)) +
-                     attribute("priority", std::to_string(edge.priority));
-  if (!edge.shape.empty()) text += attribute("shape", shapeText(edge.shape));
-  if (edge.centered) text += attribute("spreadType", "center");
-  return text + "/>\n";
+void addEdge(const PlanEdge& edge, SourceFile& file) {
+  file.add("edge").set("id", edge.id).set("from", edge.from).set("to", edge.to);
+  file.set("numLanes", std::to_string(edge.lanes)).set("speed", number(edge.speed));
+  file.set("priority", std::to_string(edge.priority));
+  if (!edge.shape.empty()) file.set("shape", shapeText(edge.shape));
+  if (edge.centered) file.set("spreadType", "center");
 }
 
 }  // namespace
 
 std::string nodesXml(const RoadPlan& plan) {
-  std::string text = head(plan) + "<nodes>\n";
+  SourceFile file(plan, "nodes");
   for (const PlanNode& node : plan.nodes) {
-    text += "    <node" + attribute("id", node.id) + attribute("x", number(node.position.x())) +
-            attribute("y", number(node.position.y())) + attribute("z", number(node.position.z()));
-    if (!node.type.empty()) text += attribute("type", node.type);
-    text += "/>\n";
+    const Eigen::Vector3d& place = node.position;
+    file.add("node").set("id", node.id);
+    file.set("x", number(place.x())).set("y", number(place.y())).set("z", number(place.z()));
+    if (!node.type.empty()) file.set("type", node.type);
   }
-  return text + "</nodes>\n";
+  return file.text();
 }
 
 std::string edgesXml(const RoadPlan& plan) {
-  std::string text = head(plan) + "<edges>\n";
-  for (const PlanEdge& edge : plan.edges) text += edgeXml(edge);
+  SourceFile file(plan, "edges");
+  for (const PlanEdge& edge : plan.edges) addEdge(edge, file);
   for (const PlanRoundabout& ring : plan.roundabouts) {
-    text += "    <roundabout" + attribute("nodes", core::joinText(ring.nodes, " ")) +
-            attribute("edges", core::joinText(ring.edges, " ")) + "/>\n";
+    file.add("roundabout").set("nodes", core::joinText(ring.nodes, " "));
+    file.set("edges", core::joinText(ring.edges, " "));
   }
-  return text + "</edges>\n";
+  return file.text();
 }
 
 std::string connectionsXml(const RoadPlan& plan) {
   if (plan.connections.empty()) return "";
-  std::string text = head(plan) + "<connections>\n";
+  SourceFile file(plan, "connections");
   for (const PlanConnection& connection : plan.connections) {
-    text += "    <connection" + attribute("from", connection.from) +
-            attribute("to", connection.to) +
-            attribute("fromLane", std::to_string(connection.from_lane)) +
-            attribute("toLane", std::to_string(connection.to_lane));
-    if (connection.far_view) text += attribute("visibility", "15");
-    text += "/>\n";
+    file.add("connection").set("from", connection.from).set("to", connection.to);
+    file.set("fromLane", std::to_string(connection.from_lane));
+    file.set("toLane", std::to_string(connection.to_lane));
+    if (connection.far_view) file.set("visibility", "15");
   }
-  return text + "</connections>\n";
+  return file.text();
 }
 
 RoadLine::RoadLine(const Eigen::Vector2d& start, double heading)

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <pugixml.hpp>
 #include <vector>
 
 #include "core/file.h"
@@ -107,15 +108,14 @@ void takeArgument(LaunchCommand& command, const std::string& text, std::size_t s
   if (!name.empty() && name.front() != '_' && !value.empty()) command.arguments[name] = value;
 }
 
-/// Our own launch files declare each argument as <arg name="NAME" ...
+/// Names of the arguments that a launch file declares.
 std::vector<std::string> declaredArguments(const fs::path& launch_file) {
   const std::string text = core::readFile(launch_file, "launch file");
-  const std::string begin = "<arg name=\"";
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());
   std::vector<std::string> names;
-  for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
-    at += begin.size();
-    names.push_back(text.substr(at, text.find('"', at) - at));
-  }
+  for (const pugi::xml_node& argument : document.child("launch").children("arg"))
+    names.emplace_back(argument.attribute("name").value());
   return names;
 }
 
