@@ -3,13 +3,10 @@
 #include "planners/diffusion/diffusion_descriptor.h"
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "planners/diffusion/image_watch.h"
 
 namespace cdiff::planners {
 namespace {
-
-std::string sizeText(std::int64_t width, std::int64_t height) {
-  return std::to_string(width) + " x " + std::to_string(height);
-}
 
 planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
                                     const guidance::GuidanceOptions& guidance) {

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kMovedDistance = 1.0;  // [m] after which the view must have changed
 
-std::string sizeText(int width, int height) {
+}  // namespace
+
+std::string sizeText(std::int64_t width, std::int64_t height) {
   return std::to_string(width) + " x " + std::to_string(height);
 }
-
-}  // namespace
 
 std::optional<std::string> ImageWatch::fault(const ImageExpectation& expectation,
                                              const traffic::CameraImage* image,

@@ -13,6 +13,9 @@
 
 namespace cdiff::planners {
 
+/// "160 x 96", of a picture [px].
+std::string sizeText(std::int64_t width, std::int64_t height);
+
 /// What is expected of every image.
 struct ImageExpectation {
   int width = 160;                 ///< [px]
