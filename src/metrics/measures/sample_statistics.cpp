@@ -16,6 +16,15 @@ void SampleStatistics::add(double sample) {
   squares_ += step * (sample - mean_);
 }
 
+std::optional<double> SampleStatistics::mean() const {
+  return count_ == 0 ? std::nullopt : std::optional<double>(mean_);
+}
+
+std::optional<double> SampleStatistics::standardDeviation() const {
+  if (count_ < 2) return std::nullopt;
+  return std::sqrt(squares_ / static_cast<double>(count_ - 1));
+}
+
 DistributionMeasure SampleStatistics::measure(const std::string& reason_when_empty) const {
   Measure empty;
   empty.n = count_;
@@ -30,7 +39,7 @@ DistributionMeasure SampleStatistics::measure(const std::string& reason_when_emp
     measure.standard_deviation.reason = "n = 1, needs at least 2";
     return measure;
   }
-  measure.standard_deviation.value = std::sqrt(squares_ / static_cast<double>(count_ - 1));
+  measure.standard_deviation.value = standardDeviation();
   measure.standard_deviation.reason.clear();
   return measure;
 }

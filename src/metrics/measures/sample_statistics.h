@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "e2e_cdiff/metrics/figure.h"
@@ -22,6 +23,8 @@ class SampleStatistics {
  public:
   void add(double sample);
   std::size_t count() const { return count_; }
+  std::optional<double> mean() const;               ///< absent without samples
+  std::optional<double> standardDeviation() const;  ///< absent below two
   /// Absent with a reason: mean and minimum without samples (`reason_when_empty`), the deviation
   /// below two.
   DistributionMeasure measure(const std::string& reason_when_empty) const;

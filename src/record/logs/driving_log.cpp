@@ -15,23 +15,11 @@ void Histogram::add(double value) {
   const double last = static_cast<double>(counts_.size() - 1);
   const double bin = std::clamp(std::floor((value - low_) / width_), 0.0, last);
   ++counts_[static_cast<std::size_t>(bin)];
-  ++n_;
-  const double deviation = value - mean_;
-  mean_ += deviation / static_cast<double>(n_);
-  squares_ += deviation * (value - mean_);
+  statistics_.add(value);
 }
 
 double Histogram::share(std::size_t bin) const {
-  return n_ == 0 ? 0.0 : static_cast<double>(counts_[bin]) / static_cast<double>(n_);
-}
-
-std::optional<double> Histogram::mean() const {
-  return n_ == 0 ? std::nullopt : std::optional<double>(mean_);
-}
-
-std::optional<double> Histogram::standardDeviation() const {
-  if (n_ < 2) return std::nullopt;
-  return std::sqrt(squares_ / static_cast<double>(n_ - 1));
+  return n() == 0 ? 0.0 : static_cast<double>(counts_[bin]) / static_cast<double>(n());
 }
 
 void DrivingLog::observe(const traffic::TrafficSnapshot& snapshot) {

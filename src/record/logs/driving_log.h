@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::record {
 
@@ -20,20 +21,20 @@ class Histogram {
 
   double low() const { return low_; }
   double width() const { return width_; }
-  std::size_t n() const { return n_; }
+  std::size_t n() const { return statistics_.count(); }
   const std::vector<std::size_t>& counts() const { return counts_; }
   /// Share of the sample in a bin; 0 when the sample is empty.
   double share(std::size_t bin) const;
-  std::optional<double> mean() const;               ///< absent when n = 0
-  std::optional<double> standardDeviation() const;  ///< absent when n < 2
+  /// Of the values themselves, not of their bins; absent when n = 0.
+  std::optional<double> mean() const { return statistics_.mean(); }
+  /// Likewise, with n - 1; absent when n < 2.
+  std::optional<double> standardDeviation() const { return statistics_.standardDeviation(); }
 
  private:
   double low_;
   double width_;
   std::vector<std::size_t> counts_;
-  std::size_t n_ = 0;
-  double mean_ = 0.0;
-  double squares_ = 0.0;  ///< sum of squared deviations from the mean
+  metrics::SampleStatistics statistics_;
 };
 
 /// How fast CBVs and background vehicles drove and accelerated: histograms over all decisions and
