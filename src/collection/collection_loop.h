@@ -21,9 +21,9 @@ class ImageSchedule {
   /// `period`: decisions between two images of a vehicle; at least one is taken.
   explicit ImageSchedule(std::int64_t period);
 
-  /// Whether the vehicle of a slot (-1: the ego) has its turn at the decision of this number; call
-  /// once for each. `noisy`: its action of this decision carries noise. Never at the take-over
-  /// itself, so that no jump lies between image and motion.
+  /// Whether the vehicle of a slot (or traffic::kEgoSlot) has its turn at the decision of this
+  /// number; call once for each. `noisy`: its action of this decision carries noise. Never at the
+  /// take-over itself, so that no jump lies between image and motion.
   bool due(const traffic::Vehicle& vehicle, int slot, std::int64_t decision, bool noisy);
 
  private:

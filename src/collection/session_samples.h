@@ -23,7 +23,7 @@ namespace cdiff::collection {
 using DriveKey = std::pair<std::string, std::uint64_t>;
 
 struct DrivenImage {
-  int slot = -1;  ///< -1: the ego
+  int slot = traffic::kEgoSlot;
   traffic::CameraImage image;
 };
 

@@ -21,8 +21,7 @@ inline constexpr const char* kCameraNode = "camera_node";
 inline constexpr const char* kMetricsNode = "metrics_node";
 inline constexpr const char* kRecorderNode = "recorder_node";
 
-/// Slot number of the ego where slots name vehicles.
-inline constexpr int kEgoSlot = -1;
+using traffic::kEgoSlot;
 
 /// The part that a node plays in a session.
 enum class Party {

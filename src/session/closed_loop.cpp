@@ -75,7 +75,7 @@ std::vector<PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                    const map::Route& route, double target_speed) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego == nullptr) return {};
-  return {{-1, ego, &route, target_speed}};
+  return {{traffic::kEgoSlot, ego, &route, target_speed}};
 }
 
 std::vector<PlannedAction> planTimed(planning::Planner& planner,

@@ -38,8 +38,8 @@ std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
                                                const std::vector<planning::PlanningTask>& tasks,
                                                double& milliseconds, std::string& fault);
 
-/// Whether the record of a decision also shows what the vehicle of a slot (-1: the ego) sees, whose
-/// planner does not ask for it; asked once for each action of a decision, in order.
+/// Whether the record of a decision also shows what the vehicle of a slot (or traffic::kEgoSlot)
+/// sees, whose planner does not ask for it; asked once for each action of a decision, in order.
 using ImageWish = std::function<bool(const traffic::TrafficSnapshot& snapshot,
                                      const traffic::Vehicle& vehicle, int slot)>;
 

@@ -35,7 +35,7 @@ struct AnswerTiming {
 
 /// What the vehicle of a slot saw at a decision.
 struct SlotImage {
-  int slot = -1;  ///< -1: the ego
+  int slot = traffic::kEgoSlot;
   traffic::CameraImage image;
 };
 

@@ -37,7 +37,7 @@ struct DrivingStyle {
 
 /// One vehicle to drive at this decision.
 struct PlanningTask {
-  int slot = -1;  ///< slot of a CBV; -1 for the ego
+  int slot = traffic::kEgoSlot;  ///< that, or of a CBV
   const traffic::Vehicle* vehicle = nullptr;
   const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
@@ -53,7 +53,7 @@ struct RolloutPoint {
 };
 
 struct PlannedAction {
-  int slot = -1;
+  int slot = traffic::kEgoSlot;
   std::string vehicle_id;
   traffic::ControlAction action;
   std::vector<RolloutPoint> rollout;    ///< may be empty

@@ -50,6 +50,8 @@ const char* toText(VehicleRole role);
 
 /// Id of the ego in every snapshot.
 inline constexpr const char* kEgoId = "ego";
+/// Its number where slots name vehicles.
+inline constexpr int kEgoSlot = -1;
 
 /// One vehicle of a snapshot.
 struct Vehicle {

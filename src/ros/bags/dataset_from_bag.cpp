@@ -107,7 +107,7 @@ class SessionReader {
     const DriveKey ego{traffic::kEgoId, 0};
     session_.routes[ego] = session_.setup->egoRoute();
     for (const traffic::TrafficSnapshot& snapshot : session_.decisions)
-      session_.drives[snapshot.tick][-1] = ego;
+      session_.drives[snapshot.tick][traffic::kEgoSlot] = ego;
   }
 
   static constexpr double kDecisionPeriod = 0.1;  ///< of a rollout [s]
