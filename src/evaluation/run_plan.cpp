@@ -17,6 +17,7 @@
 #include "map/import/network_import.h"
 #include "planners/registry.h"
 #include "session/closed_loop.h"
+#include "session/method.h"
 #include "session/session_request.h"
 
 namespace cdiff::evaluation {
@@ -197,12 +198,13 @@ class Planner {
 
   PlannedRun runOf(const std::string& label, const session::ScenarioOptions& options) {
     const std::string& profile = options.guidance_profile;
+    const session::MethodOptions method = session::loadMethod(options.method);
     PlannedRun run;
     run.factors = {{"scenario", label},
                    {"ego_planner", options.ego_planner},
                    {"cbv_planner", options.cbv_planner},
                    {"mode", options.mode},
-                   {"guidance_profile", profile.empty() ? options.mode : profile},
+                   {"guidance_profile", profile.empty() ? method.profileOf(options.mode) : profile},
                    {"seed", std::to_string(options.seed)}};
     run.scenario_text = core::dumpOptions(options);
     run.scenario_sha256 = core::sha256(run.scenario_text);

@@ -170,13 +170,16 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
 void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."},
                mode, {"naturalistic", "safety_critical"});
+  visitor.text({"method", "",
+                "Preset of guidance and sampling below all other keys: the paper's, or ours."},
+               method, {});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   planner_options.describe(visitor);
   visitor.text(
-      {"guidance_profile", "", "Shipped guidance profile or file; empty: that of the mode."},
+      {"guidance_profile", "", "Shipped guidance profile or file; empty: the method's for the mode."},
       guidance_profile, {});
   visitor.group({"guidance", "", "Guidance of the CBVs; defaults are the profile's."}, guidance);
   visitor.text({"ego_guidance_profile", "",

@@ -61,13 +61,14 @@ struct ScenarioOptions {
   double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
   std::string lights = "green";       ///< green | program
   std::string mode = "naturalistic";  ///< naturalistic | safety_critical
+  std::string method = "default";     ///< shipped method, whose values lie below all other keys
   std::string ego_planner = planners::kDefaultEgoPlanner;
   std::string cbv_planner = planners::kDefaultCbvPlanner;
   std::int64_t max_cbv = 2;
   cbv::CbvOptions cbv;
   planning::PlannerOptionsTable planner_options =
       planners::defaultOptions();      ///< groups by their names
-  std::string guidance_profile;        ///< shipped profile or file; empty: that of the mode
+  std::string guidance_profile;        ///< shipped profile or file; empty: the method's for the mode
   guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
   guidance::GuidanceOptions ego_guidance;             ///< of an ego whose planner can be guided

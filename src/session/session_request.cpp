@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "session/method.h"
 
 namespace cdiff::session {
 namespace {
@@ -172,12 +173,16 @@ void fillSpeedTarget(metrics::MetricsOptions& options) {
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
-  // Which profile and which protocol apply is only known when everything was read; their values
+  // Which method, profile and protocol apply is only known when everything was read; their values
   // then lie below everything else.
-  const ScenarioOptions first = applyRequest(request, {});
+  const MethodOptions method = loadMethod(applyRequest(request, {}).method);
   ScenarioOptions base;
-  base.guidance = profileOf("guidance_profile",
-                            first.guidance_profile.empty() ? first.mode : first.guidance_profile);
+  base.planner_options = method.planner_options;
+  base.ego_guidance_profile = method.ego_profile;
+  const ScenarioOptions first = applyRequest(request, base);
+  const bool named = !first.guidance_profile.empty();
+  base.guidance =
+      profileOf("guidance_profile", named ? first.guidance_profile : method.profileOf(first.mode));
   base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
   ScenarioOptions options = applyRequest(request, base);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -161,6 +162,8 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
       {"ablation_speed", {"speed"}},
       {"naturalistic", {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance"}},
       {"none", {}},
+      {"paper_naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
+      {"paper_safety_critical", {"speed", "drivable_area", "collision_seeking"}},
       {"safety_critical", {"speed", "drivable_area", "collision_seeking", "traffic_avoidance"}}};
   std::vector<std::string> names;
   for (const auto& [name, active] : expected) {
@@ -168,6 +171,20 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
     EXPECT_EQ(activeOf(loadProfile(name)), active) << name;
   }
   EXPECT_EQ(shippedProfiles(), names);
+}
+
+TEST(Profiles, ThePapersSeekAndAvoidByOneSetOfValues) {
+  GuidanceOptions nat = loadProfile("paper_naturalistic");
+  GuidanceOptions critical = loadProfile("paper_safety_critical");
+  const WeightedObjective& avoids = nat.find("collision_avoidance");
+  const WeightedObjective& seeks = critical.find("collision_seeking");
+  EXPECT_EQ(avoids.weight, seeks.weight);
+  const auto& safe = dynamic_cast<const CollisionAvoidanceObjective&>(*avoids.objective).proximity;
+  const auto& risk = dynamic_cast<const CollisionSeekingObjective&>(*seeks.objective).proximity;
+  EXPECT_EQ(std::tie(safe.buffer, safe.kappa, safe.lambda, safe.sigma),
+            std::tie(risk.buffer, risk.kappa, risk.lambda, risk.sigma));
+  for (const std::string name : {"speed", "drivable_area"})
+    EXPECT_EQ(nat.find(name).weight, critical.find(name).weight) << name;
 }
 
 TEST(Profiles, AblationsUseTheWeightsOfNaturalistic) {

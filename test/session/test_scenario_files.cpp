@@ -7,6 +7,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planners/diffusion/diffusion_options.h"
+#include "session/method.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 
@@ -125,6 +127,61 @@ TEST(SessionRequest, TheModeIsAboutTheCbvsAlone) {
   EXPECT_FALSE(named.guidance.isActive("speed"));
   EXPECT_TRUE(named.ego_guidance.isActive("speed"));
   EXPECT_FALSE(named.ego_guidance.isActive("collision_avoidance"));
+}
+
+TEST(SessionRequest, MethodPaperIsThePapersSamplingAndGuidance) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.set = {"method=paper"};
+  ScenarioOptions paper = resolveRequest(request);
+  const auto& diffusion = paper.planner_options.of<planners::DiffusionOptions>();
+  EXPECT_EQ(diffusion.sampler.mode, "paper");
+  EXPECT_EQ(diffusion.conditioning, "image");
+  EXPECT_EQ(diffusion.candidates, 1);
+  EXPECT_TRUE(paper.guidance.isActive("collision_avoidance"));
+  for (const guidance::GuidanceOptions* guidance : {&paper.guidance, &paper.ego_guidance}) {
+    EXPECT_FALSE(guidance->isActive("traffic_avoidance"));
+    for (const guidance::WeightedObjective& entry : guidance->objectives)
+      EXPECT_EQ(entry.gradient_cap, 0.0) << entry.name;
+  }
+  request.mode = "safety_critical";
+  ScenarioOptions attack = resolveRequest(request);
+  EXPECT_TRUE(attack.guidance.isActive("collision_seeking"));
+  EXPECT_FALSE(attack.guidance.isActive("traffic_avoidance"));
+  EXPECT_FALSE(attack.guidance.isActive("collision_avoidance"));
+  EXPECT_TRUE(attack.ego_guidance.isActive("collision_avoidance"));
+}
+
+TEST(SessionRequest, KeysLieAboveTheMethod) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.set = {"diffusion.conditioning=image_route", "guidance.speed.weight=3", "method=paper",
+                 "ego_guidance_profile=none"};
+  ScenarioOptions options = resolveRequest(request);
+  const auto& diffusion = options.planner_options.of<planners::DiffusionOptions>();
+  EXPECT_EQ(diffusion.conditioning, "image_route");
+  EXPECT_EQ(diffusion.sampler.mode, "paper");
+  EXPECT_EQ(options.guidance.find("speed").weight, 3.0);
+  EXPECT_FALSE(options.ego_guidance.isActive("speed"));
+  request.set = {"method=paper", "guidance_profile=naturalistic"};
+  EXPECT_TRUE(resolveRequest(request).guidance.isActive("traffic_avoidance"));
+}
+
+TEST(SessionRequest, AnUnknownMethodIsNamed) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.set = {"method=papr"};
+  EXPECT_TRUE(mentions(errorOf(request), "key 'method' is 'papr'")) << errorOf(request);
+  EXPECT_TRUE(mentions(errorOf(request), "the nearest one is 'paper'")) << errorOf(request);
+}
+
+TEST(SessionRequest, TheDefaultMethodIsWhatASessionWithoutOneDoes) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  const std::string without = core::dumpOptions(resolveRequest(request));
+  request.set = {"method=default"};
+  EXPECT_EQ(core::dumpOptions(resolveRequest(request)), without);
+  EXPECT_EQ(shippedMethods(), (std::vector<std::string>{"default", "paper"}));
 }
 
 TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
