@@ -11,7 +11,7 @@
 namespace cdiff::benchmark {
 namespace {
 
-/// Points up to 10 m beside lane centres of the network, as guidance asks for them.
+/// Points up to 10 m beside lane centers of the network, as guidance asks for them.
 std::vector<Eigen::Vector3d> pointsNearRoads(const map::RoadNetwork& network, std::size_t count) {
   const core::RandomStream random(1, "benchmark");
   std::vector<Eigen::Vector3d> points;

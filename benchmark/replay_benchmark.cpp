@@ -47,7 +47,7 @@ session::ScenarioOptions roundabout() {
 double record(const session::ScenarioOptions& options, const fs::path& bag_file) {
   const session::SessionSetup setup(options);
   session::ClosedLoop loop(setup);
-  ros::SessionBag bag(setup, bag_file, {"benchmark", loop.world().simulatorVersion()});
+  ros::SessionBagWriter bag(setup, bag_file, {"benchmark", loop.world().simulatorVersion()});
   loop.addObserver(bag);
   const std::atomic<bool> stop{false};
   loop.run(stop);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSearchRadius = 5.0;       // [m] at least half the width of any lane
 constexpr double kHeadingAgreement = 60.0;  // [deg] of a vehicle with its own lane
-constexpr double kLeastRemaining = 0.5;     // [m] of its lane: a way may begin with a lane change
+constexpr double kLeastRemaining = 0.5;     // [m] of its lane: a route may start with a lane change
 constexpr double kMetresPerRadian = 2.0;    // among overlapping lanes: heading against distance
 
 bool liesOn(const map::RoadNetwork& network, const map::LaneMatch& match) {

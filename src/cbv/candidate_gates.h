@@ -28,7 +28,7 @@ inline constexpr const char* kOffLane = "off_lane";
 inline constexpr const char* kJunctionHeading = "junction_heading";
 /// No point of the ego's route lies near and ahead of it.
 inline constexpr const char* kOutOfView = "out_of_view";
-/// No lane-connected way of useful length leads to such a point.
+/// No lane-connected route of useful length leads to such a point.
 inline constexpr const char* kNoWay = "no_way";
 /// The distances to drive differ by route_distance_gate or more at all points.
 inline constexpr const char* kDistanceMismatch = "distance_mismatch";
@@ -44,7 +44,7 @@ struct LanePlacement {
   map::LanePosition place;
 };
 
-/// The point that must lie on a lane, `distance` [m] ahead of a vehicle's centre, map frame [m].
+/// The point that must lie on a lane, `distance` [m] ahead of a vehicle's center, map frame [m].
 inline Eigen::Vector2d previewPoint(const traffic::VehicleState& state, double distance) {
   return state.position + distance * geometry::direction(state.heading);
 }
@@ -53,7 +53,7 @@ inline Eigen::Vector2d previewPoint(const traffic::VehicleState& state, double d
 const char* failedNearness(const traffic::Vehicle& vehicle, const traffic::Vehicle& ego,
                            const CbvOptions& options);
 
-/// The vehicle's own lane: the one SUMO names when its centre lies there, else the nearest of its
+/// The vehicle's own lane: the one SUMO names when its center lies there, else the nearest of its
 /// direction. The preview point must lie on a lane, and inside a junction along one.
 LanePlacement placeOnLane(const map::RoadNetwork& network, const traffic::Vehicle& vehicle,
                           const CbvOptions& options);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options of CBV identification; defaults: RIFT's rule.yaml in evaluation.
 #pragma once
 
 #include <string>
@@ -9,14 +8,15 @@
 
 namespace cdiff::cbv {
 
+/// Options of CBV identification; defaults: RIFT's rule.yaml in evaluation.
 struct CbvOptions {
   std::string ranking = "score";        ///< score | nearest
-  double search_radius = 60.0;          ///< ego centre to candidate centre [m]
+  double search_radius = 60.0;          ///< ego center to candidate center [m]
   double minimum_distance = 10.0;       ///< [m]
   double interaction_radius = 90.0;     ///< candidate to a point of the ego's route, straight [m]
   double field_of_view = 150.0;         ///< full angle in which that point must lie [deg]
   double route_distance_gate = 20.0;    ///< largest |s_cbv - s_ego| at the conflict point [m]
-  double preview_distance = 2.0;        ///< ahead of the candidate's centre, must lie on a lane [m]
+  double preview_distance = 2.0;        ///< ahead of the candidate's center, must lie on a lane [m]
   double junction_heading_gate = 20.0;  ///< in a junction: vehicle against lane heading [deg]
   double ego_route_length = 200.0;      ///< part of the ego's remaining route that is examined [m]
   double sample_spacing = 4.0;          ///< between examined points [m]

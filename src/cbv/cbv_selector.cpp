@@ -197,8 +197,8 @@ int CbvSelector::slotFor(const Candidate& candidate, std::uint64_t tick) const {
   return candidate.conflict.score > needed ? weakest : kNoSlot;
 }
 
-/// The candidate with its conflict-aware route; nullopt when the graph finds no way to the conflict
-/// point.
+/// The candidate with its conflict-aware route; nullopt when the graph finds no route to the
+/// conflict point.
 std::optional<HeldCbv> CbvSelector::makeHeld(int slot, const Candidate& candidate,
                                              std::uint64_t tick) const {
   const Conflict& conflict = candidate.conflict;

@@ -56,7 +56,7 @@ class CbvSelector : public VehicleSelector {
     const traffic::Vehicle* vehicle = nullptr;
     map::LanePosition place;
     Conflict conflict;
-    double separation = 0.0;  ///< from the ego, centre to centre [m]
+    double separation = 0.0;  ///< from the ego, center to center [m]
   };
 
   bool reselects() const { return options_.life_cycle == "reselect"; }

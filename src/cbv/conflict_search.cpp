@@ -35,13 +35,14 @@ std::vector<double> sampledArcLengths(double length, double spacing) {
   return arc_lengths;
 }
 
-/// Distance to drive to a place, given those to the begins of lanes; infinity when there is no way.
-double drivenDistance(const std::vector<double>& to_begins, const map::LanePosition& start,
+/// Distance to drive to a place, given those to the starts of lanes; infinity when there is no
+/// route.
+double drivenDistance(const std::vector<double>& to_starts, const map::LanePosition& start,
                       const map::LanePosition& goal) {
   if (goal.lane == start.lane && goal.arc_length >= start.arc_length) {
     return goal.arc_length - start.arc_length;
   }
-  const double distance = to_begins[static_cast<std::size_t>(goal.lane)] + goal.arc_length;
+  const double distance = to_starts[static_cast<std::size_t>(goal.lane)] + goal.arc_length;
   return distance >= 0.0 ? distance : kInfinity;  // negative: beside the candidate and behind it
 }
 
@@ -100,11 +101,11 @@ ConflictResult ConflictSearch::find(const traffic::VehicleState& candidate,
   const std::vector<const Sample*> seen = samplesInView(candidate, ego.arc_length);
   if (seen.empty()) return {std::nullopt, kOutOfView};
   const double longest = seen.back()->arc_length - ego.arc_length + options_.route_distance_gate;
-  const std::vector<double> to_begins = graph_.distancesFrom(place, longest);
+  const std::vector<double> to_starts = graph_.distancesFrom(place, longest);
   const double separation = (candidate.position - ego.state.position).norm();
   ConflictResult result{std::nullopt, kNoWay};
   for (const Sample* sample : seen) {
-    const double distance = drivenDistance(to_begins, place, sample->place);
+    const double distance = drivenDistance(to_starts, place, sample->place);
     if (distance > longest) continue;
     const ConflictPoint point = pointAt(*sample, distance, candidate.speed, ego);
     if (std::abs(point.cbv_distance - point.ego_distance) >= options_.route_distance_gate) {

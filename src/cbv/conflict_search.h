@@ -20,7 +20,7 @@ namespace cdiff::cbv {
 /// Time to drive `distance` [m] at `speed` [m/s], taken as at least `minimum_speed`.
 double arrivalTime(double distance, double speed, double minimum_speed);
 
-/// Score of a conflict point for a candidate `separation` metres away from the ego.
+/// Score of a conflict point for a candidate `separation` meters away from the ego.
 double interactionScore(const ConflictPoint& point, double separation, const CbvOptions& options);
 
 /// The ego on its route.
@@ -43,9 +43,9 @@ struct ConflictResult {
 };
 
 /// Best conflict point of a candidate with the ego's remaining route: over the points of that route
-/// that lie near and ahead of the candidate and have a lane-connected way from it, the one with the
-/// highest interaction score, the first of equals. The points lie at multiples of sample_spacing
-/// from the route's start, and at its end.
+/// that lie near and ahead of the candidate and have a lane-connected route from it, the one with
+/// the highest interaction score, the first of equals. The points lie at multiples of
+/// sample_spacing from the route's start, and at its end.
 class ConflictSearch {
  public:
   /// Keeps references to options and graph. Samples the route once.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A CBV in its slot: how far it has come along its conflict-aware route, and when it must leave
-/// the slot.
 #pragma once
 
 #include <optional>
@@ -25,13 +23,15 @@ inline constexpr const char* kConflictLost = "conflict_lost";
 
 /// Arc length [m] reached on a path by a vehicle that was at `arc_length`: looks as far ahead as
 /// map::kRouteWindow, and along the whole rest of the path when the vehicle is more than `far_off`
-/// metres from what lies there (it was not followed continuously). Never less than `arc_length`.
+/// meters from what lies there (it was not followed continuously). Never less than `arc_length`.
 double advancedArcLength(const geometry::Polyline& path, double arc_length,
                          const Eigen::Vector2d& position, double far_off = 30.0);
 
 /// Whether a contact of this tick involves the vehicle.
 bool inContact(const traffic::TrafficSnapshot& snapshot, const std::string& vehicle_id);
 
+/// A CBV in its slot: how far it has come along its conflict-aware route, and when it must leave
+/// the slot.
 class HeldCbv {
  public:
   /// `assignment` as selected; `conflict_arc_length` of the conflict point on its conflict-aware

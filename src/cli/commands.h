@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The subcommands of `cdiff`: each adds itself to the program and sets the exit code when it runs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,6 +7,8 @@
 #include "core/exit_code.h"
 
 namespace cdiff::cli {
+
+// The subcommands of `cdiff`: each adds itself to the program and sets the exit code when it runs.
 
 using core::ExitCode;
 

@@ -15,7 +15,7 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   CLI::App* command =
       program.add_subcommand("metric",
                              "Compute one metric for the cases of a file, one line each; or print "
-                             "the definitions of all figures of a session");
+                             "the definitions of all measures of a session");
   command->add_option("metric", *metric, "ttc_2d, shapiro_wilk, wasserstein or definitions")
       ->required()
       ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein", "definitions"}));
@@ -23,7 +23,7 @@ void addMetricCommand(CLI::App& program, int& exit_code) {
   command->callback([metric, file, &exit_code] {
     exit_code = ExitCode::kPassed;
     if (*metric == "definitions") {
-      std::cout << record::figureList();
+      std::cout << record::measureList();
       return;
     }
     if (file->empty()) {

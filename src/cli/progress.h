@@ -12,7 +12,7 @@
 
 namespace cdiff::cli {
 
-/// A line on the terminal that tells how far a session is: simulated time, pace, time left.
+/// A line on the terminal with the progress of a session: simulated time, pace, time left.
 /// Rewrites one line on a terminal; prints a plain line every 10 s of wall time elsewhere.
 class Progress : public session::SessionObserver {
  public:

@@ -22,7 +22,7 @@ int replay(const ReplayArguments& arguments) {
   for (const std::string& finding : result.findings)
     std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
   if (!result.findings.empty())
-    std::cerr << "cdiff: the recording is damaged; the result is made of what there is\n";
+    std::cerr << "cdiff: the recording is damaged; the result uses what could be read\n";
   if (!result.video_error.empty())
     std::cerr << "cdiff: " << result.video_error << "; the other results are not affected\n";
   if (!result.failure.empty()) std::cerr << "cdiff: " << result.failure << "\n";

@@ -23,14 +23,14 @@ struct ReportArguments {
   std::string tables;
   std::string training;
   std::vector<std::string> folders;
-  std::vector<std::string> figures;
+  std::vector<std::string> measures;
   std::string factor;
   std::string baseline;
   std::string csv;
 };
 
 std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
-  evaluation::checkFigureNames(arguments.figures);
+  evaluation::checkMeasureNames(arguments.measures);
   const std::vector<std::string>& folders = arguments.folders;
   const bool levels = !arguments.factor.empty();
   if (levels != !arguments.baseline.empty()) {
@@ -43,11 +43,11 @@ std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
   }
   if (levels) {
     return evaluation::compareLevels(evaluation::readRecords(folders[0]), arguments.factor,
-                                     arguments.baseline, arguments.figures);
+                                     arguments.baseline, arguments.measures);
   }
   const evaluation::RunSet a{folders[0], evaluation::readRecords(folders[0])};
   const evaluation::RunSet b{folders[1], evaluation::readRecords(folders[1])};
-  return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.figures)};
+  return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.measures)};
 }
 
 void requirePairs(const std::vector<evaluation::Comparison>& comparisons,
@@ -113,7 +113,7 @@ void addReportCommand(CLI::App& program, int& exit_code) {
                       "Draw the curves of this output folder of `cdiff train`, also while it runs");
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
-  command->add_option("--figure", arguments->figures, "Only this figure; may be repeated")
+  command->add_option("--figure", arguments->measures, "Only this measure; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--csv", arguments->csv,
                       "CSV file (default: compare.csv in the last folder)");

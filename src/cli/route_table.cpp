@@ -36,10 +36,10 @@ struct Row {
   std::string rejected;
 };
 
-/// A figure of the run with one decimal, "-" when it has none.
-std::string figureText(const RunRecord& record, const std::string& name) {
-  const auto figure = record.figures.find(name);
-  return figure == record.figures.end() ? "-" : core::formatFixed(figure->second, 1);
+/// A measure of the run with one decimal, "-" when it has none.
+std::string valueText(const RunRecord& record, const std::string& name) {
+  const auto found = record.measures.find(name);
+  return found == record.measures.end() ? "-" : core::formatFixed(found->second, 1);
 }
 
 std::string rejections(const json& rejected) {
@@ -58,8 +58,8 @@ Row readRow(const RunRecord& record, const fs::path& results) {
   Row row;
   const fs::path file = evaluation::runFolder(results, record.id) / "summary.json";
   if (!fs::exists(file)) return row;
-  row.passed = figureText(record, "cbv_passed_percent");
-  row.completed = figureText(record, "cbv_completion_percent");
+  row.passed = valueText(record, "cbv_passed_percent");
+  row.completed = valueText(record, "cbv_completion_percent");
   const json summary = json::parse(core::readFile(file, "summary"));
   row.status = summary.at("status");
   row.completion = core::formatFixed(summary.at("ego").at("route_completion_percent"), 1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The table of a batch of Bench2Drive routes: a line per run, and counts over all.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +9,8 @@
 #include "evaluation/run_record.h"
 
 namespace cdiff::cli {
+
+// The table of a batch of Bench2Drive routes: a line per run, and counts over all.
 
 /// In Markdown. Towns are read from the route file; the rest from each run's summary.json below
 /// `results`.

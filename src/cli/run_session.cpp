@@ -46,15 +46,15 @@ double secondsSince(Clock::time_point begin) {
 
 /// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
 /// be written is removed, and the session goes on.
-class BagRecord : public session::SessionObserver {
+class BagRecording : public session::SessionObserver {
  public:
-  BagRecord(const session::SessionSetup& setup, const RunOutput& output,
-            session::ClosedLoop& loop) {
+  BagRecording(const session::SessionSetup& setup, const RunOutput& output,
+               session::ClosedLoop& loop) {
     if (!output.record) return;
 #ifdef E2E_CDIFF_WITH_ROS
     const ros::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
     attempt([&] {
-      bag_ = std::make_unique<ros::SessionBag>(setup, output.folder / "session.bag", origin);
+      bag_ = std::make_unique<ros::SessionBagWriter>(setup, output.folder / "session.bag", origin);
     });
     loop.addObserver(*this);
 #else
@@ -95,7 +95,7 @@ class BagRecord : public session::SessionObserver {
       bag_.reset();
     }
   }
-  std::unique_ptr<ros::SessionBag> bag_;
+  std::unique_ptr<ros::SessionBagWriter> bag_;
 #endif
   std::string error_;
 };
@@ -108,26 +108,26 @@ class VideoRecord {
     if (!setup.options().video) return;
     video_ = std::make_unique<video::SessionVideo>(setup, folder);
     loop.addObserver(*video_);
-    tell();
+    reportError();
   }
-  /// Removes what there is of it.
+  /// Removes the part of it that was written.
   void discard() { video_.reset(); }
   /// `exit_code` of the session, or that of an error at run time when its video is missing.
   int finish(const page::ResultWriter& writer, int exit_code) {
     if (!video_) return exit_code;
     video_->finish(writer.result());
-    tell();
-    return told_ && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
+    reportError();
+    return reported_ && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
   }
 
  private:
-  void tell() {
-    if (told_ || video_->error().empty()) return;
+  void reportError() {
+    if (reported_ || video_->error().empty()) return;
     std::cerr << "cdiff: " << video_->error() << "; the other results are not affected\n";
-    told_ = true;
+    reported_ = true;
   }
   std::unique_ptr<video::SessionVideo> video_;
-  bool told_ = false;
+  bool reported_ = false;
 };
 
 /// The session's table, and what it was asked to record.
@@ -155,7 +155,7 @@ int drive(const session::SessionSetup& setup, const RunOutput& output, session::
   Progress progress(session::longestTime(options.protocol, setup.egoRoute()));
   loop.addObserver(writer);
   if (!output.quiet) loop.addObserver(progress);
-  BagRecord bag(setup, output, loop);
+  BagRecording bag(setup, output, loop);
   VideoRecord video(setup, output.folder, loop);
   try {
     loop.run(stop);

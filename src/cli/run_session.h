@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One session in this process: closed loop, result folder, progress, and what a signal or a lost
-/// simulator does to them.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +8,10 @@
 
 namespace cdiff::cli {
 
-/// Where the results go, and how much is told.
+// One session in this process: closed loop, result folder, progress, and what a signal or a lost
+// simulator does to them.
+
+/// Where the results go, and how much is printed.
 struct RunOutput {
   std::filesystem::path folder;
   bool quiet = false;      ///< no progress line, no table

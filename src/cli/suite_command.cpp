@@ -17,7 +17,7 @@ struct SuiteArguments {
   std::int64_t seed = 0;
 };
 
-/// How many routes there are of each manoeuvre at each level of traffic.
+/// How many routes there are of each maneuver at each level of traffic.
 std::string countsTable(const suite::Suite& made) {
   std::map<std::string, std::map<std::string, int>> counts;
   std::set<std::string> networks;

@@ -16,7 +16,7 @@
 namespace cdiff::cli {
 namespace {
 
-/// Checks one scenario as far as it goes without starting SUMO; answers whether it is good.
+/// Checks one scenario as far as it goes without starting SUMO; returns whether it is good.
 bool validateOne(const std::string& scenario_name, bool print) {
   try {
     session::SessionRequest request;

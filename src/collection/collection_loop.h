@@ -56,8 +56,8 @@ class CollectionLoop {
                                bool images);
 
   ImageSchedule schedule_;
-  const PerturbedPlanner* ego_planner_ = nullptr;  ///< of the loop
-  const PerturbedPlanner* cbv_planner_ = nullptr;  ///< of the loop
+  const PerturbedPlanner* ego_planner_ = nullptr;  ///< the loop's planner of the ego
+  const PerturbedPlanner* cbv_planner_ = nullptr;  ///< the loop's planner of the CBVs
   session::ClosedLoop loop_;
 };
 

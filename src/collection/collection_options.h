@@ -10,7 +10,7 @@
 
 namespace cdiff::collection {
 
-/// Disturbances of what the recorded planner commands, and of where it begins.
+/// Disturbances of what the recorded planner commands, and of where it starts.
 struct NoiseOptions {
   double interval = 6.0;            ///< mean time from one burst to the next of a vehicle [s]
   double minimum_time = 0.3;        ///< shortest burst [s]
@@ -18,7 +18,7 @@ struct NoiseOptions {
   double steer = 0.45;              ///< largest addition to the steering, up to steer_speed
   double steer_speed = 3.5;         ///< faster vehicles get less: steer x steer_speed / speed [m/s]
   double pedal = 0.6;               ///< largest addition to throttle or brake
-  double stall_share = 0.15;        ///< of bursts: a vehicle that moves is stopped instead
+  double stall_share = 0.15;        ///< share of bursts that stop a moving vehicle instead
   double stall_minimum_time = 3.0;  ///< shortest stop, braking included [s]
   double stall_maximum_time = 6.0;  ///< longest stop [s]
   double lateral = 0.4;             ///< standard deviation of the place at the take-over [m]
@@ -42,20 +42,20 @@ struct CollectionOptions {
   double maximum_acceleration = 3.5;  ///< largest a of an even vehicle [m/s^2]
   double minimum_deceleration = 2.0;  ///< least b of an even vehicle [m/s^2]
   double maximum_deceleration = 4.0;  ///< largest b of an even vehicle [m/s^2]
-  double radius = 150.0;              ///< of the ego: vehicles within it are driven [m]
+  double radius = 150.0;              ///< vehicles within this distance of the ego are driven [m]
   double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
   double minimum_route = 120.0;       ///< shorter routes are not taken [m]
-  double route_length = 250.0;        ///< of a vehicle, where the network allows [m]
+  double route_length = 250.0;        ///< length of a vehicle's route, where the network allows [m]
   double route_end = 40.0;            ///< released with less of its route left [m]
   double off_road_distance = 3.0;     ///< released farther outside the drivable area [m]
-  double standing_time = 8.0;         ///< released after standing so long [s]
+  double standing_time = 8.0;         ///< released after standing this long [s]
   double pause = 3.0;                 ///< before a released vehicle may be driven again [s]
-  double lane_change_share = 0.15;    ///< of lanes longer than 60 m that have a neighbour
-  double program_lights_share = 0.4;  ///< of sessions with the lights' own programs
+  double lane_change_share = 0.15;    ///< share of changes on lanes of over 60 m
+  double program_lights_share = 0.4;  ///< share of sessions with the lights' own programs
   double minimum_density = 18.0;      ///< fewest vehicles near the ego, of generated demand
   double maximum_density = 45.0;      ///< most vehicles near the ego, of generated demand
-  double standing_share = 0.25;       ///< of samples that stand all the time, the part kept
-  double offset_share = 0.2;          ///< of samples that move, the part displaced once more
+  double standing_share = 0.25;       ///< part kept of samples that stand all the time
+  double offset_share = 0.2;          ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;       ///< largest displacement to the side [m]
   double offset_heading = 12.0;       ///< largest turn of a displaced vehicle [deg]
   NoiseOptions noise;
@@ -69,7 +69,7 @@ struct CollectionOptions {
 struct DatasetOptions {
   diffusion::Architecture architecture;  ///< horizon, image size, route tokens
   double standing_share = 0.25;          ///< part kept of samples that stand all the time
-  double offset_share = 0.2;             ///< of samples that move, the part displaced once more
+  double offset_share = 0.2;             ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;          ///< largest displacement to the side [m]
   double offset_heading = 12.0;          ///< largest turn of a displaced vehicle [deg]
 };

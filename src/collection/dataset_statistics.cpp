@@ -146,7 +146,8 @@ void requireSamples(const StatisticsByName& statistics, const std::string& kind,
     throw core::InputError("no " + kind + " gave a sample: " + lossText(sum, remedy));
   for (const auto& [name, of_one] : statistics) {
     if (of_one.samples == 0)
-      std::cerr << kind << " " << name << " gave no sample: " << lossText(of_one, remedy) << "\n";
+      std::cerr << kind << " " << name << " yielded no sample: " << lossText(of_one, remedy)
+                << "\n";
   }
 }
 

@@ -15,15 +15,15 @@ namespace cdiff::collection {
 struct DatasetStatistics {
   std::uint64_t images = 0;
   std::uint64_t samples = 0;
-  std::map<std::string, std::uint64_t> dropped;       ///< images that gave no sample, by reason
+  std::map<std::string, std::uint64_t> dropped;       ///< images that yielded no sample, by reason
   std::map<std::string, std::uint64_t> maneuvers;     ///< samples: straight, left, right, other
   std::map<std::string, std::uint64_t> stop_reasons;  ///< samples: none, light, leader, ...
   /// Samples: standing, starting, stopping, recovering, displaced, off_road, off_course,
   /// in_junction.
   std::map<std::string, std::uint64_t> kinds;
   std::array<std::uint64_t, 8> speeds{};  ///< samples by speed, 2 m/s a bin, the last open
-  double steer_sum = 0.0;                 ///< of mean |steer| of each sample
-  std::uint64_t contacts = 0;             ///< of driven vehicles
+  double steer_sum = 0.0;                 ///< sum of each sample's mean |steer|
+  std::uint64_t contacts = 0;             ///< contacts of driven vehicles
   double seconds = 0.0;                   ///< simulated
 
   void add(const DatasetStatistics& other);
@@ -43,8 +43,8 @@ DatasetStatistics sumOf(const StatisticsByName& statistics);
 /// the statistics as a table to the output.
 void describeDataset(const std::filesystem::path& folder, const DatasetStatistics& statistics);
 
-/// Names on standard error each "session" or "bag" (`kind`) that gave no sample, with what became
-/// of its images and, where they lie too near its end, the `remedy` ("longer bags"). Throws
+/// Prints to standard error each "session" or "bag" (`kind`) that yielded no sample, with what
+/// became of its images and, where they lie too near its end, the `remedy` ("longer bags"). Throws
 /// InputError when none gave any.
 void requireSamples(const StatisticsByName& statistics, const std::string& kind,
                     const std::string& remedy);

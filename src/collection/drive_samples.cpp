@@ -18,7 +18,7 @@ void DriveOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"image", "", "Topic of the front camera's images."}, image, {});
   visitor.text({"odometry", "", "Topic of the vehicle's nav_msgs/Odometry."}, odometry, {});
   visitor.text({"control", "", "Topic of e2e_cdiff/ControlAction; empty: inferred."}, control, {});
-  visitor.text({"path", "", "Topic of the route as nav_msgs/Path; empty: the way driven."}, path,
+  visitor.text({"path", "", "Topic of the route as nav_msgs/Path; empty: the path driven."}, path,
                {});
   visitor.number({"period", "s", "Time between samples."}, period, 0.05, 60.0);
   visitor.number({"largest_gap", "s", "Longest gap of odometry and controls in a sample."},
@@ -64,7 +64,7 @@ namespace {
 
 using core::InputError;
 
-constexpr double kLeastPath = 0.5;  // [m] less is no way
+constexpr double kLeastPath = 0.5;  // a shorter path has no direction [m]
 constexpr double kPart = 60.0;      // [s] of a drive that count as one session
 constexpr double kReversing = 0.1;  // [m/s] backwards that is more than noise at standstill
 
@@ -151,7 +151,7 @@ class DriveSamples {
     return drive_.controlAt(time, drive_options_.largest_gap);
   }
 
-  /// Along the path given last, or along the way that is driven from `time` on.
+  /// Along the path given last, or along the route that is driven from `time` on.
   std::optional<std::vector<float>> routeAt(double time, const traffic::VehicleState& start) const {
     const auto tokens = [&](const geometry::Polyline& path) {
       const double arc_length = path.project(start.position).arc_length;

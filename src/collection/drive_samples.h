@@ -21,20 +21,20 @@ struct DriveOptions {
   std::string image;     ///< sensor_msgs/Image or sensor_msgs/CompressedImage
   std::string odometry;  ///< nav_msgs/Odometry: pose in a fixed frame, forward speed as twist x
   std::string control;   ///< e2e_cdiff/ControlAction; empty: actions are inferred from the motion
-  std::string path;      ///< nav_msgs/Path in the odometry's frame; empty: the way driven
+  std::string path;      ///< nav_msgs/Path in the odometry's frame; empty: the path driven
   double period = 0.5;   ///< between two samples [s]
-  double largest_gap = 0.3;  ///< of odometry and controls within a sample [s]
+  double largest_gap = 0.3;  ///< largest gap of odometry and controls within a sample [s]
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError when a topic that must be given is not.
   void validate() const;
 };
 
-/// A drive of one vehicle with a front camera that somebody else recorded, in memory (SI units, a
+/// A drive of one vehicle with a front camera that someone else recorded, in memory (SI units, a
 /// fixed frame of its own).
 /// By stamp [s].
 struct RecordedDrive {
-  std::map<double, traffic::CameraImage> images;  ///< of the architecture's size
+  std::map<double, traffic::CameraImage> images;  ///< of the architecture's size, by time [s]
   std::map<double, traffic::VehicleState> states;
   std::map<double, traffic::ControlAction> controls;
   std::map<double, geometry::Polyline> paths;
@@ -46,7 +46,7 @@ struct RecordedDrive {
   std::optional<traffic::ControlAction> controlAt(double time, double largest_gap) const;
 };
 
-// Training samples from a drive that somebody else recorded (SI units; rows as in
+// Training samples from a drive that someone else recorded (SI units; rows as in
 // traffic/rollout.h).
 
 /// Samples of the drive called `name` in order of time; each minute is a session of its own, so

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Samples of vehicles that are put beside their way: image from the displaced place, pedals as
-/// recorded, steering by which the expert would return to its route, states by the vehicle dynamics
-/// (so that actions and states agree), route tokens from the displaced place.
 #pragma once
 
 #include <optional>
@@ -27,13 +24,16 @@ struct DisplacedSample {
   bool off_course = false;  ///< at its displaced place, as SampleKinds
 };
 
+/// Samples of vehicles that are put beside their route: image from the displaced place, pedals as
+/// recorded, steering by which the expert would return to its route, states by the vehicle dynamics
+/// (so that actions and states agree), route tokens from the displaced place.
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.
   OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options);
 
   /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
-  /// the vehicle would touch another one or leave the road at any time, or begins off it.
+  /// the vehicle would touch another one or leave the road at any time, or starts off it.
   std::optional<DisplacedSample> displace(
       const learning::DrivingSample& sample, const SampleSurroundings& around,
       const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);

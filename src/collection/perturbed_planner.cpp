@@ -60,7 +60,7 @@ PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std:
   return burst;
 }
 
-/// Noise is for vehicles that move; a stop that begins while one moves lasts to its end, any other
+/// Noise is for vehicles that move; a stop that starts while one moves lasts to its end, any other
 /// is left out.
 bool PerturbedPlanner::acts(double time, double speed, Burst& burst) const {
   if (time < burst.begin || time >= burst.end) return false;

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A planner in disguise: asks another one, gives each vehicle its own target speed [m/s] and
-/// driving style, and now and then adds a burst of noise to an action or stops the vehicle
-/// for some seconds, so that the record shows how the planner recovers and starts.
 #pragma once
 
 #include <map>
@@ -16,14 +13,17 @@
 
 namespace cdiff::collection {
 
+/// Wraps another planner: gives each vehicle its own target speed [m/s] and driving style, and now
+/// and then adds a burst of noise to an action or stops the vehicle for some seconds, so that the
+/// record shows how the planner recovers and starts.
 class PerturbedPlanner : public planning::Planner {
  public:
-  /// Draws are keyed by vehicle id and count of its bursts. `decision_period` [s] tells whether a
+  /// Draws are keyed by vehicle id and count of its bursts. `decision_period` [s] decides whether a
   /// decision was left out.
   PerturbedPlanner(std::unique_ptr<planning::Planner> planner, const CollectionOptions& options,
                    std::uint64_t seed, double decision_period);
 
-  /// The noise of a vehicle that was not among the tasks of the last decision begins anew.
+  /// The noise of a vehicle that was not among the tasks of the last decision starts over.
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
@@ -34,7 +34,7 @@ class PerturbedPlanner : public planning::Planner {
 
  private:
   struct Burst {
-    std::uint32_t count = 0;  ///< of the vehicle's bursts so far
+    std::uint32_t count = 0;  ///< number of the vehicle's bursts so far
     double begin = 0.0;       ///< [s]
     double end = 0.0;         ///< [s]
     double steer = 0.0;       ///< in [-1, 1], of the largest
@@ -52,7 +52,7 @@ class PerturbedPlanner : public planning::Planner {
   core::RandomStream noise_;
   core::RandomStream styles_;
   double decision_period_;
-  double last_time_ = 0.0;  ///< of the last call [s]
+  double last_time_ = 0.0;  ///< time of the last call [s]
   std::map<std::string, Burst> bursts_;
   std::set<std::string> perturbed_;
 };

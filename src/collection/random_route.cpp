@@ -57,7 +57,7 @@ class RandomWalk {
     return lanes[random_.index(key_, element_++, lanes.size())];
   }
 
-  /// To a neighbour where the lane ends, or now and then on a long one.
+  /// To a neighbor where the lane ends, or now and then on a long one.
   void changeLane(map::LanePath& path, double share) {
     const map::Lane& lane = network_.lane(path.lanes.back());
     const bool first = path.lanes.size() == 1;

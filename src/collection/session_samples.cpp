@@ -99,7 +99,7 @@ class SampleMaker {
     return nullptr;
   }
 
-  /// Beside the last sample, for a share of those that move, what it would be beside its way.
+  /// Beside the last sample, for a share of those that move, what it would be beside its route.
   void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
                     std::vector<learning::DrivingSample>& samples) {
     constexpr double kSlow = 2.0;  // [m/s]

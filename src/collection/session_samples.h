@@ -22,6 +22,7 @@ namespace cdiff::collection {
 /// A stretch during which one vehicle follows one route: vehicle and the tick it was selected at.
 using DriveKey = std::pair<std::string, std::uint64_t>;
 
+/// The image that a driven vehicle was shown at a decision.
 struct DrivenImage {
   int slot = traffic::kEgoSlot;
   traffic::CameraImage image;

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Fills the slots of data collection with background vehicles near the ego, each on a random route
-/// of its own, and releases them; speaks as CBV identification does, so that the world and the
-/// records need not know. Distances in metres, times in seconds.
 #pragma once
 
 #include <map>
@@ -23,6 +20,9 @@ namespace cdiff::collection {
 inline constexpr const char* kStoodTooLong = "stood_too_long";
 inline constexpr const char* kLeftRoad = "left_road";
 
+/// Fills the slots of data collection with background vehicles near the ego, each on a random route
+/// of its own, and releases them; speaks as CBV identification does, so that the world and the
+/// records need not know. Distances in meters, times in seconds.
 class TrafficDriver : public cbv::VehicleSelector {
  public:
   /// References must outlive the object.

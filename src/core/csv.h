@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Rows of comma-separated values as RFC 4180 has them: cells are quoted only where they must be.
-/// A text that a spreadsheet would compute (it begins with = + - @, a tab or a line end and is no
-/// number) gets an apostrophe in front, which reading takes away again.
 #pragma once
 
 #include <optional>
@@ -11,6 +8,10 @@
 #include <vector>
 
 namespace cdiff::core {
+
+// Rows of comma-separated values as RFC 4180 has them: cells are quoted only where they must be.
+// A text that a spreadsheet would compute (it starts with = + - @, a tab or a line end and is no
+// number) gets an apostrophe in front, which reading takes away again.
 
 /// `text` as one cell.
 std::string csvCell(const std::string& text);

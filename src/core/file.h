@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Files: whole-file reads with clear errors, atomic writes, SHA-256, and where the package's own
-/// files lie.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +9,9 @@
 #include <vector>
 
 namespace cdiff::core {
+
+// Files: whole-file reads with clear errors, atomic writes, SHA-256, and where the package's own
+// files lie.
 
 /// Whether a regular file, or a folder, is there. Throws InputError naming the path where the
 /// system cannot tell: a loop of symbolic links, a folder that cannot be searched, a name too long.
@@ -44,7 +45,7 @@ class ReservedFile {
   int descriptor_ = -1;
 };
 
-/// Removes what writes that were cut off left in a folder that nobody writes into
+/// Removes what writes that were cut off left in a folder that no one writes into
 /// (NAME.tmp.PROCESS).
 void removeTemporaries(const std::filesystem::path& folder);
 /// The same in a folder that others may write into: only that of processes that are gone.

@@ -30,7 +30,7 @@ struct ProcessStreams {
   std::filesystem::path log = {};  ///< of output and errors unless `output` is set; empty: as ours
   int input = -1;                  ///< descriptor to read from; -1: /dev/null
   int output = -1;                 ///< descriptor of output and errors
-  bool append = true;  ///< to what the log holds; else it is made anew, with room for last words
+  bool append = true;  ///< to what the log holds; else it is created, with room for last words
 };
 
 /// What a program prints, kept in memory: its descriptor is that of ProcessStreams::output.
@@ -67,7 +67,7 @@ class GuardedProcess {
   int id() const { return id_; }
   /// Whether the child has ended; reaps it, never waits.
   bool ended();
-  /// Waits until it has ended, at most `seconds`; answers whether it has.
+  /// Waits until it has ended, at most `seconds`; returns whether it has.
   bool waitForEnd(double seconds);
   /// Sends a signal to its group; nothing where it has ended.
   void signal(int number);

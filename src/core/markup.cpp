@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Bytes of the UTF-8 sequence that begins the text; 0 when it is not a valid one.
+/// Bytes of the UTF-8 sequence that starts the text; 0 when it is not a valid one.
 std::size_t sequenceLength(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text.front());
   const std::size_t length = lead < 0x80                   ? 1

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// HTML, SVG and XML that cannot be broken by the texts in them: elements are written by `element`,
-/// everything else is text and is escaped.
 #pragma once
 
 #include <string>
@@ -51,6 +49,9 @@ class Asset {
   std::size_t size_;
 };
 
+/// HTML, SVG and XML that cannot be broken by the texts in them: elements are written by `element`,
+/// everything else is text and is escaped.
+///
 /// A piece of a page: elements and text. Only the functions below make elements; text that becomes
 /// Markup is made plain (`plainText`) and & < > " ' in it are escaped, so no text can end the
 /// element or the attribute that it is in, or begin another.
@@ -91,7 +92,7 @@ Markup scriptElement(const Asset& script);
 Markup jsonElement(const std::string& id, std::string_view json);
 
 /// `plainText(text)` for a cell or a heading of a Markdown page: in one line, without < and with |
-/// and [ marked, so that it begins neither HTML nor a link nor another cell.
+/// and [ marked, so that it starts neither HTML nor a link nor another cell.
 std::string markdownText(std::string_view text);
 
 /// Texts of whole files.

@@ -202,7 +202,7 @@ YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
   return node;
 }
 
-/// A NUL byte is part of no YAML but one in UTF-16 or UTF-32, which begins with its mark.
+/// A NUL byte is part of no YAML but one in UTF-16 or UTF-32, which starts with its mark.
 void requireText(const YamlSource& source) {
   const std::size_t place = source.text.find('\0');
   if (place == std::string::npos) return;

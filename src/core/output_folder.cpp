@@ -175,7 +175,7 @@ bool FolderLock::tryLock() {
   failOn(file_, "lock", reason);
 }
 
-/// The kernel of another host may not have told ours of its lock.
+/// The kernel of another host may not have announced its lock to ours.
 void FolderLock::requireOwnHost() const {
   const auto content = contentOf(descriptor_);
   const auto host = content.find("host");

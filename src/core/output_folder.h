@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Folders that one process at a time writes into, and temporary folders that a later run removes
-/// when ours is killed.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +7,9 @@
 #include <vector>
 
 namespace cdiff::core {
+
+// Folders that one process at a time writes into, and temporary folders that a later run removes
+// when ours is killed.
 
 /// An output folder that is locked as long as the object exists, by the file kFile in it, which
 /// names host, process, program and time. The kernel ends the lock with its process, so one that

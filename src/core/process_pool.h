@@ -19,7 +19,7 @@ namespace cdiff::core {
 struct ProcessJob {
   std::filesystem::path program;
   std::vector<std::string> arguments;  ///< without the program
-  std::filesystem::path log = {};      ///< made anew; empty: its output goes where ours goes
+  std::filesystem::path log = {};      ///< created; empty: its output goes where ours goes
 };
 
 /// How a job's process ended.
@@ -31,16 +31,18 @@ struct ProcessEnd {
   bool interrupted = false;  ///< the jobs were being stopped
 };
 
+/// How many processes of a pool run at a time, and how long each may take [s of wall time].
 struct PoolLimits {
   int at_a_time = 1;
   double timeout = std::numeric_limits<double>::infinity();  ///< of one process, wall time [s]
   double grace = std::numeric_limits<double>::infinity();    ///< to end in after a stop [s]
 };
 
+/// Callbacks of a pool: one prepares a job's process, the other takes its end.
 struct PoolCalls {
   /// Prepares a job for the start of its process.
   std::function<ProcessJob(std::size_t job)> start;
-  /// Takes its end; answers whether the job comes again, before the others.
+  /// Takes its end; returns whether the job comes again, before the others.
   std::function<bool(const ProcessEnd& end)> ended;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A table of things by name, to which plug-ins add while the program runs.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +20,7 @@ inline bool isSnakeCase(std::string_view name) {
   return name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
 }
 
+/// A table of things by name, to which plug-ins add while the program runs.
 /// Descriptors (a struct with `name`) in the order in which they were added, with who added each.
 /// What it holds stays where it is.
 template <class Descriptor>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The denoiser f_theta(tau^k, k, c) of a batch (paper III-C2): action head, state head on actions,
-/// and the vector-Jacobian products that guidance needs. Everything normalised, float32, row-major.
 #pragma once
 
 #include <vector>
@@ -17,7 +15,9 @@ struct Context {
   double speed = 0.0;                 ///< own speed [m/s]
 };
 
-/// Results of a sample never depend on its neighbours in the batch, bit by bit.
+/// The denoiser f_theta(tau^k, k, c) of a batch (paper III-C2): action head, state head on actions,
+/// and the vector-Jacobian products that guidance needs. Everything normalized, float32, row-major.
+/// Results of a sample never depend on its neighbors in the batch, bit by bit.
 class Denoiser {
  public:
   virtual ~Denoiser() = default;

@@ -13,13 +13,13 @@
 namespace cdiff::diffusion {
 
 /// The trained planner as it comes from disk: encoder.safetensors and denoiser.safetensors in one
-/// folder, with the architecture in the metadata of each, normaliser and spread in the denoiser's.
+/// folder, with the architecture in the metadata of each, normalizer and spread in the denoiser's.
 struct Model {
   std::string name;    ///< for records: folder name
-  std::string sha256;  ///< of both data sections
+  std::string sha256;  ///< SHA-256 over both data sections
   Architecture architecture;
   Normalizer normalizer;
-  traffic::Rollout spread;  ///< [T, 7] sd of the clean trajectory given its context, normalised
+  traffic::Rollout spread;  ///< [T, 7] sd of the clean trajectory given its context, normalized
   std::map<std::string, inference::Tensor> encoder;
   std::map<std::string, inference::Tensor> denoiser;
 };
@@ -51,7 +51,7 @@ ModelFiles modelFiles(const Model& model);
 void saveModel(const Model& model, const std::filesystem::path& folder, inference::TensorType type,
                const std::map<std::string, std::string>& training_facts);
 
-// What the metadata of the weight files says about a model: sizes in both; normaliser, spread and
+// What the metadata of the weight files says about a model: sizes in both; normalizer, spread and
 // the encoder that it was trained with in the denoiser's.
 
 inline constexpr const char* kEncoderFormat = "e2e_cdiff.encoder.1";
@@ -67,15 +67,15 @@ Metadata describeEncoder(const Model& model);
 /// Keys format, architecture, normalizer and spread of the denoiser's file.
 Metadata describeDenoiser(const Model& model);
 
-/// The architecture, after a check of the format. Throws InputError that begins with `source`.
+/// The architecture, after a check of the format. Throws InputError that starts with `source`.
 Architecture readArchitecture(const Metadata& metadata, const std::string& format,
                               const std::string& source);
 
-/// Sets normaliser and spread, which must fit model.architecture. Throws InputError that begins
+/// Sets normalizer and spread, which must fit model.architecture. Throws InputError that starts
 /// with `source`.
 void readScales(const Metadata& metadata, const std::string& source, Model& model);
 
-/// Throws InputError when sizes, normaliser or spread of the model are not valid.
+/// Throws InputError when sizes, normalizer or spread of the model are not valid.
 void validateDescription(const Model& model);
 
 /// Whether a training fact of this name would hide one of the keys above or the checksum.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Squared-cosine schedule: alpha_bar(k) = cos^2((k/K + 0.008) / 1.008 pi/2) / the same at 0,
-/// beta_k = min(1 - alpha_bar(k) / alpha_bar(k-1), 0.999), k = 1..K; all in double.
 #pragma once
 
 #include <vector>
 
 namespace cdiff::diffusion {
 
+/// Squared-cosine schedule: alpha_bar(k) = cos^2((k/K + 0.008) / 1.008 pi/2) / the same at 0,
+/// beta_k = min(1 - alpha_bar(k) / alpha_bar(k-1), 0.999), k = 1..K; all in double.
 class NoiseSchedule {
  public:
   /// Throws InputError for K < 1.

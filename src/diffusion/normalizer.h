@@ -16,14 +16,14 @@ namespace cdiff::diffusion {
 /// [[...], ...] with the shortest numbers that read back to the same double.
 std::string rolloutText(const traffic::Rollout& matrix);
 
-/// A [rows, 7] matrix of numbers. Throws InputError that begins with `where`.
+/// A [rows, 7] matrix of numbers. Throws InputError that starts with `where`.
 traffic::Rollout rolloutOf(const inference::Json& value, std::int64_t rows,
                            const std::string& where);
 
-/// [T, 7], normalised; what networks and sampler work on.
+/// [T, 7], normalized; what networks and sampler work on.
 using Trajectory = Eigen::Matrix<float, Eigen::Dynamic, traffic::kRolloutColumns, Eigen::RowMajor>;
 
-/// Between metric rollouts and the unit scale that is diffused: normalised = (metric - mean) /
+/// Between metric rollouts and the unit scale that is diffused: normalized = (metric - mean) /
 /// scale, cell by cell of [T, 7].
 struct Normalizer {
   traffic::Rollout mean;   ///< [T, 7]
@@ -31,14 +31,14 @@ struct Normalizer {
 
   Trajectory normalize(const traffic::Rollout& metric) const;
   traffic::Rollout denormalize(const Trajectory& trajectory) const;
-  /// dJ/d(normalised) = dJ/d(metric) x scale.
+  /// dJ/d(normalized) = dJ/d(metric) x scale.
   Trajectory toNormalizedGradient(const traffic::Rollout& gradient) const;
   /// Throws InputError when a mean is not finite, a scale is not positive, or T differs.
   void validate(int horizon) const;
 
   /// {"mean": T rows of 7, "scale": T rows of 7}, to the bit.
   std::string toJson() const;
-  /// Of `horizon` rows, not validated. Throws InputError that begins with `where`.
+  /// Of `horizon` rows, not validated. Throws InputError that starts with `where`.
   static Normalizer fromJson(const std::string& text, std::int64_t horizon,
                              const std::string& where);
 };

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Route tokens: points of the route ahead, every `route_spacing` metres from the vehicle's place
-/// on it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20
-/// m; beyond its end the route goes straight on.
 #pragma once
 
 #include <vector>
@@ -12,6 +9,10 @@
 #include "e2e_cdiff/geometry/pose.h"
 
 namespace cdiff::diffusion {
+
+// Route tokens: points of the route ahead, every `route_spacing` meters from the vehicle's place
+// on it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20
+// m; beyond its end the route goes straight on.
 
 /// What a token of 1 stands for [m].
 inline constexpr double kRouteTokenScale = 20.0;

@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Guided sampling of a batch of normalised trajectories (paper III-C4 and III-D).
-///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k the
-///    gradient of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state
-///    branch (paper eq. 8); no noise is added
-///    at k = 1.
-///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
-///    J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c r_k per element, r_k^2 =
-///    s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s = spread given the context.
-///  - `unguided`: DDPM over all K steps without J.
 #pragma once
 
 #include <memory>
@@ -24,10 +15,12 @@
 
 namespace cdiff::diffusion {
 
+/// How trajectories are sampled: mode, number of steps, proximal step and warm start (counts
+/// without unit).
 struct SamplerOptions {
   std::string mode = "real_time";     ///< paper | real_time | unguided
-  std::int64_t steps = 10;            ///< of real_time
-  std::int64_t inner_iterations = 4;  ///< of the proximal step
+  std::int64_t steps = 10;            ///< steps of mode `real_time`
+  std::int64_t inner_iterations = 4;  ///< iterations of the proximal step
   double trust_region = 2.0;          ///< c; a matter of guidance, so its options set it
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits
   std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
@@ -38,13 +31,13 @@ struct SamplerOptions {
   void validate(int diffusion_steps) const;
 };
 
-/// J of one sample of the batch on clean normalised trajectories.
+/// J of one sample of the batch on clean normalized trajectories.
 class CleanObjective {
  public:
   virtual ~CleanObjective() = default;
   /// Whether anything acts on this sample at this diffusion step.
   virtual bool actsAt(std::size_t sample, int k) const = 0;
-  /// J and its gradient with respect to the normalised cells (states and actions as independent
+  /// J and its gradient with respect to the normalized cells (states and actions as independent
   /// variables); `gradient` has the shape of `clean` and is overwritten.
   virtual double evaluate(std::size_t sample, int k, const Trajectory& clean,
                           Trajectory& gradient) = 0;
@@ -57,12 +50,21 @@ struct SampleRequest {
   const Trajectory* warm = nullptr;  ///< previous plan, shifted to now; nullptr: cold start
 };
 
+/// One sampled trajectory, normalized, and how guidance acted on it.
 struct SampledTrajectory {
   Trajectory clean;  ///< [T, 7]
   std::int64_t guided_steps = 0;
   std::int64_t trust_region_hits = 0;  ///< guided steps in which the trust region acted
 };
 
+/// Guided sampling of a batch of normalized trajectories (paper III-C4 and III-D).
+///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k the
+///    gradient of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state branch
+///    (paper eq. 8); no noise is added at k = 1.
+///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
+///    J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c r_k per element, r_k^2 =
+///    s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s = spread given the context.
+///  - `unguided`: DDPM over all K steps without J.
 /// One per planner; keeps references.
 class Sampler {
  public:

@@ -165,8 +165,9 @@ void place(const Descent& descent, const std::vector<double>& u, const std::vect
 }
 
 /// Descents at x_hat, with the first step reaching half of the trust region at most.
-std::vector<Descent> begin(const ProximalOptions& options, const std::vector<float>& radius, int k,
-                           StateBranch& branch, CleanObjective& objective, SamplingBatch& batch) {
+std::vector<Descent> startDescents(const ProximalOptions& options, const std::vector<float>& radius,
+                                   int k, StateBranch& branch, CleanObjective& objective,
+                                   SamplingBatch& batch) {
   const std::vector<double> values = batch.evaluate(objective, k);
   const std::vector<float>& gradient = batch.actionGradient(branch);
   std::vector<Descent> descents(batch.count());
@@ -187,7 +188,7 @@ std::vector<Descent> begin(const ProximalOptions& options, const std::vector<flo
 std::vector<bool> proximalStep(const ProximalOptions& options, const std::vector<float>& radius,
                                int k, StateBranch& branch, CleanObjective& objective,
                                SamplingBatch& batch) {
-  std::vector<Descent> descents = begin(options, radius, k, branch, objective, batch);
+  std::vector<Descent> descents = startDescents(options, radius, k, branch, objective, batch);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     for (std::size_t b = 0; b < batch.count(); ++b) {
       propose(descents[b], options.trust_region);

@@ -9,7 +9,7 @@
 namespace cdiff::diffusion {
 
 /// The working memory of one guided sampling run: noisy and clean trajectories of a batch,
-/// normalised, and their gradients.
+/// normalized, and their gradients.
 /// Blocks [B, T, columns], row-major.
 class SamplingBatch {
  public:
@@ -53,13 +53,14 @@ class SamplingBatch {
 // The proximal step of guided few-step sampling: actions x of each sample go from the prediction
 // x_hat towards argmin J(x) + |x - x_hat|^2 / (2 r_k^2), at most c r_k away per element.
 
+/// Settings of the proximal step of mode `real_time`.
 struct ProximalOptions {
   int iterations = 4;
   double trust_region = 2.0;  ///< c
 };
 
 /// Gradient descent in u = (x - x_hat) / r with Barzilai-Borwein step lengths; a step that does not
-/// lower the sum is halved. Changes the batch's actions and states; answers whether the trust
+/// lower the sum is halved. Changes the batch's actions and states; returns whether the trust
 /// region acted, by sample. `radius` [T, 3] is r_k.
 std::vector<bool> proximalStep(const ProximalOptions& options, const std::vector<float>& radius,
                                int k, StateBranch& branch, CleanObjective& objective,

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// States from actions: the learned state head (paper) or the exact rollout of the vehicle
-/// dynamics, with the vector-Jacobian product of each. Normalised, float32, [B, T, .] row-major.
 #pragma once
 
 #include <memory>
@@ -13,6 +11,8 @@
 
 namespace cdiff::diffusion {
 
+/// States from actions: the learned state head (paper) or the exact rollout of the vehicle
+/// dynamics, with the vector-Jacobian product of each. Normalized, float32, [B, T, .] row-major.
 class StateBranch {
  public:
   virtual ~StateBranch() = default;
@@ -35,7 +35,7 @@ class LearnedStateBranch : public StateBranch {
 };
 
 /// States of the actions as they are executed (dynamics::makeExecutable) by ActionRollout through
-/// the normaliser; `speeds` [m/s] of the batch. The gradient is that of the rollout without the
+/// the normalizer; `speeds` [m/s] of the batch. The gradient is that of the rollout without the
 /// choice of a pedal (straight-through): also the pedal that does not act yet can be moved.
 class ExactStateBranch : public StateBranch {
  public:

@@ -72,9 +72,9 @@ State stateBefore(double initial_speed, const Rollout& rollout, Eigen::Index row
 
 /// Moves a state by one tick without its speed, in the order of operations of BicycleModel::step.
 void move(State& state, double slip, double turn, double rear_length) {
-  const double way = state.speed * BicycleModel::kTick;
-  state.x += way * std::cos(state.heading + slip);
-  state.y += way * std::sin(state.heading + slip);
+  const double distance = state.speed * BicycleModel::kTick;
+  state.x += distance * std::cos(state.heading + slip);
+  state.y += distance * std::sin(state.heading + slip);
   state.heading += state.speed / rear_length * turn * BicycleModel::kTick;
 }
 
@@ -87,13 +87,13 @@ struct TickAdjoint {
 
   void pullBack(double heading, double speed, const SpeedResponse& response, StateAdjoint& state,
                 ActionAdjoint& action) const {
-    const double way = speed * BicycleModel::kTick;
+    const double distance = speed * BicycleModel::kTick;
     const double cosine = std::cos(heading + slip);
     const double sine = std::sin(heading + slip);
-    const double sideways = way * (state.y * cosine - state.x * sine);
+    const double sideways = distance * (state.y * cosine - state.x * sine);
     action.throttle += response.by_throttle * state.speed;
     action.brake += response.by_brake * state.speed;
-    action.slip += sideways + state.heading * way / rear_length * grip;
+    action.slip += sideways + state.heading * distance / rear_length * grip;
     state.speed = response.by_speed * state.speed +
                   BicycleModel::kTick * (state.x * cosine + state.y * sine) +
                   state.heading * turn / rear_length * BicycleModel::kTick;

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "record/junit.h"
 
 namespace cdiff::evaluation {
@@ -37,16 +37,17 @@ Json cellJson(const Cell& cell) {
   for (const std::string& factor : factorNames()) {
     if (cell.factors.count(factor) != 0) factors[factor] = cell.factors.at(factor);
   }
-  Json figures = Json::object();
-  for (const std::string& name : figureNames()) {
-    const auto figure = cell.figures.find(name);
-    figures[name] = statisticsJson(figure == cell.figures.end() ? Statistics() : figure->second);
+  Json measures = Json::object();
+  for (const std::string& name : measureNames()) {
+    const auto measure = cell.measures.find(name);
+    measures[name] =
+        statisticsJson(measure == cell.measures.end() ? Statistics() : measure->second);
   }
   return {{"factors", factors},
           {"runs", cell.runs},
           {"failed", cell.failed},
           {"not_run", cell.missing},
-          {"figures", figures}};
+          {"figures", measures}};
 }
 
 struct Counts {
@@ -91,13 +92,13 @@ record::JunitCase caseOf(const RunRecord& record) {
 
 /// "12.3 ± 0.4 (3)": mean, standard deviation and n.
 std::string cellText(const Cell& cell, const std::string& name) {
-  const auto found = cell.figures.find(name);
-  if (found == cell.figures.end() || !found->second.mean) return "-";
-  const Statistics& figure = found->second;
-  std::string text = core::formatFixed(*figure.mean, 2);
-  if (figure.standard_deviation)
-    text += " \xC2\xB1 " + core::formatFixed(*figure.standard_deviation, 2);
-  return text + " (" + std::to_string(figure.n) + ")";
+  const auto found = cell.measures.find(name);
+  if (found == cell.measures.end() || !found->second.mean) return "-";
+  const Statistics& statistics = found->second;
+  std::string text = core::formatFixed(*statistics.mean, 2);
+  if (statistics.standard_deviation)
+    text += " \xC2\xB1 " + core::formatFixed(*statistics.standard_deviation, 2);
+  return text + " (" + std::to_string(statistics.n) + ")";
 }
 
 /// Factors with more than one level; the scenario in any case.
@@ -118,18 +119,13 @@ std::string rowText(const std::vector<std::string>& fields) {
   return "| " + core::joinText(fields, " | ") + " |\n";
 }
 
-const std::vector<std::string>& tableFigures() {
-  namespace figures = metrics::figures;
-  static const std::vector<std::string> names = {figures::kRouteCompletion.name,
-                                                 figures::kDrivingScore.name,
-                                                 figures::kEgoCollisions.name,
-                                                 figures::kCbvDecisions.name,
-                                                 figures::kCbvOffRoad.name,
-                                                 figures::kCbvEgoCollisions.name,
-                                                 "cbv_passed_percent",
-                                                 figures::kCbvSpeedError.name,
-                                                 figures::kCbvClosestDistance.name,
-                                                 figures::kTtcMean.name};
+const std::vector<std::string>& tableMeasures() {
+  namespace known = metrics::known;
+  static const std::vector<std::string> names = {
+      known::kRouteCompletion.name, known::kDrivingScore.name,  known::kEgoCollisions.name,
+      known::kCbvDecisions.name,    known::kCbvOffRoad.name,    known::kCbvEgoCollisions.name,
+      "cbv_passed_percent",         known::kCbvSpeedError.name, known::kCbvClosestDistance.name,
+      known::kTtcMean.name};
   return names;
 }
 
@@ -137,7 +133,7 @@ std::string cellsTable(const std::vector<Cell>& cells) {
   const std::vector<std::string> shown = shownFactors(cells);
   std::vector<std::string> head = shown;
   head.insert(head.end(), {"runs", "failed", "not run"});
-  head.insert(head.end(), tableFigures().begin(), tableFigures().end());
+  head.insert(head.end(), tableMeasures().begin(), tableMeasures().end());
   std::string text = rowText(head) + rowText(std::vector<std::string>(head.size(), "---"));
   for (const Cell& cell : cells) {
     std::vector<std::string> fields;
@@ -147,7 +143,7 @@ std::string cellsTable(const std::vector<Cell>& cells) {
     }
     for (const std::size_t count : {cell.runs, cell.failed, cell.missing})
       fields.push_back(std::to_string(count));
-    for (const std::string& name : tableFigures()) fields.push_back(cellText(cell, name));
+    for (const std::string& name : tableMeasures()) fields.push_back(cellText(cell, name));
     text += rowText(fields);
   }
   return text;
@@ -159,7 +155,7 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
   std::vector<std::string> head = {"id"};
   head.insert(head.end(), factorNames().begin(), factorNames().end());
   head.insert(head.end(), {"status", "verdict", "exit_code", "attempts", "wall_seconds"});
-  head.insert(head.end(), figureNames().begin(), figureNames().end());
+  head.insert(head.end(), measureNames().begin(), measureNames().end());
   head.emplace_back("cause");
   std::string text = core::joinText(head, ",") + "\n";
   for (const RunRecord& record : records) {
@@ -172,9 +168,9 @@ std::string runsCsv(const std::vector<RunRecord>& records) {
             (started ? std::to_string(record.exit_code) : "") + "," +
             std::to_string(record.attempts) + "," +
             (started ? core::formatFixed(record.wall_seconds, 3) : "");
-    for (const std::string& name : figureNames()) {
-      const auto figure = record.figures.find(name);
-      text += "," + (figure == record.figures.end() ? "" : core::formatNumber(figure->second));
+    for (const std::string& name : measureNames()) {
+      const auto measure = record.measures.find(name);
+      text += "," + (measure == record.measures.end() ? "" : core::formatNumber(measure->second));
     }
     text += "," + core::csvCell(record.cause) + "\n";
   }
@@ -214,7 +210,7 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
          " ended with a failed verdict, " + std::to_string(counts.struck) + " were struck, " +
          std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +
          " passed. Mean \xC2\xB1 standard deviation over seeds (number of "
-         "seeds that have the figure).\n\n" +
+         "seeds that have the measure).\n\n" +
          cellsTable(cellsOf(records));
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Texts of a batch's files: runs.csv (a row per planned run), summary.json (a cell per
-/// combination), junit.xml (a case per run), summary.md (a table of cells).
 #pragma once
 
 #include <filesystem>
@@ -11,6 +9,9 @@
 #include "evaluation/statistics.h"
 
 namespace cdiff::evaluation {
+
+// Texts of a batch's files: runs.csv (a row per planned run), summary.json (a cell per
+// combination), junit.xml (a case per run), summary.md (a table of cells).
 
 std::string runsCsv(const std::vector<RunRecord>& records);
 std::string batchSummaryJson(const std::string& name, const std::vector<RunRecord>& records);

@@ -7,7 +7,7 @@
 #include "core/text.h"
 #include "evaluation/assets.h"
 #include "evaluation/batch_report.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "page/assets.h"
 #include "page/page_parts.h"
 
@@ -71,9 +71,9 @@ Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs) {
       page::pageBanner(worst, headlineOf(worst), element("p", {}, counts_text)));
 }
 
-std::string figureText(const BatchRun& run, const std::string& name, int decimals) {
-  const auto figure = run.record.figures.find(name);
-  return figure == run.record.figures.end() ? "–" : core::formatFixed(figure->second, decimals);
+std::string valueText(const BatchRun& run, const std::string& name, int decimals) {
+  const auto found = run.record.measures.find(name);
+  return found == run.record.measures.end() ? "–" : core::formatFixed(found->second, decimals);
 }
 
 void addRow(const BatchRun& run, page::HtmlTable& table) {
@@ -84,12 +84,12 @@ void addRow(const BatchRun& run, page::HtmlTable& table) {
       record.status + (record.complete() ? ", " + record::wordOf(record.verdict) : "");
   std::vector<Markup> cells = {
       has_report ? element("a", {{"href", link}}, record.id) : Markup(record.id), status};
-  namespace figures = metrics::figures;
+  namespace known = metrics::known;
   const std::pair<const char*, int> shown[] = {
-      {figures::kRouteCompletion.name, 1},  {figures::kDrivingScore.name, 1},
-      {figures::kEgoCollisions.name, 0},    {figures::kCbvDecisions.name, 0},
-      {figures::kCbvEgoCollisions.name, 0}, {figures::kCbvMinimumDistance.name, 1}};
-  for (const auto& [key, decimals] : shown) cells.emplace_back(figureText(run, key, decimals));
+      {known::kRouteCompletion.name, 1},  {known::kDrivingScore.name, 1},
+      {known::kEgoCollisions.name, 0},    {known::kCbvDecisions.name, 0},
+      {known::kCbvEgoCollisions.name, 0}, {known::kCbvMinimumDistance.name, 1}};
+  for (const auto& [key, decimals] : shown) cells.emplace_back(valueText(run, key, decimals));
   cells.emplace_back(record.complete() ? core::joinText(record.reasons, "; ") : record.cause);
   table.row(cells, record::toText(outcomeOf(record)));
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a finished batch is read by: tables/table_N.csv, tables/tables.md, figures/figure_N.csv and
-/// .svg, index.html. All are functions of the folder's records and runs, and need nothing to run.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +9,9 @@
 #include "evaluation/paper/paper_figures.h"
 
 namespace cdiff::evaluation {
+
+// What a finished batch is read by: tables/table_N.csv, tables/tables.md, figures/figure_N.csv and
+// .svg, index.html. All are functions of the folder's records and runs, and need nothing to run.
 
 /// Writes them all, each file whole. Throws InputError naming the file for a folder without
 /// records, a damaged record, summary or trace, and a file that cannot be written.

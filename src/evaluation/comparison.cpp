@@ -45,32 +45,32 @@ Groups grouped(const std::vector<RunRecord>& records, const std::set<std::string
   return groups;
 }
 
-/// Mean of a figure over the runs that have it.
+/// Mean of a measure over the runs that have it.
 std::optional<double> meanOf(const std::vector<const RunRecord*>& records,
-                             const std::string& figure) {
+                             const std::string& measure) {
   std::vector<double> values;
   for (const RunRecord* record : records) {
-    const auto value = record->figures.find(figure);
-    if (value != record->figures.end()) values.push_back(value->second);
+    const auto value = record->measures.find(measure);
+    if (value != record->measures.end()) values.push_back(value->second);
   }
   return statisticsOf(values).mean;
 }
 
-FigureComparison compareFigure(const std::string& figure, const Groups& a, const Groups& b) {
+MeasureComparison compareMeasure(const std::string& measure, const Groups& a, const Groups& b) {
   std::vector<double> values_a;
   std::vector<double> values_b;
   std::vector<double> differences;
   for (const auto& [key, records] : a) {
     const auto partner = b.find(key);
     if (partner == b.end()) continue;
-    const auto value_a = meanOf(records, figure);
-    const auto value_b = meanOf(partner->second, figure);
+    const auto value_a = meanOf(records, measure);
+    const auto value_b = meanOf(partner->second, measure);
     if (!value_a || !value_b) continue;
     values_a.push_back(*value_a);
     values_b.push_back(*value_b);
     differences.push_back(*value_b - *value_a);
   }
-  return {figure, statisticsOf(values_a).mean.value_or(0.0),
+  return {measure, statisticsOf(values_a).mean.value_or(0.0),
           statisticsOf(values_b).mean.value_or(0.0), statisticsOf(differences)};
 }
 
@@ -106,14 +106,14 @@ std::string tableOf(const Comparison& comparison) {
       " runs of A and " + std::to_string(comparison.runs_b) + " of B; paired by " +
       core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
       followersText(comparison) +
-      ".\n\n| figure | pairs | mean A | mean B | B - A | 95 % interval |\n"
+      ".\n\n| measure | pairs | mean A | mean B | B - A | 95 % interval |\n"
       "|---|---|---|---|---|---|\n";
-  for (const FigureComparison& figure : comparison.figures) {
-    text += "| " + core::markdownText(figure.figure) + " | " + std::to_string(figure.difference.n) +
-            " | " + core::formatFixed(figure.mean_a, 3) + " | " +
-            core::formatFixed(figure.mean_b, 3) + " | " +
-            core::formatFixed(*figure.difference.mean, 3) + " | " +
-            intervalText(figure.difference) + " |\n";
+  for (const MeasureComparison& measure : comparison.measures) {
+    text += "| " + core::markdownText(measure.measure) + " | " +
+            std::to_string(measure.difference.n) + " | " + core::formatFixed(measure.mean_a, 3) +
+            " | " + core::formatFixed(measure.mean_b, 3) + " | " +
+            core::formatFixed(*measure.difference.mean, 3) + " | " +
+            intervalText(measure.difference) + " |\n";
   }
   return text;
 }
@@ -176,9 +176,9 @@ Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::str
   comparison.runs_a = a.records.size();
   comparison.runs_b = b.records.size();
   for (const auto& [key, records] : groups_a) comparison.pairs += groups_b.count(key);
-  for (const std::string& figure : names.empty() ? figureNames() : names) {
-    FigureComparison compared = compareFigure(figure, groups_a, groups_b);
-    if (compared.difference.n > 0) comparison.figures.push_back(compared);
+  for (const std::string& measure : names.empty() ? measureNames() : names) {
+    MeasureComparison compared = compareMeasure(measure, groups_a, groups_b);
+    if (compared.difference.n > 0) comparison.measures.push_back(compared);
   }
   return comparison;
 }
@@ -203,11 +203,11 @@ std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
   return comparisons;
 }
 
-void checkFigureNames(const std::vector<std::string>& names) {
-  const auto& known = figureNames();
+void checkMeasureNames(const std::vector<std::string>& names) {
+  const auto& known = measureNames();
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError("--figure '" + name + "' is no figure" + nearest(name, known));
+    throw InputError("--figure '" + name + "' is no measure" + nearest(name, known));
   }
 }
 
@@ -225,11 +225,11 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
     return "," + (value ? core::formatNumber(*value) : std::string());
   };
   for (const Comparison& comparison : comparisons) {
-    for (const FigureComparison& figure : comparison.figures) {
-      const Statistics& difference = figure.difference;
+    for (const MeasureComparison& measure : comparison.measures) {
+      const Statistics& difference = measure.difference;
       text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," +
-              core::csvCell(figure.figure) + "," + std::to_string(difference.n) +
-              field(figure.mean_a) + field(figure.mean_b) + field(difference.mean) +
+              core::csvCell(measure.measure) + "," + std::to_string(difference.n) +
+              field(measure.mean_a) + field(measure.mean_b) + field(difference.mean) +
               field(difference.standard_deviation);
       const bool interval = difference.half_width.has_value();
       text += interval ? field(*difference.mean - *difference.half_width) +

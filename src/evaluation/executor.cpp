@@ -108,7 +108,7 @@ class Executor {
             folder / "log.txt"};
   }
 
-  /// Takes the end of an attempt; answers whether the run gets another.
+  /// Takes the end of an attempt; returns whether the run gets another.
   bool finish(const core::ProcessEnd& end) {
     RunRecord& record = records_[end.job];
     record.exit_code = end.exit_code;
@@ -136,7 +136,7 @@ class Executor {
     return facts;
   }
 
-  /// Status, cause and figures.
+  /// Status, cause and measures.
   void describeEnd(RunRecord& record, const core::ProcessEnd& end) const {
     const fs::path folder = folderOf(end.job);
     record.cause.clear();
@@ -163,7 +163,7 @@ class Executor {
     record.reasons = facts.reasons;
     record.decided_by = facts.decided_by;
     record.simulated_seconds = facts.simulated_seconds;
-    record.figures = facts.figures;
+    record.measures = facts.measures;
   }
 
   const std::vector<PlannedRun>& plan_;

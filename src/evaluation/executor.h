@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Runs planned sessions in parallel processes: time-out, retry where a process or its simulator
-/// died, one record per run.
 #pragma once
 
 #include <atomic>
@@ -13,10 +11,12 @@
 
 namespace cdiff::evaluation {
 
+/// Runs planned sessions in parallel processes: time-out, retry where a process or its simulator
+/// died, one record per run.
 struct ExecutorOptions {
   std::filesystem::path program =
       "/proc/self/exe";           ///< understands `run FILE --quiet --results DIR --overwrite`
-  std::filesystem::path results;  ///< of the batch
+  std::filesystem::path results;  ///< result folder of the batch
   int jobs = 1;                   ///< processes at a time
   double timeout = 600.0;         ///< wall time of one attempt [s]
   int retries = 1;
@@ -31,7 +31,7 @@ struct ExecutorOptions {
 /// Folder of a run: RESULTS/runs/ID.
 std::filesystem::path runFolder(const std::filesystem::path& results, const std::string& id);
 
-/// Record of every planned run, in their order, whatever became of it. Once `stop` is true no run
+/// Record of every planned run, in their order, whatever happened to it. Once `stop` is true no run
 /// is started and those under way are interrupted.
 std::vector<RunRecord> executeRuns(const std::vector<PlannedRun>& plan,
                                    const ExecutorOptions& options, const std::atomic<bool>& stop);

@@ -212,7 +212,7 @@ std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::
        {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
     if (list->empty()) continue;
     throw InputError(source +
-                     ": key 'combinations' stands instead of ego_planners, cbv_planners, modes "
+                     ": key 'combinations' replaces ego_planners, cbv_planners, modes "
                      "and guidance_profiles; give either it or them");
   }
   std::vector<Combination> combinations;

@@ -42,7 +42,7 @@ struct MatrixOptions {
   std::int64_t repetitions = 1;
   std::vector<std::string> set;  ///< "key=value" each, for every run
   double timeout = 600.0;        ///< wall time of one run [s]
-  std::int64_t retries = 1;      ///< of a run whose simulator or process died
+  std::int64_t retries = 1;      ///< how often a run whose simulator or process died is repeated
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -71,6 +71,7 @@ struct ScenarioLevel {
   session::SessionRequest request;
 };
 
+/// A named set of overrides under which every run of the matrix is repeated.
 struct Variant {
   std::string name;
   std::vector<std::string> set;

@@ -104,9 +104,9 @@ void checkEgoPlanner(const std::string& name) {
 }
 
 /// Builds the product of all factors.
-class Planner {
+class RunPlanner {
  public:
-  Planner(const MatrixOptions& matrix, const std::string& source)
+  RunPlanner(const MatrixOptions& matrix, const std::string& source)
       : matrix_(matrix),
         source_(source),
         combinations_(combinationsOf(matrix, source)),
@@ -267,7 +267,7 @@ const std::vector<std::string>& factorNames() {
 }
 
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source) {
-  return Planner(matrix, source).plan();
+  return RunPlanner(matrix, source).plan();
 }
 
 }  // namespace cdiff::evaluation

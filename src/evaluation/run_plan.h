@@ -17,7 +17,7 @@ namespace cdiff::evaluation {
 /// (where the scenario has them) and "program".
 using InputHashes = std::map<std::string, std::string>;
 
-/// What a run's figures depend on besides its resolved scenario: the content of the files that the
+/// What a run's measures depend on besides its resolved scenario: the content of the files that the
 /// scenario names, and the program. A finished run stays in a resumed batch only while all of it is
 /// the same.
 /// Hashes each file once.
@@ -35,7 +35,7 @@ class InputHasher {
 };
 
 /// SHA-256 of this program and those of its libraries that are ours. Package version and revision
-/// would not tell a build with changed sources from the one before.
+/// would not distinguish a build with changed sources from the one before.
 const std::string& programSha256();
 
 /// Names of the inputs that differ, or are on one side only, joined by ", "; empty when none does.
@@ -51,12 +51,14 @@ using Factors = std::map<std::string, std::string>;
 /// "repetition".
 const std::vector<std::string>& factorNames();
 
+/// One session of a matrix that is to be run: its factors, and the resolved scenario with hashes of
+/// its inputs.
 struct PlannedRun {
   std::string id;  ///< name of its folder; made of the factors that vary
   Factors factors;
   std::string scenario_text;    ///< resolved, as YAML
-  std::string scenario_sha256;  ///< of that text
-  InputHashes inputs;           ///< of what it depends on besides
+  std::string scenario_sha256;  ///< SHA-256 of that text
+  InputHashes inputs;           ///< hashes of what it depends on besides
 };
 
 /// Scenarios outermost, repetitions innermost. `source` names the matrix in errors. Throws

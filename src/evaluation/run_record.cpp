@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 
 namespace cdiff::evaluation {
@@ -18,12 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Figures that lie at one place of a summary: all that metrics defines, and some of the session.
+/// Measures that lie at one place of a summary: all that metrics defines, and some of the session.
 const std::vector<std::pair<std::string, std::string>>& places() {
   static const std::vector<std::pair<std::string, std::string>> all = [] {
     std::vector<std::pair<std::string, std::string>> list;
-    for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
-      list.emplace_back(figure.name, figure.place);
+    for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions())
+      list.emplace_back(definition.name, definition.place);
     list.emplace_back("guidance_trust_region_share", "/guidance_trust_region_share");
     list.emplace_back("simulated_seconds", "/simulated_seconds");
     list.emplace_back("real_time_factor", "/real_time_factor");
@@ -33,7 +33,7 @@ const std::vector<std::pair<std::string, std::string>>& places() {
 }
 
 /// Shares over the CBVs that were selected; absent where the summary does not have the keys.
-void addSelectionFigures(const json& summary, Figures& figures) {
+void addSelectionMeasures(const json& summary, Measures& measures) {
   const json selections = summary.value(json::json_pointer("/cbv/selections"), json::array());
   double passed = 0.0;
   double completion = 0.0;
@@ -51,9 +51,9 @@ void addSelectionFigures(const json& summary, Figures& figures) {
       completion += completion_value.get<double>();
     }
   }
-  if (with_passed > 0) figures["cbv_passed_percent"] = passed / static_cast<double>(with_passed);
+  if (with_passed > 0) measures["cbv_passed_percent"] = passed / static_cast<double>(with_passed);
   if (with_completion > 0) {
-    figures["cbv_completion_percent"] = completion / static_cast<double>(with_completion);
+    measures["cbv_completion_percent"] = completion / static_cast<double>(with_completion);
   }
 }
 
@@ -64,12 +64,12 @@ std::string lastFault(const json& summary) {
 
 }  // namespace
 
-const std::vector<std::string>& figureNames() {
+const std::vector<std::string>& measureNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const auto& [name, place] : places()) {
       all.emplace_back(name);
-      if (all.back() != metrics::figures::kCbvMinimumDistance.name) continue;
+      if (all.back() != metrics::known::kCbvMinimumDistance.name) continue;
       all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent"});
     }
     return all;
@@ -91,10 +91,10 @@ SummaryFacts readSummary(const std::string& text, const std::string& source) {
       const json::json_pointer pointer(place);
       if (!summary.contains(pointer)) continue;
       const json& value = summary.at(pointer);
-      if (value.is_number()) facts.figures[name] = value;
-      if (value.is_boolean()) facts.figures[name] = value.get<bool>() ? 1.0 : 0.0;
+      if (value.is_number()) facts.measures[name] = value;
+      if (value.is_boolean()) facts.measures[name] = value.get<bool>() ? 1.0 : 0.0;
     }
-    addSelectionFigures(summary, facts.figures);
+    addSelectionMeasures(summary, facts.measures);
     return facts;
   } catch (const json::exception& error) {
     throw core::InputError("'" + source + "' is no summary of a session: " + error.what());
@@ -124,7 +124,7 @@ RunRecord fromJson(const Json& json) {
   record.verdict = record::outcomeOf(json.at("verdict"));
   record.reasons = json.at("reasons").get<std::vector<std::string>>();
   record.decided_by = json.value("decided_by", std::vector<std::string>());
-  for (const auto& [name, value] : json.at("figures").items()) record.figures[name] = value;
+  for (const auto& [name, value] : json.at("figures").items()) record.measures[name] = value;
   return record;
 }
 
@@ -156,8 +156,8 @@ RunRecord recordOf(const PlannedRun& run) {
 std::string recordJson(const RunRecord& record) {
   Json factors = Json::object();
   for (const std::string& factor : factorNames()) factors[factor] = record.factors.at(factor);
-  Json figures = Json::object();
-  for (const auto& [name, value] : record.figures) figures[name] = value;
+  Json measures = Json::object();
+  for (const auto& [name, value] : record.measures) measures[name] = value;
   const Json json = {{"schema_version", 1},
                      {"id", record.id},
                      {"factors", factors},
@@ -172,7 +172,7 @@ std::string recordJson(const RunRecord& record) {
                      {"verdict", record::toText(record.verdict)},
                      {"reasons", record.reasons},
                      {"decided_by", record.decided_by},
-                     {"figures", figures}};
+                     {"figures", measures}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -13,45 +13,46 @@
 
 namespace cdiff::evaluation {
 
-// The figures that a batch takes from a session's summary.json, by fixed names.
+// The measures that a batch takes from a session's summary.json, by fixed names.
 
-/// Values by name; a figure that a session does not have is not there.
-using Figures = std::map<std::string, double>;
+/// Values by name; a measure that a session does not have is not there.
+using Measures = std::map<std::string, double>;
 
 /// All names in the order of columns.
-const std::vector<std::string>& figureNames();
+const std::vector<std::string>& measureNames();
 
 /// What a summary says.
 struct SummaryFacts {
   std::string status;
   std::string fault;  ///< text of the last fault, or empty
   record::Outcome verdict = record::Outcome::kError;
-  std::vector<std::string> reasons;     ///< of the verdict
+  std::vector<std::string> reasons;     ///< reasons of the verdict
   std::vector<std::string> decided_by;  ///< rules that decided it
   double simulated_seconds = 0.0;
-  Figures figures;
+  Measures measures;
 };
 
 /// Throws InputError naming `source` for a text that is no summary.
 SummaryFacts readSummary(const std::string& text, const std::string& source);
 
-/// What became of one planned run: record.json in its folder, written whole before the batch begins
-/// (not_run) and again after the run.
+/// What happened to one planned run: record.json in its folder, written whole before the batch
+/// starts (not_run) and again after the run.
 struct RunRecord {
   std::string id;
   Factors factors;
   std::string scenario_sha256;
   InputHashes inputs;              ///< empty in a record of an earlier version
-  std::string status = "not_run";  ///< of the session; or "error", "interrupted", "not_run"
-  std::string cause;               ///< of an error
+  std::string status = "not_run";  ///< status of the session; or "error", "interrupted", "not_run"
+  std::string cause;               ///< cause of an error
   int exit_code = -1;
   int attempts = 0;
-  double wall_seconds = 0.0;  ///< of the last attempt
+  double wall_seconds = 0.0;  ///< duration of the last attempt
   double simulated_seconds = 0.0;
-  record::Outcome verdict = record::Outcome::kError;  ///< of a session that ended by its own rules
-  std::vector<std::string> reasons;                   ///< of the verdict
-  std::vector<std::string> decided_by;                ///< rules that decided it
-  Figures figures;                                    ///< of a session that ended by its own rules
+  record::Outcome verdict =
+      record::Outcome::kError;          ///< verdict on a session that ended by its own rules
+  std::vector<std::string> reasons;     ///< reasons of the verdict
+  std::vector<std::string> decided_by;  ///< rules that decided it
+  Measures measures;                    ///< measures of a session that ended by its own rules
 
   /// Whether the session ended by its own rules.
   bool complete() const;
@@ -75,7 +76,7 @@ std::optional<RunRecord> readRecord(const std::filesystem::path& file);
 /// damaged.
 std::vector<RunRecord> readRecords(const std::filesystem::path& results);
 
-/// Numbers of a summary.json by JSON pointer (`FigureDefinition::place`); lists are left out.
+/// Numbers of a summary.json by JSON pointer (`MeasureDefinition::place`); lists are left out.
 using SummaryNumbers = std::map<std::string, double>;
 
 /// Throws InputError naming `source` for a text that is no JSON object.

@@ -27,7 +27,7 @@ Statistics statisticsOf(const std::vector<double>& samples) {
 
 namespace {
 
-/// Values of one figure in a cell, by seed.
+/// Values of one measure in a cell, by seed.
 using ValuesBySeed = std::map<std::string, std::vector<double>>;
 
 Statistics meanOverSeeds(const ValuesBySeed& values) {
@@ -47,11 +47,11 @@ Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records
     ++cell.runs;
     cell.failed += record->failed();
     cell.missing += !record->failed() && !record->complete();
-    for (const auto& [name, value] : record->figures) {
+    for (const auto& [name, value] : record->measures) {
       values[name][record->factors.at("seed")].push_back(value);
     }
   }
-  for (const auto& [name, by_seed] : values) cell.figures[name] = meanOverSeeds(by_seed);
+  for (const auto& [name, by_seed] : values) cell.measures[name] = meanOverSeeds(by_seed);
   return cell;
 }
 

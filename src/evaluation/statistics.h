@@ -23,14 +23,15 @@ struct Statistics {
 
 Statistics statisticsOf(const std::vector<double>& samples);
 
-/// The runs of a batch that differ in seed and repetition alone, and their figures over seeds.
+/// The runs of a batch that differ in seed and repetition alone, and their measures over seeds.
 struct Cell {
   Factors factors;  ///< without seed and repetition
   std::size_t runs = 0;
   std::size_t failed = 0;   ///< broke
   std::size_t missing = 0;  ///< not run or interrupted
-  /// By figure. Repetitions of a seed are averaged first: n counts the seeds that have the figure.
-  std::map<std::string, Statistics> figures;
+  /// By measure. Repetitions of a seed are averaged first: n counts the seeds that have the
+  /// measure.
+  std::map<std::string, Statistics> measures;
 };
 
 /// In the order in which they first appear.

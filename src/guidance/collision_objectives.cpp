@@ -8,7 +8,7 @@
 namespace cdiff::guidance {
 namespace {
 
-constexpr double kSmallDistance = 0.1;  // [m] gives the distance a derivative where centres meet
+constexpr double kSmallDistance = 0.1;  // [m] gives the distance a derivative where centers meet
 
 /// Derivative of softplus.
 double logistic(double x) {
@@ -76,11 +76,11 @@ std::unique_ptr<Objective> CollisionAvoidanceObjective::clone() const {
 
 void CollisionSeekingObjective::describe(core::OptionsVisitor& visitor) {
   proximity.describe(visitor);
-  visitor.text({"gate", "", "How the pull begins at the trigger distance."}, gate,
+  visitor.text({"gate", "", "How the pull sets in at the trigger distance."}, gate,
                {"smooth", "hard"});
   visitor.number({"trigger_distance", "m", "Distance now up to which it acts fully."},
                  trigger_distance, 0.0, 500.0);
-  visitor.number({"trigger_width", "m", "Way beyond it over which the smooth gate closes."},
+  visitor.number({"trigger_width", "m", "Distance beyond it over which the smooth gate closes."},
                  trigger_width, 0.01, 500.0);
 }
 

@@ -14,11 +14,11 @@ namespace cdiff::guidance {
 double softplus(double x);
 
 /// J_safe = sum_t softplus((d_safe - d_t) / kappa) + lambda exp(-d_t^2 / (2 sigma^2)), d_t =
-/// sqrt(|p_other - p|^2 + 0.1^2) between box centres at row t [m] (paper III-D1, "Collision
-/// Guidance"): what collision avoidance minimises and collision seeking maximises.
-/// d_safe = half diagonal of one box + half diagonal of the other + buffer: boxes whose centres are
+/// sqrt(|p_other - p|^2 + 0.1^2) between box centers at row t [m] (paper III-D1, "Collision
+/// Guidance"): what collision avoidance minimizes and collision seeking maximises.
+/// d_safe = half diagonal of one box + half diagonal of the other + buffer: boxes whose centers are
 /// that far apart cannot touch, whatever their headings. The pull of softplus reaches a few kappa
-/// beyond d_safe and that of the bump a few sigma, so both are metres.
+/// beyond d_safe and that of the bump a few sigma, so both are meters.
 struct Proximity {
   double buffer = 0.5;  ///< [m]
   double kappa = 2.0;   ///< softness of the safety distance [m]
@@ -45,7 +45,7 @@ class CollisionAvoidanceObjective : public Objective {
   std::unique_ptr<Objective> clone() const override;
 };
 
-/// J_risk = -eta(d_ref) J_safe, d_ref = distance of the box centres now [m], J_safe see Proximity
+/// J_risk = -eta(d_ref) J_safe, d_ref = distance of the box centers now [m], J_safe see Proximity
 /// (paper III-D1, eq. 12, J_coll^risk): approaches the other vehicle once it is near.
 /// eta is 1 up to trigger_distance; beyond it 0 (hard), or falls to exactly 0 over trigger_width as
 /// 1 - 3 s^2 + 2 s^3 (smooth). J_risk is bounded below: d_t cannot be negative.
@@ -54,7 +54,7 @@ class CollisionSeekingObjective : public Objective {
   Proximity proximity{0.5, 6.0, 2.0, 8.0};  ///< wide: it must pull from the trigger distance
   std::string gate = "smooth";              ///< smooth | hard
   double trigger_distance = 25.0;           ///< d_th [m]
-  double trigger_width = 10.0;              ///< of the smooth gate [m]
+  double trigger_width = 10.0;              ///< width of the smooth gate [m]
 
   /// eta(d_ref) in [0, 1].
   double gateAt(double distance) const;

@@ -7,7 +7,7 @@ namespace {
 
 /// A point on the box's long axis.
 struct DrivableAreaPoint {
-  double ahead;   ///< of the centre [m]
+  double ahead;   ///< of the center [m]
   double share;   ///< of the row's mean
   double margin;  ///< [m]
 };
@@ -30,8 +30,8 @@ double addPoint(const GuidanceScene& scene, const traffic::Rollout& rollout, Eig
 }  // namespace
 
 void DrivableAreaObjective::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"margin", "m", "Distance to the border from which on the pull begins."}, margin,
-                 0.0, 20.0);
+  visitor.number({"margin", "m", "Distance to the border at which the pull starts."}, margin, 0.0,
+                 20.0);
   visitor.text({"points", "", "Points of the box: its centre, or centre, front and rear."}, points,
                {"center", "bumpers"});
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The table of guidance objectives: those of this package, and those that plug-ins add.
 #pragma once
 
 #include <memory>
@@ -10,6 +9,8 @@
 #include "e2e_cdiff/guidance/objective_descriptor.h"
 
 namespace cdiff::guidance {
+
+// The table of guidance objectives: those of this package, and those that plug-ins add.
 
 /// Adds an objective at the end of the table; `source` says who does ("library /x/libmine.so").
 /// Throws InputError naming `source` for a name that is taken or not snake_case, and for a

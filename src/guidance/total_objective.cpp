@@ -32,15 +32,15 @@ bool TotalObjective::actsAt(int diffusion_step) const {
 double TotalObjective::evaluate(int diffusion_step, const Rollout& rollout, const Rollout& scale,
                                 Rollout& gradient) {
   gradient.setZero(rollout.rows(), traffic::kRolloutColumns);
-  const bool begins = diffusion_step != step_;
+  const bool first_call = diffusion_step != step_;
   step_ = diffusion_step;
   double total = 0.0;
   for (std::size_t i = 0; i < options_.objectives.size(); ++i) {
     if (!options_.objectives[i].actsAt(diffusion_step)) continue;
-    if (!begins && shares_[i] == 0.0) continue;
+    if (!first_call && shares_[i] == 0.0) continue;
     const double value = weighted(i, rollout);
     const double norm = normOf(part_, scale);
-    if (begins) shares_[i] = shareOf(i, value, norm);
+    if (first_call) shares_[i] = shareOf(i, value, norm);
     if (shares_[i] == 0.0) continue;
     if (!std::isfinite(value) || !std::isfinite(norm))
       return std::numeric_limits<double>::infinity();

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// J_total = sum_i c_i w_i J_i of one sample at one diffusion step, with the bookkeeping of
-/// GuidanceReport. c_i = min(1, gradient_cap / |w_i dJ_i/d tau|) where the step begins: value and
-/// gradient stay those of one function within a step. Not finite there -> the objective is left out
-/// of that step and counted.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +20,10 @@ struct Score {
   }
 };
 
+/// J_total = sum_i c_i w_i J_i of one sample at one diffusion step, with the bookkeeping of
+/// GuidanceReport. c_i = min(1, gradient_cap / |w_i dJ_i/d tau|) where the step starts: value and
+/// gradient stay those of one function within a step. Not finite there -> the objective is left out
+/// of that step and counted.
 /// One per sample and decision. References must outlive it.
 class TotalObjective {
  public:
@@ -32,8 +32,8 @@ class TotalObjective {
   /// Whether any objective acts at this diffusion step.
   bool actsAt(int diffusion_step) const;
   /// J_total of a metric rollout; `gradient` (resized to its shape) becomes dJ_total/d(rollout).
-  /// `scale` [T, 7] is the size of a normalised unit in each cell: caps and reported norms are
-  /// those of gradient x scale. The first call of a diffusion step begins it; a later one is
+  /// `scale` [T, 7] is the size of a normalized unit in each cell: caps and reported norms are
+  /// those of gradient x scale. The first call of a diffusion step starts it; a later one is
   /// infinite where an objective is not finite that was so at first.
   double evaluate(int diffusion_step, const traffic::Rollout& rollout,
                   const traffic::Rollout& scale, traffic::Rollout& gradient);
@@ -51,7 +51,7 @@ class TotalObjective {
   };
   /// Weighted value and gradient of one objective, into part_.
   double weighted(std::size_t index, const traffic::Rollout& rollout);
-  /// c_i of a step that begins; 0 to leave the objective out.
+  /// c_i of a step that starts; 0 to leave the objective out.
   double shareOf(std::size_t index, double value, double norm);
   const GuidanceOptions& options_;
   const GuidanceScene& scene_;

@@ -10,8 +10,8 @@
 namespace cdiff::guidance {
 namespace {
 
-constexpr double kSameWay = 60.0;      // [deg]
-constexpr double kSmallRadius = 0.01;  // gives rho a derivative at the other's centre
+constexpr double kSameDirection = 60.0;  // largest difference of headings [deg]
+constexpr double kSmallRadius = 0.01;    // gives rho a derivative at the other's center
 
 /// A and B: reach along and across the other vehicle [m].
 struct Reach {
@@ -42,7 +42,7 @@ bool isAheadInLane(const GuidanceScene& scene, const OtherMotion& other, const R
   const Place now = placeIn(other.now, scene.state.position);
   const double turned = core::angleDifference(scene.state.heading, other.now.heading);
   return now.along < 0.0 && std::abs(now.across) < reach.across &&
-         std::abs(turned) < core::degreesToRadians(kSameWay);
+         std::abs(turned) < core::degreesToRadians(kSameDirection);
 }
 
 Term termBehind(const Place& place, const Reach& reach) {

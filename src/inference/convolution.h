@@ -114,6 +114,7 @@ struct Filter {
   Filter transposed() const;
 };
 
+/// Stride and padding of a one-dimensional convolution [rows]; `spread` makes it a transposed one.
 struct Spacing {
   std::int64_t stride = 1;
   std::int64_t padding = 0;
@@ -134,7 +135,7 @@ class Convolution {
   /// The input has rows / stride (spreading) or rows x stride rows.
   void apply(const View& input, const View& output, std::int64_t rows,
              bool accumulate = false) const;
-  /// Of matrices: every row by itself.
+  /// For matrices: each row separately.
   void applyToRows(const Activation& input, const Activation& output,
                    bool accumulate = false) const;
   /// With padding.

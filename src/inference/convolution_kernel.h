@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Convolution over time for one vector type V, vectorised over output channels. Included once by
-/// each instruction set's source file; everything has internal linkage, so that no code of one
-/// instruction set can be linked into another's.
 #pragma once
 
 #include "inference/denoiser_kernels.h"
 
 namespace cdiff::inference {
+
+// Convolution over time for one vector type V, vectorized over output channels. Included once by
+// each instruction set's source file; everything has internal linkage, so that no code of one
+// instruction set can be linked into another's.
+
 namespace {
 
 /// Where a tile stands.

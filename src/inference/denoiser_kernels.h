@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The arithmetic of the denoiser's layers for one instruction set, one sample at a time: float32,
-/// activations stored [time][channel]. The order of operations of an output element is fixed and
-/// does not depend on how rows are tiled.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +30,7 @@ struct ConvolutionCall {
   bool accumulate = false;
 };
 
-/// Group normalisation of `groups` x `group_channels` channels, then padding up to `channels`.
+/// Group normalization of `groups` x `group_channels` channels, then padding up to `channels`.
 struct NormalizationShape {
   std::int64_t channels = 0;
   std::int64_t groups = 0;
@@ -64,6 +61,9 @@ struct NormalizationGradientCall {
   View input_gradient;
 };
 
+/// The arithmetic of the denoiser's layers for one instruction set, one sample at a time: float32,
+/// activations stored [time][channel]. The order of operations of an output element is fixed and
+/// does not depend on how rows are tiled.
 struct DenoiserKernels {
   std::int64_t block = 0;  ///< outputs of a full block of packed weights
   void (*convolve)(const ConvolutionCall& call);

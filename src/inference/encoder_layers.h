@@ -17,6 +17,7 @@ namespace cdiff::inference {
 // channels last or in blocks of 8 or 16 channels, whichever this machine's convolutions work best
 // on.
 
+/// Shape [channels, height, width] of a feature map.
 struct MapShape {
   std::int64_t channels = 0;
   std::int64_t height = 0;
@@ -56,7 +57,7 @@ class OneThread {
   int before_;
 };
 
-/// Group normalisation of the image encoder in groups of 16 channels, fused with the residual sum
+/// Group normalization of the image encoder in groups of 16 channels, fused with the residual sum
 /// and the ReLU that follow: y = max(0, (x - mean) / sqrt(variance + 1e-5) gain + shift +
 /// residual).
 class EncoderNorm {
@@ -91,6 +92,7 @@ class EncoderNorm {
   std::vector<float> shift_;
 };
 
+/// Stride and padding of a two-dimensional convolution [pixels].
 struct ConvolutionOptions {
   std::int64_t stride = 1;
   std::int64_t padding = 0;

@@ -31,6 +31,7 @@ V exponential(V x) {
   return sum * V::powerOfTwo(shifted);
 }
 
+/// Mish of a vector of values, and its derivative there.
 template <class V>
 struct MishValue {
   V value;
@@ -61,7 +62,7 @@ void mish(const float* input, std::int64_t count, float* output, float* slope) {
 
 }  // namespace
 
-// Group normalisation with Mish, and its pull-back, for one vector type V; see
+// Group normalization with Mish, and its pull-back, for one vector type V; see
 // convolution_kernel.h about linkage.
 
 namespace {

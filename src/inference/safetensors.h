@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Safetensors files: 8 bytes header length (little endian), JSON header, raw tensors. Strict:
-/// every check happens before anything large is allocated.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +10,9 @@
 #include <vector>
 
 namespace cdiff::inference {
+
+// Safetensors files: 8 bytes header length (little endian), JSON header, raw tensors. Strict:
+// every check happens before anything large is allocated.
 
 /// A tensor that a weight file must hold.
 struct TensorShape {
@@ -25,6 +26,7 @@ struct Tensor {
   std::vector<float> values;
 };
 
+/// Content of a safetensors file: metadata, and tensors by name.
 struct SafetensorsFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, Tensor> tensors;
@@ -42,6 +44,7 @@ SafetensorsFile readSafetensors(
     const std::function<std::vector<TensorShape>(const std::map<std::string, std::string>&)>&
         expected);
 
+/// The type in which floating-point tensors are stored: 16 or 32 bits.
 enum class TensorType { kF16, kF32 };
 
 /// Writes atomically, tensors by name, with metadata "sha256" of the data section added, which is

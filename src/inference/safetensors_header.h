@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The JSON header of a safetensors file, checked against the size of the file [bytes]; no tensor
-/// is read here.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +25,14 @@ struct TensorEntry {
   std::uint64_t end = 0;    ///< [byte]
 };
 
+/// The JSON header of a safetensors file, checked against the size of the file [bytes]; no tensor
+/// is read here.
 struct SafetensorsHeader {
   std::map<std::string, std::string> metadata;
   std::vector<TensorEntry> entries;  ///< in the order of the data section, without gap or overlap
 };
 
-/// `source` begins every error; `data_size` is what the file holds after the header.
+/// `source` starts every error; `data_size` is what the file holds after the header.
 SafetensorsHeader parseHeader(std::string_view text, std::uint64_t data_size,
                               const std::string& source);
 

@@ -49,6 +49,8 @@ struct LayerSource {
   std::int64_t halo;
 };
 
+/// A layer of the U-Net that works on one sample of a batch at a time and keeps what its pull-back
+/// needs.
 class Layer {
  public:
   virtual ~Layer() = default;
@@ -98,7 +100,7 @@ class NormalizedConvolution {
   Activation gradient_;  ///< at the convolution's output, of one sample
 };
 
-/// Two normalised convolutions, the injection after the first, plus the input.
+/// Two normalized convolutions, the injection after the first, plus the input.
 class ResidualBlock : public Layer {
  public:
   /// `injection`: its first channel in a row of injections.
@@ -138,7 +140,7 @@ class PlainConvolution : public Layer {
   std::optional<Convolution> reversed_;
 };
 
-/// The head's normalised convolution, with nothing added.
+/// The head's normalized convolution, with nothing added.
 class HeadBlock : public Layer {
  public:
   HeadBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Stored fields of several samples as tensors. B is the number of samples.
 #pragma once
 
 #include <ATen/ATen.h>
@@ -12,6 +11,8 @@
 #include "learning/samples/dataset.h"
 
 namespace cdiff::learning {
+
+// Stored fields of several samples as tensors. B is the number of samples.
 
 /// A field of several samples.
 struct FieldBatch {

@@ -42,8 +42,8 @@ CurveLog::CurveLog(const std::string& output, std::string stage, std::int64_t st
   file_.open(path_, std::ios::app);
 }
 
-void CurveLog::add(std::int64_t step, double seconds, const Figures& figures) {
-  for (const auto& [name, value] : figures) {
+void CurveLog::add(std::int64_t step, double seconds, const Measures& measures) {
+  for (const auto& [name, value] : measures) {
     file_ << core::csvRow({stage_, std::to_string(step), core::formatFixed(seconds, 1), name,
                            core::formatNumber(value)});
   }

@@ -10,21 +10,21 @@
 
 namespace cdiff::learning {
 
-// What is recorded of a training: figures by name.
+// What is recorded of a training: measures by name.
 
 /// Names and values; the unit is in the name.
-using Figures = std::map<std::string, double>;
+using Measures = std::map<std::string, double>;
 
 /// The course of training as `curves.csv` in the output folder: stage, step, seconds of training,
-/// figure, value; `cdiff report --training` draws it.
+/// measure, value; `cdiff report --training` draws it.
 class CurveLog {
  public:
   /// Keeps the rows of other stages and those of this stage up to `step`, so that a resumed stage
   /// goes on where its checkpoint stands. Throws InputError when the file cannot be written.
   CurveLog(const std::string& output, std::string stage, std::int64_t step);
 
-  /// One row for each figure, on disk at once. Throws InputError, as when the disk is full.
-  void add(std::int64_t step, double seconds, const Figures& figures);
+  /// One row for each measure, on disk at once. Throws InputError, as when the disk is full.
+  void add(std::int64_t step, double seconds, const Measures& measures);
 
  private:
   std::filesystem::path path_;

@@ -77,8 +77,8 @@ std::string modelCard(const json& facts, const TrainedModel& model) {
   card << "\nMachine: " << facts["machine"].get<std::string>() << ", " << facts["threads"]
        << " thread(s), device " << facts["device"].get<std::string>() << ", libtorch "
        << facts["torch"].get<std::string>() << ", seed " << facts["seed"]
-       << ".\n\n## Held-out figures\n\n"
-       << model.figures;
+       << ".\n\n## Held-out measures\n\n"
+       << model.measures;
   return card.str();
 }
 

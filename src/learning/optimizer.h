@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// AdamW with a moving average of the weights: m = b1 m + (1-b1) g, v = b2 v + (1-b2) g^2,
-/// w -= r (m' / (sqrt(v') + 1e-8) + decay w), m', v' corrected for their start; average += (1-d)
-/// (w - average), d = min(average_decay, (1+n)/(10+n)). Decay acts on tensors of two dimensions and
-/// more.
 #pragma once
 
 #include <ATen/ATen.h>
@@ -12,11 +8,16 @@
 
 namespace cdiff::learning {
 
+/// Weight decay, and the decay per step of the moving average of the weights.
 struct OptimizerOptions {
   double weight_decay = 1e-4;
   double average_decay = 0.999;
 };
 
+/// AdamW with a moving average of the weights: m = b1 m + (1-b1) g, v = b2 v + (1-b2) g^2,
+/// w -= r (m' / (sqrt(v') + 1e-8) + decay w), m', v' corrected for their start; average += (1-d)
+/// (w - average), d = min(average_decay, (1+n)/(10+n)). Decay acts on tensors of two dimensions and
+/// more.
 class Optimizer {
  public:
   Optimizer(std::vector<at::Tensor> parameters, const OptimizerOptions& options);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Named tensors of a network in the order of their declaration, and what a layer does with them.
 #pragma once
 
 #include <ATen/ATen.h>
@@ -14,6 +13,8 @@
 
 namespace cdiff::learning {
 
+// Named tensors of a network in the order of their declaration, and what a layer does with them.
+
 /// How a tensor starts.
 struct Start {
   enum class Kind { kConstant, kUniform };
@@ -21,6 +22,8 @@ struct Start {
   double value = 0.0;  ///< the constant, or the bound of the absolute value
 };
 
+/// The weights of a network with gradients, by name: declared once, drawn from a seeded stream,
+/// loaded and saved as safetensors.
 class ParameterSet {
  public:
   explicit ParameterSet(const core::RandomStream& start) : start_(start) {}

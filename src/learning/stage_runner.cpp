@@ -133,12 +133,12 @@ double StageRunner::rate() const {
 }
 
 void StageRunner::record(const Loss& loss, double norm, double samples_per_second) {
-  Figures figures = {{"loss", result_.loss},
-                     {"gradient_norm", norm},
-                     {"learning_rate", rate()},
-                     {"samples_per_second", samples_per_second}};
-  for (const auto& [name, term] : loss.terms) figures["loss_" + name] = term.item<double>();
-  curves_->add(result_.steps, seconds(), figures);
+  Measures measures = {{"loss", result_.loss},
+                       {"gradient_norm", norm},
+                       {"learning_rate", rate()},
+                       {"samples_per_second", samples_per_second}};
+  for (const auto& [name, term] : loss.terms) measures["loss_" + name] = term.item<double>();
+  curves_->add(result_.steps, seconds(), measures);
 }
 
 /// Against what ends the stage first at this pace: its steps or the time limit.
@@ -176,7 +176,7 @@ void StageRunner::judge() {
   for (const auto& [name, value] : result_.held_out)
     log_ << " " << name << " " << formatFixed(value, 3);
   log_ << std::endl;
-  Figures named;
+  Measures named;
   for (const auto& [name, value] : result_.held_out) named["held_out_" + name] = value;
   curves_->add(result_.steps, seconds(), named);
 }
@@ -220,15 +220,15 @@ void StageRunner::readFacts(const json& facts, const std::string& source) {
   for (const auto& [key, value] : expected.items()) {
     if (!facts.contains(key) || facts.at(key) == value) continue;
     const std::string found = facts.at(key).dump();
-    const bool tells = std::max(found.size(), value.dump().size()) <= kLongestFact;
+    const bool short_enough = std::max(found.size(), value.dump().size()) <= kLongestFact;
     throw InputError(
         source + ": was trained with " +
-        (tells ? key + " " + found + ", this run has " + value.dump() : "another " + key) +
+        (short_enough ? key + " " + found + ", this run has " + value.dump() : "another " + key) +
         "; --resume cannot go on from it");
   }
   result_.steps = facts.at("steps");
   result_.loss = facts.at("loss").is_number() ? facts.at("loss").get<double>() : 0.0;
-  result_.held_out = facts.at("held_out").get<Figures>();
+  result_.held_out = facts.at("held_out").get<Measures>();
   seconds_before_ = facts.at("seconds");
   result_.seconds = seconds_before_;
 }

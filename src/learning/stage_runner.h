@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Runs a stage: steps, learning rate, log, validation, checkpoints, resumption.
 #pragma once
 
 #include <atomic>
@@ -28,9 +27,10 @@ struct StageResult {
   std::int64_t steps = 0;
   double seconds = 0.0;
   double loss = 0.0;  ///< running mean of the last steps
-  Figures held_out;   ///< of the averaged weights
+  Measures held_out;  ///< measures of the averaged weights on held-out samples
 };
 
+/// Runs a stage: steps, learning rate, log, validation, checkpoints, resumption.
 class StageRunner {
  public:
   /// `facts` go into every checkpoint and must be the same in one that is resumed, as must seed and

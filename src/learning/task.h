@@ -28,7 +28,7 @@ struct Loss {
   std::vector<std::pair<std::string, at::Tensor>> terms;
 };
 
-/// Weights that a stage trains; their names in checkpoints begin with `name`.
+/// Weights that a stage trains; their names in checkpoints start with `name`.
 struct TrainedPart {
   std::string name;
   ParameterSet* parameters;
@@ -46,8 +46,8 @@ class Stage {
   virtual Loss loss(std::int64_t step) = 0;
   /// Samples of a step, for messages.
   virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
-  /// Figures on held-out samples.
-  virtual Figures judge() = 0;
+  /// Measures on held-out samples.
+  virtual Measures judge() = 0;
 };
 
 /// Which checkpoints give a part of the weights.
@@ -55,14 +55,15 @@ struct PartSource {
   std::string part;                 ///< TrainedPart::name
   std::string what;                 ///< for messages, "an encoder"
   std::vector<std::string> stages;  ///< whose checkpoints hold it, the best first
-  std::string first;  ///< stage to train first where none is there; empty: the part begins anew
+  std::string first;  ///< stage to train first where none is there; empty: the part starts over
 };
 
+/// What is known of a stage before it runs: its name, the parts it starts with, and what it leaves.
 struct StageInfo {
   std::string name;
-  std::vector<PartSource> starts;  ///< what the stage begins with
+  std::vector<PartSource> starts;  ///< what the stage starts with
   bool makes_model = true;         ///< false: it leaves a checkpoint only
-  std::vector<PartSource> rest;    ///< of the model, what the stage neither trains nor begins with
+  std::vector<PartSource> rest;    ///< of the model, what the stage neither trains nor starts with
   std::string next;                ///< what to do next where no model is written
 };
 
@@ -87,10 +88,10 @@ struct WeightFile {
 /// What a task leaves behind.
 struct TrainedModel {
   std::vector<WeightFile> files;  ///< written as F16
-  Figures held_out;
-  nlohmann::json settings = nlohmann::json::object();  ///< of the task, for the record
-  std::string title;                                   ///< of the model card
-  std::string figures;                                 ///< of the model card, Markdown
+  Measures held_out;
+  nlohmann::json settings = nlohmann::json::object();  ///< settings of the task, for the record
+  std::string title;                                   ///< title of the model card
+  std::string measures;                                ///< measures in the model card, Markdown
 };
 
 /// Texts of the task in `cdiff train --help`.
@@ -124,11 +125,11 @@ class Task {
 
   /// Makes the networks, with the weights of the initial model where the options name one; before
   /// all that follows, whose calls `run` outlives. Throws InputError.
-  virtual void begin(const TrainingRun& run) = 0;
+  virtual void start(const TrainingRun& run) = 0;
   /// What goes into every checkpoint, and must be the same in one that is resumed.
   virtual nlohmann::json facts() const = 0;
   virtual std::vector<TrainedPart> parts() = 0;
-  /// A stage, once the parts that it begins with are loaded.
+  /// A stage, once the parts that it starts with are loaded.
   virtual std::unique_ptr<Stage> makeStage(const std::string& name) = 0;
   virtual TrainedModel finish() = 0;
 };

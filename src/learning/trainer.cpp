@@ -76,7 +76,7 @@ class Trainer {
              log} {}
 
   void run() {
-    task_.begin(run_);
+    task_.start(run_);
     removeEarlier(training_);
     std::vector<std::string> stages = {options_.stage};
     if (options_.stage == "all") stages = task_.allStages();
@@ -146,7 +146,7 @@ class Trainer {
       if (results_.count(stage.name) != 0 || !fs::exists(path)) continue;
       const nlohmann::json facts = readCheckpoint(path).facts;
       results_[stage.name] = {facts.at("steps"), facts.at("seconds"), facts.at("loss"),
-                              facts.at("held_out").get<Figures>()};
+                              facts.at("held_out").get<Measures>()};
     }
   }
 

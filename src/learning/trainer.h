@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Trains a task in its stages. Each stage starts from the averaged weights of the checkpoints in
-/// the output folder.
 #pragma once
 
 #include <atomic>
@@ -10,6 +8,9 @@
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
+
+// Trains a task in its stages. Each stage starts from the averaged weights of the checkpoints in
+// the output folder.
 
 /// Runs the stage, or all of them, and writes the model (weight files, `training.json`,
 /// `model_card.md`) where its parts are whole. `stop`, set from another thread or a signal, ends it

@@ -102,7 +102,7 @@ bool hasAny(const TrainingOptions& options, const Names& stages) {
                      [&](const std::string& stage) { return hasCheckpoint(options, stage); });
 }
 
-/// Stages that the run trains anew. Those of an earlier training that `all` leaves out count, too:
+/// Stages that the run trains again. Those of an earlier training that `all` leaves out count, too:
 /// its later stages would start from them.
 Names trainedStages(const Training& training) {
   const std::string& stage = training.options.stage;

@@ -34,7 +34,7 @@ Checkpoint readCheckpoint(const std::filesystem::path& path);
 
 /// Checkpoint of a stage in the output folder.
 std::filesystem::path checkpointPath(const std::string& output, const std::string& stage);
-/// What a stage of the task, or `export`, begins with; nothing for `all`.
+/// What a stage of the task, or `export`, starts with; nothing for `all`.
 std::vector<PartSource> sourcesOf(const Task& task, const std::string& stage);
 
 /// Throws InputError unless the folder has what the stage starts from, or `init` is given.

@@ -24,11 +24,11 @@ struct TrainingOptions {
   std::string data;            ///< folder with *.shard
   std::string output;          ///< folder for checkpoints and the model
   std::string init;            ///< model to start from where no checkpoint is; empty: none
-  std::int64_t steps = 20000;  ///< of the stage
+  std::int64_t steps = 20000;  ///< steps of the stage
   std::int64_t batch = 0;      ///< samples per step; 0: what the stage takes by itself
   std::int64_t threads = 1;
   std::int64_t seed = 1;
-  double time_limit = 0.0;      ///< of the stage's steps, over all resumptions [s]; 0: none
+  double time_limit = 0.0;  ///< time limit of the stage's steps, over all resumptions [s]; 0: none
   bool anneal_by_time = false;  ///< learning rate falls with time instead of steps
   bool resume = false;          ///< the stage goes on from its checkpoint if there is one
   bool overwrite = false;       ///< the stage replaces an earlier training
@@ -37,8 +37,8 @@ struct TrainingOptions {
   double weight_decay = 1e-4;
   std::int64_t warm_up = 500;     ///< steps
   double clip = 1.0;              ///< norm of the gradient
-  double average_decay = 0.999;   ///< of the moving average of the weights, at most
-  double validation_share = 0.1;  ///< of the sessions
+  double average_decay = 0.999;   ///< decay of the moving average of the weights, at most
+  double validation_share = 0.1;  ///< share of the sessions that is held out
   std::int64_t validation_samples = 256;
   std::int64_t validation_every = 1000;  ///< steps
   double checkpoint_every = 300.0;       ///< [s]

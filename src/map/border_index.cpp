@@ -96,7 +96,7 @@ constexpr double kTieTolerance = 1e-10;  // relative, of squared distances
 
 /// Nearest segment so far. Where the nearest point is a vertex, its segments tie; the one that the
 /// point lies farthest beside is the one that bounds the point's sector around the vertex, so its
-/// side tells inside from outside.
+/// side distinguishes inside from outside.
 struct BorderIndex::Nearest {
   const Segment* segment = nullptr;
   double squared = std::numeric_limits<double>::infinity();
@@ -148,7 +148,7 @@ void BorderIndex::build(std::uint32_t node, const Square& square,
   for (std::size_t i = 0; i < from_parent.size(); ++i) {
     distances[i] = distance(segments_[from_parent[i]], square.center);
   }
-  // A segment nearest to a point at most r from the centre is at most least + 2 r from the centre.
+  // A segment nearest to a point at most r from the center is at most least + 2 r from the center.
   const double least = *std::min_element(distances.begin(), distances.end());
   const double limit = least + 2.0 * std::sqrt(2.0) * square.half + 1e-6;
   std::vector<SegmentIndex> kept;

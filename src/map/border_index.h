@@ -18,7 +18,7 @@ using Ring = std::vector<Eigen::Vector2d>;
 
 /// A band of constant width around a line, cut off square at its ends.
 struct Strip {
-  std::vector<Eigen::Vector2d> line;  ///< centre line, map frame [m]
+  std::vector<Eigen::Vector2d> line;  ///< centerline, map frame [m]
   double width = 0.0;                 ///< [m]
 };
 

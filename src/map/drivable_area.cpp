@@ -92,7 +92,7 @@ Strip lanePart(const Lane& lane, double begin, double end) {
   return strip;
 }
 
-/// Union of the chosen pieces; neighbouring pieces of a lane form one strip.
+/// Union of the chosen pieces; neighboring pieces of a lane form one strip.
 std::vector<Ring> outlineOf(const RoadNetwork& network, const std::vector<Piece>& pieces,
                             const std::vector<bool>& chosen) {
   std::vector<Strip> strips;
@@ -116,7 +116,7 @@ std::vector<Ring> outlineOf(const RoadNetwork& network, const std::vector<Piece>
 
 }  // namespace
 
-/// The area between two heights (equal unless neighbouring heights hold the same pieces).
+/// The area between two heights (equal unless neighboring heights hold the same pieces).
 struct DrivableArea::Level {
   Level(double height, std::vector<Ring> outline)
       : lowest(height), highest(height), rings(std::move(outline)), index(rings) {}

@@ -14,7 +14,7 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kGate = 1.5;           // [m] to the centre line
+constexpr double kGate = 1.5;           // [m] to the centerline
 constexpr double kLevelHeight = 3.0;    // [m]
 constexpr double kDistanceScale = 0.5;  // [m] a distance of so much costs 1
 constexpr double kStubLength = 0.05;    // [m] lanes shorter than this have no reliable heading
@@ -230,9 +230,9 @@ class RouteMatcher {
   [[noreturn]] void fail(std::size_t reached) const {
     const InputPoint& from = points_[reached];
     const InputPoint& to = points_[reached + 1];
-    throw core::InputError("no lane-connected way from point " + std::to_string(from.index) + " " +
-                           toText(from.position) + " to point " + std::to_string(to.index) + " " +
-                           toText(to.position));
+    throw core::InputError("no lane-connected route from point " + std::to_string(from.index) +
+                           " " + toText(from.position) + " to point " + std::to_string(to.index) +
+                           " " + toText(to.position));
   }
 
   static double squared(double value) { return value * value; }

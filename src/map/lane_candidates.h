@@ -16,10 +16,10 @@ namespace cdiff::map {
 /// A lane that a point may lie on.
 struct LaneCandidate {
   LanePosition position;
-  double cost = 0.0;  ///< grows with the distance to the centre line and the heading difference
+  double cost = 0.0;  ///< grows with the distance to the centerline and the heading difference
 };
 
-/// A point of the input; neighbours that coincide have been merged.
+/// A point of the input; neighbors that coincide have been merged.
 struct InputPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::size_t index = 0;  ///< in the input
@@ -32,7 +32,7 @@ std::string toText(const Eigen::Vector3d& point);
 /// two remain or a coordinate is not finite.
 std::vector<InputPoint> distinctPoints(const std::vector<Eigen::Vector3d>& points, double distance);
 
-/// Finds candidates: lanes whose centre line is within 1.5 m or whose half width covers the point,
+/// Finds candidates: lanes whose centerline is within 1.5 m or whose half width covers the point,
 /// on the point's level.
 class CandidateFinder {
  public:
@@ -57,7 +57,7 @@ class CandidateFinder {
 /// Candidates of each point, in order.
 using CandidateLayers = std::vector<std::vector<LaneCandidate>>;
 /// Cost from a candidate of layer i to each candidate of layer i + 1; infinity where there is no
-/// way.
+/// route.
 using TransitionCosts =
     std::function<std::vector<double>(std::size_t layer, const LaneCandidate& from)>;
 

@@ -44,7 +44,7 @@ class Continuation {
     path_.lanes.push_back(lane);
   }
 
-  /// Adds lanes until `length` metres lie beyond `begin` on the first lane and the last lies
+  /// Adds lanes until `length` meters lie beyond `begin` on the first lane and the last lies
   /// outside junctions.
   void extend(double begin, double length) {
     double end = network_.lane(path_.lanes.front()).centerline.length() - begin;
@@ -62,7 +62,7 @@ class Continuation {
     surplus_ = std::max(0.0, end - goal);
   }
   const LanePath& path() const { return path_; }
-  /// Where the way ends on its last lane [m].
+  /// Where the route ends on its last lane [m].
   double goal() const {
     return std::max(0.0, network_.lane(path_.lanes.back()).centerline.length() - surplus_);
   }
@@ -71,7 +71,7 @@ class Continuation {
   bool addNext() {
     const LaneIndex here = path_.lanes.back();
     LaneIndex best = straightest(here);
-    if (best == kNoLane) {  // the lane ends: change to a neighbour that goes on
+    if (best == kNoLane) {  // the lane ends: change to a neighbor that goes on
       const Lane& lane = network_.lane(here);
       for (const LaneIndex beside : {lane.right, lane.left}) {
         if (beside == kNoLane || best != kNoLane) continue;
@@ -160,14 +160,14 @@ std::vector<double> LaneGraph::distancesFrom(const LanePosition& start, double m
   const LaneSearch search(network_, start, limitsOf(max_length, lane_changes, turn_rounds_));
   std::vector<double> lengths(network_.lanes().size());
   for (std::size_t i = 0; i < lengths.size(); ++i) {
-    lengths[i] = search.lengthToBegin(static_cast<LaneIndex>(i));
+    lengths[i] = search.lengthToStart(static_cast<LaneIndex>(i));
   }
   return lengths;
 }
 
 Route LaneGraph::toRoute(const LanePath& path, double start_arc_length,
                          double goal_arc_length) const {
-  if (path.lanes.empty()) throw core::InputError("a way without lanes cannot become a route");
+  if (path.lanes.empty()) throw core::InputError("a route needs at least one lane");
   std::vector<LaneStretch> drive;
   appendPath(network_, path, start_arc_length, goal_arc_length, drive);
   return buildRoute(network_, drive);
@@ -187,7 +187,7 @@ Route LaneGraph::extended(const Route& route, double length) const {
   const Route rest = toRoute(continuation.path(), begin, continuation.goal());
   std::vector<Eigen::Vector3d> points = route.path().points();
   std::vector<LaneIndex> lanes = route.lanes();
-  // The first metre joins the route's last point, which may lie beside the centre line.
+  // The first meter joins the route's last point, which may lie beside the centerline.
   for (std::size_t i = 1; i < rest.lanes().size(); ++i) {
     points.push_back(rest.path().points()[i]);
     lanes.push_back(rest.lanes()[i]);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Shortest lane-connected ways: along lanes, through junctions, and (with a small penalty) to
-/// neighbouring lanes.
 #pragma once
 
 #include <optional>
@@ -17,10 +15,10 @@ namespace cdiff::map {
 /// A place on a lane.
 struct LanePosition {
   LaneIndex lane = kNoLane;
-  double arc_length = 0.0;  ///< along the lane's centre line [m]
+  double arc_length = 0.0;  ///< along the lane's centerline [m]
 };
 
-/// Lanes in driving order; neighbours in the list follow each other or lie side by side (a lane
+/// Lanes in driving order; neighbors in the list follow each other or lie side by side (a lane
 /// change).
 struct LanePath {
   std::vector<LaneIndex> lanes;
@@ -37,7 +35,9 @@ TurnRounds turnRounds(const RoadNetwork& network);
 /// How many there are and the lanes of the first few, for people; empty when there is none.
 std::string turnRoundText(const RoadNetwork& network);
 
-/// Ways of the graph use no connection that turns round, but for those allowed.
+/// Shortest lane-connected routes: along lanes, through junctions, and (with a small penalty) to
+/// neighboring lanes.
+/// Routes of the graph use no connection that turns round, but for those allowed.
 class LaneGraph {
  public:
   /// Keeps a reference: the network must outlive the graph.
@@ -46,9 +46,9 @@ class LaneGraph {
   /// The graph with the turns round that a route of the network makes.
   LaneGraph allowingTurnsOf(const Route& route) const;
 
-  /// Shortest way between two places over routable lanes (the start's and the goal's lane always
+  /// Shortest route between two places over routable lanes (the start's and the goal's lane always
   /// count); nullopt when there is none no longer than `max_length` [m]. `lane_changes` allows
-  /// changes to neighbouring lanes; a change ranks as 5 m, more on lanes shorter than 25 m and
+  /// changes to neighboring lanes; a change ranks as 5 m, more on lanes shorter than 25 m and
   /// inside junctions. Its length is not driven.
   std::optional<LanePath> shortestPath(const LanePosition& start, const LanePosition& goal,
                                        double max_length, bool lane_changes = true) const;
@@ -60,12 +60,12 @@ class LaneGraph {
   std::vector<double> distancesFrom(const LanePosition& start, double max_length,
                                     bool lane_changes = true) const;
 
-  /// Points about 1 m apart along a way, from `start` to `goal_arc_length` on the last lane. Lane
-  /// changes are blended over up to 25 m, corners of centre lines rounded over 1.5 m to both sides,
+  /// Points about 1 m apart along a route, from `start` to `goal_arc_length` on the last lane. Lane
+  /// changes are blended over up to 25 m, corners of centerlines rounded over 1.5 m to both sides,
   /// and jogs left out where lanes overlap (the route is then shorter than the path's length).
   Route toRoute(const LanePath& path, double start_arc_length, double goal_arc_length) const;
 
-  /// The route lengthened to at least `length` metres and beyond the junction it would end in,
+  /// The route lengthened to at least `length` meters and beyond the junction it would end in,
   /// going straight on where it can (ties by lane index); shorter where the network ends.
   Route extended(const Route& route, double length) const;
 

@@ -133,7 +133,7 @@ std::optional<LanePath> LaneSearch::pathTo(const LanePosition& goal) const {
   return path;
 }
 
-double LaneSearch::lengthToBegin(LaneIndex lane) const {
+double LaneSearch::lengthToStart(LaneIndex lane) const {
   const auto node = static_cast<std::size_t>(lane);
   if (lane == start_.lane) return driven_[node];
   const double abreast = driven_[count() + node];
@@ -148,8 +148,8 @@ constexpr double kChangeStretch = 60.0;  // [m] a change happens within so much 
 struct SideBySide {
   std::size_t first = 0;
   std::size_t last = 0;
-  double begin = 0.0;  ///< arc length on the first where the way enters [m]
-  double end = 0.0;    ///< arc length on the last where the way leaves [m]
+  double begin = 0.0;  ///< arc length on the first where the route enters [m]
+  double end = 0.0;    ///< arc length on the last where the route leaves [m]
 };
 
 /// An arc length on the lane at place `from` of a path, carried over to the lane at place `to`

@@ -12,16 +12,16 @@ namespace cdiff::map {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of a lane's centre line [m].
+/// Of a lane's centerline [m].
 inline double lengthOf(const RoadNetwork& network, LaneIndex lane) {
   return network.lane(lane).centerline.length();
 }
 
-/// Ranking penalty of a change to the neighbour of a lane of which `available` metres are left [m]:
+/// Ranking penalty of a change to the neighbor of a lane of which `available` meters are left [m]:
 /// 5, more where that is too short to change comfortably, and inside junctions.
 double laneChangePenalty(const Lane& lane, double available);
 
-/// Arc length on a neighbouring lane abreast of an arc length on `from` [m].
+/// Arc length on a neighboring lane abreast of an arc length on `from` [m].
 double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length,
                         LaneIndex to);
 
@@ -42,18 +42,18 @@ class LaneSearch {
  public:
   LaneSearch(const RoadNetwork& network, const LanePosition& start, const SearchLimits& limits);
 
-  /// The best way to a place.
+  /// The best route to a place.
   struct Arrival {
     double rank = std::numeric_limits<double>::infinity();    ///< driven length with penalties [m]
     double driven = std::numeric_limits<double>::infinity();  ///< [m]
-    int node = -1;                                            ///< internal; -1 when there is no way
+    int node = -1;  ///< internal; -1 when there is no route
   };
   Arrival arrivalAt(const LanePosition& goal) const;
   std::optional<LanePath> pathTo(const LanePosition& goal) const;
 
-  /// Driven length from the start to the beginning of a lane [m]: negative beside the start,
+  /// Driven length from the start to the start of a lane [m]: negative beside the start,
   /// infinity when not reached; for the start's own lane that of the way round.
-  double lengthToBegin(LaneIndex lane) const;
+  double lengthToStart(LaneIndex lane) const;
 
  private:
   // Node n < lane count: lane n entered at its beginning. Node lane count + n: lane n abreast of

@@ -61,7 +61,7 @@ double headingAtEnd(const std::vector<Eigen::Vector3d>& shape) {
   return 0.0;
 }
 
-double beginHeading(const std::vector<Eigen::Vector3d>& shape) {
+double startHeading(const std::vector<Eigen::Vector3d>& shape) {
   for (std::size_t i = 1; i < shape.size(); ++i) {
     const Eigen::Vector3d along = shape[i] - shape.front();
     if (along.head<2>().norm() >= kDistinctPoints) return std::atan2(along.y(), along.x());
@@ -254,7 +254,7 @@ void NetworkReader::link(LaneIndex from, const LaneLink& connection) {
 }
 
 /// Internal lanes normally have connections of their own; where a file leaves them out, the
-/// connection that passes through tells where they lead.
+/// connection that passes through shows where they lead.
 void NetworkReader::continueInternalLanes() {
   std::vector<bool> open(network_.lanes_.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = network_.lanes_[i].next.empty();
@@ -278,7 +278,7 @@ double NetworkReader::headingAround(LaneIndex index) const {
   }
   for (const LaneLink& next : lane.next) {
     const auto& shape = shapes_[static_cast<std::size_t>(next.to)];
-    if (!degenerate(shape)) return beginHeading(shape);
+    if (!degenerate(shape)) return startHeading(shape);
   }
   return 0.0;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Reads a SUMO *.net.xml text into a RoadNetwork (map frame [m]).
 #pragma once
 
 #include <string>
@@ -15,6 +14,7 @@ class xml_node;
 
 namespace cdiff::map {
 
+/// Reads a SUMO *.net.xml text into a RoadNetwork (map frame [m]).
 class NetworkReader {
  public:
   /// `name` is used in errors.

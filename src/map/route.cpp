@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDistinct = 1e-3;  // [m] as Polyline merges
 
-/// What happens between two neighbouring points of a route.
+/// What happens between two neighboring points of a route.
 struct Step {
   double begin = 0.0;  ///< arc length of the first point [m]
   double end = 0.0;    ///< arc length of the second point [m]
@@ -86,7 +86,7 @@ void Route::noteJunctions() {
 void Route::noteEdge(const Lane& lane, double arc_length) {
   if (lane.internal || (!edges_.empty() && edges_.back() == lane.edge_id)) return;
   edges_.push_back(lane.edge_id);
-  edge_begins_.push_back(arc_length);
+  edge_starts_.push_back(arc_length);
 }
 
 /// Edges, signals and lane changes between point `i` and the one before it.

@@ -12,13 +12,13 @@
 namespace cdiff::map {
 namespace {
 
-/// A lane of one edge of the list and the cheapest way to it.
+/// A lane of one edge of the list and the cheapest route to it.
 struct EdgeLane {
   LaneIndex lane = kNoLane;
   double cost = kInfinity;
   std::vector<LaneIndex> before;  ///< lanes between the lane that it is reached from and itself
   std::size_t parent = 0;         ///< place of that lane in its own layer
-  bool beside = false;            ///< reached from a neighbour of the same edge
+  bool beside = false;            ///< reached from a neighbor of the same edge
 };
 
 /// Chooses one lane row through a list of edges: connected, and with the fewest lane changes.
@@ -80,13 +80,13 @@ class EdgeRow {
                            edges_[i + 1] + "'" + successorsText(edges_[i]));
   }
 
-  /// Follows links through the junction after edge `i`; `way` starts with the lane left and ends
+  /// Follows links through the junction after edge `i`; `route` starts with the lane left and ends
   /// with the lane reached.
-  void follow(std::size_t i, std::size_t from, const std::vector<LaneIndex>& way) {
-    for (const LaneLink& link : network_.lane(way.back()).next) {
+  void follow(std::size_t i, std::size_t from, const std::vector<LaneIndex>& lanes) {
+    for (const LaneLink& link : network_.lane(lanes.back()).next) {
       const Lane& next = network_.lane(link.to);
       if (!next.allows_cars) continue;
-      std::vector<LaneIndex> longer = way;
+      std::vector<LaneIndex> longer = lanes;
       if (next.internal) {
         longer.push_back(link.to);
         follow(i, from, longer);
@@ -94,7 +94,7 @@ class EdgeRow {
       }
       for (EdgeLane& lane : layers_[i + 1]) {
         if (lane.lane != link.to || layers_[i][from].cost >= lane.cost) continue;
-        lane = {lane.lane, layers_[i][from].cost, {way.begin() + 1, way.end()}, from, false};
+        lane = {lane.lane, layers_[i][from].cost, {lanes.begin() + 1, lanes.end()}, from, false};
       }
     }
   }
@@ -162,7 +162,7 @@ Route routeAlongEdges(const LaneGraph& graph, const std::vector<std::string>& ed
   }
   if (goal <= (edges.size() == 1 ? start_offset : 0.0)) {
     fail(edges.back(), last_length,
-         "end_offset " + core::formatNumber(end_offset) + " m leaves no way to drive on it");
+         "end_offset " + core::formatNumber(end_offset) + " m leaves no distance to drive on it");
   }
   return graph.toRoute(path, start_offset, goal);
 }

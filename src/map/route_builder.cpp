@@ -18,15 +18,15 @@ constexpr double kPointSpacing = 1.0;        // [m] of the finished route
 constexpr double kSamePoint = 1e-3;          // [m]
 
 /// Connected lanes without a change, prolonged at both ends along lanes that run beside the rest of
-/// the way.
+/// the route.
 struct Run {
   std::vector<Eigen::Vector3d> points;
-  std::vector<std::pair<double, LaneIndex>> lane_begins;  ///< arc length where each lane begins
+  std::vector<std::pair<double, LaneIndex>> lane_starts;  ///< arc length where each lane starts
   geometry::Polyline line;
   double in = 0.0;   ///< arc length at which the run is entered
   double out = 0.0;  ///< arc length at which the run is left
 
-  /// Adds a part of a lane and returns the arc length at which it begins.
+  /// Adds a part of a lane and returns the arc length at which it starts.
   double append(const RoadNetwork& network, const LaneStretch& stretch);
   LaneIndex laneAt(double arc_length) const;
 
@@ -46,7 +46,7 @@ double Run::append(const RoadNetwork& network, const LaneStretch& stretch) {
   const geometry::Polyline& lane = network.lane(stretch.lane).centerline;
   addPoint(lane.pointAt(stretch.begin));
   const double begin = length_;
-  lane_begins.emplace_back(begin, stretch.lane);
+  lane_starts.emplace_back(begin, stretch.lane);
   for (std::size_t i = 0; i < lane.points().size(); ++i) {
     const double arc_length = lane.arcLengths()[i];
     if (arc_length > stretch.begin && arc_length < stretch.end) addPoint(lane.points()[i]);
@@ -56,8 +56,8 @@ double Run::append(const RoadNetwork& network, const LaneStretch& stretch) {
 }
 
 LaneIndex Run::laneAt(double arc_length) const {
-  LaneIndex found = lane_begins.front().second;
-  for (const auto& [begin, lane] : lane_begins) {
+  LaneIndex found = lane_starts.front().second;
+  for (const auto& [begin, lane] : lane_starts) {
     if (begin <= arc_length) found = lane;
   }
   return found;
@@ -133,7 +133,7 @@ Run RouteBuilder::makeRun(std::size_t first, std::size_t last) const {
   return run;
 }
 
-/// Lanes that lead to the first lane of a run and lie beside the way that is driven before the
+/// Lanes that lead to the first lane of a run and lie beside the route that is driven before the
 /// change to it.
 std::vector<LaneStretch> RouteBuilder::lanesBefore(std::size_t first) const {
   std::vector<LaneStretch> lanes;
@@ -154,8 +154,8 @@ std::vector<LaneStretch> RouteBuilder::lanesBefore(std::size_t first) const {
   return lanes;
 }
 
-/// Lanes that follow the last lane of a run and lie beside the way that is driven after the change
-/// away from it.
+/// Lanes that follow the last lane of a run and lie beside the route that is driven after the
+/// change away from it.
 std::vector<LaneStretch> RouteBuilder::lanesAfter(std::size_t last) const {
   std::vector<LaneStretch> lanes;
   if (last + 1 >= drive_.size()) return lanes;
@@ -255,7 +255,7 @@ void RouteBuilder::dropOverlaps() {
   lanes_ = std::move(lanes);
 }
 
-/// Rounds the corners that centre lines have in junctions: mean over 1.5 m to both sides, less at
+/// Rounds the corners that centerlines have in junctions: mean over 1.5 m to both sides, less at
 /// the ends, which stay.
 std::vector<Eigen::Vector3d> roundedCorners(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Eigen::Vector3d> rounded;
@@ -270,7 +270,7 @@ std::vector<Eigen::Vector3d> roundedCorners(const std::vector<Eigen::Vector3d>& 
 
 Route RouteBuilder::resample() const {
   if (points_.size() < 2) {
-    throw core::InputError("the way on lane '" + network_.lane(drive_.front().lane).id +
+    throw core::InputError("the route on lane '" + network_.lane(drive_.front().lane).id +
                            "' has no length; a start before its goal was expected");
   }
   const geometry::Polyline dense(roundedCorners(points_));

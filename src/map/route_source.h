@@ -18,9 +18,9 @@ struct RouteOptions {
   std::vector<Eigen::Vector3d> points;  ///< key points in the map frame [m]
   std::string bench2drive_file;         ///< route file of Bench2Drive
   std::string bench2drive_id;           ///< id of the route in that file
-  double start_offset = 5.0;  ///< of the ego's centre from the first edge's start, with `edges` [m]
-  double end_offset = 5.0;    ///< of the goal from the last edge's end, with `edges` [m]
-  double start_speed = 0.0;   ///< of the ego [m/s]
+  double start_offset = 5.0;            ///< the ego's center, from the first edge's start [m]
+  double end_offset = 5.0;              ///< the goal, from the last edge's end [m]
+  double start_speed = 0.0;             ///< the ego's speed at the start [m/s]
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError when not exactly one source is given.
@@ -44,10 +44,10 @@ std::vector<Bench2DriveEntry> listBench2DriveRoutes(const std::string& file);
 /// Town of a Bench2Drive route ("Town05"); throws InputError as above.
 std::string bench2DriveTown(const std::string& file, const std::string& id);
 
-/// Lane-connected route along the centre lines of the lanes that key points lie on; points nearer
+/// Lane-connected route along the centerlines of the lanes that key points lie on; points nearer
 /// than 0.1 m to the one before are merged. Throws InputError naming the point (counted from 0)
-/// that is more than 1.5 m off every lane's centre line and outside every lane, has no
-/// lane-connected way to the next, or one longer than twice their distance + 20 m.
+/// that is more than 1.5 m off every lane's centerline and outside every lane, has no
+/// lane-connected route to the next, or one longer than twice their distance + 20 m.
 Route routeThroughPoints(const LaneGraph& graph, const std::vector<Eigen::Vector3d>& points);
 
 /// Lane-connected route along edges. Throws InputError naming an unknown edge (with the nearest id)

@@ -17,9 +17,9 @@ constexpr double kMergeDistance = 0.1;  // [m] key points nearer than this are o
 constexpr double kHeadingScale =
     0.6;                            // [rad] towards the next key point, which may lie behind a bend
 constexpr double kBackwards = 0.5;  // [m] a projection may fall back by so much on its lane
-constexpr double kFarSearch = 20000.0;  // [m] to tell a long way from none
+constexpr double kFarSearch = 20000.0;  // distinguishes a long route from none [m]
 
-/// Joins key points by the cheapest choice of lanes and the shortest ways between them.
+/// Joins key points by the cheapest choice of lanes and the shortest routes between them.
 class KeyPointRoute {
  public:
   KeyPointRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points)
@@ -87,8 +87,8 @@ class KeyPointRoute {
     return buildRoute(network_, drive);
   }
 
-  /// Shortest way between any candidates of two neighbouring points, however long [m].
-  double shortestWay(std::size_t layer) const {
+  /// Shortest route between any candidates of two neighboring points, however long [m].
+  double shortestRoute(std::size_t layer) const {
     double shortest = kInfinity;
     SearchLimits limits;
     limits.max_length = kFarSearch;
@@ -105,17 +105,17 @@ class KeyPointRoute {
     const InputPoint& from = points_[reached];
     const InputPoint& to = points_[reached + 1];
     const double distance = distanceAfter(reached);
-    const double way = shortestWay(reached);
-    if (way > limitFor(distance) && way < kInfinity) {
-      throw core::InputError("way from point " + std::to_string(from.index) + " " +
+    const double length = shortestRoute(reached);
+    if (length > limitFor(distance) && length < kInfinity) {
+      throw core::InputError("route from point " + std::to_string(from.index) + " " +
                              toText(from.position) + " to point " + std::to_string(to.index) + " " +
-                             toText(to.position) + " is " + core::formatFixed(way, 1) +
+                             toText(to.position) + " is " + core::formatFixed(length, 1) +
                              " m for a distance of " + core::formatFixed(distance, 1) +
                              " m (limit twice the distance + 20 m)");
     }
-    throw core::InputError("no lane-connected way from point " + std::to_string(from.index) + " " +
-                           toText(from.position) + " to point " + std::to_string(to.index) + " " +
-                           toText(to.position));
+    throw core::InputError("no lane-connected route from point " + std::to_string(from.index) +
+                           " " + toText(from.position) + " to point " + std::to_string(to.index) +
+                           " " + toText(to.position));
   }
 
   const RoadNetwork& network_;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Uniform grid over the segments of lane centre lines (map frame [m]); answers which lanes pass
-/// near a point.
 #pragma once
 
 #include <limits>
@@ -11,6 +9,8 @@
 
 namespace cdiff::map {
 
+/// Uniform grid over the segments of lane centerlines (map frame [m]); answers which lanes pass
+/// near a point.
 /// Lanes that do not allow cars are left out.
 struct RoadNetwork::SpatialIndex {
   /// What is asked for.

@@ -5,12 +5,12 @@
 #include <map>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvClosestDistance = {
+const MeasureDefinition known::kCbvClosestDistance = {
     "cbv_closest_distance_m",
     "/cbv/closest_distance_m",
     "Closest approach of CBVs, mean",
@@ -20,7 +20,7 @@ const FigureDefinition figures::kCbvClosestDistance = {
     "Mean over CBVs of each one's smallest distance of centres to the ego while it was CBV.",
     "",
 };
-const FigureDefinition figures::kCbvMinimumDistance = {
+const MeasureDefinition known::kCbvMinimumDistance = {
     "cbv_minimum_distance_m",
     "/cbv/minimum_distance_m",
     "Closest approach of CBVs, minimum",
@@ -48,8 +48,8 @@ class CbvApproach final : public Metric {
     SampleStatistics distances;
     for (const auto& [id, distance] : closest_) distances.add(distance);
     const DistributionMeasure measure = distances.measure(cbv_driven_ ? kNoEgo : kNoCbv);
-    sink.set(figures::kCbvClosestDistance, measure.mean);
-    sink.set(figures::kCbvMinimumDistance, measure.minimum);
+    sink.set(known::kCbvClosestDistance, measure.mean);
+    sink.set(known::kCbvMinimumDistance, measure.minimum);
   }
 
  private:
@@ -62,7 +62,7 @@ class CbvApproach final : public Metric {
 MetricDescriptor cbvApproachMetric() {
   return {"cbv_approach",
           "How near CBVs came to the ego.",
-          {figures::kCbvClosestDistance, figures::kCbvMinimumDistance},
+          {known::kCbvClosestDistance, known::kCbvMinimumDistance},
           [](const MetricContext&) { return std::make_unique<CbvApproach>(); }};
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/collisions_per_km.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvCollisions = {
+const MeasureDefinition known::kCbvCollisions = {
     "cbv_collisions",
     "/cbv/collisions",
     "Collisions of CBVs",
@@ -19,7 +19,7 @@ const FigureDefinition figures::kCbvCollisions = {
     "RIFT counts at most one collision per CBV, and one for each of two CBVs that collide.",
     0,
 };
-const FigureDefinition figures::kCbvEgoCollisions = {
+const MeasureDefinition known::kCbvEgoCollisions = {
     "cbv_ego_collisions",
     "/cbv/collisions_with_ego",
     "Collisions of CBVs with the ego",
@@ -30,7 +30,7 @@ const FigureDefinition figures::kCbvEgoCollisions = {
     "",
     0,
 };
-const FigureDefinition figures::kCollisionsPerKm = {
+const MeasureDefinition known::kCollisionsPerKm = {
     "cbv_collisions_per_km",
     "/cbv/collisions_per_km",
     "Collisions of CBVs per km (CPK)",
@@ -46,7 +46,7 @@ const FigureDefinition figures::kCollisionsPerKm = {
 
 namespace {
 
-constexpr FigureDefinition kEgoCollisionsPerKm = {
+constexpr MeasureDefinition kEgoCollisionsPerKm = {
     "cbv_ego_collisions_per_km",
     "/cbv/collisions_with_ego_per_km",
     "Collisions of CBVs with the ego per km",
@@ -66,19 +66,19 @@ class CbvCollisions final : public Metric {
       ++collisions_;
       if (!contact.ego_partner.empty()) ++ego_collisions_;
     }
-    way_.observe(tick);
+    travel_.observe(tick);
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kCbvCollisions, countMeasure(collisions_));
-    sink.set(figures::kCbvEgoCollisions, countMeasure(ego_collisions_));
-    sink.set(figures::kCollisionsPerKm,
-             collisionsPerKilometre(collisions_, way_.distance(), way_.vehicles()));
+    sink.set(known::kCbvCollisions, countMeasure(collisions_));
+    sink.set(known::kCbvEgoCollisions, countMeasure(ego_collisions_));
+    sink.set(known::kCollisionsPerKm,
+             collisionsPerKilometre(collisions_, travel_.distance(), travel_.vehicles()));
     sink.set(kEgoCollisionsPerKm,
-             collisionsPerKilometre(ego_collisions_, way_.distance(), way_.vehicles()));
+             collisionsPerKilometre(ego_collisions_, travel_.distance(), travel_.vehicles()));
   }
 
  private:
-  CbvWay way_;
+  CbvTravel travel_;
   std::size_t collisions_ = 0;
   std::size_t ego_collisions_ = 0;
 };
@@ -88,7 +88,7 @@ class CbvCollisions final : public Metric {
 MetricDescriptor cbvCollisionsMetric() {
   return {"cbv_collisions",
           "Collisions of CBVs, as counts and per kilometre.",
-          {figures::kCbvCollisions, figures::kCbvEgoCollisions, figures::kCollisionsPerKm,
+          {known::kCbvCollisions, known::kCbvEgoCollisions, known::kCollisionsPerKm,
            kEgoCollisionsPerKm},
           [](const MetricContext&) { return std::make_unique<CbvCollisions>(); }};
 }

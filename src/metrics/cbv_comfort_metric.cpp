@@ -8,7 +8,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kUncomfortable = {
+constexpr MeasureDefinition kUncomfortable = {
     "cbv_uncomfortable_percent",
     "/cbv/uncomfortable_rate_percent",
     "Uncomfortable rate of CBVs",

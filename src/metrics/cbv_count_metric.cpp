@@ -3,12 +3,12 @@
 #include <set>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvCount = {
+const MeasureDefinition known::kCbvCount = {
     "cbv_count",
     "/cbv/count",
     "CBVs",
@@ -20,7 +20,7 @@ const FigureDefinition figures::kCbvCount = {
     0,
     true,
 };
-const FigureDefinition figures::kCbvDecisions = {
+const MeasureDefinition known::kCbvDecisions = {
     "cbv_decisions",
     "/cbv/decisions",
     "Decisions with a CBV",
@@ -44,8 +44,8 @@ class CbvCount final : public Metric {
     }
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kCbvCount, countMeasure(driven_.size()));
-    sink.set(figures::kCbvDecisions, countMeasure(decisions_));
+    sink.set(known::kCbvCount, countMeasure(driven_.size()));
+    sink.set(known::kCbvDecisions, countMeasure(decisions_));
   }
 
  private:
@@ -58,7 +58,7 @@ class CbvCount final : public Metric {
 MetricDescriptor cbvCountMetric() {
   return {"cbv_count",
           "How many vehicles were CBVs, and for how many decisions.",
-          {figures::kCbvCount, figures::kCbvDecisions},
+          {known::kCbvCount, known::kCbvDecisions},
           [](const MetricContext&) { return std::make_unique<CbvCount>(); }};
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/collisions_per_km.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvDistance = {
+const MeasureDefinition known::kCbvDistance = {
     "cbv_distance_m",
     "/cbv/distance_m",
     "Distance driven as CBV",
@@ -22,13 +22,13 @@ namespace {
 
 class CbvDistance final : public Metric {
  public:
-  void observe(const MetricTick& tick) override { way_.observe(tick); }
+  void observe(const MetricTick& tick) override { travel_.observe(tick); }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kCbvDistance, numberMeasure(way_.distance()));
+    sink.set(known::kCbvDistance, numberMeasure(travel_.distance()));
   }
 
  private:
-  CbvWay way_;
+  CbvTravel travel_;
 };
 
 }  // namespace
@@ -36,7 +36,7 @@ class CbvDistance final : public Metric {
 MetricDescriptor cbvDistanceMetric() {
   return {"cbv_distance",
           "How far vehicles drove as CBVs.",
-          {figures::kCbvDistance},
+          {known::kCbvDistance},
           [](const MetricContext&) { return std::make_unique<CbvDistance>(); }};
 }
 

@@ -12,7 +12,7 @@ constexpr const char* kRepeats =
     "RIFT adds the whole history of each living CBV again at every tick (sample i of an n-tick "
     "life counts n - i times) and takes mean and deviation from the midpoints of its bins.";
 
-constexpr FigureDefinition kSpeedMean = {
+constexpr MeasureDefinition kSpeedMean = {
     "cbv_speed_mean_mps",
     "/metrics/speed_mps/mean",
     "Speed of CBVs, mean",
@@ -22,7 +22,7 @@ constexpr FigureDefinition kSpeedMean = {
     "Mean speed of CBVs over CBV decisions.",
     kRepeats,
 };
-constexpr FigureDefinition kSpeedDeviation = {
+constexpr MeasureDefinition kSpeedDeviation = {
     "cbv_speed_std_mps",
     "/metrics/speed_mps/std",
     "Speed of CBVs, standard deviation",
@@ -32,7 +32,7 @@ constexpr FigureDefinition kSpeedDeviation = {
     "Standard deviation (n - 1) of the speed of CBVs over CBV decisions.",
     kRepeats,
 };
-constexpr FigureDefinition kSpeedMinimum = {
+constexpr MeasureDefinition kSpeedMinimum = {
     "cbv_speed_min_mps",
     "/metrics/speed_mps/min",
     "Speed of CBVs, minimum",
@@ -42,7 +42,7 @@ constexpr FigureDefinition kSpeedMinimum = {
     "Smallest speed of a CBV at a CBV decision.",
     "",
 };
-constexpr FigureDefinition kAccelerationMean = {
+constexpr MeasureDefinition kAccelerationMean = {
     "cbv_acceleration_mean_mps2",
     "/metrics/acceleration_mps2/mean",
     "Acceleration of CBVs, mean magnitude",
@@ -54,7 +54,7 @@ constexpr FigureDefinition kAccelerationMean = {
     "rate.",
     kRepeats,
 };
-constexpr FigureDefinition kAccelerationDeviation = {
+constexpr MeasureDefinition kAccelerationDeviation = {
     "cbv_acceleration_std_mps2",
     "/metrics/acceleration_mps2/std",
     "Acceleration of CBVs, standard deviation of the magnitude",
@@ -64,7 +64,7 @@ constexpr FigureDefinition kAccelerationDeviation = {
     "Standard deviation (n - 1) of the same magnitudes.",
     kRepeats,
 };
-constexpr FigureDefinition kAccelerationMinimum = {
+constexpr MeasureDefinition kAccelerationMinimum = {
     "cbv_acceleration_min_mps2",
     "/metrics/acceleration_mps2/min",
     "Acceleration of CBVs, smallest magnitude",
@@ -74,7 +74,7 @@ constexpr FigureDefinition kAccelerationMinimum = {
     "The smallest of the same magnitudes.",
     "",
 };
-constexpr FigureDefinition kJerkMean = {
+constexpr MeasureDefinition kJerkMean = {
     "cbv_jerk_mean_mps3",
     "/metrics/jerk_mps3/mean",
     "Jerk of CBVs, mean",
@@ -86,7 +86,7 @@ constexpr FigureDefinition kJerkMean = {
     "RIFT takes the acceleration before the first decision as 0 and adds histories again at every "
     "tick (bins from -10 to 10 m/s^3).",
 };
-constexpr FigureDefinition kJerkDeviation = {
+constexpr MeasureDefinition kJerkDeviation = {
     "cbv_jerk_std_mps3",
     "/metrics/jerk_mps3/std",
     "Jerk of CBVs, standard deviation",
@@ -96,7 +96,7 @@ constexpr FigureDefinition kJerkDeviation = {
     "Standard deviation (n - 1) of the same jerks.",
     "RIFT takes it from the midpoints of its bins, with the same additions as for the mean.",
 };
-constexpr FigureDefinition kJerkMinimum = {
+constexpr MeasureDefinition kJerkMinimum = {
     "cbv_jerk_min_mps3",
     "/metrics/jerk_mps3/min",
     "Jerk of CBVs, smallest",

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 #include "metrics/measures/shapiro_wilk.h"
 
@@ -17,7 +17,7 @@ constexpr const char* kResamples =
 
 }  // namespace
 
-const FigureDefinition figures::kSpeedShapiroWilk = {
+const MeasureDefinition known::kSpeedShapiroWilk = {
     "speed_shapiro_wilk",
     "/metrics/speed_shapiro_wilk/value",
     "Shapiro-Wilk W of CBV speeds",
@@ -30,7 +30,7 @@ const FigureDefinition figures::kSpeedShapiroWilk = {
     3,
     true,
 };
-const FigureDefinition figures::kAccelerationShapiroWilk = {
+const MeasureDefinition known::kAccelerationShapiroWilk = {
     "acceleration_shapiro_wilk",
     "/metrics/acceleration_shapiro_wilk/value",
     "Shapiro-Wilk W of CBV accelerations",
@@ -47,7 +47,7 @@ const FigureDefinition figures::kAccelerationShapiroWilk = {
 
 namespace {
 
-constexpr FigureDefinition kSpeedP = {
+constexpr MeasureDefinition kSpeedP = {
     "speed_shapiro_wilk_p",
     "/metrics/speed_shapiro_wilk_p/value",
     "Shapiro-Wilk p of CBV speeds",
@@ -59,7 +59,7 @@ constexpr FigureDefinition kSpeedP = {
     "at that level.",
     "RIFT reports W alone.",
 };
-constexpr FigureDefinition kAccelerationP = {
+constexpr MeasureDefinition kAccelerationP = {
     "acceleration_shapiro_wilk_p",
     "/metrics/acceleration_shapiro_wilk_p/value",
     "Shapiro-Wilk p of CBV accelerations",
@@ -85,10 +85,10 @@ class CbvNormality final : public Metric {
   }
   void report(MetricSink& sink) const override {
     const NormalityMeasures speed = normalityMeasures(speeds_, kNoCbv);
-    sink.set(figures::kSpeedShapiroWilk, speed.w);
+    sink.set(known::kSpeedShapiroWilk, speed.w);
     sink.set(kSpeedP, speed.p);
     const NormalityMeasures acceleration = normalityMeasures(accelerations_, kNoCbv);
-    sink.set(figures::kAccelerationShapiroWilk, acceleration.w);
+    sink.set(known::kAccelerationShapiroWilk, acceleration.w);
     sink.set(kAccelerationP, acceleration.p);
   }
 
@@ -102,7 +102,7 @@ class CbvNormality final : public Metric {
 MetricDescriptor cbvNormalityMetric() {
   return {"cbv_normality",
           "Whether speeds and accelerations of CBVs are normally distributed.",
-          {figures::kSpeedShapiroWilk, kSpeedP, figures::kAccelerationShapiroWilk, kAccelerationP},
+          {known::kSpeedShapiroWilk, kSpeedP, known::kAccelerationShapiroWilk, kAccelerationP},
           [](const MetricContext&) { return std::make_unique<CbvNormality>(); }};
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvOffRoad = {
+const MeasureDefinition known::kCbvOffRoad = {
     "cbv_off_road_percent",
     "/cbv/off_road_rate_percent",
     "Off-road rate of CBVs (ORR)",
@@ -23,7 +23,7 @@ const FigureDefinition figures::kCbvOffRoad = {
 
 namespace {
 
-constexpr FigureDefinition kCornerOffRoad = {
+constexpr MeasureDefinition kCornerOffRoad = {
     "cbv_corner_off_road_percent",
     "/cbv/corner_off_road_rate_percent",
     "Off-road rate of CBVs, any corner",
@@ -45,7 +45,7 @@ class CbvOffRoad final : public Metric {
     }
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kCbvOffRoad, centre_.measure(kNoCbv));
+    sink.set(known::kCbvOffRoad, centre_.measure(kNoCbv));
     sink.set(kCornerOffRoad, corner_.measure(kNoCbv));
   }
 
@@ -59,7 +59,7 @@ class CbvOffRoad final : public Metric {
 MetricDescriptor cbvOffRoadMetric() {
   return {"cbv_off_road",
           "Share of time that CBVs were off the road.",
-          {figures::kCbvOffRoad, kCornerOffRoad},
+          {known::kCbvOffRoad, kCornerOffRoad},
           [](const MetricContext&) { return std::make_unique<CbvOffRoad>(); }};
 }
 

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kCbvSpeedError = {
+const MeasureDefinition known::kCbvSpeedError = {
     "cbv_speed_error_mps",
     "/cbv/speed_error_mps",
     "Speed error of CBVs",
@@ -31,7 +31,7 @@ class CbvSpeedError final : public Metric {
     }
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kCbvSpeedError, errors_.measure(kNoCbv).mean);
+    sink.set(known::kCbvSpeedError, errors_.measure(kNoCbv).mean);
   }
 
  private:
@@ -43,7 +43,7 @@ class CbvSpeedError final : public Metric {
 MetricDescriptor cbvSpeedErrorMetric() {
   return {"cbv_speed_error",
           "How far CBVs are from the speed that they aim at.",
-          {figures::kCbvSpeedError},
+          {known::kCbvSpeedError},
           [](const MetricContext&) { return std::make_unique<CbvSpeedError>(); }};
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kBlocked = {
+const MeasureDefinition known::kBlocked = {
     "ego_blocked",
     "/ego/blocked",
     "Ego blocked",
@@ -25,7 +25,7 @@ class Blocked final : public Metric {
     blocked_ = tick.snapshot.status == traffic::SessionStatus::kBlocked;
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kBlocked, numberMeasure(blocked_ ? 1.0 : 0.0));
+    sink.set(known::kBlocked, numberMeasure(blocked_ ? 1.0 : 0.0));
   }
 
  private:
@@ -37,7 +37,7 @@ class Blocked final : public Metric {
 MetricDescriptor egoBlockedMetric() {
   return {"ego_blocked",
           "Whether the session ended because the ego stood still.",
-          {figures::kBlocked},
+          {known::kBlocked},
           [](const MetricContext&) { return std::make_unique<Blocked>(); }};
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kEgoCollisions = {
+const MeasureDefinition known::kEgoCollisions = {
     "ego_collisions",
     "/ego/collisions",
     "Collisions of the ego",
@@ -19,7 +19,7 @@ const FigureDefinition figures::kEgoCollisions = {
     0,
     true,
 };
-const FigureDefinition figures::kContactsAtFault = {
+const MeasureDefinition known::kContactsAtFault = {
     "ego_contacts_at_fault",
     "/ego/contacts_at_fault",
     "Contacts that are the ego's fault",
@@ -45,8 +45,8 @@ class EgoCollisions final : public Metric {
     }
   }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kEgoCollisions, countMeasure(contacts_));
-    sink.set(figures::kContactsAtFault, countMeasure(at_fault_));
+    sink.set(known::kEgoCollisions, countMeasure(contacts_));
+    sink.set(known::kContactsAtFault, countMeasure(at_fault_));
   }
 
  private:
@@ -59,7 +59,7 @@ class EgoCollisions final : public Metric {
 MetricDescriptor egoCollisionsMetric() {
   return {"ego_collisions",
           "Contacts of the ego, and those that are its fault.",
-          {figures::kEgoCollisions, figures::kContactsAtFault},
+          {known::kEgoCollisions, known::kContactsAtFault},
           [](const MetricContext&) { return std::make_unique<EgoCollisions>(); }};
 }
 

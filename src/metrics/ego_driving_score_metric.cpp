@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/driving_score.h"
 #include "metrics/measures/sample_statistics.h"
 #include "metrics/measures/stop_lines.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kDrivingScore = {
+const MeasureDefinition known::kDrivingScore = {
     "ego_driving_score",
     "/ego/driving_score",
     "Driving score",
@@ -24,7 +24,7 @@ const FigureDefinition figures::kDrivingScore = {
     3,
     true,
 };
-const FigureDefinition figures::kPenalty = {
+const MeasureDefinition known::kPenalty = {
     "ego_penalty",
     "/ego/penalty",
     "Penalty of the infractions",
@@ -36,17 +36,17 @@ const FigureDefinition figures::kPenalty = {
     "ticks with the ego.",
     "",
 };
-const FigureDefinition figures::kOutsideLanes = {
+const MeasureDefinition known::kOutsideLanes = {
     "ego_infraction_outside_lanes_percent",
     "/ego/infractions/outside_lanes_percent",
-    "Way outside the lanes",
+    "Distance outside the lanes",
     "%",
     Direction::kLowerIsBetter,
     Subject::kEgo,
     "Share of the completed route outside the lanes or on a wrong lane (docs/protocols.md).",
     "",
 };
-const FigureDefinition figures::kRedLights = {
+const MeasureDefinition known::kRedLights = {
     "ego_infraction_red_lights",
     "/ego/infractions/red_lights",
     "Red lights run",
@@ -56,7 +56,7 @@ const FigureDefinition figures::kRedLights = {
     "Stop lines crossed at red; n counts lines with a light crossed (docs/protocols.md).",
     "",
 };
-const FigureDefinition figures::kStopSigns = {
+const MeasureDefinition known::kStopSigns = {
     "ego_infraction_stop_signs",
     "/ego/infractions/stop_signs",
     "Stop signs run",
@@ -70,7 +70,7 @@ const FigureDefinition figures::kStopSigns = {
 
 namespace {
 
-constexpr FigureDefinition kSpeedMissed = {
+constexpr MeasureDefinition kSpeedMissed = {
     "ego_infraction_minimum_speed_missed",
     "/ego/infractions/minimum_speed_missed",
     "Stretches below the traffic's speed",
@@ -81,7 +81,7 @@ constexpr FigureDefinition kSpeedMissed = {
     "(docs/protocols.md).",
     "",
 };
-constexpr FigureDefinition kSpeedPercent = {
+constexpr MeasureDefinition kSpeedPercent = {
     "ego_infraction_minimum_speed_percent",
     "/ego/infractions/minimum_speed_percent",
     "Speed against the traffic's",
@@ -92,7 +92,7 @@ constexpr FigureDefinition kSpeedPercent = {
     "background vehicles (docs/protocols.md).",
     "",
 };
-constexpr FigureDefinition kPedestrians = {
+constexpr MeasureDefinition kPedestrians = {
     "ego_infraction_pedestrian_collisions",
     "/ego/infractions/pedestrian_collisions",
     "Collisions with pedestrians",
@@ -102,7 +102,7 @@ constexpr FigureDefinition kPedestrians = {
     "Always absent: these sessions have no pedestrians.",
     "",
 };
-constexpr FigureDefinition kTimeouts = {
+constexpr MeasureDefinition kTimeouts = {
     "ego_infraction_scenario_timeouts",
     "/ego/infractions/scenario_timeouts",
     "Scenario time-outs",
@@ -112,7 +112,7 @@ constexpr FigureDefinition kTimeouts = {
     "Always absent: these sessions have no scripted scenarios.",
     "",
 };
-constexpr FigureDefinition kStaticCollisions = {
+constexpr MeasureDefinition kStaticCollisions = {
     "ego_infraction_static_collisions",
     "/ego/infractions/static_collisions",
     "Collisions with static objects",
@@ -122,7 +122,7 @@ constexpr FigureDefinition kStaticCollisions = {
     "Always absent: these sessions have no static objects to hit.",
     "",
 };
-constexpr FigureDefinition kVehicleCollisions = {
+constexpr MeasureDefinition kVehicleCollisions = {
     "ego_infraction_vehicle_collisions",
     "/ego/infractions/vehicle_collisions",
     "Collisions that the protocol charges",
@@ -133,7 +133,7 @@ constexpr FigureDefinition kVehicleCollisions = {
     "(docs/protocols.md).",
     "",
 };
-constexpr FigureDefinition kYieldsFailed = {
+constexpr MeasureDefinition kYieldsFailed = {
     "ego_infraction_yields_failed",
     "/ego/infractions/yields_failed",
     "Failures to yield to emergency vehicles",
@@ -176,11 +176,11 @@ class DrivingScore final : public Metric {
   void report(MetricSink& sink) const override {
     const Infractions found = infractions();
     const ScoreRules rules = options_.scoreRules();
-    sink.set(figures::kDrivingScore,
+    sink.set(known::kDrivingScore,
              numberMeasure(ticks_ == 0 ? 0.0 : drivingScore(completion_percent_, found, rules)));
-    sink.set(figures::kPenalty, ticks_ == 0
-                                    ? absentMeasure(kNoEgo)
-                                    : Measure{infractionPenalty(found, rules), ticks_, {}, {}});
+    sink.set(known::kPenalty, ticks_ == 0
+                                  ? absentMeasure(kNoEgo)
+                                  : Measure{infractionPenalty(found, rules), ticks_, {}, {}});
     sink.set(kVehicleCollisions, counted(collisions_.count(), collisions_.contacts()));
     reportRoad(sink);
     reportSpeed(sink);
@@ -212,16 +212,16 @@ class DrivingScore final : public Metric {
   void reportRoad(MetricSink& sink) const {
     const Measure no_network = absentMeasure("no road network was given");
     sink.set(
-        figures::kRedLights,
+        known::kRedLights,
         stop_lines_ ? counted(stop_lines_->redLights(), stop_lines_->lightsCrossed()) : no_network);
-    sink.set(figures::kStopSigns,
+    sink.set(known::kStopSigns,
              stop_lines_ ? counted(stop_lines_->stopSigns(), stop_lines_->stopSignsCrossed())
                          : no_network);
     Measure outside = no_network;
     if (outside_ && arc_length_ > 0.0) outside = {outside_->percent(), outside_->ticks(), {}, {}};
     if (outside_ && !(arc_length_ > 0.0))
-      outside = absentMeasure("the ego made no way along its route");
-    sink.set(figures::kOutsideLanes, outside);
+      outside = absentMeasure("the ego did not advance along its route");
+    sink.set(known::kOutsideLanes, outside);
   }
 
   void reportSpeed(MetricSink& sink) const {
@@ -265,9 +265,9 @@ class DrivingScore final : public Metric {
 MetricDescriptor egoDrivingScoreMetric() {
   return {"ego_driving_score",
           "Driving score, penalty and infractions of the ego by the rules of the protocol.",
-          {figures::kDrivingScore, figures::kPenalty, kSpeedMissed, kSpeedPercent,
-           figures::kOutsideLanes, kPedestrians, figures::kRedLights, kTimeouts, kStaticCollisions,
-           figures::kStopSigns, kVehicleCollisions, kYieldsFailed},
+          {known::kDrivingScore, known::kPenalty, kSpeedMissed, kSpeedPercent, known::kOutsideLanes,
+           kPedestrians, known::kRedLights, kTimeouts, kStaticCollisions, known::kStopSigns,
+           kVehicleCollisions, kYieldsFailed},
           [](const MetricContext& context) { return std::make_unique<DrivingScore>(context); }};
 }
 

@@ -7,7 +7,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kOffRoad = {
+constexpr MeasureDefinition kOffRoad = {
     "ego_off_road_percent",
     "/ego/off_road_percent",
     "Ego off the road",

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kRouteCompletion = {
+const MeasureDefinition known::kRouteCompletion = {
     "ego_completion_percent",
     "/ego/route_completion_percent",
     "Route completion",
@@ -26,7 +26,7 @@ class RouteCompletion final : public Metric {
  public:
   void observe(const MetricTick& tick) override { percent_ = tick.route_completion_percent; }
   void report(MetricSink& sink) const override {
-    sink.set(figures::kRouteCompletion, numberMeasure(percent_));
+    sink.set(known::kRouteCompletion, numberMeasure(percent_));
   }
 
  private:
@@ -38,7 +38,7 @@ class RouteCompletion final : public Metric {
 MetricDescriptor egoRouteCompletionMetric() {
   return {"ego_route_completion",
           "How far the ego came along its route.",
-          {figures::kRouteCompletion},
+          {known::kRouteCompletion},
           [](const MetricContext&) { return std::make_unique<RouteCompletion>(); }};
 }
 

@@ -20,48 +20,49 @@ class Registry {
 
   void add(MetricDescriptor descriptor) {
     check(descriptor);
-    for (FigureDefinition& figure : descriptor.figures) {
-      if (*figure.place == '\0') figure.place = defaultPlace(figure);
+    for (MeasureDefinition& definition : descriptor.measures) {
+      if (*definition.place == '\0') definition.place = defaultPlace(definition);
     }
-    for (const FigureDefinition& figure : descriptor.figures) insert(figure);
+    for (const MeasureDefinition& definition : descriptor.measures) insert(definition);
     metrics_.push_back(std::move(descriptor));
   }
 
   const std::deque<MetricDescriptor>& metrics() const { return metrics_; }
-  const std::vector<FigureDefinition>& figures() const { return figures_; }
+  const std::vector<MeasureDefinition>& measures() const { return measures_; }
 
  private:
-  /// At the end; in a group of figures, by name.
-  void insert(const FigureDefinition& figure) {
-    const std::string group = groupOf(figure);
-    auto place = figures_.end();
+  /// At the end; in a group of measures, by name.
+  void insert(const MeasureDefinition& definition) {
+    const std::string group = groupOf(definition);
+    auto place = measures_.end();
     if (!group.empty()) {
-      const auto after = [&](const FigureDefinition& other) {
-        return groupOf(other) == group && std::string(other.name) > figure.name;
+      const auto after = [&](const MeasureDefinition& other) {
+        return groupOf(other) == group && std::string(other.name) > definition.name;
       };
-      place = std::find_if(figures_.begin(), figures_.end(), after);
+      place = std::find_if(measures_.begin(), measures_.end(), after);
     }
-    figures_.insert(place, figure);
+    measures_.insert(place, definition);
   }
 
   /// The group that "/metrics/GROUP/NAME/value" says; empty for any other place.
-  static std::string groupOf(const FigureDefinition& figure) {
-    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+  static std::string groupOf(const MeasureDefinition& definition) {
+    const std::vector<std::string> keys = core::splitText(definition.place, '/');
     return keys.size() == 4 ? keys[1] : std::string();
   }
 
-  const char* defaultPlace(const FigureDefinition& figure) {
-    places_.push_back("/metrics/" + std::string(figure.name) + "/value");
+  const char* defaultPlace(const MeasureDefinition& definition) {
+    places_.push_back("/metrics/" + std::string(definition.name) + "/value");
     return places_.back().c_str();
   }
 
   /// Names are columns and topics; places are looked for below /ego, /cbv and /metrics alone.
-  static void checkFigure(const FigureDefinition& figure, const MetricDescriptor& descriptor) {
-    const std::string what = "figure '" + std::string(figure.name) + "' of metric '" +
+  static void checkMeasure(const MeasureDefinition& definition,
+                           const MetricDescriptor& descriptor) {
+    const std::string what = "measure '" + std::string(definition.name) + "' of metric '" +
                              descriptor.name + "' of " + descriptor.source;
-    if (!core::isSnakeCase(figure.name))
+    if (!core::isSnakeCase(definition.name))
       throw core::InputError(what + ": its name must be snake_case");
-    const std::string place = figure.place;
+    const std::string place = definition.place;
     const std::vector<std::string> keys = core::splitText(place, '/');
     const bool known = !keys.empty() && place.front() == '/' && place.back() != '/' &&
                        (keys[0] == "ego" || keys[0] == "cbv" || keys[0] == "metrics");
@@ -71,17 +72,19 @@ class Registry {
   }
 
   void check(const MetricDescriptor& descriptor) const {
-    if (descriptor.name.empty() || descriptor.figures.empty() || !descriptor.make) {
+    if (descriptor.name.empty() || descriptor.measures.empty() || !descriptor.make) {
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
-                             " lacks a name, figures or 'make'");
+                             " lacks a name, measures or 'make'");
     }
-    for (const FigureDefinition& figure : descriptor.figures) checkFigure(figure, descriptor);
+    for (const MeasureDefinition& definition : descriptor.measures)
+      checkMeasure(definition, descriptor);
     for (const MetricDescriptor& other : metrics_) {
       if (other.name == descriptor.name) refuse("metric '" + other.name + "'", other, descriptor);
-      for (const FigureDefinition& known : other.figures) {
-        for (const FigureDefinition& figure : descriptor.figures) {
-          if (std::string(known.name) == figure.name || std::string(known.place) == figure.place)
-            refuse("figure '" + std::string(figure.name) + "'", other, descriptor);
+      for (const MeasureDefinition& known : other.measures) {
+        for (const MeasureDefinition& definition : descriptor.measures) {
+          if (std::string(known.name) == definition.name ||
+              std::string(known.place) == definition.place)
+            refuse("measure '" + std::string(definition.name) + "'", other, descriptor);
         }
       }
     }
@@ -95,7 +98,7 @@ class Registry {
   }
 
   std::deque<MetricDescriptor> metrics_;
-  std::vector<FigureDefinition> figures_;
+  std::vector<MeasureDefinition> measures_;
   std::deque<std::string> places_;  ///< texts of places that were filled in
 };
 
@@ -110,12 +113,12 @@ void registerMetric(MetricDescriptor descriptor) { registry().add(std::move(desc
 
 const std::deque<MetricDescriptor>& metricDescriptors() { return registry().metrics(); }
 
-const std::vector<FigureDefinition>& figureDefinitions() { return registry().figures(); }
+const std::vector<MeasureDefinition>& measureDefinitions() { return registry().measures(); }
 
-const FigureDefinition* findFigure(const std::string& name) {
-  const auto& all = figureDefinitions();
+const MeasureDefinition* findMeasure(const std::string& name) {
+  const auto& all = measureDefinitions();
   const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const FigureDefinition& row) { return name == row.name; });
+                                  [&](const MeasureDefinition& row) { return name == row.name; });
   return found == all.end() ? nullptr : &*found;
 }
 

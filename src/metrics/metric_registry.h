@@ -10,19 +10,19 @@
 
 namespace cdiff::metrics {
 
-// The one table of metrics and of their figures: summary, messages, report, batch columns and
+// The one table of metrics and of their measures: summary, messages, report, batch columns and
 // docs/metrics.md all follow from it.
 
 /// The shipped metrics in the order of src/metrics/CMakeLists.txt, then those that were registered.
 /// References stay valid.
 const std::deque<MetricDescriptor>& metricDescriptors();
 
-/// Figures of all metrics, in the order of summary.json: by metric, but in a group of figures
+/// Measures of all metrics, in the order of summary.json: by metric, but in a group of measures
 /// ("/metrics/GROUP/NAME/value") by name. Every place is filled in. A registration
 /// invalidates references.
-const std::vector<FigureDefinition>& figureDefinitions();
+const std::vector<MeasureDefinition>& measureDefinitions();
 /// nullptr for an unknown name.
-const FigureDefinition* findFigure(const std::string& name);
+const MeasureDefinition* findMeasure(const std::string& name);
 
 /// "higher is better", "lower is better" or "no direction".
 const char* toText(Direction direction);

@@ -14,7 +14,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kEncroachmentMean = {
+constexpr MeasureDefinition kEncroachmentMean = {
     "post_encroachment_mean_s",
     "/metrics/post_encroachment_s/mean",
     "Post-encroachment time, mean over CBVs",
@@ -27,7 +27,7 @@ constexpr FigureDefinition kEncroachmentMean = {
     "(as in FHWA's SSAM, Gettman et al. 2008).",
     "RIFT does not compute it.",
 };
-constexpr FigureDefinition kEncroachmentDeviation = {
+constexpr MeasureDefinition kEncroachmentDeviation = {
     "post_encroachment_std_s",
     "/metrics/post_encroachment_s/std",
     "Post-encroachment time, standard deviation over CBVs",
@@ -37,7 +37,7 @@ constexpr FigureDefinition kEncroachmentDeviation = {
     "Standard deviation (n - 1) of the post-encroachment times of the CBVs.",
     "",
 };
-constexpr FigureDefinition kEncroachmentMinimum = {
+constexpr MeasureDefinition kEncroachmentMinimum = {
     "post_encroachment_min_s",
     "/metrics/post_encroachment_s/min",
     "Post-encroachment time, minimum",
@@ -64,18 +64,18 @@ class PostEncroachment final : public Metric {
   explicit PostEncroachment(double limit) : limit_(limit) {}
 
   void observe(const MetricTick& tick) override {
-    const SweptBox* ego_way = extend(ego_, tick.ego, tick.snapshot.time);
+    const SweptBox* ego_sweep = extend(ego_, tick.ego, tick.snapshot.time);
     for (const CbvSighting& cbv : tick.cbvs) cbvs_.try_emplace(cbv.vehicle->id);
     for (auto& [id, cbv] : cbvs_) {
       const Vehicle* vehicle = tick.snapshot.find(id);
       if (vehicle != nullptr && vehicle->role != traffic::VehicleRole::kCbv) vehicle = nullptr;
-      const SweptBox* cbv_way = extend(cbv, vehicle, tick.snapshot.time);
-      if (cbv_way != nullptr) {
-        for (const SweptBox& way : ego_.ways) compare(cbv, way, *cbv_way);
+      const SweptBox* cbv_sweep = extend(cbv, vehicle, tick.snapshot.time);
+      if (cbv_sweep != nullptr) {
+        for (const SweptBox& sweep : ego_.sweeps) compare(cbv, sweep, *cbv_sweep);
       }
-      if (ego_way == nullptr) continue;
-      for (const SweptBox& way : cbv.ways) {
-        if (&way != cbv_way) compare(cbv, *ego_way, way);
+      if (ego_sweep == nullptr) continue;
+      for (const SweptBox& sweep : cbv.sweeps) {
+        if (&sweep != cbv_sweep) compare(cbv, *ego_sweep, sweep);
       }
     }
     last_time_ = tick.snapshot.time;
@@ -108,42 +108,43 @@ class PostEncroachment final : public Metric {
   }
 
  private:
-  /// A vehicle's way of the last `limit_` seconds.
+  /// What a vehicle's box swept in the last `limit_` seconds.
   struct Track {
-    std::deque<SweptBox> ways;
+    std::deque<SweptBox> sweeps;
     std::optional<Vehicle> last;    ///< at the last tick, where it was there
     std::optional<double> seconds;  ///< shortest so far
     bool ego_first = false;         ///< whether the ego left the place before the CBV entered it
   };
 
-  /// The way since the last tick; nullptr when the vehicle was not there then or is not finite.
+  /// What its box swept since the last tick; nullptr when the vehicle was not there then or is not
+  /// finite.
   const SweptBox* extend(Track& track, const Vehicle* vehicle, double time) const {
-    while (!track.ways.empty() && track.ways.front().begin < time - limit_ - 1.0)
-      track.ways.pop_front();
+    while (!track.sweeps.empty() && track.sweeps.front().begin < time - limit_ - 1.0)
+      track.sweeps.pop_front();
     const bool moved = track.last && last_time_ && isUsable(vehicle);
     if (moved) {
-      SweptBox way;
-      way.box = vehicle->box();
-      way.box.center = track.last->state.position;
-      way.offset = vehicle->state.position - track.last->state.position;
-      way.elevation = vehicle->state.elevation;
-      way.begin = *last_time_;
-      way.duration = time - *last_time_;
-      track.ways.push_back(way);
+      SweptBox sweep;
+      sweep.box = vehicle->box();
+      sweep.box.center = track.last->state.position;
+      sweep.offset = vehicle->state.position - track.last->state.position;
+      sweep.elevation = vehicle->state.elevation;
+      sweep.begin = *last_time_;
+      sweep.duration = time - *last_time_;
+      track.sweeps.push_back(sweep);
     }
     track.last = isUsable(vehicle) ? std::optional<Vehicle>(*vehicle) : std::nullopt;
-    return moved ? &track.ways.back() : nullptr;
+    return moved ? &track.sweeps.back() : nullptr;
   }
 
-  void compare(Track& cbv, const SweptBox& ego_way, const SweptBox& cbv_way) const {
+  void compare(Track& cbv, const SweptBox& ego_sweep, const SweptBox& cbv_sweep) const {
     const double best = cbv.seconds.value_or(limit_);
-    const double apart =
-        std::abs(cbv_way.begin - ego_way.begin) - std::max(ego_way.duration, cbv_way.duration);
-    if (apart > best || farApart(ego_way, cbv_way) ||
-        traffic::onDifferentLevels(ego_way.elevation, cbv_way.elevation)) {
+    const double apart = std::abs(cbv_sweep.begin - ego_sweep.begin) -
+                         std::max(ego_sweep.duration, cbv_sweep.duration);
+    if (apart > best || farApart(ego_sweep, cbv_sweep) ||
+        traffic::onDifferentLevels(ego_sweep.elevation, cbv_sweep.elevation)) {
       return;
     }
-    const auto range = timesBetween(ego_way, cbv_way);
+    const auto range = timesBetween(ego_sweep, cbv_sweep);
     if (!range) return;
     const bool at_once = range->shortest <= 0.0 && range->longest >= 0.0;
     const double seconds =

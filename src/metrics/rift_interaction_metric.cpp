@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/rift_histogram.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kRiftTtc = {
+const MeasureDefinition known::kRiftTtc = {
     "rift_compat_ttc_2d_s",
     "/metrics/rift_compat/ttc_2d_s/value",
     "RIFT: RTTC, mean",
@@ -21,7 +21,7 @@ const FigureDefinition figures::kRiftTtc = {
 
 namespace {
 
-constexpr FigureDefinition kTtcVariance = {
+constexpr MeasureDefinition kTtcVariance = {
     "rift_compat_ttc_2d_variance_s2",
     "/metrics/rift_compat/ttc_2d_variance_s2/value",
     "RIFT: RTTC, variance",
@@ -31,7 +31,7 @@ constexpr FigureDefinition kTtcVariance = {
     "Variance of the RTTC bins' midpoints; RIFT prints it after +-.",
     "",
 };
-constexpr FigureDefinition kAct = {
+constexpr MeasureDefinition kAct = {
     "rift_compat_act_s",
     "/metrics/rift_compat/act_s/value",
     "RIFT: ACT, mean",
@@ -43,7 +43,7 @@ constexpr FigureDefinition kAct = {
     "of 3 to 10 m/s.",
     "",
 };
-constexpr FigureDefinition kActVariance = {
+constexpr MeasureDefinition kActVariance = {
     "rift_compat_act_variance_s2",
     "/metrics/rift_compat/act_variance_s2/value",
     "RIFT: ACT, variance",
@@ -68,13 +68,13 @@ class RiftInteraction final : public Metric {
   }
 
   void report(MetricSink& sink) const override {
-    report(sink, times_, figures::kRiftTtc, kTtcVariance);
+    report(sink, times_, known::kRiftTtc, kTtcVariance);
     report(sink, approach_times_, kAct, kActVariance);
   }
 
  private:
-  static void report(MetricSink& sink, const RiftHistogram& times, const FigureDefinition& mean,
-                     const FigureDefinition& variance) {
+  static void report(MetricSink& sink, const RiftHistogram& times, const MeasureDefinition& mean,
+                     const MeasureDefinition& variance) {
     constexpr const char* kNoTime = "no time below 5 s at an ego speed of 3 to 10 m/s";
     const std::size_t n = times.total();
     sink.set(mean, measureOrReason(times.mean(), n, kNoTime));
@@ -90,7 +90,7 @@ class RiftInteraction final : public Metric {
 MetricDescriptor riftInteractionMetric() {
   return {"rift_interaction",
           "Times to collision as RIFT's code computes them.",
-          {figures::kRiftTtc, kTtcVariance, kAct, kActVariance},
+          {known::kRiftTtc, kTtcVariance, kAct, kActVariance},
           [](const MetricContext&) { return std::make_unique<RiftInteraction>(); }};
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/body_motion.h"
 #include "metrics/measures/rift_histogram.h"
 #include "metrics/measures/sample_statistics.h"
@@ -13,7 +13,7 @@
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kRiftAccelerationShapiroWilk = {
+const MeasureDefinition known::kRiftAccelerationShapiroWilk = {
     "rift_compat_acceleration_shapiro_wilk",
     "/metrics/rift_compat/acceleration_shapiro_wilk/value",
     "RIFT: A-SW",
@@ -23,7 +23,7 @@ const FigureDefinition figures::kRiftAccelerationShapiroWilk = {
     "Shapiro-Wilk W of 3000 values drawn from that histogram.",
     "",
 };
-const FigureDefinition figures::kRiftSpeedShapiroWilk = {
+const MeasureDefinition known::kRiftSpeedShapiroWilk = {
     "rift_compat_speed_shapiro_wilk",
     "/metrics/rift_compat/speed_shapiro_wilk/value",
     "RIFT: S-SW",
@@ -33,7 +33,7 @@ const FigureDefinition figures::kRiftSpeedShapiroWilk = {
     "Shapiro-Wilk W of 3000 values drawn from RIFT's histogram of speeds.",
     "",
 };
-const FigureDefinition figures::kRiftSpeedWasserstein = {
+const MeasureDefinition known::kRiftSpeedWasserstein = {
     "rift_compat_speed_wasserstein_mps",
     "/metrics/rift_compat/speed_wasserstein_mps/value",
     "RIFT: S-WD",
@@ -46,7 +46,7 @@ const FigureDefinition figures::kRiftSpeedWasserstein = {
 
 namespace {
 
-constexpr FigureDefinition kRiftAccelerationMean = {
+constexpr MeasureDefinition kRiftAccelerationMean = {
     "rift_compat_acceleration_mean_mps2",
     "/metrics/rift_compat/acceleration_mean_mps2/value",
     "RIFT: acceleration, mean",
@@ -57,7 +57,7 @@ constexpr FigureDefinition kRiftAccelerationMean = {
     "histories repeated.",
     "",
 };
-constexpr FigureDefinition kRiftAccelerationDeviation = {
+constexpr MeasureDefinition kRiftAccelerationDeviation = {
     "rift_compat_acceleration_std_mps2",
     "/metrics/rift_compat/acceleration_std_mps2/value",
     "RIFT: acceleration, standard deviation",
@@ -67,7 +67,7 @@ constexpr FigureDefinition kRiftAccelerationDeviation = {
     "Square root of the variance of that histogram's midpoints.",
     "",
 };
-constexpr FigureDefinition kRiftJerkMean = {
+constexpr MeasureDefinition kRiftJerkMean = {
     "rift_compat_jerk_mean_mps3",
     "/metrics/rift_compat/jerk_mean_mps3/value",
     "RIFT: jerk, mean",
@@ -78,7 +78,7 @@ constexpr FigureDefinition kRiftJerkMean = {
     "being 0, from 2 m/s^3 bins from -10 to 10, histories repeated.",
     "",
 };
-constexpr FigureDefinition kRiftJerkDeviation = {
+constexpr MeasureDefinition kRiftJerkDeviation = {
     "rift_compat_jerk_std_mps3",
     "/metrics/rift_compat/jerk_std_mps3/value",
     "RIFT: jerk, standard deviation",
@@ -88,7 +88,7 @@ constexpr FigureDefinition kRiftJerkDeviation = {
     "Square root of the variance of that jerk histogram's midpoints.",
     "",
 };
-constexpr FigureDefinition kRiftSpeedMean = {
+constexpr MeasureDefinition kRiftSpeedMean = {
     "rift_compat_speed_mean_mps",
     "/metrics/rift_compat/speed_mean_mps/value",
     "RIFT: speed, mean",
@@ -98,7 +98,7 @@ constexpr FigureDefinition kRiftSpeedMean = {
     "Mean speed from the midpoints of RIFT's bins below 14 m/s, histories repeated.",
     "",
 };
-constexpr FigureDefinition kRiftSpeedDeviation = {
+constexpr MeasureDefinition kRiftSpeedDeviation = {
     "rift_compat_speed_std_mps",
     "/metrics/rift_compat/speed_std_mps/value",
     "RIFT: speed, standard deviation",
@@ -139,14 +139,14 @@ class RiftMotion final : public Metric {
     report(sink, speeds_, kRiftSpeedMean, kRiftSpeedDeviation);
     report(sink, accelerations_, kRiftAccelerationMean, kRiftAccelerationDeviation);
     report(sink, jerks_, kRiftJerkMean, kRiftJerkDeviation);
-    sink.set(figures::kRiftSpeedShapiroWilk, normality(speeds_));
-    sink.set(figures::kRiftAccelerationShapiroWilk, normality(accelerations_));
+    sink.set(known::kRiftSpeedShapiroWilk, normality(speeds_));
+    sink.set(known::kRiftAccelerationShapiroWilk, normality(accelerations_));
     std::optional<double> distance;
     if (const auto mean = speeds_.mean())
       distance = riftSpeedWasserstein(*mean, std::sqrt(*speeds_.variance()));
     Measure measure = measureOrReason(distance, n_, reason());
     measure.target = "8.5 m/s for all (30 km/h in RIFT's bins)";
-    sink.set(figures::kRiftSpeedWasserstein, measure);
+    sink.set(known::kRiftSpeedWasserstein, measure);
   }
 
  private:
@@ -155,7 +155,7 @@ class RiftMotion final : public Metric {
     RiftHistogram speeds = riftSpeedHistogram();
     RiftHistogram accelerations = riftAccelerationHistogram();
     RiftHistogram jerks = riftJerkHistogram();
-    double last_acceleration = 0.0;  ///< RIFT begins a life with 0 [m/s^2]
+    double last_acceleration = 0.0;  ///< RIFT starts a life with 0 [m/s^2]
   };
 
   void live(Life& life, const traffic::Vehicle& vehicle) {
@@ -172,8 +172,8 @@ class RiftMotion final : public Metric {
     ++n_;
   }
 
-  void report(MetricSink& sink, const RiftHistogram& histogram, const FigureDefinition& mean,
-              const FigureDefinition& deviation) const {
+  void report(MetricSink& sink, const RiftHistogram& histogram, const MeasureDefinition& mean,
+              const MeasureDefinition& deviation) const {
     sink.set(mean, measureOrReason(histogram.mean(), n_, reason()));
     sink.set(deviation, measureOrReason(rootOf(histogram.variance()), n_, reason()));
   }
@@ -199,9 +199,9 @@ class RiftMotion final : public Metric {
 MetricDescriptor riftMotionMetric() {
   return {"rift_motion",
           "Speed, acceleration and jerk of CBVs as RIFT's code computes them.",
-          {kRiftAccelerationMean, figures::kRiftAccelerationShapiroWilk, kRiftAccelerationDeviation,
-           kRiftJerkMean, kRiftJerkDeviation, kRiftSpeedMean, figures::kRiftSpeedShapiroWilk,
-           kRiftSpeedDeviation, figures::kRiftSpeedWasserstein},
+          {kRiftAccelerationMean, known::kRiftAccelerationShapiroWilk, kRiftAccelerationDeviation,
+           kRiftJerkMean, kRiftJerkDeviation, kRiftSpeedMean, known::kRiftSpeedShapiroWilk,
+           kRiftSpeedDeviation, known::kRiftSpeedWasserstein},
           [](const MetricContext& context) {
             return std::make_unique<RiftMotion>(context.options.decision_period);
           }};

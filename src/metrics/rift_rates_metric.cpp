@@ -5,14 +5,14 @@
 #include <set>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/body_motion.h"
 #include "metrics/measures/collisions_per_km.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kRiftCollisionsPerKm = {
+const MeasureDefinition known::kRiftCollisionsPerKm = {
     "rift_compat_collisions_per_km",
     "/metrics/rift_compat/collisions_per_km/value",
     "RIFT: CPK",
@@ -22,7 +22,7 @@ const FigureDefinition figures::kRiftCollisionsPerKm = {
     "1000 x CBVs that collided / distance over decision ticks in metres.",
     "",
 };
-const FigureDefinition figures::kRiftOffRoad = {
+const MeasureDefinition known::kRiftOffRoad = {
     "rift_compat_off_road_rate_percent",
     "/metrics/rift_compat/off_road_rate_percent/value",
     "RIFT: ORR",
@@ -35,7 +35,7 @@ const FigureDefinition figures::kRiftOffRoad = {
 
 namespace {
 
-constexpr FigureDefinition kReachedProgress = {
+constexpr MeasureDefinition kReachedProgress = {
     "rift_compat_reached_progress_m",
     "/metrics/rift_compat/reached_progress_m/value",
     "RIFT: RP",
@@ -46,7 +46,7 @@ constexpr FigureDefinition kReachedProgress = {
     "driven as CBV.",
     "",
 };
-constexpr FigureDefinition kRiftUncomfortable = {
+constexpr MeasureDefinition kRiftUncomfortable = {
     "rift_compat_uncomfortable_rate_percent",
     "/metrics/rift_compat/uncomfortable_rate_percent/value",
     "RIFT: UC",
@@ -78,9 +78,9 @@ class RiftRates final : public Metric {
   }
 
   void report(MetricSink& sink) const override {
-    sink.set(figures::kRiftOffRoad, off_road_.measure(kNoCbv));
+    sink.set(known::kRiftOffRoad, off_road_.measure(kNoCbv));
     sink.set(kRiftUncomfortable, uncomfortable_.measure(kNoCbv));
-    sink.set(figures::kRiftCollisionsPerKm,
+    sink.set(known::kRiftCollisionsPerKm,
              collisionsPerKilometre(collided_.size(), distance_, driven_.size()));
     const std::optional<double> progress =
         driven_.empty() ? std::nullopt : std::optional<double>(distance_);
@@ -99,7 +99,7 @@ class RiftRates final : public Metric {
     const bool known = last != lives_.end();
     const Life now{bodyAcceleration(vehicle).magnitude(), vehicle.state.position};
     if (known) distance_ += (now.position - last->second.position).norm();
-    const double before = known ? last->second.acceleration : 0.0;  // RIFT begins a life with 0
+    const double before = known ? last->second.acceleration : 0.0;  // RIFT starts a life with 0
     uncomfortable_.add(
         isUncomfortable(bodyAcceleration(vehicle), (now.acceleration - before) / decision_period_));
     return now;
@@ -117,13 +117,12 @@ class RiftRates final : public Metric {
 }  // namespace
 
 MetricDescriptor riftRatesMetric() {
-  return {
-      "rift_rates",
-      "Rates of CBVs as RIFT's code computes them.",
-      {figures::kRiftCollisionsPerKm, figures::kRiftOffRoad, kReachedProgress, kRiftUncomfortable},
-      [](const MetricContext& context) {
-        return std::make_unique<RiftRates>(context.options.decision_period);
-      }};
+  return {"rift_rates",
+          "Rates of CBVs as RIFT's code computes them.",
+          {known::kRiftCollisionsPerKm, known::kRiftOffRoad, kReachedProgress, kRiftUncomfortable},
+          [](const MetricContext& context) {
+            return std::make_unique<RiftRates>(context.options.decision_period);
+          }};
 }
 
 }  // namespace cdiff::metrics

@@ -12,40 +12,40 @@
 
 namespace cdiff::metrics {
 
-Measure SessionMeasures::at(const FigureDefinition& figure) const {
-  const auto found = measures_.find(figure.name);
+Measure SessionMeasures::at(const MeasureDefinition& definition) const {
+  const auto found = measures_.find(definition.name);
   if (found != measures_.end()) return found->second;
-  return {std::nullopt, 0, figure.unit, "not computed"};
+  return {std::nullopt, 0, definition.unit, "not computed"};
 }
 
 Measure SessionMeasures::at(const std::string& name) const {
-  const FigureDefinition* figure = findFigure(name);
-  if (figure == nullptr) throw core::InputError("'" + name + "' is no figure of a session");
-  return at(*figure);
+  const MeasureDefinition* definition = findMeasure(name);
+  if (definition == nullptr) throw core::InputError("'" + name + "' is no measure of a session");
+  return at(*definition);
 }
 
-void SessionMeasures::set(const FigureDefinition& figure, Measure measure) {
-  measure.unit = figure.unit;
-  measures_[figure.name] = std::move(measure);
+void SessionMeasures::set(const MeasureDefinition& definition, Measure measure) {
+  measure.unit = definition.unit;
+  measures_[definition.name] = std::move(measure);
 }
 
 namespace {
 
-/// Takes the report of one metric into the session's figures.
+/// Takes the report of one metric into the session's measures.
 class Report final : public MetricSink {
  public:
   Report(const MetricDescriptor& metric, SessionMeasures& measures)
       : metric_(metric), measures_(measures) {}
 
-  void set(const FigureDefinition& figure, Measure measure) override {
-    const std::string name = figure.name;
-    const bool own = std::any_of(metric_.figures.begin(), metric_.figures.end(),
-                                 [&](const FigureDefinition& each) { return name == each.name; });
+  void set(const MeasureDefinition& definition, Measure measure) override {
+    const std::string name = definition.name;
+    const bool own = std::any_of(metric_.measures.begin(), metric_.measures.end(),
+                                 [&](const MeasureDefinition& each) { return name == each.name; });
     if (!own) {
       throw core::Error("metric '" + metric_.name + "' of " + metric_.source + " reports '" + name +
-                        "', which is not among its figures");
+                        "', which is not among its measures");
     }
-    measures_.set(figure, std::move(measure));
+    measures_.set(definition, std::move(measure));
   }
 
   void setList(const std::string& place, std::vector<MetricEntry> entries) override {
@@ -77,7 +77,7 @@ class SessionMetrics::Metrics {
     const MetricTick tick = ticks_.observe(snapshot, selection);
     for (const auto& [descriptor, metric] : metrics_) metric->observe(tick);
     ego_contacts_.insert(ego_contacts_.end(), tick.ego_contacts.begin(), tick.ego_contacts.end());
-    return liveFigures(tick);
+    return liveMeasures(tick);
   }
 
   SessionMeasures measures() const {
@@ -92,7 +92,7 @@ class SessionMetrics::Metrics {
   }
 
  private:
-  static TickMeasures liveFigures(const MetricTick& tick) {
+  static TickMeasures liveMeasures(const MetricTick& tick) {
     TickMeasures live;
     live.ttc_2d = tick.interaction.ttc_2d;
     live.nearest_distance = tick.interaction.nearest_distance;

@@ -13,31 +13,33 @@
 
 namespace cdiff::metrics {
 
-/// The figures of a session by name, each with its unit, count and, where it cannot be given, the
+/// The measures of a session by name, each with its unit, count and, where it cannot be given, the
 /// reason; and the lists and contacts that belong to them.
 class SessionMeasures {
  public:
-  /// The measure of a figure; one without value, "not computed", where no metric reported it.
-  Measure at(const FigureDefinition& figure) const;
+  /// The measure of a measure; one without value, "not computed", where no metric reported it.
+  Measure at(const MeasureDefinition& definition) const;
   /// Likewise by name. Throws core::InputError for a name that no metric has.
   Measure at(const std::string& name) const;
-  /// The value of a figure that has one in every session; else 0.
-  double number(const FigureDefinition& figure) const { return at(figure).value.value_or(0.0); }
-  std::size_t count(const FigureDefinition& figure) const {
-    return static_cast<std::size_t>(number(figure));
+  /// The value of a measure that has one in every session; else 0.
+  double number(const MeasureDefinition& definition) const {
+    return at(definition).value.value_or(0.0);
   }
-  /// Sets a figure; its unit is the definition's.
-  void set(const FigureDefinition& figure, Measure measure);
+  std::size_t count(const MeasureDefinition& definition) const {
+    return static_cast<std::size_t>(number(definition));
+  }
+  /// Sets a measure; its unit is the definition's.
+  void set(const MeasureDefinition& definition, Measure measure);
 
   std::string protocol;  ///< preset whose rules the score and the infractions follow
   std::vector<EgoContact> ego_contacts;                   ///< in order of time
-  std::map<std::string, std::vector<MetricEntry>> lists;  ///< of summary.json, by JSON pointer
+  std::map<std::string, std::vector<MetricEntry>> lists;  ///< by JSON pointer in summary.json
 
  private:
-  std::map<std::string, Measure> measures_;  ///< by the figure's name
+  std::map<std::string, Measure> measures_;  ///< by the measure's name
 };
 
-/// Figures of one tick, for the live topic.
+/// Measures of one tick, for the live topic.
 struct TickMeasures {
   std::optional<double> ttc_2d;            ///< minimum over vehicles near the ego [s]
   std::optional<double> nearest_distance;  ///< ego's box to the nearest other box [m]
@@ -60,7 +62,7 @@ class SessionMetrics {
   /// One tick in order; `selection` at decision ticks, else nullptr.
   TickMeasures observe(const traffic::TrafficSnapshot& snapshot,
                        const cbv::CbvSelection* selection);
-  /// The figures so far.
+  /// The measures so far.
   SessionMeasures measures() const;
 
  private:

@@ -4,13 +4,13 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 #include "metrics/measures/wasserstein.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kSpeedWasserstein = {
+const MeasureDefinition known::kSpeedWasserstein = {
     "speed_wasserstein_mps",
     "/metrics/speed_wasserstein_mps/value",
     "Wasserstein distance of CBV speeds to the target",
@@ -64,7 +64,7 @@ class SpeedWasserstein final : public Metric {
     } else {
       measure.value = wassersteinDistance(speeds_, target_);
     }
-    sink.set(figures::kSpeedWasserstein, measure);
+    sink.set(known::kSpeedWasserstein, measure);
   }
 
  private:
@@ -98,7 +98,7 @@ class SpeedWasserstein final : public Metric {
 MetricDescriptor speedWassersteinMetric() {
   return {"speed_wasserstein",
           "Distance of the speeds of CBVs to a target distribution.",
-          {figures::kSpeedWasserstein},
+          {known::kSpeedWasserstein},
           [](const MetricContext& context) {
             return std::make_unique<SpeedWasserstein>(context.options.metrics);
           }};

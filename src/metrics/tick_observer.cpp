@@ -16,7 +16,7 @@ using traffic::VehicleRole;
 
 /// Limit of the lane that a vehicle is on; off the road, of the nearest one.
 std::optional<double> speedLimit(const Vehicle& vehicle, const map::RoadNetwork& network) {
-  constexpr double kRadius = 5.0;  // [m] from a lane's centre line
+  constexpr double kRadius = 5.0;  // [m] from a lane's centerline
   map::LaneIndex lane = network.findLane(vehicle.lane_id);
   if (lane == map::kNoLane) {
     const auto near = network.lanesNear(vehicle.state.position, vehicle.state.elevation, kRadius);
@@ -26,7 +26,7 @@ std::optional<double> speedLimit(const Vehicle& vehicle, const map::RoadNetwork&
   return network.lane(lane).speed_limit;
 }
 
-/// Of the centres; absent without ego, and where one passes under the other.
+/// Of the centers; absent without ego, and where one passes under the other.
 std::optional<double> distanceToEgo(const Vehicle& vehicle, const Vehicle* ego) {
   if (ego == nullptr || traffic::onDifferentLevels(vehicle, *ego)) return std::nullopt;
   return (vehicle.state.position - ego->state.position).norm();

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Makes of each snapshot the tick that metrics see: who is off the road, how far the ego is, which
-/// vehicles are CBVs, and who touched whom (map frame, SI units).
 #pragma once
 
 #include <map>
@@ -14,6 +12,8 @@
 
 namespace cdiff::metrics {
 
+/// Makes of each snapshot the tick that metrics see: who is off the road, how far the ego is, which
+/// vehicles are CBVs, and who touched whom (map frame, SI units).
 class TickObserver {
  public:
   /// References must outlive the object; an empty route completes nothing.

@@ -7,7 +7,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kTtcCbvMean = {
+constexpr MeasureDefinition kTtcCbvMean = {
     "ttc_cbv_mean_s",
     "/metrics/ttc_2d_cbv_s/mean",
     "2D-TTC to CBVs, mean",
@@ -17,11 +17,11 @@ constexpr FigureDefinition kTtcCbvMean = {
     "As ttc_mean_s, of the CBVs alone.",
     "RIFT takes all vehicles.",
 };
-constexpr FigureDefinition kTtcCbvDeviation = {
+constexpr MeasureDefinition kTtcCbvDeviation = {
     "ttc_cbv_std_s",     "/metrics/ttc_2d_cbv_s/std", "2D-TTC to CBVs, standard deviation", "s",
     Direction::kNeither, Subject::kEgoAndOthers,      "As ttc_std_s, of the CBVs alone.",   "",
 };
-constexpr FigureDefinition kTtcCbvMinimum = {
+constexpr MeasureDefinition kTtcCbvMinimum = {
     "ttc_cbv_min_s",
     "/metrics/ttc_2d_cbv_s/min",
     "2D-TTC to CBVs, minimum",
@@ -33,7 +33,7 @@ constexpr FigureDefinition kTtcCbvMinimum = {
     3,
     true,
 };
-constexpr FigureDefinition kTtcCbvDefined = {
+constexpr MeasureDefinition kTtcCbvDefined = {
     "ttc_cbv_defined_percent",
     "/metrics/ttc_2d_cbv_defined_percent/value",
     "2D-TTC to CBVs is defined",

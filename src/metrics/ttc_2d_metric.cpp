@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 
-const FigureDefinition figures::kTtcMean = {
+const MeasureDefinition known::kTtcMean = {
     "ttc_mean_s",
     "/metrics/ttc_2d_s/mean",
     "2D-TTC, mean",
@@ -22,7 +22,7 @@ const FigureDefinition figures::kTtcMean = {
     3,
     true,
 };
-const FigureDefinition figures::kTtcMinimum = {
+const MeasureDefinition known::kTtcMinimum = {
     "ttc_min_s",
     "/metrics/ttc_2d_s/min",
     "2D-TTC, minimum",
@@ -37,7 +37,7 @@ const FigureDefinition figures::kTtcMinimum = {
 
 namespace {
 
-constexpr FigureDefinition kTtcDeviation = {
+constexpr MeasureDefinition kTtcDeviation = {
     "ttc_std_s",
     "/metrics/ttc_2d_s/std",
     "2D-TTC, standard deviation",
@@ -47,7 +47,7 @@ constexpr FigureDefinition kTtcDeviation = {
     "Standard deviation (n - 1) of the same values.",
     "RIFT prints the variance of its bins as if it were the deviation.",
 };
-constexpr FigureDefinition kTtcDefined = {
+constexpr MeasureDefinition kTtcDefined = {
     "ttc_defined_percent",
     "/metrics/ttc_2d_defined_percent/value",
     "2D-TTC is defined",
@@ -69,9 +69,9 @@ class Ttc2d final : public Metric {
   void report(MetricSink& sink) const override {
     const DistributionMeasure times =
         times_.measure("no vehicle was on a collision course with the ego");
-    sink.set(figures::kTtcMean, times.mean);
+    sink.set(known::kTtcMean, times.mean);
     sink.set(kTtcDeviation, times.standard_deviation);
-    sink.set(figures::kTtcMinimum, times.minimum);
+    sink.set(known::kTtcMinimum, times.minimum);
     sink.set(kTtcDefined, defined_.measure(kNoEgo));
   }
 
@@ -85,7 +85,7 @@ class Ttc2d final : public Metric {
 MetricDescriptor ttc2dMetric() {
   return {"ttc_2d",
           "2D time to collision of the ego with any vehicle (paper's 2D-TTC).",
-          {figures::kTtcMean, kTtcDeviation, figures::kTtcMinimum, kTtcDefined},
+          {known::kTtcMean, kTtcDeviation, known::kTtcMinimum, kTtcDefined},
           [](const MetricContext&) { return std::make_unique<Ttc2d>(); }};
 }
 

@@ -7,7 +7,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-constexpr FigureDefinition kTtcAxisMean = {
+constexpr MeasureDefinition kTtcAxisMean = {
     "ttc_lon_lat_mean_s",
     "/metrics/ttc_lon_lat_s/mean",
     "Smaller of longitudinal and lateral TTC, mean",
@@ -19,7 +19,7 @@ constexpr FigureDefinition kTtcAxisMean = {
     "each valid where the other direction overlaps at that time; vehicles as for ttc_mean_s.",
     "RIFT does not report it.",
 };
-constexpr FigureDefinition kTtcAxisDeviation = {
+constexpr MeasureDefinition kTtcAxisDeviation = {
     "ttc_lon_lat_std_s",
     "/metrics/ttc_lon_lat_s/std",
     "Smaller of longitudinal and lateral TTC, standard deviation",
@@ -29,7 +29,7 @@ constexpr FigureDefinition kTtcAxisDeviation = {
     "Standard deviation (n - 1) of the values behind ttc_lon_lat_mean_s.",
     "",
 };
-constexpr FigureDefinition kTtcAxisMinimum = {
+constexpr MeasureDefinition kTtcAxisMinimum = {
     "ttc_lon_lat_min_s",
     "/metrics/ttc_lon_lat_s/min",
     "Smaller of longitudinal and lateral TTC, minimum",
@@ -39,7 +39,7 @@ constexpr FigureDefinition kTtcAxisMinimum = {
     "The smallest of the values behind ttc_lon_lat_mean_s.",
     "",
 };
-constexpr FigureDefinition kTtcAxisDefined = {
+constexpr MeasureDefinition kTtcAxisDefined = {
     "ttc_lon_lat_defined_percent",
     "/metrics/ttc_lon_lat_defined_percent/value",
     "Longitudinal or lateral TTC is defined",

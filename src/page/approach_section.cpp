@@ -22,8 +22,8 @@ constexpr double kPlanRounding = 1e-6;  // [s]
 /// The plan's horizon: planned and driven states of the CBV every 0.1 s from the decision on, and
 /// where the ego was.
 struct PlanView {
-  std::vector<record::WayPoint> planned;
-  std::vector<record::WayPoint> driven;
+  std::vector<record::Waypoint> planned;
+  std::vector<record::Waypoint> driven;
   std::vector<geometry::Pose2d> ego;
   record::TimelineVehicle ego_vehicle;
 };
@@ -56,9 +56,9 @@ PlanView viewOf(const record::SessionResult& result, const record::VehiclePlans&
   return view;
 }
 
-Points positionsOf(const std::vector<record::WayPoint>& states) {
+Points positionsOf(const std::vector<record::Waypoint>& states) {
   Points points;
-  for (const record::WayPoint& state : states) points.push_back(state.position);
+  for (const record::Waypoint& state : states) points.push_back(state.position);
   return points;
 }
 
@@ -72,7 +72,7 @@ Region regionOf(const PlanView& view) {
     region.high = region.high.cwiseMax(point);
   };
   for (const auto* states : {&view.planned, &view.driven}) {
-    for (const record::WayPoint& state : *states) {
+    for (const record::Waypoint& state : *states) {
       if (state.position.allFinite()) include(state.position);
     }
   }
@@ -83,7 +83,7 @@ Region regionOf(const PlanView& view) {
 }
 
 /// A dot every 0.5 s.
-Markup dots(const std::vector<record::WayPoint>& states, const std::string& style,
+Markup dots(const std::vector<record::Waypoint>& states, const std::string& style,
             const MapCanvas& canvas) {
   constexpr std::size_t kStride = 5;
   Markup svg;
@@ -99,7 +99,7 @@ Markup statesSvg(const record::VehiclePlans& vehicle, const PlanView& view,
                  const std::string& style, const MapCanvas& canvas) {
   const record::TimelineVehicle body{vehicle.vehicle_id, vehicle.dimensions.length,
                                      vehicle.dimensions.width};
-  const auto box = [&](const record::WayPoint& state, const std::string& box_style) {
+  const auto box = [&](const record::Waypoint& state, const std::string& box_style) {
     return vehicleSvg(body, {state.position, state.heading}, canvas, box_style);
   };
   const Markup driven = box(view.driven.front(), style) +
@@ -135,7 +135,7 @@ Markup speeds(const PlanView& view, const std::string& style) {
   chart.own_time = true;
   chart.least_top = 5.0;
   chart.duration = static_cast<double>(view.planned.size() - 1) * traffic::kRolloutStep;
-  const auto series = [](const std::string& name, const std::vector<record::WayPoint>& states) {
+  const auto series = [](const std::string& name, const std::vector<record::Waypoint>& states) {
     ChartSeries line{name, {}};
     for (std::size_t i = 0; i < states.size(); ++i) {
       line.points.emplace_back(static_cast<double>(i) * traffic::kRolloutStep, states[i].speed);

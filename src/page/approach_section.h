@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostApproaches = 4;
 /// The approaches that are shown, smallest gap first (ties: the vehicle that was driven first).
 std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& log);
 
-/// Renders the front views anew, at 640 x 384 pixels.
+/// Renders the front views again, at 640 x 384 pixels.
 core::Markup approachSection(const record::SessionResult& result);
 
 }  // namespace cdiff::page

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "page/approach_section.h"
 #include "page/assets.h"
 #include "page/motion_sections.h"
@@ -73,8 +73,8 @@ Markup lateBanner(const record::SessionResult& result) {
          "\n";
 }
 
-Markup figure(const std::string& name, const std::string& value, const std::string& unit,
-              const std::string& note) {
+Markup tile(const std::string& name, const std::string& value, const std::string& unit,
+            const std::string& note) {
   const Markup number = unit.empty() ? Markup(value) : value + " " + element("small", {}, unit);
   return element("div", {{"class", "figure"}},
                  element("span", {{"class", "name"}}, name) +
@@ -83,10 +83,10 @@ Markup figure(const std::string& name, const std::string& value, const std::stri
          "\n";
 }
 
-Markup figure(const std::string& name, const metrics::Measure& measure, int decimals) {
-  if (!measure.value) return figure(name, "–", "", measure.reason);
-  return figure(name, core::formatFixed(*measure.value, decimals), measure.unit,
-                "n = " + std::to_string(measure.n));
+Markup tile(const std::string& name, const metrics::Measure& measure, int decimals) {
+  if (!measure.value) return tile(name, "–", "", measure.reason);
+  return tile(name, core::formatFixed(*measure.value, decimals), measure.unit,
+              "n = " + std::to_string(measure.n));
 }
 
 std::string paceText(const record::SessionResult& result) {
@@ -94,37 +94,36 @@ std::string paceText(const record::SessionResult& result) {
   return core::formatFixed(result.simulated_seconds / result.wall_seconds, 1) + " times real time";
 }
 
-Markup egoFigures(const record::SessionResult& result) {
-  namespace figures = metrics::figures;
+Markup egoTiles(const record::SessionResult& result) {
+  namespace known = metrics::known;
   const metrics::SessionMeasures& measures = result.measures;
-  return figure("Route completion",
-                core::formatFixed(measures.number(figures::kRouteCompletion), 1), "%",
-                traffic::toText(result.status)) +
-         figure("Driving score", core::formatFixed(measures.number(figures::kDrivingScore), 1), "",
-                "of 100, by " + measures.protocol) +
-         figure("Ego collisions", std::to_string(measures.count(figures::kEgoCollisions)), "",
-                std::to_string(measures.count(figures::kContactsAtFault)) + " its fault, " +
-                    std::to_string(measures.count(figures::kCbvEgoCollisions)) + " with CBVs");
+  return tile("Route completion", core::formatFixed(measures.number(known::kRouteCompletion), 1),
+              "%", traffic::toText(result.status)) +
+         tile("Driving score", core::formatFixed(measures.number(known::kDrivingScore), 1), "",
+              "of 100, by " + measures.protocol) +
+         tile("Ego collisions", std::to_string(measures.count(known::kEgoCollisions)), "",
+              std::to_string(measures.count(known::kContactsAtFault)) + " its fault, " +
+                  std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs");
 }
 
-Markup cbvFigures(const metrics::SessionMeasures& measures) {
-  namespace figures = metrics::figures;
-  const metrics::Measure rate = measures.at(figures::kCollisionsPerKm);
-  return figure("CBVs", std::to_string(measures.count(figures::kCbvCount)), "",
-                std::to_string(measures.count(figures::kCbvDecisions)) + " decisions, " +
-                    core::formatFixed(measures.number(figures::kCbvDistance), 0) + " m") +
-         figure("CBV collisions", std::to_string(measures.count(figures::kCbvCollisions)), "",
-                rate.value ? core::formatFixed(*rate.value, 2) + " per km" : rate.reason) +
-         figure("CBV off-road rate", measures.at(figures::kCbvOffRoad), 2);
+Markup cbvTiles(const metrics::SessionMeasures& measures) {
+  namespace known = metrics::known;
+  const metrics::Measure rate = measures.at(known::kCollisionsPerKm);
+  return tile("CBVs", std::to_string(measures.count(known::kCbvCount)), "",
+              std::to_string(measures.count(known::kCbvDecisions)) + " decisions, " +
+                  core::formatFixed(measures.number(known::kCbvDistance), 0) + " m") +
+         tile("CBV collisions", std::to_string(measures.count(known::kCbvCollisions)), "",
+              rate.value ? core::formatFixed(*rate.value, 2) + " per km" : rate.reason) +
+         tile("CBV off-road rate", measures.at(known::kCbvOffRoad), 2);
 }
 
-Markup figures(const record::SessionResult& result) {
+Markup tiles(const record::SessionResult& result) {
   const metrics::SessionMeasures& measures = result.measures;
   const Markup content =
-      egoFigures(result) + cbvFigures(measures) +
-      figure("2D-TTC, minimum", measures.at(metrics::figures::kTtcMinimum), 2) +
-      figure("2D-TTC, mean", measures.at(metrics::figures::kTtcMean), 2) +
-      figure("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", paceText(result));
+      egoTiles(result) + cbvTiles(measures) +
+      tile("2D-TTC, minimum", measures.at(metrics::known::kTtcMinimum), 2) +
+      tile("2D-TTC, mean", measures.at(metrics::known::kTtcMean), 2) +
+      tile("Simulated", core::formatFixed(result.simulated_seconds, 1), "s", paceText(result));
   return element("div", {{"class", "figures"}}, "\n" + content) + "\n";
 }
 
@@ -169,7 +168,7 @@ std::string htmlReport(const record::SessionResult& result) {
   const MapCanvas canvas(sessionRegion(result));
   return pageDocument(
       result.setup.options().name + " – session report", {},
-      banner(result) + lateBanner(result) + figures(result) + sections(result, canvas),
+      banner(result) + lateBanner(result) + tiles(result) + sections(result, canvas),
       core::jsonElement("playback", playbackJson(result, canvas)) +
           core::scriptElement(kReportScript));
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Text of report.html: one self-contained page with verdict, figures, a picture from above, charts
-/// and tables.
 #pragma once
 
 #include <string>
@@ -10,6 +8,8 @@
 
 namespace cdiff::page {
 
+/// Text of report.html: one self-contained page with verdict, main measures, a picture from above,
+/// charts and tables.
 std::string htmlReport(const record::SessionResult& result);
 
 }  // namespace cdiff::page

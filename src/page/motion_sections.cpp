@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
@@ -44,16 +44,16 @@ Markup drivingLegend() {
 
 /// How even the speeds and accelerations of CBVs are, and what they are compared with.
 std::string distributionText(const metrics::SessionMeasures& measures) {
-  namespace figures = metrics::figures;
-  const auto text = [&](const metrics::FigureDefinition& figure) {
-    return record::measureText(measures.at(figure), 3);
+  namespace known = metrics::known;
+  const auto text = [&](const metrics::MeasureDefinition& definition) {
+    return record::measureText(measures.at(definition), 3);
   };
   return "One value per vehicle and decision; ± is the standard deviation over them. Shapiro-Wilk "
          "W of CBVs: speed " +
-         text(figures::kSpeedShapiroWilk) + ", acceleration " +
-         text(figures::kAccelerationShapiroWilk) +
+         text(known::kSpeedShapiroWilk) + ", acceleration " +
+         text(known::kAccelerationShapiroWilk) +
          ". Wasserstein distance of CBV speeds to background vehicles within 150 m of the ego: " +
-         text(figures::kSpeedWasserstein) + ".";
+         text(known::kSpeedWasserstein) + ".";
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What HTML pages are made of: the document with its style sheets, headings, sections, the banner
-/// with an outcome, tables, legends.
 #pragma once
 
 #include <string>
@@ -11,6 +9,9 @@
 #include "record/verdict.h"
 
 namespace cdiff::page {
+
+// What HTML pages are made of: the document with its style sheets, headings, sections, the banner
+// with an outcome, tables, legends.
 
 using core::element;
 using core::Markup;
@@ -26,10 +27,10 @@ Markup pageHeader(const std::string& title, const std::string& line, const Marku
 /// A <section> with a heading; `style`: its class, or none.
 Markup pageSection(const std::string& title, const Markup& content, const std::string& style = "");
 
-/// The sign of an outcome and `headline`, in its colours, above `content`.
+/// The sign of an outcome and `headline`, in its colors, above `content`.
 Markup pageBanner(record::Outcome outcome, const std::string& headline, const Markup& content);
 
-/// A paragraph in soft colour.
+/// A paragraph in soft color.
 Markup pageNote(const std::string& text);
 
 /// A row of a legend: a picture of 28 x 14 pixels, and text.
@@ -39,7 +40,7 @@ Markup legendLine(const std::string& style, const std::string& text);
 /// Around such rows.
 Markup pageLegend(const Markup& items);
 
-/// Rows under a head; a column whose name begins with '#' holds numbers. Long words are broken by
+/// Rows under a head; a column whose name starts with '#' holds numbers. Long words are broken by
 /// the style sheet.
 class HtmlTable {
  public:

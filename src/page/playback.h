@@ -19,8 +19,7 @@ core::Markup stageHtml(const record::SessionResult& result, const MapCanvas& can
 // above, whole degrees, 0.1 m/s; commands, gaps and times to collision of ego and CBVs; front
 // views.
 
-/// Frames are left out evenly when there would be more than 60 000
-/// poses.
+/// Frames are left out evenly when there would be more than 60 000 poses.
 std::string playbackJson(const record::SessionResult& result, const MapCanvas& canvas);
 
 }  // namespace cdiff::page

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "page/page_parts.h"
 #include "record/build_info.h"
@@ -35,17 +35,18 @@ std::vector<std::string> mostOften(const std::map<std::string, std::size_t>& cou
   return ids;
 }
 
-/// Why a figure is absent, how its samples were taken, and what it is compared with.
+/// Why a measure is absent, how its samples were taken, and what it is compared with.
 std::string noteOf(const metrics::Measure& measure) {
   if (measure.target.empty()) return measure.reason;
   return "against " + measure.target + (measure.reason.empty() ? "" : "; " + measure.reason);
 }
 
-void measureRow(HtmlTable& table, const std::string& name, const metrics::FigureDefinition& figure,
+void measureRow(HtmlTable& table, const std::string& name,
+                const metrics::MeasureDefinition& definition,
                 const metrics::SessionMeasures& measures) {
-  const metrics::Measure measure = measures.at(figure);
+  const metrics::Measure measure = measures.at(definition);
   table.row(
-      {name, measure.value ? fixed(*measure.value, figure.decimals) : "–",
+      {name, measure.value ? fixed(*measure.value, definition.decimals) : "–",
        measure.unit == "count" ? "" : measure.unit, std::to_string(measure.n), noteOf(measure)},
       measure.value ? "" : "absent");
 }
@@ -63,19 +64,19 @@ Markup ruleTable(const record::SessionResult& result) {
 
 Markup metricTable(const metrics::SessionMeasures& measures) {
   HtmlTable table({"Metric", "#Value", "Unit", "#n", "Note"});
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
-    measureRow(table, figure.label, figure, measures);
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions())
+    measureRow(table, definition.label, definition, measures);
   return table.html();
 }
 
 Markup infractionTable(const metrics::SessionMeasures& measures) {
   HtmlTable table({"Infraction by " + measures.protocol, "#Found", "Unit", "#n", "Note"});
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(definition.place, '/');
     if (keys.size() == 3 && keys[1] == "infractions")
-      measureRow(table, keys.back(), figure, measures);
+      measureRow(table, keys.back(), definition, measures);
   }
-  measureRow(table, "Penalty", metrics::figures::kPenalty, measures);
+  measureRow(table, "Penalty", metrics::known::kPenalty, measures);
   return table.html();
 }
 
@@ -116,12 +117,12 @@ Markup planTable(const record::PlanLog& plans) {
     if (vehicle.plans.empty()) continue;
     std::vector<Markup> cells = {vehicle.vehicle_id, std::to_string(vehicle.plans.size())};
     for (const double seconds : {1.0, 2.0, 3.0}) {
-      const record::SampleFigures figures =
-          record::figuresOf(plans.displacements(vehicle, seconds));
-      cells.push_back(fixedOrDash(figures.mean, 2));
-      cells.push_back(fixedOrDash(figures.percentile_95, 2));
+      const record::SampleSummary summary =
+          record::summaryOf(plans.displacements(vehicle, seconds));
+      cells.push_back(fixedOrDash(summary.mean, 2));
+      cells.push_back(fixedOrDash(summary.percentile_95, 2));
     }
-    const record::SampleFigures mismatch = record::mismatchFigures(vehicle);
+    const record::SampleSummary mismatch = record::mismatchSummary(vehicle);
     cells.push_back(fixedOrDash(mismatch.mean, 3));
     cells.push_back(fixedOrDash(mismatch.percentile_95, 3));
     cells.push_back(fixedOrDash(mismatch.maximum, 3));
@@ -134,12 +135,12 @@ Markup guidanceTable(const record::GuidanceLog& log) {
   HtmlTable table({"Objective", "#Weight", "#Mean value", "#Mean gradient norm",
                    "#Steps with the gradient capped [%]", "#Steps left out", "#Decisions"});
   for (const record::GuidanceSeries& series : log.series()) {
-    const record::ObjectiveFigures figures = record::figuresOf(series);
-    std::optional<double> capped = figures.capped_share;
+    const record::ObjectiveSummary summary = record::summaryOf(series);
+    std::optional<double> capped = summary.capped_share;
     if (capped) *capped *= 100.0;
-    table.row({series.objective, fixedOrDash(figures.weight, 3), fixedOrDash(figures.value, 4),
-               fixedOrDash(figures.gradient_norm, 4), fixedOrDash(capped, 1),
-               std::to_string(figures.dropped), std::to_string(figures.n)});
+    table.row({series.objective, fixedOrDash(summary.weight, 3), fixedOrDash(summary.value, 4),
+               fixedOrDash(summary.gradient_norm, 4), fixedOrDash(capped, 1),
+               std::to_string(summary.dropped), std::to_string(summary.n)});
   }
   return table.html();
 }
@@ -182,28 +183,27 @@ Markup contactTable(const record::SessionResult& result) {
   return table.html();
 }
 
-Markup latencyTable(const std::map<std::string, record::LatencyFigures>& latencies) {
+Markup latencyTable(const std::map<std::string, record::LatencySummary>& latencies) {
   if (latencies.empty()) return pageNote("No planner was timed.");
   HtmlTable table(
       {"Planner", "#Median [ms]", "#95th percentile [ms]", "#Maximum [ms]", "#Decisions"});
-  for (const auto& [planner, figures] : latencies) {
-    table.row({planner, fixed(figures.median, 2), fixed(figures.percentile_95, 2),
-               fixed(figures.maximum, 2), std::to_string(figures.n)});
+  for (const auto& [planner, summary] : latencies) {
+    table.row({planner, fixed(summary.median, 2), fixed(summary.percentile_95, 2),
+               fixed(summary.maximum, 2), std::to_string(summary.n)});
   }
   return table.html();
 }
 
-Markup lateTable(const std::map<std::string, record::LateFigures>& late) {
+Markup lateTable(const std::map<std::string, record::LateCounts>& late) {
   if (late.empty()) return pageNote("The session waited for every answer.");
   HtmlTable table({"Planner", "#Asked", "#Late", "#Never came", "#Drove on by its plan",
                    "#Braked fully", "#Not taken over yet", "#Lateness: median [s]",
                    "#95th percentile [s]", "#Maximum [s]"});
-  for (const auto& [planner, figures] : late) {
-    table.row({planner, std::to_string(figures.asked), std::to_string(figures.late),
-               std::to_string(figures.missing), std::to_string(figures.by_plan),
-               std::to_string(figures.by_full_brake), std::to_string(figures.not_driven),
-               fixed(figures.median, 3), fixed(figures.percentile_95, 3),
-               fixed(figures.maximum, 3)});
+  for (const auto& [planner, counts] : late) {
+    table.row({planner, std::to_string(counts.asked), std::to_string(counts.late),
+               std::to_string(counts.missing), std::to_string(counts.by_plan),
+               std::to_string(counts.by_full_brake), std::to_string(counts.not_driven),
+               fixed(counts.median, 3), fixed(counts.percentile_95, 3), fixed(counts.maximum, 3)});
   }
   return table.html();
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Tables of the HTML report.
 #pragma once
 
 #include <map>
@@ -11,6 +10,8 @@
 #include "record/session_result.h"
 
 namespace cdiff::page {
+
+// Tables of the HTML report.
 
 core::Markup ruleTable(const record::SessionResult& result);
 core::Markup metricTable(const metrics::SessionMeasures& measures);
@@ -23,8 +24,8 @@ core::Markup guidanceTable(const record::GuidanceLog& log);
 core::Markup rejectionTable(const record::CbvLog& cbv);
 /// Of all vehicles; those of the ego with who is at fault and why.
 core::Markup contactTable(const record::SessionResult& result);
-core::Markup lateTable(const std::map<std::string, record::LateFigures>& late);
-core::Markup latencyTable(const std::map<std::string, record::LatencyFigures>& latencies);
+core::Markup lateTable(const std::map<std::string, record::LateCounts>& late);
+core::Markup latencyTable(const std::map<std::string, record::LatencySummary>& latencies);
 core::Markup faultTable(const std::vector<traffic::Fault>& faults);
 core::Markup originTable(const record::SessionResult& result);
 

@@ -148,8 +148,8 @@ class ResultWriter::Record {
                                 "the record ends while the session was still running"});
     }
     result_.measures = metrics_.measures();
-    result_.latencies = latencies_.figures();
-    result_.late = late_.figures();
+    result_.latencies = latencies_.summaries();
+    result_.late = late_.counts();
     decide();
   }
 

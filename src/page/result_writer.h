@@ -32,11 +32,11 @@ class ResultWriter : public session::SessionObserver {
   /// says: its room is taken from the start. Throws InputError when even the summary cannot be
   /// written.
   record::Verdict finish(double wall_seconds);
-  /// Something that the session survived, and that no snapshot tells. Before `finish`.
+  /// Something that the session survived and that no snapshot contains. Before `finish`.
   void recordFault(const traffic::Fault& fault);
   /// Why the result is not whole; empty when it is.
   const std::string& failure() const;
-  /// The table that a terminal shows: the main figures, the verdict, the paths.
+  /// The table that a terminal shows: the main measures, the verdict, the paths.
   std::string table() const;
   /// The same where the files lie in another folder by now.
   std::string table(const std::filesystem::path& folder) const;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did,
-/// from above in its own frame (metres, forward is up, route green), by kind of driving.
 #pragma once
 
 #include <string>
@@ -11,6 +9,9 @@
 #include "learning/samples/driving_sample.h"
 
 namespace cdiff::page {
+
+// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did,
+// from above in its own frame (meters, forward is up, route green), by kind of driving.
 
 /// A table's row: what is counted, how often, its share.
 struct CountRow {

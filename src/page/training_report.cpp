@@ -20,7 +20,7 @@ constexpr const char* kHeader = "stage,step,seconds,figure,value";
 constexpr const char* kHeldOut = "held_out_";
 constexpr const char* kStyles[] = {"ego", "bg", "c0 cbv", "c1 cbv", "c3 cbv"};
 
-/// Held-out figures end in what they measure.
+/// Held-out measures end in what they measure.
 struct TrainingQuantity {
   const char* ending;
   const char* title;
@@ -83,21 +83,21 @@ Markup curveChart(const TrainingStage& stage, const std::string& title, const st
   chart.least_top = 1e-6;
   chart.own_time = true;
   std::vector<std::pair<std::string, std::string>> items;
-  for (const auto& [figure, text] : named) {
+  for (const auto& [measure, text] : named) {
     const std::string style = kStyles[items.size() % std::size(kStyles)];
-    chart.series.push_back({style, stage.curves.at(figure)});
+    chart.series.push_back({style, stage.curves.at(measure)});
     items.emplace_back(style, text);
   }
   return element("div", {}, chartSvg(chart) + curveLegend(items)) + "\n";
 }
 
-/// Figures of the stage that satisfy a test, with the words of their names that `shown` leaves.
+/// Measures of the stage that satisfy a test, with the words of their names that `shown` leaves.
 template <class Matches, class Shown>
-std::vector<std::pair<std::string, std::string>> figuresOf(const TrainingStage& stage,
-                                                           Matches matches, Shown shown) {
+std::vector<std::pair<std::string, std::string>> measuresOf(const TrainingStage& stage,
+                                                            Matches matches, Shown shown) {
   std::vector<std::pair<std::string, std::string>> named;
-  for (const auto& [figure, curve] : stage.curves) {
-    if (matches(figure)) named.emplace_back(figure, words(shown(figure)));
+  for (const auto& [measure, curve] : stage.curves) {
+    if (matches(measure)) named.emplace_back(measure, words(shown(measure)));
   }
   return named;
 }
@@ -107,27 +107,27 @@ Markup heldOutCharts(const TrainingStage& stage) {
   const std::size_t start = std::string(kHeldOut).size();
   for (const TrainingQuantity& quantity : kQuantities) {
     const std::string ending = quantity.ending;
-    const auto matches = [&](const std::string& figure) {
-      return startsWith(figure, kHeldOut) && endsWith(figure, ending);
+    const auto matches = [&](const std::string& measure) {
+      return startsWith(measure, kHeldOut) && endsWith(measure, ending);
     };
-    const auto shown = [&](const std::string& figure) {
-      return figure.substr(start, figure.size() - start - ending.size());
+    const auto shown = [&](const std::string& measure) {
+      return measure.substr(start, measure.size() - start - ending.size());
     };
-    html += curveChart(stage, quantity.title, quantity.unit, figuresOf(stage, matches, shown));
+    html += curveChart(stage, quantity.title, quantity.unit, measuresOf(stage, matches, shown));
   }
   return html;
 }
 
 Markup stageSection(const TrainingStage& stage) {
-  const auto losses = [](const std::string& figure) { return startsWith(figure, "loss"); };
-  const auto whole = [](const std::string& figure) { return figure; };
-  const auto one = [&](const char* figure, const char* title, const char* unit) {
+  const auto losses = [](const std::string& measure) { return startsWith(measure, "loss"); };
+  const auto whole = [](const std::string& measure) { return measure; };
+  const auto one = [&](const char* measure, const char* title, const char* unit) {
     return curveChart(stage, title, unit,
-                      figuresOf(
-                          stage, [&](const std::string& name) { return name == figure; }, whole));
+                      measuresOf(
+                          stage, [&](const std::string& name) { return name == measure; }, whole));
   };
   const Markup charts = curveChart(stage, "Loss (running mean, and its terms at the time)", "",
-                                   figuresOf(stage, losses, whole)) +
+                                   measuresOf(stage, losses, whole)) +
                         heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
                         one("gradient_norm", "Norm of the gradient before clipping", "") +
                         one("samples_per_second", "Pace", "samples/s");
@@ -157,7 +157,7 @@ std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std
                              "', expected " + kHeader);
     }
   }
-  if (stages.empty()) throw core::InputError(source + ": no figure in it yet");
+  if (stages.empty()) throw core::InputError(source + ": no measurement in it yet");
   return stages;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The course of a training as one HTML page: for each stage its loss, its held-out errors (m, m/s,
-/// rad, share of an action) and its speed over the seconds of training.
 #pragma once
 
 #include <map>
@@ -11,15 +9,18 @@
 
 namespace cdiff::page {
 
-/// Values of one figure over time: (seconds of training, value).
+// The course of a training as one HTML page: for each stage its loss, its held-out errors (m, m/s,
+// rad, share of an action) and its speed over the seconds of training.
+
+/// Values of one measure over time: (seconds of training, value).
 using TrainingCurve = std::vector<std::pair<double, double>>;
 
 /// One stage of `cdiff train`.
 struct TrainingStage {
   std::string name;
-  long steps = 0;                               ///< of its last row
-  double seconds = 0.0;                         ///< of its last row
-  std::map<std::string, TrainingCurve> curves;  ///< by figure
+  long steps = 0;                               ///< step of its last row
+  double seconds = 0.0;                         ///< time of its last row [s]
+  std::map<std::string, TrainingCurve> curves;  ///< by measure
 };
 
 /// The stages of a `curves.csv`, in order of appearance; an incomplete last row, which a kill

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The table of planners, for ego and CBVs alike: those of this package
-/// (the list in src/planners/CMakeLists.txt) and those that plug-ins add.
 #pragma once
 
 #include <memory>
@@ -12,9 +10,12 @@
 
 namespace cdiff::planners {
 
+// The table of planners, for ego and CBVs alike: those of this package (the list in
+// src/planners/CMakeLists.txt) and those that plug-ins add.
+
 /// Adds a planner to the table; `source` says who does ("library /x/libmine.so"). Throws InputError
 /// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
-/// and a camera that nobody publishes.
+/// and a camera that no one publishes.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
 
 /// nullptr for an unknown name.

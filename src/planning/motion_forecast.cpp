@@ -76,7 +76,7 @@ class LaneWalk {
     const double heading = line.headingAt(nearest);
     const Eigen::Vector2d forward = geometry::direction(heading);
     const Eigen::Vector2d away = state.position - line.positionAt(nearest);
-    // Beyond the ends of the lane the centre may lie ahead or behind by half a vehicle.
+    // Beyond the ends of the lane the center may lie ahead or behind by half a vehicle.
     walk.arc_length_ = nearest + forward.dot(away);
     walk.offset_ = geometry::cross(forward, away);
     const double angle = core::angleDifference(state.heading, heading);

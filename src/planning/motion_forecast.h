@@ -12,9 +12,9 @@
 namespace cdiff::planning {
 
 /// Where other vehicles will be (map frame, SI units): one state per 0.1 s from now on.
-///  - A vehicle with an applied action holds it, as published: bicycle, with
-///    dv/dt = 0.5633837 throttle (1 - brake) - 4.952399 brake, v >= 0.
-///  - A vehicle that SUMO drives has no pedals. It follows the centre line of its lane at its
+///  - A vehicle with an applied action holds it, as published: bicycle, with dv/dt = 0.5633837
+///    throttle (1 - brake) - 4.952399 brake, v >= 0.
+///  - A vehicle that SUMO drives has no pedals. It follows the centerline of its lane at its
 ///    present lateral offset and goes on into the lane that follows if there is only one, else into
 ///    the one straight on, else along its heading: the published constant steer would leave the
 ///    lane at each change of curvature. Its acceleration is held, limited to

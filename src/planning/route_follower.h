@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where a vehicle is on its route: arc length [m] that only grows, found near the one before, so
-/// that a route that crosses itself or comes back is followed in order. Before its start and beyond
-/// its end the route goes straight on.
 #pragma once
 
 #include "e2e_cdiff/map/route.h"
@@ -18,6 +15,9 @@ Eigen::Vector2d extendedPositionAt(const map::Route& route, double arc_length);
 double extendedProjection(const map::Route& route, const Eigen::Vector2d& position, double begin,
                           double end);
 
+/// Where a vehicle is on its route: arc length [m] that only grows, found near the one before, so
+/// that a route that crosses itself or comes back is followed in order. Before its start and beyond
+/// its end the route goes straight on.
 /// Holds no reference: the route is given at each call and may be another object with the same
 /// content.
 class RouteFollower {
@@ -34,7 +34,7 @@ class RouteFollower {
   void start(const map::Route& route, const Eigen::Vector2d& position);
 
   double arc_length_ = 0.0;
-  // The route of the last call, told by its size, length and ends.
+  // The route of the last call, identified by its size, length and ends.
   std::size_t point_count_ = 0;
   double length_ = 0.0;
   Eigen::Vector3d first_ = Eigen::Vector3d::Zero();

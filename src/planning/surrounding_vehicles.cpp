@@ -11,7 +11,7 @@ namespace cdiff::planning {
 namespace {
 
 struct Neighbour {
-  double distance = 0.0;  ///< of the centres [m]
+  double distance = 0.0;  ///< of the centers [m]
   const traffic::Vehicle* vehicle = nullptr;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The vehicles of a snapshot that matter to a plan: on the vehicle's level, with finite states.
 #pragma once
 
 #include <vector>
@@ -9,9 +8,11 @@
 
 namespace cdiff::planning {
 
+// The vehicles of a snapshot that matter to a plan: on the vehicle's level, with finite states.
+
 bool isFinite(const traffic::VehicleState& state);
 
-/// The vehicle whose centre is nearest to that of `vehicle`; nullptr when it is alone.
+/// The vehicle whose center is nearest to that of `vehicle`; nullptr when it is alone.
 const traffic::Vehicle* nearestVehicle(const traffic::TrafficSnapshot& snapshot,
                                        const traffic::Vehicle& vehicle);
 

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Loads plug-ins into the tables of planners, objectives and metrics. Libraries are found in
-///  - E2E_CDIFF_PLUGINS: paths of libraries, separated by ':';
-///  - package.xml of the packages along ROS_PACKAGE_PATH: <export><e2e_cdiff plugin="LIBRARY"/>,
-///    where LIBRARY lies in lib/ of a prefix of CMAKE_PREFIX_PATH or of the package's own.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +7,11 @@
 #include <vector>
 
 namespace cdiff::plugins {
+
+// Loads plug-ins into the tables of planners, objectives and metrics. Libraries are found in
+//  - E2E_CDIFF_PLUGINS: paths of libraries, separated by ':';
+//  - package.xml of the packages along ROS_PACKAGE_PATH: <export><e2e_cdiff plugin="LIBRARY"/>,
+//    where LIBRARY lies in lib/ of a prefix of CMAKE_PREFIX_PATH or of the package's own.
 
 /// A library that is to be loaded, and who names it.
 struct PluginLibrary {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What this binary was built from and runs on, for the record of a session.
 #pragma once
 
 #include <string>
@@ -8,6 +7,8 @@
 #include <vector>
 
 namespace cdiff::record {
+
+// What this binary was built from and runs on, for the record of a session.
 
 /// Version of the package, "unknown" when the build did not give one.
 std::string packageVersion();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Text of junit.xml: test cases of one suite.
 #pragma once
 
 #include <map>
@@ -11,16 +10,20 @@
 
 namespace cdiff::record {
 
+// Text of junit.xml: test cases of one suite.
+
+/// A case of a JUnit file.
 struct JunitCase {
   enum class Kind { kPassed, kSkipped, kFailure, kError };
   Kind kind = Kind::kPassed;
   std::string name;
   double seconds = 0.0;
-  std::string message;  ///< of a case that counts as passed: what it has to say, in <system-out>
-  std::string type;     ///< of a failure or an error
-  std::string text;     ///< of a failure or an error: its content, beside the message
+  std::string message;  ///< for a case that counts as passed: what it has to say, in <system-out>
+  std::string type;     ///< type of a failure or an error
+  std::string text;     ///< content of a failure or an error, beside the message
 };
 
+/// A suite of a JUnit file with its cases.
 struct JunitSuite {
   std::string name;  ///< also in "e2e_cdiff.NAME", the class of its cases
   double seconds = 0.0;

@@ -168,14 +168,16 @@ std::vector<std::string> evaluateMetricFile(const std::string& metric, const std
                          core::nearestName(metric, {"ttc_2d", "shapiro_wilk", "wasserstein"}));
 }
 
-std::string figureList() {
+std::string measureList() {
   std::string list;
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    const std::string unit = *figure.unit ? figure.unit : "without unit";
-    list += "### `" + std::string(figure.name) + "`\n\n" + figure.label + "; " + unit + "; " +
-            metrics::toText(figure.subject) + "; " + metrics::toText(figure.direction) + "; `" +
-            figure.place + "`\n\n" + figure.definition + "\n\n";
-    if (*figure.rift_compat) list += "rift_compat: " + std::string(figure.rift_compat) + "\n\n";
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const std::string unit = *definition.unit ? definition.unit : "without unit";
+    list += "### `" + std::string(definition.name) + "`\n\n" + definition.label + "; " + unit +
+            "; " + metrics::toText(definition.subject) + "; " +
+            metrics::toText(definition.direction) + "; `" + definition.place + "`\n\n" +
+            definition.definition + "\n\n";
+    if (*definition.rift_compat)
+      list += "rift_compat: " + std::string(definition.rift_compat) + "\n\n";
   }
   return list;
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The result folder of a session, claimed by the one process that writes it: locked against a
-/// second one, and without what an earlier session left.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +14,8 @@ namespace cdiff::record {
 /// A folder that is absent is free.
 void requireFreeFolder(const std::filesystem::path& folder, bool overwrite);
 
+/// The result folder of a session, claimed by the one process that writes it: locked against a
+/// second one, and without what an earlier session left.
 class ResultFolder {
  public:
   /// Makes and locks the folder, checks it as requireFreeFolder does, and removes the files of an

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Everything that the result folder says about one session, in one value: its files are functions
-/// of it.
 #pragma once
 
 #include <map>
@@ -27,9 +25,11 @@ struct RunFacts {
   std::string simulator_version;  ///< "SUMO 1.15.0"
   bool deterministic = true;      ///< false when wall-clock time replaced an answer
   std::string recorded_by =
-      {};  ///< who made the recording that this session is told from; else empty
+      {};  ///< who made the recording that this session was replayed from; else empty
 };
 
+/// Everything that the result folder says about one session, in one value: its files are functions
+/// of it.
 /// References must outlive the value.
 struct SessionResult {
   const session::SessionSetup& setup;
@@ -46,8 +46,8 @@ struct SessionResult {
   double wall_seconds = 0.0;
   std::string trace_sha256 = {};
   metrics::SessionMeasures measures = {};
-  std::map<std::string, LatencyFigures> latencies = {};
-  std::map<std::string, LateFigures> late = {};  ///< empty where every answer is waited for
+  std::map<std::string, LatencySummary> latencies = {};
+  std::map<std::string, LateCounts> late = {};  ///< empty where every answer is waited for
   std::vector<traffic::Fault> faults = {};
   Verdict verdict = {};
 };

@@ -8,7 +8,7 @@
 #include "cbv/candidate_gates.h"
 #include "cbv/held_cbv.h"
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"
 
 namespace cdiff::record {
@@ -33,7 +33,7 @@ std::string rejectionText(const std::string& reason) {
       {cbv::kOffLane, "it is on no lane of its direction"},
       {cbv::kJunctionHeading, "it stands askew to the lanes of its junction"},
       {cbv::kOutOfView, "no point of the ego's route lies near and ahead of it"},
-      {cbv::kNoWay, "no way along lanes leads it to the ego's route"},
+      {cbv::kNoWay, "no lanes lead it to the ego's route"},
       {cbv::kDistanceMismatch, "it and the ego have too different distances to where they meet"},
       {cbv::kOutranked, "it has a conflict, but better candidates took the slots"}};
   return textOf(kTexts, reason);
@@ -51,10 +51,10 @@ std::string releaseText(const std::string& reason) {
 
 namespace {
 
-std::string way(const SessionResult& result) {
+std::string drivenRoute(const SessionResult& result) {
   if (result.timeline.frames().empty()) return "The session ended before its first tick.";
   return "The ego drove " +
-         core::formatFixed(result.measures.number(metrics::figures::kRouteCompletion), 1) +
+         core::formatFixed(result.measures.number(metrics::known::kRouteCompletion), 1) +
          " % of its route in " + core::formatFixed(result.simulated_seconds, 1) + " s.";
 }
 
@@ -78,7 +78,7 @@ std::string approach(const SessionResult& result) {
 
 std::string contact(const SessionResult& result) {
   const std::vector<metrics::EgoContact>& contacts = result.measures.ego_contacts;
-  if (contacts.empty()) return "Nobody touched the ego.";
+  if (contacts.empty()) return "No vehicle touched the ego.";
   const metrics::EgoContact& first = contacts.front();
   return first.partner + " and the ego touched at " + core::formatFixed(first.seconds, 2) + " s" +
          (contacts.size() > 1
@@ -90,8 +90,8 @@ std::string contact(const SessionResult& result) {
 }  // namespace
 
 std::vector<std::string> sessionStory(const SessionResult& result) {
-  if (result.timeline.frames().empty()) return {way(result)};
-  return {way(result), approach(result), contact(result)};
+  if (result.timeline.frames().empty()) return {drivenRoute(result)};
+  return {drivenRoute(result), approach(result), contact(result)};
 }
 
 namespace {
@@ -118,38 +118,38 @@ std::string headRows(const SessionResult& result) {
          row("status", traffic::toText(result.status)) + row("time", time);
 }
 
-std::string figureRows(const metrics::SessionMeasures& measures) {
-  namespace figures = metrics::figures;
-  const auto count = [&](const metrics::FigureDefinition& figure) {
-    return std::to_string(measures.count(figure));
+std::string measureRows(const metrics::SessionMeasures& measures) {
+  namespace known = metrics::known;
+  const auto count = [&](const metrics::MeasureDefinition& definition) {
+    return std::to_string(measures.count(definition));
   };
-  const auto text = [&](const metrics::FigureDefinition& figure) {
-    return measureText(measures.at(figure), 2);
+  const auto text = [&](const metrics::MeasureDefinition& definition) {
+    return measureText(measures.at(definition), 2);
   };
-  const auto fixed = [&](const metrics::FigureDefinition& figure) {
-    return core::formatFixed(measures.number(figure), 1);
+  const auto fixed = [&](const metrics::MeasureDefinition& definition) {
+    return core::formatFixed(measures.number(definition), 1);
   };
-  return row("route completion", fixed(figures::kRouteCompletion) + " %") +
-         row("driving score", fixed(figures::kDrivingScore) + " by " + measures.protocol +
-                                  ", penalty " + measureText(measures.at(figures::kPenalty), 3)) +
-         row("ego collisions", count(figures::kEgoCollisions)) +
+  return row("route completion", fixed(known::kRouteCompletion) + " %") +
+         row("driving score", fixed(known::kDrivingScore) + " by " + measures.protocol +
+                                  ", penalty " + measureText(measures.at(known::kPenalty), 3)) +
+         row("ego collisions", count(known::kEgoCollisions)) +
          row("CBVs",
-             count(figures::kCbvCount) + " over " + count(figures::kCbvDecisions) + " decisions") +
-         row("CBV collisions", count(figures::kCbvCollisions) + " (" +
-                                   count(figures::kCbvEgoCollisions) + " with the ego)") +
-         row("CBV off-road rate", text(figures::kCbvOffRoad)) +
-         row("collisions per km", text(figures::kCollisionsPerKm)) +
-         row("2D-TTC mean", text(figures::kTtcMean)) +
-         row("2D-TTC minimum", text(figures::kTtcMinimum));
+             count(known::kCbvCount) + " over " + count(known::kCbvDecisions) + " decisions") +
+         row("CBV collisions", count(known::kCbvCollisions) + " (" +
+                                   count(known::kCbvEgoCollisions) + " with the ego)") +
+         row("CBV off-road rate", text(known::kCbvOffRoad)) +
+         row("collisions per km", text(known::kCollisionsPerKm)) +
+         row("2D-TTC mean", text(known::kTtcMean)) +
+         row("2D-TTC minimum", text(known::kTtcMinimum));
 }
 
 /// Wall time from image (or snapshot) to command.
-std::string latencyRows(const std::map<std::string, LatencyFigures>& latencies) {
+std::string latencyRows(const std::map<std::string, LatencySummary>& latencies) {
   std::string text;
-  for (const auto& [planner, figures] : latencies) {
-    text += row("latency " + planner, "p50 " + core::formatFixed(figures.median, 1) + " ms, p95 " +
-                                          core::formatFixed(figures.percentile_95, 1) +
-                                          " ms (n = " + std::to_string(figures.n) + ")");
+  for (const auto& [planner, summary] : latencies) {
+    text += row("latency " + planner, "p50 " + core::formatFixed(summary.median, 1) + " ms, p95 " +
+                                          core::formatFixed(summary.percentile_95, 1) +
+                                          " ms (n = " + std::to_string(summary.n) + ")");
   }
   return text;
 }
@@ -166,7 +166,8 @@ std::string measureText(const metrics::Measure& measure, int decimals) {
 }
 
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder) {
-  std::string text = headRows(result) + figureRows(result.measures) + latencyRows(result.latencies);
+  std::string text =
+      headRows(result) + measureRows(result.measures) + latencyRows(result.latencies);
   const std::string late = latenessText(result.late);
   if (!late.empty()) text += row("late answers", late);
   if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));

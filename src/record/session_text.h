@@ -24,7 +24,7 @@ std::string releaseText(const std::string& reason);
 /// Plain text, not escaped.
 std::vector<std::string> sessionStory(const SessionResult& result);
 
-// The session's main figures as a table for a terminal.
+// The session's main measures as a table for a terminal.
 
 /// `folder` is where the files lie.
 std::string sessionTable(const SessionResult& result, const std::filesystem::path& folder);
@@ -32,7 +32,7 @@ std::string sessionTable(const SessionResult& result, const std::filesystem::pat
 /// A further row of it that names a file; empty where that file is not.
 std::string fileRow(const std::string& name, const std::filesystem::path& file);
 
-/// A figure with its unit and count, or why it is absent: "3.21 s (n = 40)", "not defined: no CBV
+/// A measure with its unit and count, or why it is absent: "3.21 s (n = 40)", "not defined: no CBV
 /// was driven".
 std::string measureText(const metrics::Measure& measure, int decimals);
 

@@ -50,7 +50,7 @@ std::string machineBlock() {
          line(1, "instruction_set", quoted(instructionSet()));
 }
 
-/// Facts of a planner's network under keys that begin with `prefix`; "" where it has none.
+/// Facts of a planner's network under keys that start with `prefix`; "" where it has none.
 std::string networkLines(const session::ScenarioOptions& options, const std::string& planner,
                          const guidance::GuidanceOptions& guidance, bool inferred_here,
                          const std::string& prefix) {

@@ -3,9 +3,9 @@
 #include "record/summary.h"
 
 #include "core/text.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "record/summary_figures.h"
+#include "record/summary_measures.h"
 
 namespace cdiff::record {
 namespace {
@@ -29,24 +29,24 @@ Json contactList(const std::vector<metrics::EgoContact>& contacts) {
   return list;
 }
 
-/// Each figure of the ego under its key; infractions in an object, with their counts in another.
+/// Each measure of the ego under its key; infractions in an object, with their counts in another.
 Json egoObject(const metrics::SessionMeasures& measures) {
   Json object = Json::object();
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(definition.place, '/');
     if (keys.front() != "ego") continue;
-    const metrics::Measure measure = measures.at(figure);
-    const std::string name = figure.name;
+    const metrics::Measure measure = measures.at(definition);
+    const std::string name = definition.name;
     if (keys.size() > 2) {
       addMeasure(object[keys[1]], keys.back(), measure);
       object[keys[1] + "_n"][keys.back()] = measure.n;
-    } else if (name == metrics::figures::kBlocked.name) {
+    } else if (name == metrics::known::kBlocked.name) {
       object[keys.back()] = measure.value == 1.0;
     } else {
-      addPlainFigure(object, keys.back(), measure);
+      addPlainMeasure(object, keys.back(), measure);
     }
-    if (name == metrics::figures::kDrivingScore.name) object["protocol"] = measures.protocol;
-    if (name == metrics::figures::kContactsAtFault.name)
+    if (name == metrics::known::kDrivingScore.name) object["protocol"] = measures.protocol;
+    if (name == metrics::known::kContactsAtFault.name)
       object["contacts"] = contactList(measures.ego_contacts);
   }
   return object;
@@ -57,24 +57,24 @@ Json guidanceObject(const GuidanceLog& log) {
   if (log.series().empty()) return nullptr;
   Json object = Json::object();
   for (const GuidanceSeries& series : log.series()) {
-    const ObjectiveFigures figures = figuresOf(series);
-    object[series.objective] = {{"weight", number(figures.weight)},
-                                {"value", number(figures.value)},
-                                {"gradient_norm", number(figures.gradient_norm)},
-                                {"capped_share", number(figures.capped_share)},
-                                {"dropped", figures.dropped},
-                                {"n", figures.n}};
+    const ObjectiveSummary summary = summaryOf(series);
+    object[series.objective] = {{"weight", number(summary.weight)},
+                                {"value", number(summary.value)},
+                                {"gradient_norm", number(summary.gradient_norm)},
+                                {"capped_share", number(summary.capped_share)},
+                                {"dropped", summary.dropped},
+                                {"n", summary.n}};
   }
   return object;
 }
 
-Json latencyObject(const std::map<std::string, LatencyFigures>& latencies) {
+Json latencyObject(const std::map<std::string, LatencySummary>& latencies) {
   Json object = Json::object();
-  for (const auto& [planner, figures] : latencies) {
-    object[planner] = {{"p50", figures.median},
-                       {"p95", figures.percentile_95},
-                       {"max", figures.maximum},
-                       {"n", figures.n}};
+  for (const auto& [planner, summary] : latencies) {
+    object[planner] = {{"p50", summary.median},
+                       {"p95", summary.percentile_95},
+                       {"max", summary.maximum},
+                       {"n", summary.n}};
   }
   return object;
 }
@@ -91,18 +91,18 @@ Json verdictObject(const Verdict& verdict) {
           {"rules", rules}};
 }
 
-Json lateObject(const std::map<std::string, LateFigures>& late) {
+Json lateObject(const std::map<std::string, LateCounts>& late) {
   Json object = {{"count", lateAnswers(late)}, {"planners", Json::object()}};
-  for (const auto& [planner, figures] : late) {
+  for (const auto& [planner, counts] : late) {
     object["planners"][planner] = {
-        {"asked", figures.asked},
-        {"late", figures.late},
-        {"missing", figures.missing},
-        {"by_plan", figures.by_plan},
-        {"by_full_brake", figures.by_full_brake},
-        {"not_driven", figures.not_driven},
+        {"asked", counts.asked},
+        {"late", counts.late},
+        {"missing", counts.missing},
+        {"by_plan", counts.by_plan},
+        {"by_full_brake", counts.by_full_brake},
+        {"not_driven", counts.not_driven},
         {"lateness_s",
-         {{"p50", figures.median}, {"p95", figures.percentile_95}, {"max", figures.maximum}}}};
+         {{"p50", counts.median}, {"p95", counts.percentile_95}, {"max", counts.maximum}}}};
   }
   return object;
 }
@@ -146,7 +146,7 @@ std::string summaryJson(const SessionResult& result) {
   summary["guidance"] = guidanceObject(result.guidance);
   summary["guidance_trust_region_share"] = number(result.guidance.trustRegion().mean);
   summary["metrics"] = Json::object();
-  addFigures(summary["metrics"], "metrics", result.measures);
+  addMeasures(summary["metrics"], "metrics", result.measures);
   summary["planner_latency_ms"] = latencyObject(result.latencies);
   summary["late_answers"] = lateObject(result.late);
   summary["faults"] = faultList(result.faults);

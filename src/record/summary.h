@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Text of summary.json: the session's figures under fixed keys in a fixed order; an absent figure
-/// is null beside a reason.
 #pragma once
 
 #include <string>
@@ -9,6 +7,9 @@
 #include "record/session_result.h"
 
 namespace cdiff::record {
+
+// Text of summary.json: the session's measures under fixed keys in a fixed order; an absent measure
+// is null beside a reason.
 
 std::string summaryJson(const SessionResult& result);
 

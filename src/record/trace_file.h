@@ -52,7 +52,7 @@ struct TraceRow {
   std::uint64_t tick = 0;
   std::string id;
   traffic::VehicleRole role = traffic::VehicleRole::kBackground;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< centre of the box [m]
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< center of the box [m]
   double heading = 0.0;                                ///< [rad]
   double speed = 0.0;                                  ///< [m/s]
 };

@@ -8,12 +8,12 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 
 namespace cdiff::record {
 namespace {
 
-namespace figures = metrics::figures;
+namespace known = metrics::known;
 using traffic::SessionStatus;
 
 constexpr double kNoLimit = 1e9;  // default of the rules on counts
@@ -70,12 +70,12 @@ class RuleBook {
     addContacts();
     addScore();
     addCollisions();
-    addInfraction({"red_lights", figures::kRedLights, "red lights that the ego ran"},
+    addInfraction({"red_lights", known::kRedLights, "red lights that the ego ran"},
                   rules_.maximum_red_lights, kNoLimit);
-    addInfraction({"stop_signs", figures::kStopSigns, "stop signs that the ego did not obey"},
+    addInfraction({"stop_signs", known::kStopSigns, "stop signs that the ego did not obey"},
                   rules_.maximum_stop_signs, kNoLimit);
-    addInfraction({"outside_lanes_percent", figures::kOutsideLanes,
-                   "share of its way that the ego drove outside the lanes"},
+    addInfraction({"outside_lanes_percent", known::kOutsideLanes,
+                   "share of its route that the ego drove outside the lanes"},
                   rules_.maximum_outside_lanes_percent, 100.0);
     addOffRoad();
     return std::move(checks_);
@@ -94,7 +94,7 @@ class RuleBook {
 
   void addCompletion() {
     const double least = rules_.minimum_route_completion;
-    const double percent = measures_.number(figures::kRouteCompletion);
+    const double percent = measures_.number(known::kRouteCompletion);
     if (least <= 0.0) return;
     checks_.push_back(judged("route_completion", percent >= least,
                              "the ego completed " + core::formatFixed(percent, 1) +
@@ -120,7 +120,7 @@ class RuleBook {
     if (meaning == "allowed") return;
     const bool by_mode = meaning == "by_mode";
     if (by_mode) meaning = mode_ == "safety_critical" ? "struck" : "failed";
-    Check check{"contact_without_fault", CheckOutcome::kPassed, "nobody struck the ego"};
+    Check check{"contact_without_fault", CheckOutcome::kPassed, "no vehicle struck the ego"};
     if (!others.empty()) {
       check.outcome = meaning == "struck" ? CheckOutcome::kStruck : CheckOutcome::kFailed;
       check.text =
@@ -131,7 +131,7 @@ class RuleBook {
 
   void addScore() {
     if (rules_.minimum_driving_score <= 0.0) return;
-    const double score = measures_.number(figures::kDrivingScore);
+    const double score = measures_.number(known::kDrivingScore);
     checks_.push_back(judged("driving_score", score >= rules_.minimum_driving_score,
                              "the ego's driving score by " + measures_.protocol + " was " +
                                  core::formatFixed(score, 1) + " %; at least " +
@@ -141,8 +141,8 @@ class RuleBook {
   void addCollisions() {
     const double limit = rules_.maximum_ego_collisions;
     if (limit >= kNoLimit) return;
-    const std::size_t count = measures_.count(figures::kEgoCollisions);
-    checks_.push_back(judged(figures::kEgoCollisions.name, static_cast<double>(count) <= limit,
+    const std::size_t count = measures_.count(known::kEgoCollisions);
+    checks_.push_back(judged(known::kEgoCollisions.name, static_cast<double>(count) <= limit,
                              "the ego had " + countText(count, "collision") + "; at most " +
                                  core::formatNumber(limit) + " allowed"));
   }
@@ -150,14 +150,14 @@ class RuleBook {
   /// A rule on one of the ego's infractions.
   struct InfractionRule {
     const char* name;
-    const metrics::FigureDefinition& figure;
+    const metrics::MeasureDefinition& definition;
     const char* what;
   };
 
   /// `none` is the limit that allows all.
   void addInfraction(const InfractionRule& rule, double limit, double none) {
     if (limit >= none) return;
-    const metrics::Measure found = measures_.at(rule.figure);
+    const metrics::Measure found = measures_.at(rule.definition);
     if (!found.value) {
       checks_.push_back({rule.name, CheckOutcome::kSkipped,
                          std::string(rule.name) + " of the ego is not defined: " + found.reason});
@@ -172,7 +172,7 @@ class RuleBook {
 
   void addOffRoad() {
     const double limit = rules_.maximum_cbv_off_road_percent;
-    const metrics::Measure rate = measures_.at(figures::kCbvOffRoad);
+    const metrics::Measure rate = measures_.at(known::kCbvOffRoad);
     if (limit >= 100.0) return;
     if (!rate.value) {
       checks_.push_back({"cbv_off_road", CheckOutcome::kSkipped,

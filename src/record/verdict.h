@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Judges a session by its scenario's rules. `judge` is the one place that decides: report, video,
-/// summary, JUnit, tables, batches and exit codes read what it found.
 #pragma once
 
 #include <string>
@@ -13,10 +11,10 @@
 
 namespace cdiff::record {
 
-/// What became of a session.
+/// How a session ended.
 enum class Outcome {
   kPassed,
-  kStruck,     ///< passed, but somebody drove into the ego
+  kStruck,     ///< passed, but another vehicle drove into the ego
   kFailed,     ///< a rule was not met
   kNotJudged,  ///< ended by itself, without any rule
   kError,      ///< broke
@@ -34,6 +32,7 @@ Outcome outcomeOf(const std::string& text);
 /// One of core::ExitCode: of `cdiff`, scripts/session and the file exit_code.
 int exitCodeOf(Outcome outcome);
 
+/// The outcome of one check of a session.
 enum class CheckOutcome { kPassed, kStruck, kFailed, kError, kSkipped };
 
 /// "passed", "struck", "failed", "error" or "skipped".
@@ -46,6 +45,8 @@ struct Check {
   std::string text;  ///< what was found and what was asked
 };
 
+/// Judges a session by its scenario's rules. `judge` is the one place that decides: report, video,
+/// summary, JUnit, tables, batches and exit codes read what it found.
 struct Verdict {
   Outcome outcome = Outcome::kError;
   /// A sentence for each check that decided; empty when passed. Of a session that is not judged:

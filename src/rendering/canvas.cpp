@@ -27,7 +27,7 @@ Eigen::Vector3d normalOf(const Eigen::Vector3d* points, int count) {
   return normal;
 }
 
-/// The point where the way between two points meets the near plane; the same for both directions.
+/// The point where the line between two points meets the near plane; the same for both directions.
 Eigen::Vector3d nearCrossing(const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
   const Eigen::Vector3d& behind = first.z() < second.z() ? first : second;
   const Eigen::Vector3d& ahead = first.z() < second.z() ? second : first;

@@ -12,7 +12,7 @@
 
 namespace cdiff::rendering {
 
-// Colours of the picture, packed as 0x00bbggrr.
+// Colors of the picture, packed as 0x00bbggrr.
 
 using Color = std::uint32_t;
 
@@ -65,14 +65,15 @@ constexpr double kBodyDetail = 1.101;
 constexpr double kBodyLight = 1.102;
 }  // namespace rank
 
+/// How a shape is painted: color, rank among overlapping shapes, and opacity in [0, 1].
 struct Paint {
   Color color = 0;
   double rank = rank::kRoad;
   double opacity = 1.0;
 };
 
-/// The picture in the making: supersampled colours with a depth buffer. A sample belongs to a
-/// convex polygon whose closed area holds its centre; the sample of the larger inverse depth stays.
+/// The picture in the making: supersampled colors with a depth buffer. A sample belongs to a
+/// convex polygon whose closed area holds its center; the sample of the larger inverse depth stays.
 /// Coordinates are counted from the middle of the picture, so that a mirrored scene gives the
 /// mirrored picture.
 class Canvas {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The front view of a vehicle, rendered from the road network and a snapshot: road surface, lane
-/// markings, junctions, stop lines with the colour of their light, other vehicles as shaded boxes
-/// with brake lights, sky and horizon. Deterministic: same input, same bytes.
 #pragma once
 
 #include <memory>
@@ -16,6 +13,9 @@
 
 namespace cdiff::rendering {
 
+/// The front view of a vehicle, rendered from the road network and a snapshot: road surface, lane
+/// markings, junctions, stop lines with the color of their light, other vehicles as shaded boxes
+/// with brake lights, sky and horizon. Deterministic: same input, same bytes.
 /// Keeps what it needs of the network. One per thread: rendering reuses its buffers.
 class FrontCamera {
  public:
@@ -25,7 +25,7 @@ class FrontCamera {
   ~FrontCamera();
 
   /// What `vehicle`, one of the snapshot's or a copy of one, sees. It does not see itself; others
-  /// are told from it by id.
+  /// are distinguished from it by id.
   traffic::CameraImage render(const traffic::TrafficSnapshot& snapshot,
                               const traffic::Vehicle& vehicle);
 

@@ -18,7 +18,8 @@ Eigen::Vector2d unitAlong(const geometry::Polyline& line, std::size_t segment) {
   return along / along.norm();
 }
 
-/// Left normal at a point of the line; at a bend the bisector, so long that both borders meet.
+/// Left normal at a point of the line; at a bend the bisector, with the length at which both
+/// borders meet.
 Eigen::Vector2d leftAtPoint(const geometry::Polyline& line, std::size_t index) {
   const std::size_t last = line.points().size() - 1;
   if (index == 0) return geometry::leftNormal(unitAlong(line, 0));
@@ -81,7 +82,7 @@ constexpr double kInset = 0.12;        // [m] of an edge line's middle from the 
 constexpr double kDash = 3.0;          // [m]
 constexpr double kDashPeriod = 9.0;    // [m]
 constexpr double kPiece = 10.0;        // [m] longest piece of a line
-constexpr double kOppositeGap = 0.8;   // [m] between borders of lanes that share a centre line
+constexpr double kOppositeGap = 0.8;   // [m] between borders of lanes that share a centerline
 constexpr double kInside = 0.4;        // [m] a border this far inside another lane is not painted
 constexpr double kOpposite = 2.4;      // [rad] smallest heading difference of opposite lanes
 constexpr double kShortestLane = 0.5;  // [m]
@@ -155,7 +156,7 @@ namespace {
 constexpr double kSlopePiece = 10.0;    // [m] along the lane
 constexpr double kMostHeight = 12.0;    // [m] a slope goes at most this far down
 constexpr double kLeastHeight = 0.4;    // [m] lower roads lie on the ground
-constexpr double kSlope = 1.5;          // [m] outwards per metre down
+constexpr double kSlope = 1.5;          // [m] outwards per meter down
 constexpr double kBeside = 0.2;         // [m] from the lane's border; on the asphalt's margin
 constexpr double kClear = 1.5;          // [m] between a slope and a lower road
 constexpr double kDeckThickness = 0.9;  // [m]
@@ -178,7 +179,7 @@ Eigen::Vector3d lowered(Eigen::Vector3d point, double height) {
   return point;
 }
 
-/// The piece between two cross-sections, at the border `lateral` metres to the left.
+/// The piece between two cross-sections, at the border `lateral` meters to the left.
 Surface slopePiece(const CrossSection& begin, const CrossSection& end, double lateral,
                    double drop) {
   const double outer = lateral + (lateral > 0.0 ? 1.0 : -1.0) * kSlope * drop;

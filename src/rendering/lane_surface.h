@@ -9,7 +9,7 @@
 
 namespace cdiff::rendering {
 
-// Borders of a lane: points beside its centre line that fit together at bends.
+// Borders of a lane: points beside its centerline that fit together at bends.
 
 /// A cross-section of a lane.
 struct CrossSection {
@@ -17,21 +17,21 @@ struct CrossSection {
   Eigen::Vector2d left = Eigen::Vector2d::Zero();  ///< where 1 m to the left lies, at bends longer
   double arc_length = 0.0;                         ///< [m]
 
-  /// The point `lateral` metres to the left.
+  /// The point `lateral` meters to the left.
   Eigen::Vector3d at(double lateral) const {
     return {center.x() + lateral * left.x(), center.y() + lateral * left.y(), center.z()};
   }
 };
 
 /// Cross-sections from arc length `begin` to `end`: both, every point of the line between them, and
-/// more so that neighbours are at most `spacing` apart.
+/// more so that neighbors are at most `spacing` apart.
 std::vector<CrossSection> crossSections(const geometry::Polyline& line, double begin, double end,
                                         double spacing);
 
 // The markings of a network's lanes: solid white lines at the road's edges, dashed white ones
 // between lanes of one direction, solid yellow ones beside lanes of the other direction.
 
-/// What a piece of a lane's outer border is: the road's edge, the centre line to the lanes of the
+/// What a piece of a lane's outer border is: the road's edge, the centerline to the lanes of the
 /// other direction, or nothing (it lies on another lane).
 enum class Border { kEdge, kCenter, kNone };
 

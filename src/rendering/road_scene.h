@@ -26,7 +26,7 @@ struct Surface {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< normal, not of unit length
   Color color = kAsphalt;
   double rank = rank::kRoad;
-  bool two_sided = false;  ///< the same colour from below
+  bool two_sided = false;  ///< the same color from below
 };
 
 /// A painted line (map frame [m]).

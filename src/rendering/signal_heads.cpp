@@ -24,7 +24,7 @@ constexpr Color kMast = rgb(88, 92, 96);
 constexpr Color kUnlit[3] = {rgb(70, 20, 20), rgb(70, 60, 16), rgb(16, 60, 26)};
 constexpr Color kLit[3] = {rgb(255, 40, 32), rgb(255, 208, 24), rgb(40, 240, 96)};
 
-/// Rank of a turn among those that a lane offers: the straightest shows the colour.
+/// Rank of a turn among those that a lane offers: the straightest shows the color.
 int straightness(char direction) {
   const std::string order = "srRlLt";
   const std::size_t at = order.find(direction);

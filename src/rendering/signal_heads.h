@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Traffic lights: a stop line in the light's colour at the end of each lane that one controls, and
-/// a lamp above the lane, 2.5 m behind the line, on a mast at the right of the road.
 #pragma once
 
 #include <string>
@@ -13,16 +11,17 @@
 
 namespace cdiff::rendering {
 
+/// The color of a lit lamp of a traffic light; kDark where none is lit.
 enum class LampColor { kDark, kRed, kYellow, kGreen };
 
-/// SUMO's letter as a colour: r s red, y u yellow, g G green, anything else dark.
+/// SUMO's letter as a color: r s red, y u yellow, g G green, anything else dark.
 LampColor lampColorOf(char letter);
 
 /// The end of a lane that a light controls.
 struct SignalHead {
   Eigen::Vector3d stop = Eigen::Vector3d::Zero();      ///< middle of the stop line [m]
-  Eigen::Vector2d forward = Eigen::Vector2d::UnitX();  ///< of the lane there
-  double width = 0.0;                                  ///< of the lane [m]
+  Eigen::Vector2d forward = Eigen::Vector2d::UnitX();  ///< direction of the lane there
+  double width = 0.0;                                  ///< width of the lane [m]
   int signal = 0;                                      ///< index of the light
   int link = 0;                                        ///< position in the light's state
 };
@@ -34,10 +33,12 @@ struct SignalMast {
   Eigen::Vector3d arm_end = Eigen::Vector3d::Zero();
 };
 
+/// Traffic lights: a stop line in the light's color at the end of each lane that one controls, and
+/// a lamp above the lane, 2.5 m behind the line, on a mast at the right of the road.
 class SignalHeads {
  public:
   explicit SignalHeads(const map::RoadNetwork& network);
-  /// Reads the colours and finds what may be seen; the two draws show that.
+  /// Reads the colors and finds what may be seen; the two draws show that.
   void look(const View& view, const std::vector<traffic::SignalState>& signals);
   void drawStopLines(const View& view, Canvas& canvas) const;
   void drawLamps(const View& view, Canvas& canvas) const;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Finds things near the view: things sorted into square cells by their centre.
 #pragma once
 
 #include <vector>
@@ -18,6 +17,7 @@ struct Bound {
 /// The ball around the middle of the points' box.
 Bound boundOf(const Eigen::Vector3d* points, int count);
 
+/// Finds things near the view: things sorted into square cells by their center.
 class SpatialGrid {
  public:
   SpatialGrid() = default;

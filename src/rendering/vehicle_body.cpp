@@ -26,7 +26,7 @@ constexpr Color kPalette[] = {rgb(206, 208, 212), rgb(60, 104, 170), rgb(150, 15
 constexpr double kLightX = 0.35;
 constexpr double kLightZ = 0.75;
 
-/// A block whose upper rectangle may be smaller; x forward, y left of the vehicle's centre, z above
+/// A block whose upper rectangle may be smaller; x forward, y left of the vehicle's center, z above
 /// the road [m].
 struct Block {
   double rear_low, rear_high;    ///< x of the rear edges
@@ -111,7 +111,7 @@ Corners topOf(const Block& b) {
            {b.rear_high, b.half_high, b.high}}};
 }
 
-/// Walls in one colour, the top in another, each shaded by its direction.
+/// Walls in one color, the top in another, each shaded by its direction.
 void paintBlock(const Block& block, Color walls, Color top, double rank, Painter& painter) {
   const auto shaded = [&](const Eigen::Vector3d& normal) {
     return shade(walls, painter.brightness(normal));

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where a camera stands: map frame to optical frame (x right, y down, z forward [m]) and on to the
-/// image plane (u right, v down from the principal point).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,6 +13,8 @@ namespace cdiff::rendering {
 /// Nothing nearer than this is drawn [m].
 constexpr double kNearPlane = 0.25;
 
+/// Where a camera stands: map frame to optical frame (x right, y down, z forward [m]) and on to the
+/// image plane (u right, v down from the principal point).
 class View {
  public:
   View(const CameraOptions& options, const traffic::Vehicle& vehicle);
@@ -41,7 +41,7 @@ class View {
   double pitch_cosine_;
   double pitch_sine_;
   double far_distance_;
-  double side_tangent_;  ///< of half the field of view
+  double side_tangent_;  ///< tangent of half the field of view
   double side_secant_;
 };
 

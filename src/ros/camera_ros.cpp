@@ -14,7 +14,7 @@ constexpr std::uint32_t kQueueSize = 1000;
 
 }  // namespace
 
-void CameraRos::begin(const msgs::SessionInfo& info) {
+void CameraRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   camera_ = std::make_unique<rendering::FrontCamera>(setup_->options().camera, setup_->network());
   if (graph().imagesOfEgo()) open(kEgoSlot);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The front cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and
-/// its intrinsics of each occupied slot and of the ego out, of those whose planner sees or that the
-/// session shows.
 #pragma once
 
 #include <map>
@@ -16,12 +13,15 @@
 
 namespace cdiff::ros {
 
+/// The front cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and
+/// its intrinsics of each occupied slot and of the ego out, of those whose planner sees or that the
+/// session shows.
 class CameraRos : public Participant {
  public:
   explicit CameraRos(StopSignal& stop) : Participant(stop), transport_(node()) {}
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override {
     return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;

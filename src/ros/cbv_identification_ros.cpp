@@ -6,7 +6,7 @@
 
 namespace cdiff::ros {
 
-void CbvIdentificationRos::begin(const msgs::SessionInfo& info) {
+void CbvIdentificationRos::startSession(const msgs::SessionInfo& info) {
   options_ = optionsFromMsg(info).cbv;
   network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
   graph_.emplace(*network_);

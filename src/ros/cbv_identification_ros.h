@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick
-/// out.
 #pragma once
 
 #include <memory>
@@ -13,12 +11,14 @@
 
 namespace cdiff::ros {
 
+/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick
+/// out.
 class CbvIdentificationRos : public Participant {
  public:
   using Participant::Participant;
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending) override { return core::ExitCode::kPassed; }

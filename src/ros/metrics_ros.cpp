@@ -32,7 +32,7 @@ traffic::TrafficSnapshot unpublishedEnd(const traffic::TrafficSnapshot& last, do
 
 }  // namespace
 
-void MetricsRos::begin(const msgs::SessionInfo& info) {
+void MetricsRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const bool deterministic = setup_->options().real_time_factor == 0.0;
   results_ = info.results_folder;

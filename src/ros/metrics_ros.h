@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Metrics as a node: gathers each tick as one record, measures it live, and writes the result
-/// folder when the session ends. Shows the session in rviz and in /diagnostics on the side.
 #pragma once
 
 #include <chrono>
@@ -18,6 +16,8 @@
 
 namespace cdiff::ros {
 
+/// Metrics as a node: gathers each tick as one record, measures it live, and writes the result
+/// folder when the session ends. Shows the session in rviz and in /diagnostics on the side.
 class MetricsRos : public Observer {
  public:
   using Observer::Observer;
@@ -27,7 +27,7 @@ class MetricsRos : public Observer {
   static int runWithoutMaster();
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending ending) override;
   int concludeUnstarted(Ending ending) override;

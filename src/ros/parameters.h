@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A node's private parameters as texts, through one gate: a parameter that the node does not know
-/// is an error, and an empty text means "not given".
 #pragma once
 
 #include <map>
@@ -12,6 +10,8 @@
 
 namespace cdiff::ros {
 
+/// A node's private parameters as texts, through one gate: a parameter that the node does not know
+/// is an error, and an empty text means "not given".
 class Parameters {
  public:
   explicit Parameters(std::map<std::string, std::string> values) : values_(std::move(values)) {}

@@ -35,8 +35,8 @@ double secondsSince(const ::ros::WallTime& begin) {
 
 std::string simulatorFault(Ending ending, double timeout) {
   if (ending != Ending::kSimulatorSilent) return "the node left the session";
-  if (timeout == 0.0) return "the node gave no sign of life since it was started";
-  return "the node gave no sign of life for " + core::formatNumber(timeout) + " s";
+  if (timeout == 0.0) return "the node has sent nothing since it was started";
+  return "the node has sent nothing for " + core::formatNumber(timeout) + " s";
 }
 
 Participant::Participant(StopSignal& stop)
@@ -45,7 +45,7 @@ Participant::Participant(StopSignal& stop)
                                                 {kTrafficSimulatorNode});
   gate_.setReport([this](const std::string& text) {
     ROS_WARN("%s: %s", name_.c_str(), text.c_str());
-    tell(msgs::TickAck::FAULT, lastTick(), text);
+    publishAck(msgs::TickAck::FAULT, lastTick(), text);
   });
   heartbeat_input_ = gate_.subscribe<msgs::Heartbeat>(
       node_, Topic(ChannelId::kHeartbeat).name(), siblingNodes({kTrafficSimulatorNode}),
@@ -113,7 +113,7 @@ std::optional<Ending> Participant::unstartedEnding() {
 }
 
 int Participant::runSession() {
-  begin(*session_);
+  startSession(*session_);
   const session::ScenarioOptions options = optionsFromMsg(*session_);
   simulation_step_ = options.simulation_step;
   lead_ = static_cast<std::uint64_t>(
@@ -157,7 +157,8 @@ bool Participant::handleQueue() {
   return final_handled_;
 }
 
-/// Answers to older decisions would drive nobody once the newest that can be answered is.
+/// Answers to older decisions would drive no vehicle once the newest that can be answered is
+/// answered.
 void Participant::leaveOutdatedOut() {
   constexpr std::size_t kMost = 40;  // snapshots that wait for what a decision needs
   const auto newest = std::find_if(snapshots_.rbegin(), snapshots_.rend(), [this](const auto& one) {
@@ -177,7 +178,7 @@ int Participant::leave(Ending ending) {
   const int exit_code = conclude(ending);
   if (ending == Ending::kSimulatorSilent) endSilentSimulator();
   if (!isObserver(name_) || !::ros::ok()) return exit_code;
-  tell(msgs::TickAck::FINISHED, lastTick());
+  publishAck(msgs::TickAck::FINISHED, lastTick());
   // The simulator leaves once it knows; until then the message may still be on its way.
   const ::ros::WallTime limit = ::ros::WallTime::now() + ::ros::WallDuration(kFarewell);
   while (!simulatorGone() && ::ros::WallTime::now() < limit) spin();
@@ -199,7 +200,7 @@ int Participant::fail(const std::string& text) {
   ROS_ERROR("%s: %s", name_.c_str(), text.c_str());
   const ::ros::WallTime limit = ::ros::WallTime::now() + ::ros::WallDuration(kFarewell);
   while (::ros::ok() && !simulatorGone() && ::ros::WallTime::now() < limit) {
-    tell(msgs::TickAck::ERROR, lastTick(), text);
+    publishAck(msgs::TickAck::ERROR, lastTick(), text);
     spin();
     const bool ended =
         !snapshots_.empty() && snapshots_.back()->status != msgs::TrafficSnapshot::RUNNING;
@@ -208,7 +209,7 @@ int Participant::fail(const std::string& text) {
   return core::ExitCode::kRunTimeError;
 }
 
-void Participant::tell(std::uint8_t kind, std::uint64_t tick, const std::string& text) {
+void Participant::publishAck(std::uint8_t kind, std::uint64_t tick, const std::string& text) {
   msgs::TickAck message;
   message.node = name_;
   message.kind = kind;
@@ -221,16 +222,16 @@ void Participant::report() {
   const bool begun = next_tick_ > 0;
   if (secondsSince(reported_at_) < (begun ? kAlivePeriod : kPeriod)) return;
   reported_at_ = ::ros::WallTime::now();
-  if (begun) return tell(msgs::TickAck::ALIVE, lastTick());
+  if (begun) return publishAck(msgs::TickAck::ALIVE, lastTick());
   const std::string text = missing();
-  tell(text.empty() ? msgs::TickAck::READY : msgs::TickAck::WAITING, 0, text);
+  publishAck(text.empty() ? msgs::TickAck::READY : msgs::TickAck::WAITING, 0, text);
 }
 
 std::string Participant::missing() const {
   std::vector<std::string> texts = connections_.missing();
   for (const ::ros::Subscriber& input : inputs_) {
     if (input.getNumPublishers() == 0)
-      texts.push_back("nobody publishes " + input.getTopic() + " yet");
+      texts.push_back("no node publishes " + input.getTopic() + " yet");
   }
   if (!waitingFor().empty()) texts.push_back(waitingFor());
   return core::joinText(texts, ", ");

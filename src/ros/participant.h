@@ -46,7 +46,7 @@ class Participant {
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
 
   /// The session is known: make what it needs, advertise and listen.
-  virtual void begin(const ::e2e_cdiff::SessionInfo& info) = 0;
+  virtual void startSession(const ::e2e_cdiff::SessionInfo& info) = 0;
   /// What is missing besides connections before the first tick; empty when nothing is.
   virtual std::string waitingFor() const { return {}; }
   /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
@@ -78,8 +78,8 @@ class Participant {
         node_, topic.name(), siblingNodes(publishersOf(topic, graph_)), callback));
   }
   void listen(const Topic& topic, const TakeMessage& take);
-  /// Tells the traffic simulator that a tick is dealt with.
-  void acknowledge(std::uint64_t tick) { tell(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
+  /// Acknowledges a tick to the traffic simulator: this node has processed it.
+  void acknowledge(std::uint64_t tick) { publishAck(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
   const SessionGraph& graph() const { return graph_; }
   /// Whether no message will come any more.
   bool over() const { return over_; }
@@ -105,7 +105,7 @@ class Participant {
   std::string missing() const;
   bool simulatorSilent();
   bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
-  void tell(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
+  void publishAck(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
   std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
 
   StopSignal& stop_;

@@ -81,7 +81,7 @@ void checkSight(const planning::Planner& planner, bool session_expects, const st
 
 }  // namespace
 
-void EgoPlannerRos::begin(const msgs::SessionInfo& info) {
+void EgoPlannerRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   planner_ = setup_->makeEgoPlanner();
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
@@ -122,7 +122,7 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
   return true;
 }
 
-void CbvPlannerRos::begin(const msgs::SessionInfo& info) {
+void CbvPlannerRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const session::ScenarioOptions& options = setup_->options();
   planner_ = setup_->makeCbvPlanner();

@@ -39,7 +39,7 @@ class PlannerStatistics {
   std::map<std::string, std::uint64_t> faults_;
   std::uint64_t deadline_misses_ = 0;
   std::size_t batch_size_ = 0;  ///< vehicles in the last call
-  double image_age_ = 0.0;      ///< of the last call [s]
+  double image_age_ = 0.0;      ///< age of the images at the last call [s]
 };
 
 // Planners as nodes: one for the ego, one for all CBVs, each asking its planner exactly as the
@@ -52,7 +52,7 @@ class EgoPlannerRos : public Participant {
   using Participant::Participant;
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
@@ -69,14 +69,14 @@ class EgoPlannerRos : public Participant {
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and
 /// the image of every occupied slot where the planner sees), controls and rollouts out, what
-/// guidance did where the planner is guided, the rollouts as markers while somebody looks, and how
-/// the planner fares in /diagnostics.
+/// guidance did where the planner is guided, the rollouts as markers while anyone subscribes, and
+/// how the planner fares in /diagnostics.
 class CbvPlannerRos : public Participant {
  public:
   using Participant::Participant;
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override;
   bool leavesOut() const override { return graph().paced; }
@@ -84,7 +84,7 @@ class CbvPlannerRos : public Participant {
 
  private:
   void listenToInputs();
-  /// Whether the image of every slot with a vehicle has come, where the planner sees.
+  /// Whether the image of every slot with a vehicle has arrived, where the planner sees.
   bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot,
                 const ::e2e_cdiff::CbvSelection& selection) const;
   void plan(const traffic::TrafficSnapshot& snapshot, const ::e2e_cdiff::CbvSelection& selection);

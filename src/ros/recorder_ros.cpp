@@ -14,7 +14,7 @@ std::string resolvedTopic(const std::string& topic) { return ::ros::names::resol
 
 }  // namespace
 
-void RecorderRos::begin(const msgs::SessionInfo& info) {
+void RecorderRos::startSession(const msgs::SessionInfo& info) {
   const session::ScenarioOptions options = optionsFromMsg(info);
   bag_ = std::make_unique<BagFile>(std::filesystem::path(info.results_folder) / "session.bag",
                                    options, resolvedTopic);

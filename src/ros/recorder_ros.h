@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The recorder as a node: takes part in the lockstep and writes every tick of the session to
-/// session.bag in the result folder.
 #pragma once
 
 #include <memory>
@@ -11,12 +9,14 @@
 
 namespace cdiff::ros {
 
+/// The recorder as a node: takes part in the lockstep and writes every tick of the session to
+/// session.bag in the result folder.
 class RecorderRos : public Observer {
  public:
   using Observer::Observer;
 
  protected:
-  void begin(const ::e2e_cdiff::SessionInfo& info) override;
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
   std::string waitingFor() const override;
   bool handle(const Snapshot& snapshot, bool superseded) override;
   int conclude(Ending ending) override;

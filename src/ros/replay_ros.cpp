@@ -203,7 +203,7 @@ void ReplayRos::replayTicks() {
   }
 }
 
-/// A tick that lacks answers is acknowledged when the next one has come.
+/// A tick that lacks answers is acknowledged when the next one has arrived.
 bool ReplayRos::waitForMetrics(const msgs::TrafficSnapshot& snapshot) {
   const bool last = snapshot.status != msgs::TrafficSnapshot::RUNNING;
   if (!last && !session_.answers().missing(snapshot).empty()) {

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A recorded session replayed on its topics, in the place of the traffic simulator: it publishes
-/// the bag's ticks and the answers to each, and waits for the metrics node's acknowledgement of a
-/// tick before the next. So the metrics node sees what it saw live, and nothing can be lost on the
-/// way.
 #pragma once
 
 #include <chrono>
@@ -26,6 +22,10 @@
 
 namespace cdiff::ros {
 
+/// A recorded session replayed on its topics, in the place of the traffic simulator: it publishes
+/// the bag's ticks and the answers to each, and waits for the metrics node's acknowledgement of a
+/// tick before the next. So the metrics node sees what it saw live, and nothing can be lost on the
+/// way.
 class ReplayRos {
  public:
   /// Parameters: bag, results (empty: a folder of its own in HOME), rate (times real time; 0: as

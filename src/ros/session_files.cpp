@@ -35,7 +35,7 @@ bool writtenByThisLaunch(const fs::path& path) {
   return written >= launchTime().value_or(0.0);
 }
 
-/// The folder that was asked for; empty when none was.
+/// The requested folder; empty when none was requested.
 fs::path askedFolder(const Parameters& parameters) {
   const std::string text = parameters.text("results");
   return text.empty() ? fs::path() : fs::absolute(text).lexically_normal();

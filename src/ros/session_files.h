@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where a session of the node graph puts its files, and the result folder that the traffic
-/// simulator writes when the metrics node cannot: a session always leaves a result that can be
-/// read.
 #pragma once
 
 #include <filesystem>
@@ -14,6 +11,10 @@
 #include "ros/parameters.h"
 
 namespace cdiff::ros {
+
+// Where a session of the node graph puts its files, and the result folder that the traffic
+// simulator writes when the metrics node cannot: a session always leaves a result that can be
+// read.
 
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The traffic simulator as a node: owns the world and the clock, publishes each tick and waits for
-/// every answer and acknowledgement that the tick needs before the world goes on.
 #pragma once
 
 #include <chrono>
@@ -37,6 +35,8 @@ struct SimulatorLimits {
   double answer = 30.0;  ///< for the answers to a tick
 };
 
+/// The traffic simulator as a node: owns the world and the clock, publishes each tick and waits for
+/// every answer and acknowledgement that the tick needs before the world goes on.
 class TrafficSimulatorRos {
  public:
   /// Reads the node's parameters and sets the session up. Throws InputError for bad input.

@@ -119,7 +119,7 @@ std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::sleepUntil(doubl
 /// Paced by the wall clock: the tick ends when its time has come, whatever has been answered.
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::waitUntilDue() {
   const session::ScenarioOptions& options = setup_->options();
-  spin(0.0);  // what has come counts, however late this tick began
+  spin(0.0);  // what has arrived counts, however late this tick began
   const double due = (published_->time + options.simulation_step) / options.real_time_factor;
   if (auto cause = sleepUntil(due)) return cause;
   const double patience = std::min(limits_.answer, kPacedSilence);
@@ -147,7 +147,7 @@ std::vector<TrafficSimulatorRos::Missing> TrafficSimulatorRos::silentFor(double 
 }
 
 /// An ego that came to stand after a node was last heard may brake for want of that node: it is not
-/// blocked before the node is heard again, and the silence ends the session otherwise.
+/// blocked before the node answers again; otherwise its silence ends the session.
 bool TrafficSimulatorRos::standsPerhapsForSilence() const {
   const std::optional<double> since = world_->egoStandsSince();
   if (!since) return false;
@@ -195,7 +195,7 @@ void TrafficSimulatorRos::publishRecord(const msgs::DecisionRecord::ConstPtr& re
   answers_.add(ChannelId::kDecisionRecord, record);
 }
 
-/// The session goes on, or ends, with what has come.
+/// The session goes on, or ends, with what has arrived.
 void TrafficSimulatorRos::closeDecisions() {
   if (paced()) return settleDecisions(true);
   if (graph_.external_ego && !recorded_) {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The vehicles around the ego that the simulator drives: as many as the scenario's generated
-/// demand asks for, none where the ego begins (map frame, SI units).
 #pragma once
 
 #include <memory>
@@ -13,6 +11,8 @@
 
 namespace cdiff::session {
 
+/// The vehicles around the ego that the simulator drives: as many as the scenario's generated
+/// demand asks for, none where the ego starts (map frame, SI units).
 class BackgroundTraffic {
  public:
   /// Both must outlive the object.

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The decision cycle of a session in one process, without ROS: it defines what the node graph
-/// does. At each decision tick: selection of the vehicles to drive, planners of ego and CBVs on the
-/// same snapshot, then the world advances.
 #pragma once
 
 #include <atomic>
@@ -48,7 +45,7 @@ struct LoopParts {
   std::unique_ptr<World> world;  ///< nullptr: over SUMO, as the setup starts it
   std::unique_ptr<cbv::VehicleSelector> selector;
   std::unique_ptr<planning::Planner> ego_planner;
-  std::unique_ptr<planning::Planner> cbv_planner;  ///< of every vehicle that is selected
+  std::unique_ptr<planning::Planner> cbv_planner;  ///< planner of every vehicle that is selected
   std::optional<rendering::FrontCamera> camera;    ///< for planners that see and for `image_wish`
   ImageWish image_wish;                            ///< empty: no other images
 };
@@ -58,6 +55,9 @@ struct LoopParts {
 /// the node graph.
 LoopParts makeParts(const SessionSetup& setup);
 
+/// The decision cycle of a session in one process, without ROS: it defines what the node graph
+/// does. At each decision tick: selection of the vehicles to drive, planners of ego and CBVs on the
+/// same snapshot, then the world advances.
 class ClosedLoop {
  public:
   /// With makeParts(setup). `setup` must outlive the loop. Throws InputError as makeParts does, and

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Protocol presets and the rules by which a session ends: completed, blocked, deviated, timed out,
-/// collided.
 #pragma once
 
 #include <optional>
@@ -15,6 +13,9 @@
 
 namespace cdiff::session {
 
+// Protocol presets and the rules by which a session ends: completed, blocked, deviated, timed out,
+// collided.
+
 /// Defaults: rift_dev10 (RIFT's protocol on Bench2Drive's ten development routes).
 struct ProtocolOptions {
   std::string preset = "rift_dev10";      ///< name of the rules
@@ -27,10 +28,10 @@ struct ProtocolOptions {
   double deviation_safe_distance =
       15.0;                           ///< and so does progress made at this distance or more [m]
   double deviation_percent = 30.0;    ///< ... over more than this share of the route [%]
-  double completion_percent = 99.0;   ///< of the route's length ...
+  double completion_percent = 99.0;   ///< least share of the route's length ...
   double completion_distance = 10.0;  ///< ... and this near its end counts as 100 % [m]
   bool end_on_collision = false;      ///< the first contact of the ego ends the session
-  metrics::InfractionOptions infractions;  ///< of the ego; its keys lie beside these
+  metrics::InfractionOptions infractions;  ///< infractions of the ego; their keys lie beside these
 
   void describe(core::OptionsVisitor& visitor);
 };

@@ -116,14 +116,14 @@ void VerdictOptions::describe(core::OptionsVisitor& visitor) {
                contact_without_fault, {"allowed", "struck", "failed", "by_mode"});
   visitor.number({"minimum_driving_score", "%", "Least driving score of the ego."},
                  minimum_driving_score, 0.0, 100.0);
-  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego, whoever's fault."},
+  visitor.number({"maximum_ego_collisions", "", "Most contacts of the ego, whosever fault."},
                  maximum_ego_collisions, 0.0, kInfinite);
   visitor.number({"maximum_red_lights", "", "Most red lights that the ego runs."},
                  maximum_red_lights, 0.0, kInfinite);
   visitor.number({"maximum_stop_signs", "", "Most stop signs that the ego does not obey."},
                  maximum_stop_signs, 0.0, kInfinite);
   visitor.number(
-      {"maximum_outside_lanes_percent", "%", "Largest share of its way outside the lanes."},
+      {"maximum_outside_lanes_percent", "%", "Largest share of its route outside the lanes."},
       maximum_outside_lanes_percent, 0.0, 100.0);
   visitor.number({"maximum_cbv_off_road_percent", "%", "Highest off-road rate of the CBVs."},
                  maximum_cbv_off_road_percent, 0.0, 100.0);
@@ -170,17 +170,17 @@ void ScenarioOptions::describeTraffic(core::OptionsVisitor& visitor) {
 void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.text({"mode", "", "How CBVs behave: as in everyday traffic, or seeking a collision."},
                mode, {"naturalistic", "safety_critical"});
-  visitor.text({"method", "",
-                "Preset of guidance and sampling below all other keys: the paper's, or ours."},
-               method, {});
+  visitor.text(
+      {"method", "", "Preset of guidance and sampling below all other keys: the paper's, or ours."},
+      method, {});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
   visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   planner_options.describe(visitor);
-  visitor.text(
-      {"guidance_profile", "", "Shipped guidance profile or file; empty: the method's for the mode."},
-      guidance_profile, {});
+  visitor.text({"guidance_profile", "",
+                "Shipped guidance profile or file; empty: the method's for the mode."},
+               guidance_profile, {});
   visitor.group({"guidance", "", "Guidance of the CBVs; defaults are the profile's."}, guidance);
   visitor.text({"ego_guidance_profile", "",
                 "Guidance profile of the ego: shipped or file; the mode does not change it."},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A scenario: everything that decides a session, as one YAML file (schema of `cdiff validate`).
 #pragma once
 
 #include <cstdint>
@@ -22,16 +21,16 @@ namespace cdiff::session {
 /// The rules by which a session is judged; the defaults are none.
 struct VerdictOptions {
   bool judge = true;                       ///< false: as if there were no rules
-  double minimum_route_completion = 0.0;   ///< of the ego [%]
+  double minimum_route_completion = 0.0;   ///< least route completion of the ego [%]
   double maximum_contacts_at_fault = 1e9;  ///< contacts that are the ego's fault
   std::string contact_without_fault =
       "allowed";  ///< allowed | struck | failed | by_mode: failed where CBVs drive naturalistically
                   ///< and struck where they attack
-  double minimum_driving_score = 0.0;            ///< of the ego, by the protocol [%]
-  double maximum_ego_collisions = 1e9;           ///< contacts
-  double maximum_red_lights = 1e9;               ///< run by the ego
-  double maximum_stop_signs = 1e9;               ///< not obeyed by the ego
-  double maximum_outside_lanes_percent = 100.0;  ///< of the ego's way along its route [%]
+  double minimum_driving_score = 0.0;   ///< least driving score of the ego, by the protocol [%]
+  double maximum_ego_collisions = 1e9;  ///< contacts
+  double maximum_red_lights = 1e9;      ///< run by the ego
+  double maximum_stop_signs = 1e9;      ///< not obeyed by the ego
+  double maximum_outside_lanes_percent = 100.0;  ///< share of the ego's route [%]
   double maximum_cbv_off_road_percent = 100.0;   ///< [%]
   std::vector<std::string>
       statuses;  ///< allowed final statuses; empty: all but error and interrupted
@@ -49,15 +48,16 @@ struct ReportOptions {
   void describe(core::OptionsVisitor& visitor);
 };
 
+/// A scenario: everything that decides a session, as one YAML file (schema of `cdiff validate`).
 struct ScenarioOptions {
   ScenarioOptions();
 
   std::int64_t schema_version = 1;
   std::string name = "unnamed";
   std::string network;                ///< shipped name or file (*.net.xml, *.xodr, *.osm)
-  map::RouteOptions route;            ///< of the ego
+  map::RouteOptions route;            ///< route of the ego
   std::string demand = "generated";   ///< generated | none | a *.rou.xml file
-  simulation::DemandOptions traffic;  ///< of generated demand
+  simulation::DemandOptions traffic;  ///< generated demand
   double begin_time = 0.0;            ///< SUMO's clock at the start, for demand files [s]
   std::string lights = "green";       ///< green | program
   std::string mode = "naturalistic";  ///< naturalistic | safety_critical
@@ -67,12 +67,12 @@ struct ScenarioOptions {
   std::int64_t max_cbv = 2;
   cbv::CbvOptions cbv;
   planning::PlannerOptionsTable planner_options =
-      planners::defaultOptions();      ///< groups by their names
-  std::string guidance_profile;        ///< shipped profile or file; empty: the method's for the mode
-  guidance::GuidanceOptions guidance;  ///< of CBVs; the profile's values, with what is changed
+      planners::defaultOptions();  ///< groups by their names
+  std::string guidance_profile;    ///< shipped profile or file; empty: the method's for the mode
+  guidance::GuidanceOptions guidance;  ///< the CBVs': the profile's values, with what is changed
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
-  guidance::GuidanceOptions ego_guidance;             ///< of an ego whose planner can be guided
-  rendering::CameraOptions camera;                    ///< that planners see through
+  guidance::GuidanceOptions ego_guidance;  ///< the ego's, where its planner can be guided
+  rendering::CameraOptions camera;         ///< that planners see through
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
@@ -83,7 +83,7 @@ struct ScenarioOptions {
   double target_speed = 8.0;      ///< v* [m/s], capped by the lane's limit
   double simulation_step = 0.05;  ///< [s]
   double decision_period = 0.1;   ///< [s], a multiple of simulation_step
-  double real_time_factor = 0.0;  ///< of nodes that the wall clock rules; 0: lockstep
+  double real_time_factor = 0.0;  ///< pace of nodes that the wall clock rules; 0: lockstep
   double at_most = 0.0;           ///< times real time, in lockstep; 0: as fast as possible
   std::int64_t seed = 1;
 
@@ -100,8 +100,7 @@ struct ScenarioOptions {
 
 /// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside
 /// it are resolved against the file's folder; keys that it does not name keep the values of `base`.
-/// Throws InputError naming file, line and key, or the
-/// nearest shipped scenario.
+/// Throws InputError naming file, line and key, or the nearest shipped scenario.
 ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOptions& base = {});
 
 /// Names of the shipped scenarios, sorted.

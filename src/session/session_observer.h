@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a session shows to everything that records or measures it, tick by tick; the same whether
-/// one process or the node graph drives.
 #pragma once
 
 #include <string>
@@ -46,11 +44,13 @@ struct TickRecord {
   const traffic::TrafficSnapshot* snapshot = nullptr;
   const cbv::CbvSelection* selection = nullptr;                   ///< nullptr between decisions
   const std::vector<planning::PlannedAction>* actions = nullptr;  ///< ego first, then CBVs by slot
-  const std::vector<SlotImage>* images = nullptr;  ///< of vehicles whose planner sees
-  std::vector<PlannerLatency> latencies;           ///< of planners that report theirs
+  const std::vector<SlotImage>* images = nullptr;  ///< images of vehicles whose planner sees
+  std::vector<PlannerLatency> latencies;           ///< latencies of planners that report theirs
   std::vector<AnswerTiming> timings;               ///< empty in sessions that wait for every answer
 };
 
+/// What a session shows to everything that records or measures it, tick by tick; the same whether
+/// one process or the node graph drives.
 class SessionObserver {
  public:
   virtual ~SessionObserver() = default;

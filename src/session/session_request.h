@@ -14,7 +14,7 @@ namespace cdiff::session {
 // `cdiff metric shapiro_wilk` reads.
 
 /// Lines: one finite number each; empty lines and what follows '#' are passed over. JSON (the file
-/// begins with '{'): {"cases": [{"x": [...]}, ...]}, the samples of all cases together. Throws
+/// starts with '{'): {"cases": [{"x": [...]}, ...]}, the samples of all cases together. Throws
 /// InputError naming file, line (or case) and what was expected, also for a file without a sample.
 std::vector<double> readSamples(const std::filesystem::path& file);
 

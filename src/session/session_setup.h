@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What every part of a session derives from its scenario: network, drivable area, lane graph, ego
-/// route. The same in every deployment.
 #pragma once
 
 #include <memory>
@@ -16,6 +14,8 @@
 
 namespace cdiff::session {
 
+/// What every part of a session derives from its scenario: network, drivable area, lane graph, ego
+/// route. The same in every deployment.
 class SessionSetup {
  public:
   /// Imports the network that the scenario names and plans the ego route.

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The world of a session: the simulator's traffic, the vehicles that we drive through our own
-/// dynamics, hand-over between the two, contacts, and the protocol's end rules. Advances tick by
-/// tick; decides nothing.
 #pragma once
 
 #include <functional>
@@ -18,6 +15,9 @@
 
 namespace cdiff::session {
 
+/// The world of a session: the simulator's traffic, the vehicles that we drive through our own
+/// dynamics, hand-over between the two, contacts, and the protocol's end rules. Advances tick by
+/// tick; decides nothing.
 class World {
  public:
   /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterwards
@@ -39,7 +39,7 @@ class World {
   /// Ends the session from outside (interrupted, a node that died): the next snapshot is the
   /// present one with this status and fault.
   void end(traffic::SessionStatus status, const traffic::Fault& fault);
-  /// Where a vehicle that we take over begins to be driven, given its id and where the simulator
+  /// Where a vehicle that we take over starts to be driven, given its id and where the simulator
   /// had it.
   using TakeOverDisturbance =
       std::function<traffic::VehicleState(const std::string&, const traffic::VehicleState&)>;

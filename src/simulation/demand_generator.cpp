@@ -31,7 +31,7 @@ bool laneNear(const Lane& lane, const geometry::Polyline& path, double radius) {
   return false;
 }
 
-/// Gap that a follower needs to a vehicle ahead: a headway, and the way to brake to its speed.
+/// Gap that a follower needs to a vehicle ahead: a headway, and the route to brake to its speed.
 double neededGap(double speed, double speed_ahead) {
   const double braking = (speed * speed - speed_ahead * speed_ahead) / (2.0 * kBraking);
   return kSmallestGap + std::max(0.0, kHeadway * (speed - speed_ahead) + std::max(0.0, braking));
@@ -167,7 +167,7 @@ void DemandOptions::describe(core::OptionsVisitor& visitor) {
       radius, 20.0, 2000.0);
   visitor.number({"clear_start", "m", "No vehicle begins nearer to the ego's start."}, clear_start,
                  0.0, 1000.0);
-  visitor.number({"warm_up", "s", "Traffic is driven this long before the session begins."},
+  visitor.number({"warm_up", "s", "Traffic is driven this long before the session starts."},
                  warm_up, 0.0, 3600.0);
   visitor.number(
       {"forget_distance", "m", "A generated vehicle farther from the ego leaves the simulation."},
@@ -212,7 +212,7 @@ bool DemandGenerator::allowed(const Start& start, const Eigen::Vector2d& ego_pos
                               double ego_elevation, bool warm_up) const {
   const double distance = (start.position - ego_position).norm();
   if (distance > options_.radius - 0.5 * kLongest)
-    return false;  // its centre counts, half a length behind
+    return false;  // its center counts, half a length behind
   const bool same_level = std::abs(start.elevation - ego_elevation) < traffic::kLevelHeight;
   return warm_up || distance > kOutOfSight || (!same_level && distance > 0.5 * kOutOfSight);
 }

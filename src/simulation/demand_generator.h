@@ -21,12 +21,13 @@ namespace cdiff::simulation {
 // near the ego route; and whether a place on a lane is free for a vehicle (gaps along the lane
 // [m], speeds [m/s]).
 
+/// Finds routes for background vehicles on the edge graph, preferring edges near the ego's route.
 class DemandRouter {
  public:
   /// `graph` must outlive the router. Edges within `radius` [m] of the ego route are preferred.
   DemandRouter(const EdgeGraph& graph, const map::Route& ego_route, double radius);
 
-  /// Edges from `lane` on, driven on from `arc_length` of it, at least `length` metres long where
+  /// Edges from `lane` on, driven on from `arc_length` of it, at least `length` meters long where
   /// the network allows: every edge is reached from a lane that the vehicle can be on. `key` names
   /// the family of draws.
   std::vector<int> route(map::LaneIndex lane, double arc_length, double length,
@@ -40,27 +41,29 @@ class DemandRouter {
   std::vector<bool> near_;  ///< by edge
 };
 
-/// A place where a vehicle is to begin.
+/// A place where a vehicle starts.
 struct Insertion {
   map::LaneIndex lane = map::kNoLane;
-  double front = 0.0;  ///< of the front bumper along the lane [m]
+  double front = 0.0;  ///< place of the front bumper along the lane [m]
   double speed = 0.0;  ///< wished [m/s]
   traffic::VehicleDimensions dimensions;
 };
 
-/// Pose of the centre of a vehicle that begins there.
+/// Pose of the center of a vehicle that starts there.
 traffic::VehicleState stateAt(const map::RoadNetwork& network, const Insertion& insertion);
 
-/// The speed to begin with: as wished, less behind a leader or before the lane's end; nullopt where
+/// The speed to start with: as wished, less behind a leader or before the lane's end; nullopt where
 /// a gap to a vehicle is too small.
 std::optional<double> freeSpeed(const map::RoadNetwork& network, const Insertion& insertion,
                                 const std::vector<traffic::Vehicle>& vehicles);
 
+/// Generated background traffic around the ego: how much, where, and with which spread of drivers
+/// (SI units).
 struct DemandOptions {
   std::int64_t density = 30;       ///< vehicles kept alive within `radius` of the ego
-  double radius = 150.0;           ///< of the ego route [m]
+  double radius = 150.0;           ///< largest distance from the ego's route [m]
   double clear_start = 10.0;       ///< none is placed nearer to the ego's start [m]
-  double warm_up = 30.0;           ///< driven before the session begins [s]
+  double warm_up = 30.0;           ///< driven before the session starts [s]
   double forget_distance = 300.0;  ///< a vehicle farther from the ego leaves the simulation [m]
 
   void describe(core::OptionsVisitor& visitor);
@@ -70,7 +73,7 @@ struct DemandOptions {
 struct DemandVehicle {
   std::string id;                  ///< "bg_0", "bg_1", ...
   std::vector<std::string> edges;  ///< SUMO route
-  double depart_position = 0.0;    ///< of the front bumper along the first edge [m]
+  double depart_position = 0.0;    ///< place of the front bumper along the first edge [m]
   int depart_lane = 0;
   double depart_speed = 0.0;  ///< [m/s]
   traffic::VehicleDimensions dimensions;

@@ -17,29 +17,28 @@ namespace {
 
 using SumoVehicle = libtraci::Vehicle;
 
-constexpr double kWayLength = 250.0;   ///< given ahead of the present edge [m]
-constexpr double kWayRefresh = 100.0;  ///< a new way is given when less is left [m]
-constexpr double kFarOff = 3.0;        ///< SUMO's vehicle is put to its place beyond this [m]
-constexpr double kCatchUp = 4.0;       ///< share of the distance made up per second [1/s]
-constexpr double kCatchUpSpeed = 2.0;  ///< at most [m/s]
-constexpr double kStanding = 0.05;     ///< [m/s]
-constexpr int kKeepRouteExact = 3;     ///< keep the route, at the exact place
-constexpr int kAnywhere = 2;           ///< at the exact place, whatever lane is there
+constexpr double kGivenRouteLength = 250.0;  ///< set ahead of the present edge [m]
+constexpr double kRouteRefresh = 100.0;      ///< a new route is set when less is left [m]
+constexpr double kFarOff = 3.0;              ///< SUMO's vehicle is put to its place beyond this [m]
+constexpr double kCatchUp = 4.0;             ///< share of the distance made up per second [1/s]
+constexpr double kCatchUpSpeed = 2.0;        ///< at most [m/s]
+constexpr double kStanding = 0.05;           ///< [m/s]
+constexpr int kKeepRouteExact = 3;           ///< keep the route, at the exact place
+constexpr int kAnywhere = 2;                 ///< at the exact place, whatever lane is there
 
-/// Whether one way is the beginning of the other.
+/// Whether one list of edges starts with the other.
 bool agree(const std::vector<int>& first, const std::vector<int>& second) {
   const auto common = static_cast<std::ptrdiff_t>(std::min(first.size(), second.size()));
   return std::equal(first.begin(), first.begin() + common, second.begin());
 }
 
-/// Edges of a way from the first `current` on; empty when it is not on it.
-std::vector<int> restOf(const std::vector<int>& way, int current) {
-  return {std::find(way.begin(), way.end(), current), way.end()};
+/// The edges from the first `current` on; empty when it is not among them.
+std::vector<int> restOf(const std::vector<int>& edges, int current) {
+  return {std::find(edges.begin(), edges.end(), current), edges.end()};
 }
 
-/// Speed that brings SUMO's vehicle `ahead` metres on in this step, nearly: a
-/// difference to the vehicle's own speed is made up smoothly, because followers
-/// go by it.
+/// Speed that brings SUMO's vehicle `ahead` meters on in this step, nearly: a difference to the
+/// vehicle's own speed is made up smoothly, because followers react to it.
 double commandedSpeed(double speed, double ahead, double step) {
   const double behind = ahead - speed * step;
   if (speed < kStanding && std::abs(behind) < 0.3) return 0.0;
@@ -69,11 +68,11 @@ double DrivenFleet::sumoScale(map::LaneIndex index) {
 
 void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensions& dimensions,
                       const std::string& type_id) {
-  Moved moved(DrivenWay(graph_, dimensions));
-  const FrontPlace place = moved.way.locate(start.state);
-  moved.way.follow(start.route, place.position);
-  int edge = moved.way.startEdge(place);
-  moved.on_way = edge != kNoEdge;
+  Moved moved(DrivenRoute(graph_, dimensions));
+  const FrontPlace place = moved.route.locate(start.state);
+  moved.route.follow(start.route, place.position);
+  int edge = moved.route.startEdge(place);
+  moved.on_route = edge != kNoEdge;
   for (const map::LaneMatch& match : graph_.network().lanesNear(place.position, 200.0)) {
     if (edge == kNoEdge) edge = graph_.edgeOf(match.lane);
   }
@@ -82,7 +81,7 @@ void DrivenFleet::add(const DrivenVehicle& start, const traffic::VehicleDimensio
         "vehicle '" + start.id + "' starts at (" + core::formatNumber(start.state.position.x()) +
         ", " + core::formatNumber(start.state.position.y()) + "), 200 m from every road");
   }
-  moved.given = moved.way.edgesFrom(edge, kWayLength);
+  moved.given = moved.route.edgesFrom(edge, kGivenRouteLength);
   const std::string route_id = "driven_" + std::to_string(added_++) + "_" + start.id;
   libtraci::Route::add(route_id, graph_.ids(moved.given));
   SumoVehicle::add(start.id, route_id, type_id, "now", "first", "0", "0");
@@ -96,39 +95,39 @@ void DrivenFleet::forget(const std::string& id) {
   released_.erase(id);
 }
 
-bool DrivenFleet::giveWay(const std::string& id, Moved& moved, const std::vector<int>& way) {
-  if (!link_.attempt([&] { SumoVehicle::setRoute(id, graph_.ids(way)); })) return false;
-  moved.given = way;
+bool DrivenFleet::setRoute(const std::string& id, Moved& moved, const std::vector<int>& edges) {
+  if (!link_.attempt([&] { SumoVehicle::setRoute(id, graph_.ids(edges)); })) return false;
+  moved.given = edges;
   return true;
 }
 
-void DrivenFleet::loseWay(Moved& moved) {
-  moved.on_way = false;
+void DrivenFleet::leaveRoute(Moved& moved) {
+  moved.on_route = false;
   moved.refused_lane.clear();
 }
 
-void DrivenFleet::updateWay(const std::string& id, Moved& moved, const FrontPlace& place) {
-  if (moved.on_way && !moved.way.onWay(place, moved.given, core::kPi)) loseWay(moved);
+void DrivenFleet::updateRoute(const std::string& id, Moved& moved, const FrontPlace& place) {
+  if (moved.on_route && !moved.route.onRoute(place, moved.given, core::kPi)) leaveRoute(moved);
   const int current = edgeOf(moved.lane_id);
   if (current == kNoEdge) return;
   const std::vector<int> rest = restOf(moved.given, current);
-  if (moved.on_way && rest.empty()) loseWay(moved);  // SUMO placed it on another road
+  if (moved.on_route && rest.empty()) leaveRoute(moved);  // SUMO placed it on another road
   double left = 0.0;
   for (std::size_t i = 1; i < rest.size(); ++i) left += graph_.length(rest[i]);
-  const bool enough = left >= kWayRefresh && rest.size() >= 3;
+  const bool enough = left >= kRouteRefresh && rest.size() >= 3;
   if (current != moved.last_edge) moved.outdated = true;
   moved.last_edge = current;
-  if (moved.on_way && enough && !moved.outdated) return;
+  if (moved.on_route && enough && !moved.outdated) return;
   if (moved.refused_lane == moved.lane_id) return;
-  const std::vector<int> way = moved.way.edgesFrom(current, kWayLength);
-  const bool same = moved.on_way && (way == rest || (enough && agree(way, rest)));
+  const std::vector<int> edges = moved.route.edgesFrom(current, kGivenRouteLength);
+  const bool same = moved.on_route && (edges == rest || (enough && agree(edges, rest)));
   if (!same) {
-    if (!moved.way.onWay(place, way, 0.5 * core::kPi)) return;
-    if (!giveWay(id, moved, way)) {
+    if (!moved.route.onRoute(place, edges, 0.5 * core::kPi)) return;
+    if (!setRoute(id, moved, edges)) {
       moved.refused_lane = moved.lane_id;
       return;
     }
-    moved.on_way = true;
+    moved.on_route = true;
   }
   moved.outdated = false;
   moved.refused_lane = same ? moved.lane_id : "";
@@ -150,7 +149,7 @@ bool DrivenFleet::putOnLane(const std::string& id, const LanePlace& place) {
 
 bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place) {
   const bool known =
-      moved.place.lane != map::kNoLane && graph_.onWay(moved.place.lane, moved.given);
+      moved.place.lane != map::kNoLane && graph_.onRoute(moved.place.lane, moved.given);
   const LanePlace from = known ? moved.place : LanePlace{};
   std::optional<LaneTarget> target =
       laneTarget(graph_, place, moved.state.heading, moved.given, from);
@@ -177,7 +176,7 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
 bool DrivenFleet::mayJump(const Moved& moved) const {
   constexpr double kClear = 0.1;  // [m]
   if (moved.changing > 0.0) return false;
-  const double needed = moved.way.dimensions().length + kClear;
+  const double needed = moved.route.dimensions().length + kClear;
   return moved.place.lane == map::kNoLane || moved.place.arc_length > needed;
 }
 
@@ -201,7 +200,7 @@ bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPla
   if (moved.place.lane == map::kNoLane) return false;
   const map::Lane& lane = graph_.network().lane(moved.place.lane);
   const geometry::Projection here = lane.centerline.project(place.position);
-  const double reach = 0.5 * (lane.width + moved.way.dimensions().width) + kReachMargin;
+  const double reach = 0.5 * (lane.width + moved.route.dimensions().width) + kReachMargin;
   if (here.distance > reach || onAnotherLane(place, moved.place.lane)) return false;
   if (!putOnLane(id, {moved.place.lane, here.arc_length})) return false;
   if (moved.speed != 0.0) SumoVehicle::setSpeed(id, 0.0);
@@ -211,8 +210,8 @@ bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPla
 }
 
 void DrivenFleet::moveFreely(const std::string& id, Moved& moved, const FrontPlace& place) {
-  // A named lane is taken for what it is; without one SUMO takes the nearest in
-  // the plane, be it that of a bridge.
+  // A named lane is taken for what it is; without one SUMO takes the nearest in the plane, be it
+  // that of a bridge.
   std::string edge;
   int index = 0;
   if (!place.lanes.empty()) {
@@ -220,7 +219,7 @@ void DrivenFleet::moveFreely(const std::string& id, Moved& moved, const FrontPla
     edge = lane.edge_id;
     index = lane.index;
   }
-  const bool first = !moved.reported && moved.on_way;
+  const bool first = !moved.reported && moved.on_route;
   SumoVehicle::moveToXY(id, edge, index, place.position.x(), place.position.y(),
                         angleFromHeading(moved.state.heading), first ? kKeepRouteExact : kAnywhere,
                         match_threshold_);
@@ -235,14 +234,14 @@ void DrivenFleet::move(const DrivenVehicle& vehicle) {
   }
   Moved& moved = found->second;
   moved.state = vehicle.state;
-  const FrontPlace place = moved.way.locate(vehicle.state);
-  if (moved.way.follow(vehicle.route, place.position)) {
+  const FrontPlace place = moved.route.locate(vehicle.state);
+  if (moved.route.follow(vehicle.route, place.position)) {
     moved.outdated = true;
     moved.refused_lane.clear();
   }
   moved.changing -= step_;
-  updateWay(vehicle.id, moved, place);
-  if (moved.reported && moved.on_way && moveAlongLane(vehicle.id, moved, place)) return;
+  updateRoute(vehicle.id, moved, place);
+  if (moved.reported && moved.on_route && moveAlongLane(vehicle.id, moved, place)) return;
   if (moved.reported && !mayJump(moved)) {
     if (moved.place.lane != map::kNoLane) keepToLane(vehicle.id, moved, place);
     return;

@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The vehicles that we move. On the lanes of its way SUMO drives such a
-/// vehicle along them at the speed that brings it next to where we have it (all
-/// of SUMO's checks off), so that followers keep their gap and others yield to
-/// it as to any vehicle; elsewhere it is put to its place exactly (moveToXY).
-/// What the simulator reports of it is our state. Hands vehicles over in both
-/// directions without a jump.
 #pragma once
 
 #include <map>
@@ -18,11 +12,16 @@
 
 namespace cdiff::simulation {
 
+/// The vehicles that we move. On the lanes of its route SUMO drives such a vehicle along them at
+/// the speed that brings it next to where we have it (all of SUMO's checks off), so that followers
+/// keep their gap and others yield to it as to any vehicle; elsewhere it is moved to its exact
+/// place (moveToXY). What the simulator reports of it is our state. Hands vehicles over in both
+/// directions without a jump.
 /// Its methods are called inside SumoLink::guarded.
 class DrivenFleet {
  public:
-  /// References must outlive the fleet. `match_threshold`: how far from a lane
-  /// SUMO looks for one [m]; `step`: of the simulation [s].
+  /// References must outlive the fleet. `match_threshold`: how far from a lane SUMO looks for one
+  /// [m]; `step`: of the simulation [s].
   DrivenFleet(SumoLink& link, const EdgeGraph& graph, double match_threshold, double step)
       : link_(link), graph_(graph), match_threshold_(match_threshold), step_(step) {}
 
@@ -32,19 +31,18 @@ class DrivenFleet {
            const std::string& type_id);
   /// Takes over a vehicle that SUMO drives.
   void takeOver(const SimulatedVehicle& vehicle);
-  /// Gives a vehicle back to SUMO; answers false, changing nothing, where it is
-  /// on no lane of its direction.
+  /// Releases a vehicle to SUMO; returns false, changing nothing, where it is on no lane of its
+  /// direction.
   bool release(const DrivenVehicle& vehicle);
   /// Forgets a vehicle without touching it.
   void forget(const std::string& id);
   /// Says where a vehicle will be after the coming step.
   void move(const DrivenVehicle& vehicle);
   const traffic::VehicleDimensions& dimensions(const std::string& id) const {
-    return vehicles_.at(id).way.dimensions();
+    return vehicles_.at(id).route.dimensions();
   }
-  /// To be called after each step with what SUMO reports (by id): notes where
-  /// SUMO has our vehicles, and writes where they are; brings released vehicles
-  /// into the middle of their lane.
+  /// To be called after each step with what SUMO reports (by id): notes where SUMO has our
+  /// vehicles, and writes where they are; brings released vehicles into the middle of their lane.
   void report(std::vector<SimulatedVehicle>& vehicles);
 
  private:
@@ -52,12 +50,12 @@ class DrivenFleet {
   static constexpr int kSpeedModeDefault = 31;
   static constexpr int kLaneChangeModeOff = 512;  ///< no lane change of its own
   struct Moved {
-    explicit Moved(const DrivenWay& driven_way) : way(driven_way) {}
-    DrivenWay way;
+    explicit Moved(const DrivenRoute& driven_route) : route(driven_route) {}
+    DrivenRoute route;
     std::vector<int> given;       ///< edges of its SUMO route, from the edge where it was set
-    bool on_way = false;          ///< SUMO's route is `given` and the vehicle is on its lanes
-    bool outdated = false;        ///< a better way is to be given
-    std::string refused_lane;     ///< lane on which SUMO refused the last way
+    bool on_route = false;        ///< SUMO's route is `given` and the vehicle is on its lanes
+    bool outdated = false;        ///< SUMO is to get a better route
+    std::string refused_lane;     ///< lane on which SUMO refused the last route
     int last_edge = kNoEdge;      ///< SUMO's edge after the last step
     bool reported = false;        ///< SUMO has it in the network
     std::string lane_id;          ///< SUMO's lane after the last step; empty off the road
@@ -75,9 +73,9 @@ class DrivenFleet {
   static void setModes(const std::string& id, int speed_mode);
   void note(Moved& moved, const SimulatedVehicle& vehicle) const;
   bool changesLane(const Moved& moved) const;
-  static void loseWay(Moved& moved);
-  void updateWay(const std::string& id, Moved& moved, const FrontPlace& place);
-  bool giveWay(const std::string& id, Moved& moved, const std::vector<int>& way);
+  static void leaveRoute(Moved& moved);
+  void updateRoute(const std::string& id, Moved& moved, const FrontPlace& place);
+  bool setRoute(const std::string& id, Moved& moved, const std::vector<int>& edges);
   bool moveAlongLane(const std::string& id, Moved& moved, const FrontPlace& place);
   /// Whether SUMO 1.15 survives that the vehicle is put elsewhere: only when it is wholly on one
   /// lane and not changing lanes; else followers find it on lanes that it has left, and SUMO ends
@@ -87,7 +85,7 @@ class DrivenFleet {
   void keepToLane(const std::string& id, Moved& moved, const FrontPlace& place);
   bool onAnotherLane(const FrontPlace& place, map::LaneIndex lane) const;
   bool putOnLane(const std::string& id, const LanePlace& place);
-  /// Off its way but still next to the lane where SUMO has it: stays there, as an obstacle.
+  /// Off its route but still next to the lane where SUMO has it: stays there, as an obstacle.
   bool stayOnLane(const std::string& id, Moved& moved, const FrontPlace& place);
   void moveFreely(const std::string& id, Moved& moved, const FrontPlace& place);
   double usableLength(map::LaneIndex lane, const Moved& moved) const;
@@ -101,7 +99,7 @@ class DrivenFleet {
   double step_;
   std::map<std::string, Moved> vehicles_;
   std::map<std::string, Released> released_;
-  std::map<map::LaneIndex, double> scales_;  ///< SUMO's length of a lane over its centre line's
+  std::map<map::LaneIndex, double> scales_;  ///< SUMO's length of a lane over its centerline's
   std::uint64_t added_ = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using SumoVehicle = libtraci::Vehicle;
 
-constexpr double kReleasedWayLength = 600.0;         ///< given at the release [m]
+constexpr double kReleasedRouteLength = 600.0;       ///< given at the release [m]
 constexpr double kReleaseHeading = core::kPi / 6.0;  ///< between vehicle and lane [rad]
 constexpr double kLaneChangePause = 3.0;             ///< without lane changes once settled [s]
 constexpr double kLaneChangeTime = 3.5;              ///< SUMO's lane change, and a little [s]
@@ -26,13 +26,13 @@ bool DrivenFleet::changesLane(const Moved& moved) const {
   constexpr double kBesideTheMiddle = 0.02;  // [m]
   if (moved.place.lane == map::kNoLane) return false;
   const geometry::Polyline& line = graph_.network().lane(moved.place.lane).centerline;
-  const Eigen::Vector2d front = frontOf(moved.state.pose(), moved.way.dimensions().length);
+  const Eigen::Vector2d front = frontOf(moved.state.pose(), moved.route.dimensions().length);
   return line.project(front).distance > kBesideTheMiddle;
 }
 
 void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
-  Moved moved(DrivenWay(graph_, vehicle.dimensions));
-  moved.on_way = true;
+  Moved moved(DrivenRoute(graph_, vehicle.dimensions));
+  moved.on_route = true;
   moved.outdated = true;
   for (const std::string& edge : SumoVehicle::getRoute(vehicle.id)) {
     moved.given.push_back(graph_.find(edge));
@@ -46,16 +46,17 @@ void DrivenFleet::takeOver(const SimulatedVehicle& vehicle) {
 
 bool DrivenFleet::release(const DrivenVehicle& vehicle) {
   Moved& moved = vehicles_.at(vehicle.id);
-  const FrontPlace place = moved.way.locate(vehicle.state);
-  moved.way.follow(vehicle.route, place.position);
+  const FrontPlace place = moved.route.locate(vehicle.state);
+  moved.route.follow(vehicle.route, place.position);
   const int current = edgeOf(moved.lane_id);
   if (current == kNoEdge) return false;
-  const bool given = giveWay(vehicle.id, moved, moved.way.edgesFrom(current, kReleasedWayLength));
-  if (!given && !moved.on_way) return false;
+  const bool given =
+      setRoute(vehicle.id, moved, moved.route.edgesFrom(current, kReleasedRouteLength));
+  if (!given && !moved.on_route) return false;
   const std::optional<LaneTarget> target =
       laneTarget(graph_, place, vehicle.state.heading, moved.given, moved.place);
   if (!target) return false;
-  const double length = moved.way.dimensions().length;
+  const double length = moved.route.dimensions().length;
   const geometry::Polyline& line = graph_.network().lane(target->place.lane).centerline;
   const double turned =
       core::angleDifference(vehicle.state.heading, line.headingAt(target->place.arc_length));

@@ -63,16 +63,16 @@ EdgeGraph::EdgeGraph(const map::RoadNetwork& network) : network_(network) {
 void EdgeGraph::addLinks(Edge& edge, LaneIndex from) {
   const Lane& lane = network_.lane(from);
   for (const map::LaneLink& link : lane.next) {
-    Link way;
-    way.from_lane = from;
-    way.to_lane = leaveJunction(network_, link.to);
-    if (way.to_lane == kNoLane) continue;
-    const Lane& next = network_.lane(way.to_lane);
+    Link connection;
+    connection.from_lane = from;
+    connection.to_lane = leaveJunction(network_, link.to);
+    if (connection.to_lane == kNoLane) continue;
+    const Lane& next = network_.lane(connection.to_lane);
     if (!lane.allows_cars || !next.allows_cars) continue;
-    way.to = find(next.edge_id);
-    way.routable = lane.routable && next.routable;
-    way.turn = turnBetween(lane, next);
-    edge.links.push_back(way);
+    connection.to = find(next.edge_id);
+    connection.routable = lane.routable && next.routable;
+    connection.turn = turnBetween(lane, next);
+    edge.links.push_back(connection);
   }
 }
 
@@ -86,45 +86,45 @@ bool EdgeGraph::connected(int from, int to) const {
   return std::any_of(ways.begin(), ways.end(), [to](const Link& link) { return link.to == to; });
 }
 
-bool EdgeGraph::onWay(LaneIndex lane, const std::vector<int>& way) const {
+bool EdgeGraph::onRoute(LaneIndex lane, const std::vector<int>& edges) const {
   const int before = edgeOf(lane);
   const int after = edgeAfter(lane);
   const bool inside = network_.lane(lane).internal;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    if (way[i] != before) continue;
-    if (!inside || (i + 1 < way.size() && way[i + 1] == after)) return true;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (edges[i] != before) continue;
+    if (!inside || (i + 1 < edges.size() && edges[i + 1] == after)) return true;
   }
   return false;
 }
 
-LaneIndex EdgeGraph::nextLane(LaneIndex lane, const std::vector<int>& way) const {
-  const auto here = std::find(way.begin(), way.end(), edgeOf(lane));
-  if (here == way.end() || here + 1 == way.end()) return kNoLane;
+LaneIndex EdgeGraph::nextLane(LaneIndex lane, const std::vector<int>& edges) const {
+  const auto here = std::find(edges.begin(), edges.end(), edgeOf(lane));
+  if (here == edges.end() || here + 1 == edges.end()) return kNoLane;
   for (const map::LaneLink& link : network_.lane(lane).next) {
     if (edgeAfter(link.to) == *(here + 1)) return link.to;
   }
   return kNoLane;
 }
 
-void EdgeGraph::extend(std::vector<int>& way, double length) const {
+void EdgeGraph::extend(std::vector<int>& edges, double length) const {
   constexpr std::size_t kAtLeast = 2;
   double added = 0.0;
   for (std::size_t count = 0; added < length || count < kAtLeast; ++count) {
     const Link* best = nullptr;
-    for (const Link& link : links(way.back())) {
-      const bool again = std::find(way.begin(), way.end(), link.to) != way.end();
+    for (const Link& link : links(edges.back())) {
+      const bool again = std::find(edges.begin(), edges.end(), link.to) != edges.end();
       if (link.routable && !again && (best == nullptr || link.turn < best->turn)) best = &link;
     }
     if (best == nullptr) return;
-    way.push_back(best->to);
+    edges.push_back(best->to);
     added += this->length(best->to);
   }
 }
 
-std::vector<std::string> EdgeGraph::ids(const std::vector<int>& way) const {
+std::vector<std::string> EdgeGraph::ids(const std::vector<int>& edges) const {
   std::vector<std::string> names;
-  names.reserve(way.size());
-  for (int edge : way) names.push_back(id(edge));
+  names.reserve(edges.size());
+  for (int edge : edges) names.push_back(id(edge));
   return names;
 }
 

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The road network as SUMO's routes see it: edges (junctions left out) that
-/// follow each other where a lane of one leads to a lane of the other. Edges
-/// are numbered in the order of RoadNetwork::edgeIds().
 #pragma once
 
 #include <string>
@@ -15,9 +12,12 @@ namespace cdiff::simulation {
 
 constexpr int kNoEdge = -1;
 
+/// The road network as SUMO's routes see it: edges (junctions left out) that follow each other
+/// where a lane of one leads to a lane of the other. Edges are numbered in the order of
+/// RoadNetwork::edgeIds().
 class EdgeGraph {
  public:
-  /// A way from one edge to another, through a junction.
+  /// A connection from one edge to another, through a junction.
   struct Link {
     int to = kNoEdge;
     map::LaneIndex from_lane = map::kNoLane;  ///< lane to be on
@@ -46,20 +46,19 @@ class EdgeGraph {
   double length(int edge) const { return at(edge).length; }
   /// Lanes from right to left.
   const std::vector<map::LaneIndex>& lanes(int edge) const { return at(edge).lanes; }
-  /// Ways on, by lane and then as the network lists them.
+  /// Connections onwards, by lane and then as the network lists them.
   const std::vector<Link>& links(int edge) const { return at(edge).links; }
   bool connected(int from, int to) const;
-  /// Whether a lane belongs to a way: to one of its edges, or between two that
-  /// follow each other.
-  bool onWay(map::LaneIndex lane, const std::vector<int>& way) const;
-  /// The lane that follows `lane` on a way; kNoLane where the way needs another
+  /// Whether a lane belongs to a route: to one of its edges, or between two that follow each other.
+  bool onRoute(map::LaneIndex lane, const std::vector<int>& edges) const;
+  /// The lane that follows `lane` on a route; kNoLane where the route needs another
   /// lane, or ends.
-  map::LaneIndex nextLane(map::LaneIndex lane, const std::vector<int>& way) const;
-  /// Adds edges at the end, straight on where it can, until they measure
-  /// `length` [m] and are at least two; fewer where the network ends. No edge
-  /// twice: SUMO would take one pass for the other.
-  void extend(std::vector<int>& way, double length) const;
-  std::vector<std::string> ids(const std::vector<int>& way) const;
+  map::LaneIndex nextLane(map::LaneIndex lane, const std::vector<int>& edges) const;
+  /// Adds edges at the end, straight on where it can, until they measure `length` [m] and are at
+  /// least two; fewer where the network ends. No edge twice: SUMO would take one pass for the
+  /// other.
+  void extend(std::vector<int>& edges, double length) const;
+  std::vector<std::string> ids(const std::vector<int>& edges) const;
 
  private:
   struct Edge {

@@ -18,7 +18,7 @@ constexpr double kReachMargin = 0.05;  ///< within SUMO's own limit [m]
 
 }  // namespace
 
-FrontPlace DrivenWay::locate(const traffic::VehicleState& state) const {
+FrontPlace DrivenRoute::locate(const traffic::VehicleState& state) const {
   constexpr double kWidestHalfLane = 3.0;  // [m]
   FrontPlace place;
   place.position = frontOf(state.pose(), dimensions_.length);
@@ -32,7 +32,7 @@ FrontPlace DrivenWay::locate(const traffic::VehicleState& state) const {
   return place;
 }
 
-bool DrivenWay::follow(const map::Route* route, const Eigen::Vector2d& front) {
+bool DrivenRoute::follow(const map::Route* route, const Eigen::Vector2d& front) {
   const double length = route != nullptr ? route->length() : 0.0;
   const bool other = route != route_ || length != route_length_;
   if (other) {
@@ -48,15 +48,15 @@ bool DrivenWay::follow(const map::Route* route, const Eigen::Vector2d& front) {
   geometry::Projection here = path.projectNear(front, progress_, kSearch);
   if (other || here.distance > kLostDistance) here = path.project(front);
   progress_ = here.arc_length;
-  const std::vector<double>& begins = route_->edgeBegins();
-  const auto above = std::upper_bound(begins.begin(), begins.end(), progress_);
+  const std::vector<double>& starts = route_->edgeStarts();
+  const auto above = std::upper_bound(starts.begin(), starts.end(), progress_);
   progress_edge_ =
-      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - begins.begin() - 1, 0));
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - starts.begin() - 1, 0));
   return other;
 }
 
-std::optional<std::size_t> DrivenWay::routeIndexOf(int current,
-                                                   const std::vector<int>& edges) const {
+std::optional<std::size_t> DrivenRoute::routeIndexOf(int current,
+                                                     const std::vector<int>& edges) const {
   const std::size_t first = progress_edge_ == 0 ? 0 : progress_edge_ - 1;
   const std::size_t last = std::min(edges.size(), progress_edge_ + 2);
   // The edge of the place comes first, then the one behind, then the one ahead.
@@ -67,8 +67,8 @@ std::optional<std::size_t> DrivenWay::routeIndexOf(int current,
   return std::nullopt;
 }
 
-std::vector<int> DrivenWay::edgesFrom(int current, double length) const {
-  std::vector<int> way = {current};
+std::vector<int> DrivenRoute::edgesFrom(int current, double length) const {
+  std::vector<int> edges = {current};
   double ahead = 0.0;
   std::optional<std::size_t> index = routeIndexOf(current, route_edges_);
   if (!index && progress_edge_ < route_edges_.size() &&
@@ -78,17 +78,17 @@ std::vector<int> DrivenWay::edgesFrom(int current, double length) const {
   if (index) {
     for (std::size_t i = *index + 1; i < route_edges_.size(); ++i) {
       if (ahead >= length && i > *index + 2) break;
-      if (!graph_->connected(way.back(), route_edges_[i])) break;
-      if (std::find(way.begin(), way.end(), route_edges_[i]) != way.end()) break;
-      way.push_back(route_edges_[i]);
-      ahead += graph_->length(way.back());
+      if (!graph_->connected(edges.back(), route_edges_[i])) break;
+      if (std::find(edges.begin(), edges.end(), route_edges_[i]) != edges.end()) break;
+      edges.push_back(route_edges_[i]);
+      ahead += graph_->length(edges.back());
     }
   }
-  if (ahead < length || way.size() < 3) graph_->extend(way, std::max(0.0, length - ahead));
-  return way;
+  if (ahead < length || edges.size() < 3) graph_->extend(edges, std::max(0.0, length - ahead));
+  return edges;
 }
 
-int DrivenWay::startEdge(const FrontPlace& place) const {
+int DrivenRoute::startEdge(const FrontPlace& place) const {
   constexpr double kSameDirection = 0.5 * core::kPi;
   for (const map::LaneMatch& match : place.lanes) {
     const int edge = graph_->edgeOf(match.lane);
@@ -101,10 +101,11 @@ int DrivenWay::startEdge(const FrontPlace& place) const {
   return kNoEdge;
 }
 
-bool DrivenWay::onWay(const FrontPlace& place, const std::vector<int>& way,
-                      double heading_limit) const {
+bool DrivenRoute::onRoute(const FrontPlace& place, const std::vector<int>& edges,
+                          double heading_limit) const {
   return std::any_of(place.lanes.begin(), place.lanes.end(), [&](const map::LaneMatch& match) {
-    return std::abs(match.heading_difference) <= heading_limit && graph_->onWay(match.lane, way);
+    return std::abs(match.heading_difference) <= heading_limit &&
+           graph_->onRoute(match.lane, edges);
   });
 }
 
@@ -121,7 +122,7 @@ struct Candidate {
 
 /// The best place on the lanes that `from` leads to.
 Candidate alongLanes(const EdgeGraph& graph, const Eigen::Vector2d& front, double heading,
-                     const std::vector<int>& way, const LanePlace& from) {
+                     const std::vector<int>& edges, const LanePlace& from) {
   Candidate best;
   double begin = -from.arc_length;  // of the lane, seen from `from`
   map::LaneIndex lane = from.lane;
@@ -133,7 +134,7 @@ Candidate alongLanes(const EdgeGraph& graph, const Eigen::Vector2d& front, doubl
       best = {{{lane, here.arc_length}, begin + here.arc_length}, here.distance};
     }
     begin += line.length();
-    lane = graph.nextLane(lane, way);
+    lane = graph.nextLane(lane, edges);
   }
   return best;
 }
@@ -141,13 +142,13 @@ Candidate alongLanes(const EdgeGraph& graph, const Eigen::Vector2d& front, doubl
 }  // namespace
 
 std::optional<LaneTarget> laneTarget(const EdgeGraph& graph, const FrontPlace& front,
-                                     double heading, const std::vector<int>& way,
+                                     double heading, const std::vector<int>& edges,
                                      const LanePlace& from) {
   Candidate best;
-  if (from.lane != map::kNoLane) best = alongLanes(graph, front.position, heading, way, from);
+  if (from.lane != map::kNoLane) best = alongLanes(graph, front.position, heading, edges, from);
   const double limit = best.distance - kPreference;
   for (const map::LaneMatch& match : front.lanes) {
-    if (std::abs(match.heading_difference) >= kSameDirection || !graph.onWay(match.lane, way))
+    if (std::abs(match.heading_difference) >= kSameDirection || !graph.onRoute(match.lane, edges))
       continue;
     if (match.projection.distance >= std::min(limit, best.distance)) continue;
     best = {{{match.lane, match.projection.arc_length}, std::nullopt}, match.projection.distance};

@@ -13,7 +13,7 @@ constexpr double kApproaching = 20.0;      ///< a vehicle nearer than this to th
 constexpr double kApproachSpeed = 4.0;     ///< ... and faster than this is let through [m/s]
 constexpr double kOursApproaching = 50.0;  ///< the same for a vehicle that we drive [m]
 constexpr double kOursNear = 20.0;         ///< front bumper of ours to the stop line [m]
-constexpr double kPatience = 1.0;          ///< wait before somebody goes first [s]
+constexpr double kPatience = 1.0;          ///< wait before a vehicle is sent first [s]
 constexpr double kLongestGrant = 5.0;      ///< [s]
 constexpr double kLongestStandingGrant = 1.5;  ///< of a vehicle that still stands: it cannot go [s]
 constexpr double kInsideFirst = 1e6;           ///< rank added inside a junction
@@ -61,8 +61,8 @@ RightOfWay::RightOfWay(const map::RoadNetwork& network,
   }
 }
 
-WayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles,
-                              const IsDriven& is_driven, double step) {
+RightOfWayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles,
+                                     const IsDriven& is_driven, double step) {
   for (JunctionState& junction : junctions_) {
     junction.moving = junction.ours_coming = junction.ours_near = junction.ours_on_several = false;
     junction.queue_ahead_of_ours = false;
@@ -77,7 +77,7 @@ WayChanges RightOfWay::update(const std::vector<SimulatedVehicle>& vehicles,
       if (is_driven(vehicle.id) == ours) look(vehicle, ours, step);
     }
   }
-  WayChanges changes;
+  RightOfWayChanges changes;
   for (JunctionState& junction : junctions_) {
     decide(junction, step, changes.vehicles);
     light(junction, changes.signals);
@@ -154,12 +154,13 @@ void RightOfWay::consider(const SimulatedVehicle& vehicle, const Place& place, d
   junction.first_edge = place.lane.edge_id;
 }
 
-void RightOfWay::decide(JunctionState& junction, double step, std::vector<WayChange>& changes) {
+void RightOfWay::decide(JunctionState& junction, double step,
+                        std::vector<RightOfWayChange>& changes) {
   if (!junction.granted.empty()) {
     junction.granted_time += step;
-    const bool in_our_way = junction.ours_near && junction.granted_edge != junction.ours_edge;
+    const bool blocks_ours = junction.ours_near && junction.granted_edge != junction.ours_edge;
     const double longest = junction.granted_stands ? kLongestStandingGrant : kLongestGrant;
-    if (!junction.granted_gone && !in_our_way && junction.granted_time <= longest) return;
+    if (!junction.granted_gone && !blocks_ours && junction.granted_time <= longest) return;
     changes.push_back({junction.granted, false});
     waiting_.erase(junction.granted);
     junction.granted.clear();

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Who goes first where every signal is green: vehicles yield to each other, so several that wait
-/// for each other would wait for ever. As drivers do, the one that has waited longest at a still
-/// junction goes first: those inside it, then those ahead of a vehicle of ours, then all others.
 #pragma once
 
 #include <functional>
@@ -18,33 +15,36 @@ namespace cdiff::simulation {
 using IsDriven = std::function<bool(const std::string& id)>;
 
 /// From now on a vehicle may go without yielding to approaching vehicles, or has to yield again.
-struct WayChange {
+struct RightOfWayChange {
   std::string vehicle_id;
   bool may_go = false;
 };
 
 /// What changes after a step.
-struct WayChanges {
-  std::vector<WayChange> vehicles;
+struct RightOfWayChanges {
+  std::vector<RightOfWayChange> vehicles;
   std::vector<traffic::SignalState> signals;
 };
 
+/// Who goes first where every signal is green: vehicles yield to each other, so several that wait
+/// for each other would wait forever. As drivers do, the one that has waited longest at a still
+/// junction goes first: those inside it, then those ahead of a vehicle of ours, then all others.
 class RightOfWay {
  public:
   /// `signals`: all lights with their 'g' states. `network` must outlive the object.
   RightOfWay(const map::RoadNetwork& network, const std::vector<traffic::SignalState>& signals);
 
-  /// Changes after a step of `step` seconds. Nobody is given way while another moves in the
+  /// Changes after a step of `step` seconds. No vehicle may go while another moves in the
   /// junction or towards it. To ours, traffic always yields: while one of ours comes, only those go
   /// that stand ahead of it on its own edge, and other grants end. A queue ahead of ours at a light
   /// has priority ('G') until ours is the first.
-  WayChanges update(const std::vector<SimulatedVehicle>& vehicles, const IsDriven& is_driven,
-                    double step);
+  RightOfWayChanges update(const std::vector<SimulatedVehicle>& vehicles, const IsDriven& is_driven,
+                           double step);
 
  private:
   /// What goes on at a junction in this step, and who may go.
   struct JunctionState {
-    bool moving = false;           ///< somebody moves in it or towards it
+    bool moving = false;           ///< a vehicle moves in it or towards it
     std::string ours_edge;         ///< edge on which ours comes or waits; empty when none
     bool ours_coming = false;      ///< one of ours moves towards it
     bool ours_near = false;        ///< ... and arrives within seconds
@@ -75,7 +75,7 @@ class RightOfWay {
   static void lookAtOurs(const SimulatedVehicle& vehicle, const Place& place);
   static void consider(const SimulatedVehicle& vehicle, const Place& place, double wait);
   static void noteQueue(const Place& place);
-  void decide(JunctionState& junction, double step, std::vector<WayChange>& changes);
+  void decide(JunctionState& junction, double step, std::vector<RightOfWayChange>& changes);
   void light(JunctionState& junction, std::vector<traffic::SignalState>& changes) const;
 
   const map::RoadNetwork& network_;

@@ -20,9 +20,8 @@ constexpr double kSettledHeading = 0.005;  ///< [rad]
 
 }  // namespace
 
-void SettlingMotion::begin(const traffic::VehicleState& sumo, double step) {
-  // Straight on from the release at its speed; the differences to SUMO are what
-  // has to decay.
+void SettlingMotion::start(const traffic::VehicleState& sumo, double step) {
+  // Straight on from the release at its speed; the differences to SUMO are what has to decay.
   const Eigen::Vector2d front = frontOf(state_.pose(), length_) + state_.velocity() * step;
   const geometry::Pose2d reference{frontOf(sumo.pose(), length_), sumo.heading};
   const Eigen::Vector2d difference = reference.toBody(front);
@@ -45,7 +44,7 @@ const traffic::VehicleState& SettlingMotion::advance(const traffic::VehicleState
   if (begun_) {
     decay(sumo.speed * step, sumo.speed);
   } else {
-    begin(sumo, step);
+    start(sumo, step);
   }
   const geometry::Pose2d reference{frontOf(sumo.pose(), length_), sumo.heading};
   state_ = sumo;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// How a released vehicle gets from where it was to where SUMO has it, in the
-/// middle of its lane and aligned: front bumper at SUMO's + a along + d to the
-/// left, heading SUMO's + e. Per metre driven d' = sin e, e' = -d / L^2 - 2 e /
-/// L (critically damped, |e'| <= 0.2 / m), a' = -a / L, L = max(3 m, 0.8 s v).
 #pragma once
 
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::simulation {
 
+/// How a released vehicle gets from where it was to where SUMO has it, in the middle of its lane
+/// and aligned: front bumper at SUMO's + a along + d to the left, heading SUMO's + e. Per meter
+/// driven d' = sin e, e' = -d / L^2 - 2 e / L (critically damped, |e'| <= 0.2 / m), a' = -a / L, L
+/// = max(3 m, 0.8 s v).
 class SettlingMotion {
  public:
   /// Begins with the state at the release of a vehicle of this length [m].
@@ -21,7 +21,7 @@ class SettlingMotion {
   bool settled() const;
 
  private:
-  void begin(const traffic::VehicleState& sumo, double step);
+  void start(const traffic::VehicleState& sumo, double step);
   void decay(double driven, double speed);
 
   traffic::VehicleState state_;

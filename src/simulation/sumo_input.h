@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a session gives to SUMO, and which file is at fault when SUMO refuses it.
 #pragma once
 
 #include <memory>
@@ -10,6 +9,8 @@
 #include "simulation/sumo_simulator.h"
 
 namespace cdiff::simulation {
+
+// What a session gives to SUMO, and which file is at fault when SUMO refuses it.
 
 /// Starts SUMO and connects. Throws InputError naming the file that is missing, or that SUMO
 /// refuses, with SUMO's own sentence.

@@ -100,14 +100,14 @@ int freePort() {
 }
 
 /// Between fork and exec the child is still a copy of this program, with all its sockets.
-bool hasBecomeItsProgram(int process_id) {
+bool hasExecutedItsProgram(int process_id) {
   std::error_code error;
   const fs::path child = fs::read_symlink("/proc/" + std::to_string(process_id) + "/exe", error);
   return !error && child != fs::read_symlink("/proc/self/exe", error);
 }
 
 bool listensOn(int process_id, int port) {
-  if (!hasBecomeItsProgram(process_id)) return false;
+  if (!hasExecutedItsProgram(process_id)) return false;
   for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
     const std::string inode = listeningInode(table, port);
     if (!inode.empty() && holdsSocket(process_id, inode)) return true;

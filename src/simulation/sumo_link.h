@@ -17,7 +17,7 @@
 
 namespace cdiff::simulation {
 
-/// A TCP port that nobody listened on a moment ago.
+/// A TCP port that was free a moment ago.
 int freePort();
 
 /// Whether a process holds the socket that listens on a TCP port. Reads the kernel's tables and
@@ -105,7 +105,7 @@ class SumoLink {
       fail(what);
     }
   }
-  /// Runs a call inside a guarded one; answers false when SUMO refuses it and throws on when SUMO
+  /// Runs a call inside a guarded one; returns false when SUMO refuses it and throws on when SUMO
   /// is lost.
   bool attempt(const std::function<void()>& call);
 

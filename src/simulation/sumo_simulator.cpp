@@ -38,8 +38,7 @@ void SumoOptions::describe(core::OptionsVisitor& visitor) {
                  match_threshold, 1.0, 1000.0);
 }
 
-/// Everything behind the simulator: the session with SUMO, what it reports and
-/// what we move.
+/// Everything behind the simulator: the session with SUMO, what it reports and what we move.
 class SumoSimulator::Connection {
  public:
   Connection(const SumoOptions& options, const SumoSession& session,
@@ -126,11 +125,10 @@ class SumoSimulator::Connection {
     observer_.read();
     fleet_.report(observer_.correctable());
     dropWaiting();
-    giveWay();
+    grantRightOfWay();
   }
 
-  /// SUMO takes a moved vehicle out when it believes that it has arrived; it
-  /// goes on where we say.
+  /// SUMO takes a moved vehicle out when it believes that it has arrived; it goes on where we say.
   void bringBack(const DrivenVehicle& vehicle) {
     if (!fleet_.contains(vehicle.id) || fresh_.count(vehicle.id) != 0) return;
     if (observer_.find(vehicle.id) != nullptr) return;
@@ -138,13 +136,12 @@ class SumoSimulator::Connection {
     addDriven(vehicle.id, dimensions, vehicle);
   }
 
-  /// Where all lights are green, lets those go who would wait for each other
-  /// for ever.
-  void giveWay() {
+  /// Where all lights are green, lets those go who would wait for each other forever.
+  void grantRightOfWay() {
     if (!right_of_way_) return;
     const auto is_driven = [this](const std::string& id) { return fleet_.contains(id); };
-    const WayChanges changes = right_of_way_->update(observer_.vehicles(), is_driven, step_);
-    for (const WayChange& change : changes.vehicles) {
+    const RightOfWayChanges changes = right_of_way_->update(observer_.vehicles(), is_driven, step_);
+    for (const RightOfWayChange& change : changes.vehicles) {
       if (observer_.find(change.vehicle_id) == nullptr || fleet_.contains(change.vehicle_id))
         continue;
       libtraci::Vehicle::setSpeedMode(change.vehicle_id,
@@ -156,8 +153,7 @@ class SumoSimulator::Connection {
     }
   }
 
-  /// Background vehicles that found no room in the step just made are not tried
-  /// again.
+  /// Background vehicles that found no room in the step just made are not tried again.
   void dropWaiting() {
     for (const std::string& id : waiting_) {
       if (observer_.find(id) != nullptr) continue;
@@ -166,8 +162,8 @@ class SumoSimulator::Connection {
     waiting_.clear();
   }
 
-  /// A subscription to a vehicle that is taken out makes SUMO's next step fail,
-  /// so it ends first. No error when it is gone already.
+  /// A subscription to a vehicle that is taken out makes SUMO's next step fail, so it ends first.
+  /// No error when it is gone already.
   void takeOut(const std::string& id) {
     if (observer_.find(id) != nullptr) {
       link_.attempt([&] { libtraci::Vehicle::unsubscribe(id); });
@@ -175,8 +171,8 @@ class SumoSimulator::Connection {
     link_.attempt([&] { libtraci::Vehicle::remove(id, libsumo::REMOVE_VAPORIZED); });
   }
 
-  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers
-  /// differ by SUMO's seeded speed factor.
+  /// One vehicle type per size: SUMO's passenger car without dawdling; drivers differ by SUMO's
+  /// seeded speed factor.
   std::string typeFor(const traffic::VehicleDimensions& dimensions) {
     const std::string id = "car_" + core::formatNumber(dimensions.length) + "_" +
                            core::formatNumber(dimensions.width) + "_" +

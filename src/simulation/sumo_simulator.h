@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
-/// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
-/// log; into an InputError where the network or the demand is at fault.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +12,12 @@
 
 namespace cdiff::simulation {
 
+/// How SUMO is started and how long it may take [s of wall time].
 struct SumoOptions {
   std::string binary = "sumo";    ///< program to start
   double start_timeout = 20.0;    ///< until SUMO answers [s of wall time]
   double step_timeout = 10.0;     ///< a step that takes longer is a frozen SUMO [s of wall time]
-  double match_threshold = 20.0;  ///< of moveToXY [m]
+  double match_threshold = 20.0;  ///< match threshold of moveToXY [m]
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -36,6 +34,9 @@ struct SumoSession {
   std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
 };
 
+/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
+/// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
+/// log; into an InputError where the network or the demand is at fault.
 class SumoSimulator : public TrafficSimulator {
  public:
   /// Starts SUMO and connects. `network` must outlive the simulator. Throws InputError that names

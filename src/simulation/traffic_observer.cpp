@@ -22,8 +22,7 @@ std::string textOf(const TraCIResults& results, int variable) {
   return std::static_pointer_cast<libsumo::TraCIString>(results.at(variable))->value;
 }
 
-/// A vehicle that is not in the network yet reports this sentinel as its
-/// position.
+/// A vehicle that is not in the network yet reports this sentinel as its position.
 bool placed(const libsumo::TraCIPosition& front) {
   return front.x != libsumo::INVALID_DOUBLE_VALUE && front.y != libsumo::INVALID_DOUBLE_VALUE;
 }

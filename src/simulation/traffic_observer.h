@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What SUMO reports after each step, through subscriptions: one message per
-/// step instead of one per vehicle and quantity.
 #pragma once
 
 #include <map>
@@ -12,23 +10,23 @@
 
 namespace cdiff::simulation {
 
+/// What SUMO reports after each step, through subscriptions: one message per step instead of one
+/// per vehicle and quantity.
 /// Its methods are called inside SumoLink::guarded.
 class TrafficObserver {
  public:
-  /// Subscribes to departures and traffic lights. `lights_green`: every light
-  /// is set to 'g' first and for good: vehicles still yield as at a junction
-  /// without light.
+  /// Subscribes to departures and traffic lights. `lights_green`: every light is set to 'g' first
+  /// and for good: vehicles still yield as at a junction without light.
   void start(bool lights_green);
-  /// Subscribes to a vehicle that SUMO does not report as departed: one that is
-  /// moved from its first step on.
+  /// Subscribes to a vehicle that SUMO does not report as departed: one that is moved from its
+  /// first step on.
   void watch(const std::string& id) { waiting_.push_back(id); }
   /// A light was changed by us.
   void show(const traffic::SignalState& signal);
   /// Reads the results of the step that was made.
   void read();
 
-  /// The same as `vehicles`, for what is known better than SUMO knows it; ids
-  /// and order must stay.
+  /// The same as `vehicles`, for what is known better than SUMO knows it; ids and order must stay.
   std::vector<SimulatedVehicle>& correctable() { return vehicles_; }
   /// By id.
   const std::vector<SimulatedVehicle>& vehicles() const { return vehicles_; }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Background traffic as the rest of the system sees it: SI units, map frame, box centres, headings
-/// counter-clockwise. SUMO's own conventions stay inside simulation/.
 #pragma once
 
 #include <string>
@@ -16,14 +14,14 @@ namespace cdiff::simulation {
 struct DrivenVehicle {
   std::string id;
   traffic::VehicleState state;  ///< at the end of the step
-  /// Way it follows, so that its SUMO route reaches beyond the next junction.
+  /// Route it follows, so that its SUMO route reaches beyond the next junction.
   const map::Route* route = nullptr;
 };
 
 /// A vehicle as the simulator reports it.
 struct SimulatedVehicle {
   std::string id;
-  traffic::VehicleState state;  ///< of a vehicle that we drive only SUMO's echo
+  traffic::VehicleState state;  ///< for a vehicle that we drive only SUMO's echo
   traffic::VehicleDimensions dimensions;
   double acceleration = 0.0;  ///< [m/s^2]
   std::string lane_id;        ///< empty off the road
@@ -35,6 +33,8 @@ const SimulatedVehicle* findVehicle(const std::vector<SimulatedVehicle>& vehicle
 /// A background vehicle of a snapshot; the simulator knows no yaw rate.
 traffic::Vehicle asBackground(const SimulatedVehicle& simulated);
 
+/// Background traffic as the rest of the system sees it: SI units, map frame, box centers, headings
+/// counter-clockwise. SUMO's own conventions stay inside simulation/.
 /// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator
 /// died, froze or refused.
 class TrafficSimulator {
@@ -47,7 +47,7 @@ class TrafficSimulator {
   /// Takes a background vehicle over: from the next step on it must be in `driven`.
   virtual void takeOver(const std::string& id) = 0;
   /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed
-  /// where it is on no lane of its direction (answers false).
+  /// where it is on no lane of its direction (returns false).
   virtual bool release(const DrivenVehicle& vehicle) = 0;
   /// Adds a background vehicle that the simulator drives along `edges`, departing now with its
   /// front bumper at `depart_position` [m] of the first edge and `depart_speed` [m/s]. Answers

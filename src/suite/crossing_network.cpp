@@ -20,11 +20,11 @@ std::vector<double> armHeadings(int arms, Draws& draws) {
   return headings;
 }
 
-void addWays(int arms, RoadPlan& plan) {
+void addPaths(int arms, RoadPlan& plan) {
   for (int from = 0; from < arms; ++from) {
     for (int to = 0; to < arms; ++to) {
       if (from == to) continue;
-      plan.ways.push_back(
+      plan.paths.push_back(
           {{"arm" + std::to_string(from) + "_in", "arm" + std::to_string(to) + "_out"}, ""});
     }
   }
@@ -55,7 +55,7 @@ RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws) {
     arm.priority = main && !equal ? 9 : 5;
     addArm(arm, plan);
   }
-  addWays(spec.arms, plan);
+  addPaths(spec.arms, plan);
   return plan;
 }
 

@@ -25,7 +25,7 @@ class District {
     main_speed_ = drawLargeSpeed(draws_);
     for (int row = 0; row < 2; ++row) addStreetAlong(row);
     for (int column = 0; column < columns_; ++column) addStreetAcross(column);
-    addWays();
+    addPaths();
     return plan_;
   }
 
@@ -60,10 +60,10 @@ class District {
   std::string addEnd(const std::string& name, int row, int column, double heading) {
     const Eigen::Vector3d from =
         plan_.nodes[static_cast<std::size_t>(row * columns_ + column)].position;
-    const Eigen::Vector2d way =
+    const Eigen::Vector2d offset =
         draws_.uniform(95.0, 130.0) * geometry::direction(heading + draws_.uniform(-0.25, 0.25));
     const double height = spec_.elevation ? draws_.uniform(-3.0, 3.0) : 0.0;
-    plan_.nodes.push_back({name, {from.x() + way.x(), from.y() + way.y(), height}, ""});
+    plan_.nodes.push_back({name, {from.x() + offset.x(), from.y() + offset.y(), height}, ""});
     return name;
   }
 
@@ -86,11 +86,11 @@ class District {
     addStreet(crossing(1, column), addEnd("n" + number, 1, column, 0.5 * core::kPi), false, speed);
   }
 
-  void addWays() {
+  void addPaths() {
     for (const Road& in : roads_) {
       for (const Road& out : roads_) {
         if (in.to != out.from || in.from == out.to) continue;
-        plan_.ways.push_back({{in.from + "_" + in.to, out.from + "_" + out.to}, ""});
+        plan_.paths.push_back({{in.from + "_" + in.to, out.from + "_" + out.to}, ""});
       }
     }
   }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Draws one after the other from one key of a counter-based stream: the same stream and counter
-/// give the same series.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +8,8 @@
 
 namespace cdiff::suite {
 
+/// Draws one after the other from one key of a counter-based stream: the same stream and counter
+/// give the same series.
 class Draws {
  public:
   /// `counter` names what is drawn: a network, or a route of a suite.

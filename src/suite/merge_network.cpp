@@ -41,7 +41,7 @@ class Carriageway {
     plan.nodes.push_back({name_ + "_to", left_.back(), ""});
     addRamp(elevation, plan, draws);
     connect(plan);
-    plan.ways.push_back({{name_ + "_ramp", name_ + "_merge", name_ + "_after"}, "merge"});
+    plan.paths.push_back({{name_ + "_ramp", name_ + "_merge", name_ + "_after"}, "merge"});
   }
 
  private:

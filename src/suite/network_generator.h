@@ -21,15 +21,16 @@ std::string buildNetwork(const RoadPlan& plan, const std::filesystem::path& fold
 // Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
 // districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
 
+/// What kind of junction or road a generated network consists of.
 enum class NetworkKind { kCrossing, kRoundabout, kMerge, kDistrict };
 
 /// What is given about a network; the draws decide the rest.
 struct NetworkSpec {
   std::string name;
   NetworkKind kind = NetworkKind::kCrossing;
-  int arms = 4;                      ///< of a crossing (3, 4) or a roundabout (3 to 5)
+  int arms = 4;                      ///< arms of a crossing (3, 4) or a roundabout (3 to 5)
   int lanes = 1;                     ///< most lanes a direction (1 to 3; a roundabout 1 or 2)
-  std::string control = "priority";  ///< of a crossing: priority, right_before_left, traffic_light
+  std::string control = "priority";  ///< priority, right_before_left or traffic_light
   bool elevation = false;            ///< whether roads climb or fall
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The kinds of networks, a file each, and the roads that lead to a junction.
 #pragma once
 
 #include <string>
@@ -10,6 +9,8 @@
 #include "suite/road_plan.h"
 
 namespace cdiff::suite {
+
+// The kinds of networks, a file each, and the roads that lead to a junction.
 
 /// Width of every lane [m], as networks/netconvert.netccfg has it.
 inline constexpr double kLaneWidth = 3.5;

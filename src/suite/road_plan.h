@@ -8,12 +8,14 @@
 
 namespace cdiff::suite {
 
+/// A node of a planned network, map frame [m].
 struct PlanNode {
   std::string id;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::string type;  ///< priority, right_before_left, traffic_light; empty at the end of a road
 };
 
+/// A directed road of a planned network, map frame [m].
 struct PlanEdge {
   std::string id;
   std::string from;
@@ -25,6 +27,7 @@ struct PlanEdge {
   bool centered = false;               ///< whether the shape is the edge's middle, else its left
 };
 
+/// A connection from a lane of one edge to a lane of the next, by edge ids.
 struct PlanConnection {
   std::string from;
   std::string to;
@@ -33,27 +36,28 @@ struct PlanConnection {
   bool far_view = false;  ///< onto a roundabout: the ring is seen from 15 m
 };
 
+/// The nodes and edges that make a roundabout.
 struct PlanRoundabout {
   std::vector<std::string> nodes;
   std::vector<std::string> edges;
 };
 
 /// Edges in driving order that a route may take.
-struct PlannedWay {
+struct PlannedPath {
   std::vector<std::string> edges;
-  std::string purpose;  ///< roundabout or merge; empty: told by the angle it turns
+  std::string purpose;  ///< roundabout or merge; empty: follows from the angle it turns
 };
 
 /// A road network as netconvert's plain-XML sources describe it: nodes, edges with their lines in
-/// the map frame [m], connections, and the ways through it that a route may take.
+/// the map frame [m], connections, and the paths through it that a route may take.
 struct RoadPlan {
   std::string name;
   std::string text;  ///< one sentence about what was drawn
   std::vector<PlanNode> nodes;
   std::vector<PlanEdge> edges;
-  std::vector<PlanConnection> connections;  ///< of these edges only; others are netconvert's
+  std::vector<PlanConnection> connections;  ///< the others are netconvert's
   std::vector<PlanRoundabout> roundabouts;
-  std::vector<PlannedWay> ways;
+  std::vector<PlannedPath> paths;
 };
 
 /// The plain-XML sources; coordinates with two decimals. No connections: an empty text.
@@ -81,7 +85,7 @@ class RoadLine {
   Line points_;
 };
 
-/// The line `offset` metres to the left (right: negative), with the same heights.
+/// The line `offset` meters to the left (right: negative), with the same heights.
 Line beside(const Line& line, double offset);
 Line reversed(Line line);
 /// Height 0 up to `begin` along the line, `height` at its end, level at both.

@@ -40,7 +40,7 @@ class Roundabout {
     }
     for (int i = 0; i < spec_.arms; ++i) addRing(i);
     for (int i = 0; i < spec_.arms; ++i) connect(i);
-    addWays();
+    addPaths();
     PlanRoundabout whole;
     for (int i = 0; i < spec_.arms; ++i) {
       whole.nodes.push_back(ring(i));
@@ -113,14 +113,14 @@ class Roundabout {
     }
   }
 
-  void addWays() {
+  void addPaths() {
     for (int from = 0; from < spec_.arms; ++from) {
-      PlannedWay way{{arm(from) + "_in"}, "roundabout"};
+      PlannedPath path{{arm(from) + "_in"}, "roundabout"};
       for (int passed = 0; passed + 1 < spec_.arms; ++passed) {
-        way.edges.push_back(ringEdge(from + passed));
-        PlannedWay whole = way;
+        path.edges.push_back(ringEdge(from + passed));
+        PlannedPath whole = path;
         whole.edges.push_back(arm((from + passed + 1) % spec_.arms) + "_out");
-        plan_.ways.push_back(whole);
+        plan_.paths.push_back(whole);
       }
     }
   }

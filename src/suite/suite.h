@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A route suite: a folder with suite.yaml (its routes), networks/NAME/ and scenarios/ROUTE.yaml.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +11,7 @@
 
 namespace cdiff::suite {
 
+/// A route suite: a folder with suite.yaml (its routes), networks/NAME/ and scenarios/ROUTE.yaml.
 struct Suite {
   std::string name;
   std::int64_t seed = 1;  ///< it was generated from

@@ -105,7 +105,7 @@ using core::InputError;
 
 constexpr std::uint32_t kFirstRouteCounter = 1000;  ///< networks have the counters below
 
-/// A drawn network and its way, ready for routes.
+/// A drawn network with its paths, ready for routes.
 struct BuiltNetwork {
   RoadPlan plan;
   map::RoadNetwork network;
@@ -151,18 +151,18 @@ class Generator {
                      "; try another seed");
   }
 
-  /// The first fitting way from a drawn one on.
+  /// The first path that fits, from a drawn one on.
   std::optional<SuiteRoute> findRoute(const BuiltNetwork& built, const RouteWish& wish) {
     const map::LaneGraph graph(built.network);
     const auto number = static_cast<std::uint32_t>(suite_.routes.size());
     Draws order(random_, kFirstRouteCounter + 2 * number);
-    const std::size_t count = built.plan.ways.size();
+    const std::size_t count = built.plan.paths.size();
     const int first = order.whole(0, static_cast<int>(count) - 1);
     for (std::size_t i = 0; i < count; ++i) {
-      const PlannedWay& way = built.plan.ways[(static_cast<std::size_t>(first) + i) % count];
-      if (way.purpose != purposeOf(wish.manoeuvre)) continue;
+      const PlannedPath& path = built.plan.paths[(static_cast<std::size_t>(first) + i) % count];
+      if (path.purpose != purposeOf(wish.manoeuvre)) continue;
       Draws draws(random_, kFirstRouteCounter + 2 * number + 1);
-      std::optional<SuiteRoute> route = planRoute(graph, way, draws);
+      std::optional<SuiteRoute> route = planRoute(graph, path, draws);
       if (!route || route->manoeuvre != wish.manoeuvre) continue;
       if (!places_.insert(placeOf(*route, built.plan.name)).second) continue;
       route->name = kind_ + "_" + wish.manoeuvre + "_" + std::to_string(++named_[wish.manoeuvre]);
@@ -196,9 +196,9 @@ class Generator {
   fs::path folder_;
   Suite suite_;
   std::vector<BuiltNetwork> networks_;
-  std::map<std::string, std::size_t> next_network_;  ///< for each manoeuvre
+  std::map<std::string, std::size_t> next_network_;  ///< for each maneuver
   std::set<std::string> places_;                     ///< of the routes so far
-  std::map<std::string, int> named_;                 ///< routes of each manoeuvre so far
+  std::map<std::string, int> named_;                 ///< routes of each maneuver so far
 };
 
 void requireEmpty(const fs::path& folder) {

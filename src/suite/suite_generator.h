@@ -14,6 +14,7 @@ namespace cdiff::suite {
 
 // What a suite consists of: its networks, and its routes in order.
 
+/// What a route of the suite is to have: maneuver, density of traffic, and network.
 struct RouteWish {
   std::string manoeuvre;
   std::string density;
@@ -29,7 +30,7 @@ std::vector<RouteWish> routeWishes(const std::string& kind);
 /// "test", "train".
 const std::vector<std::string>& suiteKinds();
 
-/// Routes of each manoeuvre in a suite of this kind.
+/// Routes of each maneuver in a suite of this kind.
 std::map<std::string, int> routeCounts(const std::string& kind);
 
 /// Seed of a suite when none is asked for; that of the shipped test suite.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMargin = 5.0;  ///< from both ends of the road [m]
 
-/// Arc lengths of the whole manoeuvre: from the first junction to the last.
+/// Arc lengths of the whole maneuver: from the first junction to the last.
 struct Stretch {
   double begin = 0.0;
   double end = 0.0;
@@ -41,7 +41,7 @@ double turnOf(const map::Route& route, const Stretch& stretch) {
   return turn / core::kDegree;
 }
 
-/// Empty when the angle is none of a manoeuvre's.
+/// Empty when the angle is none of a maneuver's.
 std::string manoeuvreAt(double turn) {
   constexpr double kLeastTurn = 45.0;
   constexpr double kMostTurn = 135.0;
@@ -80,10 +80,10 @@ int conflictsOf(const map::RoadNetwork& network, const map::Route& route, const 
   return static_cast<int>(approaches.size());
 }
 
-/// A tenth of a metre, so that files hold short numbers.
+/// A tenth of a meter, so that files hold short numbers.
 double rounded(double value) { return std::round(10.0 * value) / 10.0; }
 
-/// Draws how much of the roads before and after the manoeuvre is driven.
+/// Draws how much of the roads before and after the maneuver is driven.
 bool drawOffsets(const map::Route& whole, const Stretch& stretch, Draws& draws, SuiteRoute& route) {
   constexpr double kLeastApproach = 30.0;  // [m]
   constexpr double kLeastExit = 25.0;      // [m]
@@ -126,10 +126,10 @@ int vehiclesAt(const std::string& density) {
   return density == "medium" ? 12 : 16;
 }
 
-std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedWay& way,
+std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedPath& path,
                                     Draws& draws) {
   SuiteRoute planned;
-  planned.edges = way.edges;
+  planned.edges = path.edges;
   planned.start_offset = kMargin;
   planned.end_offset = kMargin;
   const std::optional<map::Route> whole = routeOf(graph, planned);
@@ -141,7 +141,7 @@ std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedWa
   const Stretch stretch = manoeuvreOf(*route);
   planned.turn = rounded(turnOf(*route, stretch));
   planned.length = rounded(route->length());
-  planned.manoeuvre = way.purpose.empty() ? manoeuvreAt(planned.turn) : way.purpose;
+  planned.manoeuvre = path.purpose.empty() ? manoeuvreAt(planned.turn) : path.purpose;
   planned.conflicts = conflictsOf(graph.network(), *route, stretch);
   if (planned.manoeuvre.empty() || planned.conflicts == 0) return std::nullopt;
   return planned;

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Makes session.mp4 while a session runs: 1280 x 720 pixels, 10 frames per simulated second; the
-/// front view of the CBV nearest to the ego and what ego and CBVs do on the left, the world from
-/// above around the ego on the right; two seconds with the verdict at the end. Frames are functions
-/// of the session alone.
 #pragma once
 
 #include <filesystem>
@@ -22,6 +18,10 @@ inline constexpr int kVideoRate = 10;
 /// Frames with the verdict.
 inline constexpr int kVerdictFrames = 20;
 
+/// Makes session.mp4 while a session runs: 1280 x 720 pixels, 10 frames per simulated second; the
+/// front view of the CBV nearest to the ego and what ego and CBVs do on the left, the world from
+/// above around the ego on the right; two seconds with the verdict at the end. Frames are functions
+/// of the session alone.
 class SessionVideo : public session::SessionObserver {
  public:
   /// Writes `folder`/session.mp4; an earlier one is removed. `setup` must outlive the video. What

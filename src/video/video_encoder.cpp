@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "ffmpeg";
-constexpr timeval kLongestPause{30, 0};  // of the program between two bites
+constexpr timeval kLongestPause{30, 0};  // for which the program may read nothing [s]
 constexpr double kLongestEnd = 60.0;     // [s]
 
 std::vector<std::string> commandLine(const VideoFormat& format, const fs::path& file) {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Frames (8-bit blue, green, red; row-major from the top left) to an MP4 file: H.264, yuv420p,
-/// BT.709, by the program `ffmpeg`, which reads them from a socket, cannot pull us down and ends
-/// with us.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +12,16 @@
 
 namespace cdiff::video {
 
+/// Size [pixels] and frame rate [1/s] of a video.
 struct VideoFormat {
   int width = 0;   ///< [pixels], even
   int height = 0;  ///< [pixels], even
   int rate = 0;    ///< frames per second
 };
 
+/// Frames (8-bit blue, green, red; row-major from the top left) to an MP4 file: H.264, yuv420p,
+/// BT.709, by the program `ffmpeg`, which reads them from a socket, cannot take us down and ends
+/// with us.
 class VideoEncoder {
  public:
   /// Removes `file`, starts the program and has it write to a temporary file beside. Throws

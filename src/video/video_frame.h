@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One picture of the video: a head line, the front view of the CBV nearest to the ego above a
-/// table of ego and CBVs, and the world from above; at the end the verdict over it. A contact of
-/// the ego stays for kContactTime: marked, named, and with the front view of the moment.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +14,9 @@
 
 namespace cdiff::video {
 
+/// One picture of the video: a head line, the front view of the CBV nearest to the ego above a
+/// table of ego and CBVs, and the world from above; at the end the verdict over it. A contact of
+/// the ego stays for kContactTime: marked, named, and with the front view of the moment.
 class VideoFrame {
  public:
   // [pixels]

@@ -38,7 +38,7 @@ class FollowedCbv {
 struct ContactMark {
   double begin = 0.0;  ///< its time [s]
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
-  std::string partner;        ///< of the ego; empty when the ego has no part in it
+  std::string partner;        ///< partner of the ego; empty when the ego has no part in it
   bool ego_at_fault = false;  ///< where it has
   std::string label;          ///< who, and whose fault
   std::string reason;         ///< why; empty without the ego
@@ -63,7 +63,7 @@ class ContactMarks {
   std::deque<ContactMark> marks_;
 };
 
-// Colours of the video (blue, green, red), those of the page's light palette, and text in it.
+// Colors of the video (blue, green, red), those of the page's light palette, and text in it.
 
 namespace ink {
 inline const cv::Scalar kPage{255, 255, 255};

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The world from above around the ego as pixels, for the video: drivable area, lanes, ego route,
-/// trails of the last seconds, conflict points, contacts, vehicles. Map frame, north up, a fixed
-/// scale.
 #pragma once
 
 #include <deque>
@@ -20,6 +17,9 @@
 
 namespace cdiff::video {
 
+/// The world from above around the ego as pixels, for the video: drivable area, lanes, ego route,
+/// trails of the last seconds, conflict points, contacts, vehicles. Map frame, north up, a fixed
+/// scale.
 class VideoMap {
  public:
   /// `setup` must outlive the map. `size` (width, height) [pixels].
@@ -27,7 +27,7 @@ class VideoMap {
   /// Every tick in order.
   void observe(const session::TickRecord& record);
   /// Draws the last tick into `picture`, 8-bit blue, green, red, of the map's size. The ego's
-  /// centre lies in the middle; without an ego, what was there last.
+  /// center lies in the middle; without an ego, what was there last.
   /// Contacts are marked with who touched whom.
   void draw(cv::Mat picture, const std::deque<ContactMark>& contacts) const;
 
@@ -47,7 +47,7 @@ class VideoMap {
   const session::SessionSetup& setup_;
   cv::Size size_;
   std::vector<page::Points> lanes_;
-  mutable std::map<int, std::vector<page::Points>> rings_;  ///< by whole metres of elevation
+  mutable std::map<int, std::vector<page::Points>> rings_;  ///< by whole meters of elevation
   traffic::TrafficSnapshot snapshot_;                       ///< the last one
   Eigen::Vector2d center_ = Eigen::Vector2d::Zero();
   double elevation_ = 0.0;  ///< of the ego [m]

@@ -48,8 +48,8 @@ TEST(CbvSelector, StandingVehiclesArriveAtTheLeastSpeed) {
   const auto selection =
       world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 0.0)}));
   ASSERT_EQ(selection.assignments.size(), 1u);
-  // The longer the way, the larger the gap of arrival: the first point behind the turn, x = 112, is
-  // best. 2 m/s.
+  // The longer the route, the larger the gap of arrival: the first point behind the turn, x = 112,
+  // is best. 2 m/s.
   EXPECT_NEAR(selection.assignments[0].conflict_point.position.x(), 112.0, 1e-9);
   EXPECT_NEAR(selection.assignments[0].conflict_point.cbv_arrival, (27.0 + kTurn) / 2.0, 1e-9);
 }
@@ -101,7 +101,7 @@ TEST(CbvSelector, NamesTheFirstGateThatFails) {
   add("above", {70.0, -20.0, 90.0, 5.0, 8.0});    // on the bridge
   add("below_bridge", {70.0, -20.0, 90.0, 5.0});  // there is only the bridge here, 8 m above
   add("beside", {105.0, -30.0, 0.0,
-                 5.0});  // preview (107, -30) lies on the border, its centre line crosses the road
+                 5.0});  // preview (107, -30) lies on the border, its centerline crosses the road
   add("wrong_way", {105.0, -36.0, -90.0, 5.0});  // against the lane
   add("askew", {105.5, -4.5, 75.0, 5.0});        // the turning lane runs at 45 degrees
   add("away", {40.0, 6.0, 180.0, 5.0});          // the ego's route lies behind it
@@ -142,7 +142,7 @@ TEST(CbvSelector, NoConflictLiesBeyondATurnRound) {
 
 TEST(CbvSelector, FieldOfViewIsAFullAngle) {
   // At the preview point (105, -28) looking north, the grid's points with x >= 112 lie at atan((x -
-  // 105) / 28) >= 14.04 degrees on the right; those with a way from it are only these.
+  // 105) / 28) >= 14.04 degrees on the right; those with a route from it are only these.
   CbvOptions options;
   options.field_of_view = 29.0;
   CrossingWorld wide(options);

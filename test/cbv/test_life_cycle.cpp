@@ -182,7 +182,7 @@ TEST(LifeCycle, ReselectReleasesALostConflictAfterItsTimeAndMayChooseAgain) {
   EXPECT_TRUE(lost.assignments.empty());
   ASSERT_EQ(lost.released.size(), 1u);
   EXPECT_EQ(lost.released[0].reason, kConflictLost);
-  // On the ego's own way behind it, 15 m apart at every point: a conflict again.
+  // On the ego's own route behind it, 15 m apart at every point: a conflict again.
   const auto again = world.selector.update(crossingSnapshot(
       kFirst + 2 * kPeriod + 40, 200.0, {test::vehicle("a", {185.0, 0.0, 0.0, 10.0})}));
   ASSERT_EQ(again.assignments.size(), 1u);

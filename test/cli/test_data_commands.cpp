@@ -88,7 +88,7 @@ TEST_F(DataCommands, HelpOfTheTrainerHasALineAndTheDefaultOfEachOption) {
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("  --", 0) != 0) continue;
     ++options;
-    // The help begins in column 40 of the same line, behind a blank.
+    // The help starts in column 40 of the same line, behind a blank.
     ASSERT_GT(line.size(), 41U) << line;
     EXPECT_EQ(line[39], ' ') << line;
     EXPECT_NE(line[40], ' ') << line;

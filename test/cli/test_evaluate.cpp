@@ -32,7 +32,7 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const fs::path run = fs::path(results) / "runs" / "arterial_exit__slow__seed2";
   EXPECT_TRUE(fs::exists(run / "trace.csv"));
   EXPECT_EQ(readRecord(run / "record.json")->status, "timed_out");  // the protocol's limit of 3 s
-  EXPECT_GT(readRecord(run / "record.json")->figures.at("ego_completion_percent"), 0.0);
+  EXPECT_GT(readRecord(run / "record.json")->measures.at("ego_completion_percent"), 0.0);
 
   fs::remove(run / "record.json");  // as if the batch had been cut off
   ASSERT_EQ(cdiff(evaluate), 0) << output();

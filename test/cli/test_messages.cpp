@@ -97,7 +97,7 @@ TEST_F(Messages, AMissingTemporaryFolderIsNamed) {
   expectOutput("environment variable TMPDIR is '" + path("none") + "'");
 }
 
-TEST_F(Messages, WithoutATemporaryFolderNoBatchBeginsAndTheDoctorSaysSo) {
+TEST_F(Messages, WithoutATemporaryFolderNoBatchStartsAndTheDoctorSaysSo) {
   const Variable variable("TMPDIR", path("none"));
   std::ofstream(path("matrix.yaml")) << "scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\n"
                                         "set: [protocol.time_limit=1]\n";

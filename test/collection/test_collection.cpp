@@ -221,9 +221,9 @@ TEST(PerturbedPlanner, IsDeterministicAndLeavesStandingVehiclesAlone) {
   EXPECT_EQ(std::count(standing.marks.begin(), standing.marks.end(), true), 0);
 }
 
-// One of two drives on without a break, the other is not driven from 1 s to 60 s, and nobody asks
-// in between: it begins as a vehicle does that was never driven.
-TEST(PerturbedPlanner, NoiseBeginsAnewAfterDecisionsWithoutTheVehicle) {
+// One of two drives on without a break, the other is not driven from 1 s to 60 s, and no one asks
+// in between: it starts as a vehicle does that was never driven.
+TEST(PerturbedPlanner, NoiseStartsOverAfterDecisionsWithoutTheVehicle) {
   PerturbedPlanner planner(std::make_unique<Steady>(), {}, 1, 0.1);
   PerturbedPlanner fresh(std::make_unique<Steady>(), {}, 1, 0.1);
   const auto plan = [](PerturbedPlanner& with, int decision) {

@@ -33,7 +33,7 @@ TEST(Markup, ReplacesMarksThatTurnTheDirection) {
   for (const char* mark :
        {"\u202A", "\u202B", "\u202C", "\u202D", "\u202E", "\u2066", "\u2067", "\u2068", "\u2069"})
     EXPECT_EQ(markupOf(mark), "\uFFFD");
-  EXPECT_EQ(markupOf("\u2029\u202F\u2065\u206A"), "\u2029\u202F\u2065\u206A");  // their neighbours
+  EXPECT_EQ(markupOf("\u2029\u202F\u2065\u206A"), "\u2029\u202F\u2065\u206A");  // their neighbors
   EXPECT_EQ(markupOf("שלום"), "שלום");
   EXPECT_EQ(markupOf("\U0001F600"), "\U0001F600");
 }

@@ -88,7 +88,7 @@ TEST_F(OutputFolder, FoldersMadeForNothingGoWithTheLockAndOthersStay) {
   EXPECT_TRUE(fs::exists(folder() / "result"));
 }
 
-TEST_F(OutputFolder, ASecondWriterIsToldHostProcessAndProgramOfTheFirst) {
+TEST_F(OutputFolder, ASecondWriterLearnsHostProcessAndProgramOfTheFirst) {
   std::optional<FolderLock> lock;
   const Child first([&] { lock.emplace(folder(), "cdiff run"); });
   const std::string error = lockError(folder());

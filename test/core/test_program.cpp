@@ -99,7 +99,7 @@ TEST(Program, HangUpStaysIgnoredUnderNohup) {
             0);
 }
 
-TEST(GuardedProcess, TellsExitCodeAndSignalApart) {
+TEST(GuardedProcess, DistinguishesExitCodeAndSignal) {
   GuardedProcess exits("/bin/sh", {"-c", "exit 7"}, {}, {"/dev/null"});
   ASSERT_TRUE(exits.waitForEnd(10.0));
   EXPECT_EQ(exits.exitCode(), 7);

@@ -133,7 +133,7 @@ TEST(ImageEncoder, EncodersOfTwoThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(wrong[1], 0);
 }
 
-TEST(ImageEncoder, TellsBlackFromWhite) {
+TEST(ImageEncoder, DistinguishesBlackFromWhite) {
   ImageEncoder encoder(randomModel(64, 32));
   EXPECT_NE(encoder.encode(plainImage(64, 32, 0)), encoder.encode(plainImage(64, 32, 255)));
 }

@@ -157,7 +157,7 @@ TEST_F(ModelFiles, RoundTrip) {
   expectEqual(back.denoiser, model.denoiser);
   expectMentions(test::readBytes(folder / "denoiser.safetensors").substr(0, 4000),
                  "\"training.steps\":\"100\"");
-  // The encoder's file tells nothing of the denoiser, so a denoiser trained anew leaves it alone.
+  // The encoder's file tells nothing of the denoiser, so a denoiser trained again leaves it alone.
   const std::string encoder = test::readBytes(folder / "encoder.safetensors");
   model.spread *= 2.0;
   saveModel(model, folder, inference::TensorType::kF32, {{"training.steps", "200"}});

@@ -11,7 +11,7 @@ namespace cdiff::diffusion {
 namespace {
 
 TEST(NoiseSchedule, ConstantsOfOneHundredSteps) {
-  // Known figures of the squared-cosine schedule at K = 100, there counted from 0 (our k is one
+  // Known values of the squared-cosine schedule at K = 100, there counted from 0 (our k is one
   // more), to the digits that are known.
   const NoiseSchedule schedule(100);
   EXPECT_EQ(schedule.steps(), 100);

@@ -30,7 +30,7 @@ TEST(Normalizer, EveryCellHasItsOwnMeanAndScale) {
 }
 
 TEST(Normalizer, RoundTrip) {
-  // Values up to 25 keep 24 bits on the way: off by at most 14 x 2^-24 x (largest normalised) 12.
+  // Values up to 25 keep 24 bits on the way: off by at most 14 x 2^-24 x (largest normalized) 12.
   traffic::Rollout metric(2, 7);
   for (int i = 0; i < 14; ++i) metric.data()[i] = 12.3 - 0.7 * i;
   const traffic::Rollout back = counting().denormalize(counting().normalize(metric));
@@ -39,7 +39,7 @@ TEST(Normalizer, RoundTrip) {
 }
 
 TEST(Normalizer, GradientIsMultipliedByTheScale) {
-  // metric = normalised x scale + mean, so dJ/dnormalised = 3 x (i + 1).
+  // metric = normalized x scale + mean, so dJ/dnormalised = 3 x (i + 1).
   const traffic::Rollout gradient = traffic::Rollout::Constant(2, 7, 3.0);
   const Trajectory normalized = counting().toNormalizedGradient(gradient);
   for (int i = 0; i < 14; ++i) EXPECT_EQ(normalized.data()[i], static_cast<float>(3 * (i + 1)));

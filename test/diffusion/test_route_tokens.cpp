@@ -27,7 +27,7 @@ geometry::Polyline circle(double side) {
 
 TEST(RouteTokens, StraightAhead) {
   // North along x = 5; the vehicle is at (6, 10), 1 m right of the route, and heads north: point i
-  // (i = 1..16) lies 3 i metres ahead and 1 m to the left, divided by 20.
+  // (i = 1..16) lies 3 i meters ahead and 1 m to the left, divided by 20.
   const geometry::Polyline path({{5.0, 0.0, 0.0}, {5.0, 100.0, 0.0}});
   const std::vector<float> tokens =
       routeTokens(Architecture(), path, 10.0, poseAt(6.0, 10.0, std::acos(-1.0) / 2.0));
@@ -40,7 +40,7 @@ TEST(RouteTokens, StraightAhead) {
 
 TEST(RouteTokens, GoesStraightOnBeyondTheEnd) {
   // 10 m east, then 5 m north to (10, 5): from arc length 12 the points lie at 15 (the end), then
-  // 3, 6, ... metres farther north.
+  // 3, 6, ... meters farther north.
   const geometry::Polyline path({{0.0, 0.0, 0.0}, {10.0, 0.0, 0.0}, {10.0, 5.0, 0.0}});
   const std::vector<float> tokens = routeTokens(Architecture(), path, 12.0, poseAt(0.0, 0.0, 0.0));
   for (int i = 1; i <= 16; ++i) {

@@ -32,13 +32,13 @@ inline evaluation::RunRecord recordWithout(const Levels& levels, const std::stri
   return record;
 }
 
-/// Completed and passed, with the figure ego_driving_score.
+/// Completed and passed, with the measure ego_driving_score.
 inline evaluation::RunRecord recordWith(const Levels& levels, double score) {
   evaluation::RunRecord record = recordWithout(levels, "completed");
   record.verdict = record::Outcome::kPassed;
   record.attempts = 1;
   record.exit_code = 0;
-  record.figures["ego_driving_score"] = score;
+  record.measures["ego_driving_score"] = score;
   return record;
 }
 

@@ -76,7 +76,7 @@ TEST_F(BatchFiles, SummaryHasACellPerCombination) {
       summary);
 }
 
-TEST_F(BatchFiles, JunitTellsErrorsFailuresAndWhatWasNotRun) {
+TEST_F(BatchFiles, JunitReportsErrorsFailuresAndWhatWasNotRun) {
   const std::string xml = batchJunitXml("night", records_);
   expectIn("<testsuites tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
   expectIn("<failure type=\"driving_score, red_lights\" message=\"score &lt; 30\" />", xml);

@@ -38,7 +38,7 @@ std::string withoutLineEnds(std::string text) {
 }
 
 /// A batch with `text` in every name: a run of the paper's own planner, a copy of it with another
-/// one, and a broken run of a planner that nobody knows.
+/// one, and a broken run of a planner that no one knows.
 class NamedBatch {
  public:
   explicit NamedBatch(const std::string& text) : text_(text) {

@@ -31,9 +31,9 @@ TEST(Comparison, TakesDifferencesWithinPairs) {
   EXPECT_EQ(comparison.pairs, 3U);
   EXPECT_EQ(comparison.runs_a, 5U);
   EXPECT_EQ(comparison.runs_b, 4U);
-  ASSERT_EQ(comparison.figures.size(), 1U);
-  const FigureComparison& score = comparison.figures.front();
-  EXPECT_EQ(score.figure, "ego_driving_score");
+  ASSERT_EQ(comparison.measures.size(), 1U);
+  const MeasureComparison& score = comparison.measures.front();
+  EXPECT_EQ(score.measure, "ego_driving_score");
   EXPECT_DOUBLE_EQ(score.mean_a, 20.0);
   EXPECT_DOUBLE_EQ(score.mean_b, 22.0);
   EXPECT_EQ(score.difference.n, 3U);
@@ -61,9 +61,9 @@ TEST(Comparison, PairsALevelWithItsBaseline) {
   const auto comparisons = compareLevels(records, "guidance_profile", "none", {});
   ASSERT_EQ(comparisons.size(), 2U);
   EXPECT_EQ(comparisons[0].b, "guidance_profile area");
-  EXPECT_EQ(comparisons[0].figures.front().difference.n, 1U);
-  EXPECT_FALSE(comparisons[0].figures.front().difference.half_width.has_value());
-  EXPECT_DOUBLE_EQ(*comparisons[1].figures.front().difference.mean, 4.0);  // of 3 and 5
+  EXPECT_EQ(comparisons[0].measures.front().difference.n, 1U);
+  EXPECT_FALSE(comparisons[0].measures.front().difference.half_width.has_value());
+  EXPECT_DOUBLE_EQ(*comparisons[1].measures.front().difference.mean, 4.0);  // of 3 and 5
 }
 
 /// Runs of a matrix as if all had been driven, those of `mode` with a score `gain` above 50.
@@ -72,7 +72,7 @@ std::vector<RunRecord> drivenRuns(const std::string& matrix, const std::string& 
   for (const PlannedRun& run : planRuns(loadMatrix(matrix), matrix)) {
     records.push_back(recordOf(run));
     records.back().status = "completed";
-    records.back().figures["ego_driving_score"] =
+    records.back().measures["ego_driving_score"] =
         50.0 + (run.factors.at("mode") == mode ? gain : 0.0);
   }
   return records;
@@ -84,7 +84,7 @@ TEST(Comparison, AFactorThatFollowsTheComparedOneDoesNotPair) {
   const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0].pairs, 30U);
-  EXPECT_DOUBLE_EQ(*comparisons[0].figures.front().difference.mean, -8.0);
+  EXPECT_DOUBLE_EQ(*comparisons[0].measures.front().difference.mean, -8.0);
   EXPECT_EQ(comparisons[0].paired_by.count("guidance_profile"), 0U);
   EXPECT_NE(comparisonMarkdown(comparisons)
                 .find("; guidance_profile follows (A naturalistic, B safety_critical)."),
@@ -127,7 +127,7 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
               compareLevels(records, "guidance_profile", "nine", {});
             }).find("the nearest is 'none'"),
             std::string::npos);
-  EXPECT_NE(textOf([] { checkFigureNames({"ego_driving_scores"}); }).find("'ego_driving_score'"),
+  EXPECT_NE(textOf([] { checkMeasureNames({"ego_driving_scores"}); }).find("'ego_driving_score'"),
             std::string::npos);
 }
 

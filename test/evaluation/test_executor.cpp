@@ -91,7 +91,7 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   ASSERT_EQ(records.size(), 4U);
   EXPECT_EQ(records[0].status, "completed");
   EXPECT_TRUE(records[0].has(record::Outcome::kPassed));
-  EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
+  EXPECT_DOUBLE_EQ(records[0].measures.at("ego_driving_score"), 80.0);
   EXPECT_DOUBLE_EQ(records[0].simulated_seconds, 4.0);
   EXPECT_EQ(records[1].status, "error");
   EXPECT_EQ(records[1].cause, "exit code 3: cdiff: key 'x' is wrong");
@@ -99,7 +99,7 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   EXPECT_EQ(records[2].status, "error");
   EXPECT_NE(records[2].cause.find("is no summary of a session"), std::string::npos);
   EXPECT_EQ(readRecords(options_.results).size(), 4U);
-  EXPECT_EQ(readRecord(file("good0", "record.json"))->figures, records[0].figures);
+  EXPECT_EQ(readRecord(file("good0", "record.json"))->measures, records[0].measures);
   EXPECT_EQ(ends_.size(), 4U);
 }
 
@@ -201,7 +201,7 @@ TEST_F(ExecutorTest, ResumesWhatIsNotComplete) {
   EXPECT_EQ(attempts("refuses3"), 2U);
   EXPECT_TRUE(ends_.at("good0"));
   EXPECT_FALSE(ends_.at("good1"));
-  EXPECT_DOUBLE_EQ(records[0].figures.at("ego_driving_score"), 80.0);
+  EXPECT_DOUBLE_EQ(records[0].measures.at("ego_driving_score"), 80.0);
   EXPECT_EQ(records[2].scenario_sha256, runs[2].scenario_sha256);
 }
 

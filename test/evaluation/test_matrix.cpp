@@ -125,7 +125,7 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   EXPECT_EQ(plan[3].factors.at("mode"), "safety_critical");
   EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");
   matrix.modes = {"naturalistic"};
-  expectIn("key 'combinations' stands instead of ego_planners", errorOf(matrix));
+  expectIn("key 'combinations' replaces ego_planners", errorOf(matrix));
   matrix.modes = {};
   matrix.combinations = {"cbv_planner=pdm_lite seed=4"};
   expectIn("where 'seed=4' is wrong", errorOf(matrix));

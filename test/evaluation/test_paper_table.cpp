@@ -55,18 +55,18 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
   EXPECT_EQ(note("no_such_planner", {}), "not implemented");
   EXPECT_EQ(note("pdm_lite", {}), "not run");
   EXPECT_EQ(note("pdm_lite", {broken}), "no run completed");
-  EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this figure");
+  EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this measure");
   EXPECT_EQ(note("pdm_lite", {runOf("1", {{"/r", 1.0}, {"/w", 1.0}}), broken}), "");
 }
 
-TEST(PaperTable, CsvHoldsThePapersFigureBesideOurs) {
+TEST(PaperTable, CsvHoldsThePapersValueBesideOurs) {
   const std::string csv =
       tableCsv(fillTable(rateTable("pdm_lite"), {runOf("1", {{"/r", 2.0}, {"/w", 10.0}})}));
   EXPECT_EQ(csv,
             "row,column,unit,definition,paper_mean,paper_std,mean,std,interval_95_low,"
             "interval_95_high,seeds,runs,runs_with_figure,runs_failed,note\n"
             "ours,rate,1/km,clean,5,0.5,2,,,,1,1,1,0,\n"
-            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,1,0,no run has this figure\n");
+            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,1,0,no run has this measure\n");
 }
 
 TEST(PaperTable, NamesTheSubjectInAKey) {

@@ -17,7 +17,7 @@
 namespace cdiff::evaluation {
 namespace {
 
-constexpr metrics::FigureDefinition kDecisions = {
+constexpr metrics::MeasureDefinition kDecisions = {
     "my_decisions",
     "",
     "Decisions that I count",
@@ -28,7 +28,7 @@ constexpr metrics::FigureDefinition kDecisions = {
     "",
     0,
 };
-constexpr metrics::FigureDefinition kActions = {
+constexpr metrics::MeasureDefinition kActions = {
     "my_actions",
     "/cbv/my_actions",
     "Actions that I count",
@@ -76,10 +76,10 @@ TEST(RegisteredMetric, IsInEveryFileOfSessionsAndBatches) {
   EXPECT_TRUE(summary["cbv"]["my_actions"].is_number_unsigned());
   const std::string report = core::readFile(scratch.path() / "report.html", "report");
   EXPECT_NE(report.find("Decisions that I count"), std::string::npos);
-  EXPECT_NE(record::figureList().find("### `my_actions`"), std::string::npos);
-  const auto& columns = figureNames();  // of runs.csv
+  EXPECT_NE(record::measureList().find("### `my_actions`"), std::string::npos);
+  const auto& columns = measureNames();  // of runs.csv
   EXPECT_EQ(std::count(columns.begin(), columns.end(), "my_decisions"), 1);
-  EXPECT_EQ(readSummary(text, "summary.json").figures.at("my_decisions"), 61.0);
+  EXPECT_EQ(readSummary(text, "summary.json").measures.at("my_decisions"), 61.0);
 }
 
 }  // namespace

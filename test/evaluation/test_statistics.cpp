@@ -22,7 +22,7 @@ TEST(Statistics, OfThreeSamples) {
   EXPECT_NEAR(*result.half_width, 4.302653 / std::sqrt(3.0), 1e-6);
 }
 
-TEST(Statistics, SaysWhatTooFewSamplesCannotTell) {
+TEST(Statistics, SaysWhatTooFewSamplesCannotShow) {
   EXPECT_FALSE(statisticsOf({}).mean.has_value());
   const Statistics one = statisticsOf({5.0});
   EXPECT_DOUBLE_EQ(*one.mean, 5.0);
@@ -36,13 +36,13 @@ TEST(Cells, AverageRepetitionsBeforeSeeds) {
       cellsOf({recordWith({"s", "1", "none", "1"}, 10.0), recordWith({"s", "1", "none", "2"}, 20.0),
                recordWith({"s", "2", "none", "1"}, 25.0)});
   ASSERT_EQ(cells.size(), 1U);
-  const Statistics& score = cells.front().figures.at("ego_driving_score");
+  const Statistics& score = cells.front().measures.at("ego_driving_score");
   EXPECT_EQ(score.n, 2U);
   EXPECT_DOUBLE_EQ(*score.mean, 20.0);
   EXPECT_DOUBLE_EQ(*score.standard_deviation, std::sqrt(50.0));
 }
 
-TEST(Cells, CountEveryRunWhateverBecameOfIt) {
+TEST(Cells, CountEveryRunWhateverItsOutcome) {
   const std::vector<Cell> cells =
       cellsOf({recordWith({"s", "1"}, 10.0), recordWithout({"s", "2"}, "error"),
                recordWithout({"s", "3"}, "not_run"), recordWithout({"s", "4"}, "interrupted"),
@@ -53,7 +53,7 @@ TEST(Cells, CountEveryRunWhateverBecameOfIt) {
   EXPECT_EQ(cells[0].runs, 4U);
   EXPECT_EQ(cells[0].failed, 1U);
   EXPECT_EQ(cells[0].missing, 2U);
-  EXPECT_EQ(cells[0].figures.at("ego_driving_score").n, 1U);
+  EXPECT_EQ(cells[0].measures.at("ego_driving_score").n, 1U);
   EXPECT_EQ(cells[1].runs, 1U);
 }
 

@@ -8,7 +8,7 @@
 namespace cdiff::geometry {
 namespace {
 
-// Boxes 4 x 2 along x: centres 5 apart leave a gap of 5 - 4 = 1.
+// Boxes 4 x 2 along x: centers 5 apart leave a gap of 5 - 4 = 1.
 TEST(OrientedBox, GapBehindEachOther) {
   const OrientedBox first{{0, 0}, 0.0, 4.0, 2.0};
   const OrientedBox second{{5, 0}, 0.0, 4.0, 2.0};
@@ -26,14 +26,14 @@ TEST(OrientedBox, GapAcross) {
   EXPECT_EQ(distance(first, nearer), 0.0);
 }
 
-// A square of side 2 turned by 45 degrees has its corner at distance sqrt(2) from the centre.
+// A square of side 2 turned by 45 degrees has its corner at distance sqrt(2) from the center.
 TEST(OrientedBox, CornerTowardsEdge) {
   const OrientedBox first{{0, 0}, 0.0, 2.0, 2.0};
   const OrientedBox second{{1 + std::sqrt(2.0) + 0.5, 0}, core::kPi / 4, 2.0, 2.0};
   EXPECT_NEAR(distance(first, second), 0.5, 1e-12);
 }
 
-// The diagonal neighbours overlap in both axis projections of neither box: only the turned axes
+// The diagonal neighbors overlap in both axis projections of neither box: only the turned axes
 // separate them.
 TEST(OrientedBox, SeparatedOnlyByTurnedAxis) {
   const OrientedBox first{{0, 0}, 0.0, 2.0, 2.0};

@@ -123,7 +123,7 @@ TEST(GuidanceOptions, ValuesOutOfRangeAreRefused) {
   EXPECT_THROW(options.validate(), core::InputError);
 }
 
-TEST(GuidanceOptions, AWindowThatEndsBeforeItBeginsIsRefused) {
+TEST(GuidanceOptions, AWindowThatEndsBeforeItStartsIsRefused) {
   expectParts(errorOf("speed:\n  weight: 1\n  first_step: 5\n  last_step: 20\n"),
               {"speed.first_step", "5", "20", "count down"});
   EXPECT_EQ(errorOf("speed:\n  first_step: 20\n  last_step: 20\n"), "no error");

@@ -137,7 +137,7 @@ TEST(Softplus, IsSafeAtBothEnds) {
 TEST(CollisionAvoidance, IsThePapersSum) {
   GuidanceWorld world;
   world.setOther(50.0, 0.0);
-  // Ten metres ahead; both boxes 4.5 x 1.8 m, so d_safe = sqrt(4.5^2 + 1.8^2) + 0.5.
+  // Ten meters ahead; both boxes 4.5 x 1.8 m, so d_safe = sqrt(4.5^2 + 1.8^2) + 0.5.
   const double distance = std::sqrt(100.0 + 0.01);
   const double safe = std::hypot(4.5, 1.8) + 0.5;
   const double expected =
@@ -159,7 +159,7 @@ TEST(CollisionAvoidance, DepartsAndSeekingApproaches) {
 TEST(CollisionSeeking, StillPullsFromTheTriggerDistance) {
   GuidanceWorld world;
   world.setOther(65.0, 0.0);
-  // Logistic((5.35 - 25) / 6) / 6 = 0.0061 and 2 exp(-625 / 128) 25 / 64 = 0.0059 per metre.
+  // Logistic((5.35 - 25) / 6) / 6 = 0.0061 and 2 exp(-625 / 128) 25 / 64 = 0.0059 per meter.
   EXPECT_NEAR(gradientOf(CollisionSeekingObjective(), world.scene(), standing(0, 0))(0, 0), -0.0119,
               2e-4);
 }

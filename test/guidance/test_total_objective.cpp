@@ -17,7 +17,7 @@ using traffic::Rollout;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Gives what it is told.
+/// Returns the values that it was constructed with.
 class BrokenObjective : public Objective {
  public:
   BrokenObjective(double value, double derivative) : value_(value), derivative_(derivative) {}

@@ -11,7 +11,7 @@
 namespace cdiff::inference {
 namespace {
 
-/// Normalises channel c, pixel p of the value 1000 c + p^2 (32 channels of 2 x 3 pixels) in a
+/// Normalizes channel c, pixel p of the value 1000 c + p^2 (32 channels of 2 x 3 pixels) in a
 /// layout, and returns [channel, pixel].
 std::vector<double> normalised(dnnl::memory::format_tag layout, bool residual,
                                EncoderNorm::Activation activation) {

@@ -75,7 +75,7 @@ TEST_F(Safetensors, BytesOfASmallFile) {
 }
 
 TEST_F(Safetensors, F16RoundsToNearestEven) {
-  // Half precision has 11 significant bits: neighbours of 1 are 1 + n 2^-10, smallest subnormals
+  // Half precision has 11 significant bits: neighbors of 1 are 1 + n 2^-10, smallest subnormals
   // n 2^-24, largest 65504 (spacing 32).
   const auto two = [](int exponent) { return std::ldexp(1.0F, exponent); };
   const std::vector<float> given = {1.0F + two(-11),         // tie of n = 0 and 1

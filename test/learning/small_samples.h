@@ -26,7 +26,7 @@ inline learning::DrivingSchema smallSchema() {
 }
 
 /// Sample `index` of session `session`: a vehicle that keeps its speed of 5 + index m/s straight
-/// on; the image is grey noise with a bright column that tells the index.
+/// on; the image is gray noise with a bright column that encodes the index.
 inline learning::DrivingSample smallSample(std::size_t index, std::uint64_t session) {
   const learning::DrivingSchema schema = smallSchema();
   const core::RandomStream noise(7, "test image");

@@ -36,7 +36,7 @@ class ToyStage : public Stage {
     const at::Tensor loss = (parameters_("weight") - 3.0 - target).pow(2).mean() * factor;
     return {loss, {{"toy", loss}}};
   }
-  Figures judge() override {
+  Measures judge() override {
     return {{"distance", std::abs(parameters_("weight").mean().item<double>() - 3.0)}};
   }
   std::vector<float> weight() const { return toVector(parameters_("weight")); }

@@ -52,7 +52,7 @@ class ToyStage : public learning::Stage {
     const at::Tensor error = squaredError(order_.at(step));
     return {error, {{"square", error}}};
   }
-  learning::Figures judge() override {
+  learning::Measures judge() override {
     const at::NoGradGuard no_gradient;
     return {{"square", squaredError(run_.held_out).item<double>()}};
   }
@@ -85,7 +85,7 @@ class ToyTask : public learning::Task {
     visitor.number({"slope", "", "Bound of the first weights."}, slope, 0.0, 10.0);
   }
 
-  void begin(const learning::TrainingRun& run) override {
+  void start(const learning::TrainingRun& run) override {
     run_ = &run;
     weights_.emplace(core::RandomStream(static_cast<std::uint64_t>(run.options.seed), "line"));
     weights_->declare("line.weight", {1, 2}, {learning::Start::Kind::kUniform, slope});
@@ -102,7 +102,7 @@ class ToyTask : public learning::Task {
     model.held_out = ToyStage(*run_, *weights_).judge();
     model.settings = {{"slope", slope}};
     model.title = "A line";
-    model.figures = "Squared error.\n";
+    model.measures = "Squared error.\n";
     return model;
   }
 

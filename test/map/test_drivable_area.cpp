@@ -42,7 +42,7 @@ double definition(const std::vector<std::vector<Point>>& rings, const Point& poi
   return inside ? nearest : -nearest;
 }
 
-/// Compares with the definition at `count` random points up to `reach` metres beside lanes' centre
+/// Compares with the definition at `count` random points up to `reach` meters beside lanes' center
 /// lines.
 void expectDefinition(const RoadNetwork& network, std::uint32_t count, double reach) {
   const DrivableArea area(network);
@@ -65,7 +65,7 @@ void expectDefinition(const RoadNetwork& network, std::uint32_t count, double re
   EXPECT_LT(inside, count - count / 20);
 }
 
-/// Every point of a car lane's centre line lies at least 0.3 widths inside, whatever the union did
+/// Every point of a car lane's centerline lies at least 0.3 widths inside, whatever the union did
 /// to the lanes.
 void expectLanesInside(const RoadNetwork& network) {
   const DrivableArea area(network);
@@ -178,7 +178,7 @@ TEST(DrivableArea, Junction) {
 TEST(DrivableArea, IslandOfARoundabout) {
   const DrivableArea area(NetworkText().edge("ring", {ringShape()}).network());
   ASSERT_EQ(area.border().size(), 2u);
-  // The island's sides lie half a width, 2 m, inside those of the centre line, whose apothem is 20
+  // The island's sides lie half a width, 2 m, inside those of the centerline, whose apothem is 20
   // cos(pi / 32).
   EXPECT_NEAR(area.signedDistance({0.0, 0.0}), -(20.0 * std::cos(core::kPi / 32.0) - 2.0), kGrid);
   EXPECT_TRUE(area.contains({0.0, 20.0}));

@@ -120,7 +120,7 @@ test::NetworkText thereAndBack() {
   return text;
 }
 
-TEST(LaneGraphTurns, WaysDoNotTurnRound) {
+TEST(LaneGraphTurns, RoutesDoNotTurnRound) {
   const RoadNetwork network = thereAndBack().network();
   const LaneGraph graph(network);
   const LanePosition start{network.findLane("a_0"), 20.0};
@@ -137,7 +137,7 @@ TEST(LaneGraphTurns, WaysDoNotTurnRound) {
   EXPECT_TRUE(graph.shortestPath(turning, {back, 50.0}, 1000.0).has_value());
 }
 
-TEST(LaneGraphTurns, WaysTurnRoundWhereTheEgoDoes) {
+TEST(LaneGraphTurns, RoutesTurnRoundWhereTheEgoDoes) {
   const RoadNetwork network = thereAndBack().network();
   const LaneGraph graph(network);
   LanePath turn;

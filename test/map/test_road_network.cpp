@@ -13,7 +13,7 @@ namespace cdiff::map {
 namespace {
 
 /// Two lanes eastwards (y = 0 and 4), a signalled junction with an internal junction on the left
-/// turn, a way north, and a bridge from south to north at x = 50, 8 m above.
+/// turn, a route north, and a bridge from south to north at x = 50, 8 m above.
 constexpr const char* kCrossing = R"(<?xml version="1.0"?>
 <net version="1.9">
   <location netOffset="12.50,-3.00"/>

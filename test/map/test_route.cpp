@@ -59,7 +59,7 @@ TEST(Route, KnowsEdgesJunctionsAndSignals) {
   const Route route = matchRoute(network, lineFrom(30.5, 80.5, 1.0, 0.0));
   // The tiny edge holds no point (60.5 lies behind it) and is still driven.
   EXPECT_EQ(route.edges(), (Names{"a", "t", "b"}));
-  EXPECT_EQ(route.edgeBegins(), (std::vector<double>{0.0, 30.0, 30.0}));
+  EXPECT_EQ(route.edgeStarts(), (std::vector<double>{0.0, 30.0, 30.0}));
   ASSERT_EQ(route.signals().size(), 1u);
   EXPECT_EQ(route.signals()[0].id, "light");
   EXPECT_EQ(route.signals()[0].link, 3);
@@ -130,12 +130,12 @@ TEST(MatchRoute, NamesAGapBetweenLanes) {
   const std::string message =
       matchError(network, {{22, 0, 0}, {24, 0, 0}, {25, -4, 8}, {25, -8, 8}});
   EXPECT_NE(
-      message.find("no lane-connected way from point 1 (24.00, 0.00) to point 2 (25.00, -4.00)"),
+      message.find("no lane-connected route from point 1 (24.00, 0.00) to point 2 (25.00, -4.00)"),
       std::string::npos)
       << message;
   Points backwards = lineFrom(0, 20, 2, 0.0);
   std::reverse(backwards.begin(), backwards.end());
-  EXPECT_NE(matchError(network, backwards).find("no lane-connected way from point 0"),
+  EXPECT_NE(matchError(network, backwards).find("no lane-connected route from point 0"),
             std::string::npos);
   EXPECT_NE(matchError(network, {{1, 0, 0}, {1, 0, 0}}).find("two distinct points"),
             std::string::npos);

@@ -18,7 +18,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// Eastwards a (100 m, two lanes), junction 20 m, b (80 m, two lanes, joined lane to lane); c
-/// leaves b's left lane only; a way back "r" beside a (y = 8) that begins 300 m farther on.
+/// leaves b's left lane only; a route back "r" beside a (y = 8) that starts 300 m farther on.
 test::NetworkText street() {
   test::NetworkText text;
   text.edge("a", {"0,0 100,0", "0,4 100,4"})
@@ -94,7 +94,7 @@ TEST_F(RouteSource, ChangesLanesBetweenTheKeyPointsThatAskForIt) {
   EXPECT_NEAR(route.laneChanges()[0], 40.0, 1.5);  // x = 50, halfway between the two points
   EXPECT_NEAR(route.path().pointAt(10.0).y(), 0.0, 1e-9);
   EXPECT_NEAR(route.path().points().back().y(), 4.0, 1e-9);
-  EXPECT_NEAR(route.path().pointAt(20.0).y(), 0.0, 1e-6);  // the blend begins at 37.5 m
+  EXPECT_NEAR(route.path().pointAt(20.0).y(), 0.0, 1e-6);  // the blend starts at 37.5 m
 }
 
 TEST_F(RouteSource, NamesWrongPoints) {
@@ -102,12 +102,12 @@ TEST_F(RouteSource, NamesWrongPoints) {
                "point 2 (30.00, -2.31) is 2.31 m off every lane");
   EXPECT_ERROR(routeThroughPoints(graph_, {{10, 0, 0}, {9000, 0, 0}}), "more than 1 km off");
   EXPECT_ERROR(routeThroughPoints(graph_, {{10, 0, 0}, {20, 0, 0}, {20, -50, 0}}),
-               "no lane-connected way from point 1 (20.00, 0.00) to point 2 (20.00, -50.00)");
+               "no lane-connected route from point 1 (20.00, 0.00) to point 2 (20.00, -50.00)");
   // From b (x = 150) to d (0, 70): 50 m to the end of b, 100 m of c, then 4 + 100 + 100 + 38 m of d
   // = 392 m; the distance is hypot(150, 66) = 163.9 m, so 347.8 m are allowed.
   EXPECT_ERROR(
       routeThroughPoints(graph_, {{150, 4, 0}, {0, 70, 0}}),
-      "way from point 0 (150.00, 4.00) to point 1 (0.00, 70.00) is 392.0 m for a distance of "
+      "route from point 0 (150.00, 4.00) to point 1 (0.00, 70.00) is 392.0 m for a distance of "
       "163.9 m (limit twice the distance + 20 m)");
   EXPECT_ERROR(routeThroughPoints(graph_, {{10, 0, 0}}), "two distinct points");
 }

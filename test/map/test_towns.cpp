@@ -62,7 +62,7 @@ void expectNearWaypoints(const Route& route, const std::vector<Eigen::Vector3d>&
   }
 }
 
-/// Largest change of heading between neighbouring segments, per metre [rad/m].
+/// Largest change of heading between neighboring segments, per meter [rad/m].
 double largestBend(const Route& route) {
   double largest = 0.0;
   const std::vector<double>& arcs = route.path().arcLengths();
@@ -83,7 +83,7 @@ double shareOfEqualLanes(const Route& first, const Route& second) {
   return static_cast<double>(equal) / static_cast<double>(first.lanes().size());
 }
 
-/// Where a test way begins or ends: long enough to be told from the points alone.
+/// Where a test route starts or ends: long enough to be told from the points alone.
 bool usableEnd(const Lane& lane) {
   return lane.routable && !lane.internal && lane.centerline.length() > 5.0;
 }
@@ -137,7 +137,7 @@ TEST_P(Towns, BuildsEveryBench2DriveRoute) {
               match_ms / static_cast<double>(ids.size()));
 }
 
-TEST_P(Towns, MatchesWaysWithLaneChangesAgain) {
+TEST_P(Towns, MatchesRoutesWithLaneChangesAgain) {
   const std::string town = GetParam();
   const fs::path source = test::realData("carla_towns/" + town + ".net.xml");
   CDIFF_SKIP_WITHOUT(source);

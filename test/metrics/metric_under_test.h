@@ -39,14 +39,14 @@ class MetricUnderTest final : private metrics::MetricSink {
     metric_->observe(tick);
   }
 
-  bool has(const std::string& figure) {
+  bool has(const std::string& name) {
     report();
-    return measures_.count(figure) == 1;
+    return measures_.count(name) == 1;
   }
-  /// What it reports for one of its figures.
-  metrics::Measure at(const std::string& figure) {
+  /// What it reports for one of its measures.
+  metrics::Measure at(const std::string& name) {
     report();
-    return measures_.at(figure);
+    return measures_.at(name);
   }
   std::vector<metrics::MetricEntry> list(const std::string& place) {
     report();
@@ -55,8 +55,8 @@ class MetricUnderTest final : private metrics::MetricSink {
 
  private:
   void report() { metric_->report(*this); }
-  void set(const metrics::FigureDefinition& figure, metrics::Measure measure) override {
-    measures_[figure.name] = std::move(measure);
+  void set(const metrics::MeasureDefinition& definition, metrics::Measure measure) override {
+    measures_[definition.name] = std::move(measure);
   }
   void setList(const std::string& place, std::vector<metrics::MetricEntry> entries) override {
     lists_[place] = std::move(entries);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Where the reference figures lie, for tests.
+/// Where the reference measures lie, for tests.
 #pragma once
 
 #include <cstdlib>

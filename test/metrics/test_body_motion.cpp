@@ -29,7 +29,7 @@ class ComfortMeasures {
     motion_.observeCbvs(sightings);
   }
   Measure uncomfortable() { return comfort_.at("cbv_uncomfortable_percent"); }
-  Measure motion(const std::string& figure) { return motion_.at(figure); }
+  Measure motion(const std::string& definition) { return motion_.at(definition); }
 
  private:
   test::MetricUnderTest comfort_{"cbv_comfort"};
@@ -72,7 +72,7 @@ TEST(ComfortMeasures, TakesJerkBetweenDecisionsOfOneVehicle) {
   EXPECT_NEAR(*comfort.motion("cbv_jerk_min_mps3").value, -3.0, 1e-12);
 }
 
-TEST(ComfortMeasures, BeginsAnewAfterAGap) {
+TEST(ComfortMeasures, StartsOverAfterAGap) {
   // A jump from 0 to 2 m/s^2 would be 20 m/s^3, but the vehicle was no CBV in between.
   ComfortMeasures comfort;
   comfort.observe({moving("a", 5.0, 0.0)});

@@ -30,7 +30,7 @@ ContactFault judge(const ContactParty& ego, const ContactParty& other) {
   return judgeContact(ego, other, kStep, kStanding);
 }
 
-// Boxes of one length that follow each other touch at 4.5 m between their centres.
+// Boxes of one length that follow each other touch at 4.5 m between their centers.
 TEST(ContactFault, AStrikerFromBehindIsAtFault) {
   // 4.45 m now, and before 4.45 + 0.05 (5 - 2) = 4.6: they meet after 2 / 3 of the tick, where the
   // ego's front is at 2.25 - 5 x 0.05 / 3 = 2.1667.
@@ -119,7 +119,7 @@ TEST(ContactFault, HeadOnTheOneOffItsLanesIsAtFault) {
 }
 
 /// Heading -10 degrees, beside the ego on its left: the ego's front left corner (2.25, 0.9) is 0.25
-/// behind and 0.948 right of its centre, so 0.890 m off its axis (0.9 m is its flank), and was
+/// behind and 0.948 right of its center, so 0.890 m off its axis (0.9 m is its flank), and was
 /// 0.960 m at the tick before.
 ContactParty cuttingIn() { return party({2.0, 1.848, -10, 8}); }
 

@@ -65,7 +65,7 @@ map::RoadNetwork twoWays() {
       .network();
 }
 
-TEST(OutsideLanes, BeginsHalfAMetreBeyondTheLane) {
+TEST(OutsideLanes, StartsHalfAMeterBeyondTheLane) {
   const map::RoadNetwork network = twoWays();
   EXPECT_FALSE(isOutsideLanes(network, at(50, -2.09, 5), {}));  // 1.6 + 0.5 = 2.1
   EXPECT_TRUE(isOutsideLanes(network, at(50, -2.11, 5), {}));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A figure's name and place stand as strings in its metric's file alone, so that a metric is one
+/// A measure's name and place stand as strings in its metric's file alone, so that a metric is one
 /// file.
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Strings that mean another thing than the figure of the same name, by file.
+/// Strings that mean another thing than the measure of the same name, by file.
 const std::set<std::pair<std::string, std::string>> kOtherMeanings = {
-    {"record/summary_figures.cpp", "cbv_distance_m"}};  // of a CBV to its conflict point
+    {"record/summary_measures.cpp", "cbv_distance_m"}};  // of a CBV to its conflict point
 
 /// Texts of sources by path below their folder.
 using Sources = std::map<std::string, std::string>;
@@ -53,9 +53,9 @@ std::vector<std::string> metricFilesWith(const Sources& sources, const std::stri
   return files;
 }
 
-/// The place that the registry fills in where a figure spells none.
-std::string defaultPlace(const FigureDefinition& figure) {
-  return "/metrics/" + std::string(figure.name) + "/value";
+/// The place that the registry fills in where a measure spells none.
+std::string defaultPlace(const MeasureDefinition& definition) {
+  return "/metrics/" + std::string(definition.name) + "/value";
 }
 
 TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
@@ -63,13 +63,13 @@ TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
   ASSERT_GT(sources.size(), 100U);
   std::size_t spelt_places = 0;
   for (const MetricDescriptor& metric : metricDescriptors()) {
-    for (const FigureDefinition& figure : metric.figures) {
-      const auto named = metricFilesWith(sources, figure.name);
-      EXPECT_EQ(named.size(), 1U) << figure.name << ": " << ::testing::PrintToString(named);
-      const auto placed = metricFilesWith(sources, figure.place);
+    for (const MeasureDefinition& definition : metric.measures) {
+      const auto named = metricFilesWith(sources, definition.name);
+      EXPECT_EQ(named.size(), 1U) << definition.name << ": " << ::testing::PrintToString(named);
+      const auto placed = metricFilesWith(sources, definition.place);
       spelt_places += placed.size();
-      if (figure.place == defaultPlace(figure) && placed.empty()) continue;
-      EXPECT_EQ(placed, named) << figure.place;
+      if (definition.place == defaultPlace(definition) && placed.empty()) continue;
+      EXPECT_EQ(placed, named) << definition.place;
     }
   }
   EXPECT_GT(spelt_places, 20U);
@@ -78,9 +78,9 @@ TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
 TEST(MetricKeys, AreFoundInEveryFileThatSpellsThem) {
   const Sources sources = {{"a.cpp", "x = \"cbv_count\";"},
                            {"b.cpp", "// as cbv_count\ny = \"cbv_counts\";"},
-                           {"record/summary_figures.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
+                           {"record/summary_measures.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
   EXPECT_EQ(filesWith(sources, "cbv_count"),
-            (std::vector<std::string>{"a.cpp", "record/summary_figures.cpp"}));
+            (std::vector<std::string>{"a.cpp", "record/summary_measures.cpp"}));
   EXPECT_TRUE(filesWith(sources, "cbv_distance_m").empty());
 }
 

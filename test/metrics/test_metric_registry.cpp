@@ -13,22 +13,22 @@
 namespace cdiff::metrics {
 namespace {
 
-constexpr FigureDefinition kTicks = {
+constexpr MeasureDefinition kTicks = {
     "test_ticks",       "", "Ticks", "count", Direction::kNeither, Subject::kEgo,
     "Number of ticks.", "", 0,
 };
 
-/// Counts ticks; reports `figure`.
+/// Counts ticks; reports `measure`.
 class Ticks final : public Metric {
  public:
-  explicit Ticks(const FigureDefinition& figure) : figure_(figure) {}
+  explicit Ticks(const MeasureDefinition& row) : definition_(row) {}
   void observe(const MetricTick&) override { ++ticks_; }
   void report(MetricSink& sink) const override {
-    sink.set(figure_, {static_cast<double>(ticks_), ticks_, "furlongs", ""});
+    sink.set(definition_, {static_cast<double>(ticks_), ticks_, "furlongs", ""});
   }
 
  private:
-  const FigureDefinition& figure_;
+  const MeasureDefinition& definition_;
   std::size_t ticks_ = 0;
 };
 
@@ -42,7 +42,7 @@ MetricDescriptor ticksMetric(const std::string& source) {
 
 /// The registration below stays for the program's life: each test that needs it calls this.
 void registerOnce() {
-  if (findFigure(kTicks.name) == nullptr) registerMetric(ticksMetric("ticks_plugin.so"));
+  if (findMeasure(kTicks.name) == nullptr) registerMetric(ticksMetric("ticks_plugin.so"));
 }
 
 std::string refusalOf(const MetricDescriptor& descriptor) {
@@ -54,39 +54,38 @@ std::string refusalOf(const MetricDescriptor& descriptor) {
   return "";
 }
 
-TEST(FigureDefinitions, HaveUniqueNamesAndPlaces) {
+TEST(MeasureDefinitions, HaveUniqueNamesAndPlaces) {
   std::set<std::string> names;
   std::set<std::string> places;
   const std::regex name("[a-z][a-z0-9_]*");
-  for (const FigureDefinition& figure : figureDefinitions()) {
-    EXPECT_TRUE(std::regex_match(figure.name, name)) << figure.name;
-    EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
-    EXPECT_TRUE(places.insert(figure.place).second) << figure.place;
-    const std::string definition = figure.definition;
-    EXPECT_GT(definition.size(), 15U) << figure.name;
-    EXPECT_EQ(definition.back(), '.') << figure.name;
-    EXPECT_STRNE(figure.label, "") << figure.name;
-    EXPECT_EQ(findFigure(figure.name), &figure);
+  for (const MeasureDefinition& row : measureDefinitions()) {
+    EXPECT_TRUE(std::regex_match(row.name, name)) << row.name;
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_TRUE(places.insert(row.place).second) << row.place;
+    const std::string definition = row.definition;
+    EXPECT_GT(definition.size(), 15U) << row.name;
+    EXPECT_EQ(definition.back(), '.') << row.name;
+    EXPECT_STRNE(row.label, "") << row.name;
+    EXPECT_EQ(findMeasure(row.name), &row);
   }
-  EXPECT_EQ(findFigure("no_figure"), nullptr);
+  EXPECT_EQ(findMeasure("no_measure"), nullptr);
 }
 
-TEST(FigureDefinitions, AreAllReportedByTheirMetrics) {
+TEST(MeasureDefinitions, AreAllReportedByTheirMetrics) {
   const test::StraightRoad road;
   const SessionMeasures measures = SessionMetrics({}, road.drivable_area, road.route).measures();
-  for (const FigureDefinition& figure : figureDefinitions()) {
-    const Measure measure = measures.at(figure);
-    EXPECT_NE(measure.reason, "not computed") << figure.name;
-    EXPECT_EQ(measure.unit, figure.unit) << figure.name;
-    EXPECT_EQ(measure.value.has_value(), measure.reason.empty()) << figure.name;
+  for (const MeasureDefinition& row : measureDefinitions()) {
+    const Measure measure = measures.at(row);
+    EXPECT_NE(measure.reason, "not computed") << row.name;
+    EXPECT_EQ(measure.unit, row.unit) << row.name;
+    EXPECT_EQ(measure.value.has_value(), measure.reason.empty()) << row.name;
   }
 }
 
-TEST(FigureDefinitions, OfAGroupAreInTheOrderOfTheirNames) {
+TEST(MeasureDefinitions, OfAGroupAreInTheOrderOfTheirNames) {
   std::vector<std::string> names;
-  for (const FigureDefinition& figure : figureDefinitions()) {
-    if (std::string(figure.place).rfind("/metrics/rift_compat/", 0) == 0)
-      names.emplace_back(figure.name);
+  for (const MeasureDefinition& row : measureDefinitions()) {
+    if (std::string(row.place).rfind("/metrics/rift_compat/", 0) == 0) names.emplace_back(row.name);
   }
   EXPECT_EQ(names.size(), 17U);
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
@@ -94,8 +93,8 @@ TEST(FigureDefinitions, OfAGroupAreInTheOrderOfTheirNames) {
 
 TEST(MetricRegistry, MeasuresWhatAPluginRegisters) {
   registerOnce();
-  ASSERT_NE(findFigure("test_ticks"), nullptr);
-  EXPECT_STREQ(findFigure("test_ticks")->place, "/metrics/test_ticks/value");
+  ASSERT_NE(findMeasure("test_ticks"), nullptr);
+  EXPECT_STREQ(findMeasure("test_ticks")->place, "/metrics/test_ticks/value");
   const test::StraightRoad road;
   SessionMetrics metrics({}, road.drivable_area, road.route);
   for (std::uint64_t tick = 0; tick < 3; ++tick)
@@ -112,20 +111,20 @@ TEST(MetricRegistry, NamesBothSourcesOfANameThatIsTaken) {
   EXPECT_NE(same.find("other_plugin.so"), std::string::npos) << same;
   MetricDescriptor shipped = ticksMetric("other_plugin.so");
   shipped.name = "my_collisions";
-  shipped.figures.front().name = "ego_collisions";
-  const std::string figure = refusalOf(shipped);
-  EXPECT_NE(figure.find("figure 'ego_collisions'"), std::string::npos) << figure;
-  EXPECT_NE(figure.find("e2e_cdiff"), std::string::npos) << figure;
-  shipped.figures.front().name = "my_collisions";
-  shipped.figures.front().place = "/ego/collisions";
-  EXPECT_NE(refusalOf(shipped).find("figure 'my_collisions'"), std::string::npos);
-  EXPECT_EQ(findFigure("my_collisions"), nullptr);
+  shipped.measures.front().name = "ego_collisions";
+  const std::string refusal = refusalOf(shipped);
+  EXPECT_NE(refusal.find("measure 'ego_collisions'"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("e2e_cdiff"), std::string::npos) << refusal;
+  shipped.measures.front().name = "my_collisions";
+  shipped.measures.front().place = "/ego/collisions";
+  EXPECT_NE(refusalOf(shipped).find("measure 'my_collisions'"), std::string::npos);
+  EXPECT_EQ(findMeasure("my_collisions"), nullptr);
 }
 
 TEST(MetricRegistry, RefusesADescriptorThatLacksSomething) {
   MetricDescriptor descriptor = ticksMetric("a_plugin.so");
   descriptor.name = "other_ticks";
-  descriptor.figures.clear();
+  descriptor.measures.clear();
   EXPECT_NE(refusalOf(descriptor).find("a_plugin.so lacks"), std::string::npos);
   descriptor = ticksMetric("a_plugin.so");
   descriptor.name = "other_ticks";
@@ -137,25 +136,25 @@ TEST(MetricRegistry, RefusesNamesAndPlacesThatNoFileCouldHold) {
   MetricDescriptor descriptor = ticksMetric("a_plugin.so");
   descriptor.name = "other_ticks";
   for (const char* name : {"", "Other ticks", "other/ticks", "_x"}) {
-    descriptor.figures.front().name = name;
+    descriptor.measures.front().name = name;
     EXPECT_NE(refusalOf(descriptor).find("must be snake_case"), std::string::npos) << name;
   }
-  descriptor.figures.front().name = "other_ticks";
+  descriptor.measures.front().name = "other_ticks";
   for (const char* place : {"ticks", "/ticks/other", "/ego", "/ego/", "ego/ticks", "/"}) {
-    descriptor.figures.front().place = place;
+    descriptor.measures.front().place = place;
     EXPECT_NE(refusalOf(descriptor).find("must lie below"), std::string::npos) << place;
   }
-  EXPECT_EQ(findFigure("other_ticks"), nullptr);
+  EXPECT_EQ(findMeasure("other_ticks"), nullptr);
 }
 
-// Last: from here on every session has a metric that reports a figure of another one.
+// Last: from here on every session has a metric that reports a measure of another one.
 TEST(MetricRegistryWithAMistake, NamesAMetricThatReportsWhatIsNotIts) {
-  static constexpr FigureDefinition kOwn = {
-      "test_own", "", "Own", "", Direction::kNeither, Subject::kEgo, "A figure.", "", 3,
+  static constexpr MeasureDefinition kOwn = {
+      "test_own", "", "Own", "", Direction::kNeither, Subject::kEgo, "A measure.", "", 3,
   };
-  static const FigureDefinition other = *findFigure("ego_collisions");
+  static const MeasureDefinition other = *findMeasure("ego_collisions");
   registerMetric({"test_mistake",
-                  "Reports a figure of another metric.",
+                  "Reports a measure of another metric.",
                   {kOwn},
                   [](const MetricContext&) { return std::make_unique<Ticks>(other); },
                   "mistake.so"});
@@ -167,7 +166,7 @@ TEST(MetricRegistryWithAMistake, NamesAMetricThatReportsWhatIsNotIts) {
   } catch (const core::Error& error) {
     EXPECT_STREQ(error.what(),
                  "metric 'test_mistake' of mistake.so reports 'ego_collisions', which is not among "
-                 "its figures");
+                 "its measures");
   }
 }
 

@@ -87,8 +87,8 @@ PostEncroachmentTimes driven(const Drive& ego, const Drive& cbv, int ticks, doub
 }
 
 TEST(PostEncroachmentTimes, IsExitToEntryOfTheAreaWherePathsCrossAtRightAngles) {
-  // The ego's rear passes the CBV's far side, y = 0.9, with its centre at 3.3 m: 23.3 m at 10 m/s,
-  // 2.33 s. The CBV's front comes to x = -0.9 with its centre at -3.3 m: 36.7 m at 9 m/s, 4.0778 s.
+  // The ego's rear passes the CBV's far side, y = 0.9, with its center at 3.3 m: 23.3 m at 10 m/s,
+  // 2.33 s. The CBV's front comes to x = -0.9 with its center at -3.3 m: 36.7 m at 9 m/s, 4.0778 s.
   auto times = driven({0, -20, 90, 10}, {-40, 0, 0, 9}, 200);
   const std::vector<PostEncroachment> all = times.times();
   ASSERT_EQ(all.size(), 1U);
@@ -99,14 +99,14 @@ TEST(PostEncroachmentTimes, IsExitToEntryOfTheAreaWherePathsCrossAtRightAngles) 
   EXPECT_EQ(times.mean().n, 1U);
 }
 
-TEST(PostEncroachmentTimes, TellsWhoWasFirst) {
+TEST(PostEncroachmentTimes, SaysWhoWasFirst) {
   const auto all = driven({-40, 0, 0, 9}, {0, -20, 90, 10}, 200).times();
   EXPECT_NEAR(*all[0].seconds, 36.7 / 9.0 - 2.33, 1e-9);
   EXPECT_FALSE(all[0].ego_first);
 }
 
 TEST(PostEncroachmentTimes, IsTheNetTimeGapOfOneBehindTheOther) {
-  // 20 m of centres, 15.2 m between bumpers, both at 8 m/s: 1.9 s.
+  // 20 m of centers, 15.2 m between bumpers, both at 8 m/s: 1.9 s.
   const auto all = driven({20, 0, 0, 8}, {0, 0, 0, 8}, 200).times();
   EXPECT_NEAR(*all[0].seconds, 1.9, 1e-9);
   EXPECT_TRUE(all[0].ego_first);
@@ -153,7 +153,7 @@ std::optional<double> sampledTime(const Drive& ego, const Drive& cbv, double dur
   return std::nullopt;
 }
 
-TEST(PostEncroachmentTimes, AgreeWithDenseSamplesOnObliqueWays) {
+TEST(PostEncroachmentTimes, AgreeWithDenseSamplesOnObliquePaths) {
   // A sampled exit is at most one sample early, a sampled entry at most one late: 0 to 0.02 s more.
   std::size_t defined = 0;
   for (int i = 0; i < 24; ++i) {
@@ -170,7 +170,7 @@ TEST(PostEncroachmentTimes, AgreeWithDenseSamplesOnObliqueWays) {
   EXPECT_GE(defined, 6U);
 }
 
-TEST(PostEncroachmentTimes, RemembersTheWayOfAReleasedCbv) {
+TEST(PostEncroachmentTimes, RemembersWhereAReleasedCbvDrove) {
   // The CBV crosses first and is then released; the ego comes 2.1 s behind it.
   PostEncroachmentTimes times(10.0);
   const Drive cbv{0, -20, 90, 10};
@@ -192,7 +192,7 @@ TEST(PostEncroachmentTimes, NamesTheReasonWithoutCbv) {
 
 TEST(TimesBetween, GivesTheRangeOfASharedPlace) {
   // The first stands at the origin during [0, 1], the second drives onto it with 10 m/s during
-  // [5, 6]: from 8.8 m to -1.2 m of centres, contact from 4.8 m on: u >= 0.4, so 5.4 - 1 at the
+  // [5, 6]: from 8.8 m to -1.2 m of centers, contact from 4.8 m on: u >= 0.4, so 5.4 - 1 at the
   // shortest; 6 - 0 at the longest.
   SweptBox standing;
   standing.box = {{0, 0}, 0.0, 4.8, 1.8};

@@ -68,7 +68,7 @@ TEST(RiftHistogram, DrawsZerosWhenEmpty) {
   EXPECT_EQ(riftSpeedHistogram().resample(2), (std::vector<double>{0.0, 0.0}));
 }
 
-TEST(RiftHistogram, GivesThePublishedSpeedFigures) {
+TEST(RiftHistogram, GivesThePublishedSpeedValues) {
   const auto histogram =
       filled(riftSpeedHistogram(), {10, 20, 30, 40, 50, 60, 120, 160, 120, 60, 20, 10});
   const double deviation = std::sqrt(*histogram.variance());
@@ -78,7 +78,7 @@ TEST(RiftHistogram, GivesThePublishedSpeedFigures) {
   EXPECT_NEAR(*shapiroWilk(histogram.resample(3000)).w, 0.956949, 1e-6);
 }
 
-TEST(RiftHistogram, GivesThePublishedAccelerationFigure) {
+TEST(RiftHistogram, GivesThePublishedAccelerationValue) {
   const auto histogram =
       filled(riftAccelerationHistogram(), {0, 0, 0, 0, 50, 80, 90, 70, 50, 40, 60, 40, 20});
   EXPECT_NEAR(*shapiroWilk(histogram.resample(3000)).w, 0.931462, 1e-6);

@@ -35,11 +35,11 @@ class RiftMeasures {
     rates_.observe(tick);
   }
   Measure at(const std::string& key) {
-    const std::string figure = "rift_compat_" + key;
+    const std::string measure = "rift_compat_" + key;
     for (test::MetricUnderTest* metric : {&interaction_, &motion_, &rates_}) {
-      if (metric->has(figure)) return metric->at(figure);
+      if (metric->has(measure)) return metric->at(measure);
     }
-    ADD_FAILURE() << key << " is no figure of RIFT";
+    ADD_FAILURE() << key << " is no measure of RIFT";
     return {};
   }
 
@@ -88,7 +88,7 @@ TEST(RiftMeasures, CountEarlySamplesAgainAtEveryTick) {
   EXPECT_EQ(measure.n, 3U);
 }
 
-TEST(RiftMeasures, GiveThePublishedFigureOfARamp) {
+TEST(RiftMeasures, GiveThePublishedValueOfARamp) {
   // 0 to 10 m/s over 40 s at 10 Hz: S-WD 5.65 and mean 3.38 (4.51 and 5.00 if every sample counted
   // once).
   RiftMeasures rift;
@@ -101,7 +101,7 @@ TEST(RiftMeasures, GiveThePublishedFigureOfARamp) {
   EXPECT_EQ(rift.at("speed_wasserstein_mps").target, "8.5 m/s for all (30 km/h in RIFT's bins)");
 }
 
-TEST(RiftMeasures, RepeatJerksThatBeginAtZero) {
+TEST(RiftMeasures, RepeatJerksThatStartAtZero) {
   // |a| 0.5, 0.7: jerks 5 and 2 m/s^3 in bins (4, 6] and (0, 2] with midpoints 5 and 1, the first
   // counted twice: mean 11/3; E[mid^2] = 51/3 = 17, variance 17 - 121/9 = 32/9.
   RiftMeasures rift;

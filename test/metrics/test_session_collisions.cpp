@@ -60,7 +60,7 @@ TEST_F(SessionCollisions, BetweenEgoAndBackgroundLeaveTheCbvsAlone) {
 }
 
 TEST_F(SessionCollisions, BetweenTwoCbvsCountOnceButTwiceForRift) {
-  // Decision ticks 0 and 2 lie 100 m of CBV way apart: 2 collided lives are 20 per km.
+  // Decision ticks 0 and 2 lie 100 m of CBV route apart: 2 collided lives are 20 per km.
   const SessionMeasures measures = after({{"a", "b"}}, present_);
   EXPECT_EQ(*measures.at("cbv_collisions").value, 1U);
   EXPECT_NEAR(*measures.at("rift_compat_collisions_per_km").value, 20.0, 1e-9);

@@ -130,7 +130,7 @@ TEST_F(SessionMetricsTest, ComparesCbvSpeedsWithTheTarget) {
 
 TEST(SpeedError, CapsTheTargetByTheLanesLimit) {
   // Target 20 m/s on a lane of 13.89 m/s: known by the lane's id at tick 0, by the place (1 m off
-  // the centre line) at tick 2; 40 m off the road at tick 4 only the target is left.
+  // the centerline) at tick 2; 40 m off the road at tick 4 only the target is left.
   const test::StraightRoad road;
   SessionMetricsOptions options;
   options.target_speed = 20.0;
@@ -202,7 +202,7 @@ TEST_F(SessionMetricsTest, TakesTimesToCollisionAtDecisions) {
 
 TEST_F(SessionMetricsTest, CountsCornersOffTheRoadOnTheVehiclesLevel) {
   // The lane ends at y = 1.6, half a width is 0.9: at y = 0.7 a corner is on its border, at 0.71
-  // off it, at 1.7 the centre too. 6 m above the road everything is off it.
+  // off it, at 1.7 the center too. 6 m above the road everything is off it.
   const double places[] = {0.0, 0.69, 0.71, 1.7};
   for (std::uint64_t tick = 0; tick < 4; ++tick) observe(tick, {cbv("a", 50, places[tick], 5)});
   EXPECT_NEAR(*metrics_.measures().at("cbv_off_road_percent").value, 25.0, 1e-9);
@@ -235,11 +235,11 @@ TEST(SessionMetricsOnABridge, MeasuresVehiclesOnTheirOwnLevel) {
   EXPECT_EQ(observed(50.0, 8.0), (std::vector<double>{0.0, 0.0, 0.0}));
   EXPECT_EQ(observed(50.0, 0.0), (std::vector<double>{100.0, 100.0, 100.0}));
   // Half a lane is 1.6 m, half a vehicle 0.9 m: 1 m aside the corners are off the bridge, the
-  // centre is not.
+  // center is not.
   EXPECT_EQ(observed(51.0, 8.0), (std::vector<double>{0.0, 0.0, 100.0}));
 }
 
-TEST_F(SessionMetricsTest, TellsCbvsFromAllVehicles) {
+TEST_F(SessionMetricsTest, DistinguishesCbvsFromAllVehicles) {
   // Decision 0: background 20 m ahead (1.52 s), CBV 30 m ahead (2.52 s). Decision 2: the CBV is in
   // the next lane. Decision 4: no CBV, nothing ahead.
   observe(0, {ego(0, 0, 10), cbv("c", 30, 0, 0), background("b", 20, 0, 0)});

@@ -22,7 +22,7 @@ TEST(ShapiroWilk, GivesShapiroAndWilksOwnExample) {
   EXPECT_TRUE(test.reason.empty());
 }
 
-TEST(ShapiroWilk, GivesTheFigureOfEquallySpacedValues) {
+TEST(ShapiroWilk, GivesTheStatisticOfEquallySpacedValues) {
   EXPECT_NEAR(*shapiroWilk(ramp(20)).w, 0.960375, 1e-6);
 }
 

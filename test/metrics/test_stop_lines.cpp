@@ -10,7 +10,7 @@
 namespace cdiff::metrics {
 namespace {
 
-constexpr double kTail = 0.8 * 2.4;  // behind the centre of a vehicle of 4.8 m
+constexpr double kTail = 0.8 * 2.4;  // behind the center of a vehicle of 4.8 m
 constexpr double kFront = 2.4;
 
 /// East along y = 0 with a line at x = 100: straight on (link 0) or left (link 1); north along x =

@@ -28,7 +28,7 @@ TEST(TimeToCollision2d, TestsTheLongSides) {
 }
 
 TEST(TimeToCollision2d, IsTheLaterOfBothDirectionsWhenCrossing) {
-  // Both fronts reach the other's near side, 0.9 m before the centre, after 16.7 m.
+  // Both fronts reach the other's near side, 0.9 m before the center, after 16.7 m.
   EXPECT_NEAR(*timeToCollision2d(car(0, -20, 90, 10), car(-20, 0, 0, 10)), 1.67, 1e-12);
   // From x = -28 the second's front comes to x = -0.9 after 24.7 m (2.47 s); the first's rear has
   // left y = 0.9 after 20 + 2.4 + 0.9 = 23.3 m (2.33 s).
@@ -51,7 +51,7 @@ TEST(TimeToCollision2d, IsAbsentWithoutContactAhead) {
 // Both 4 m x 2 m, the second turned by 45 degrees. Along x the shadows, 2 + 3 / sqrt 2 = 4.1213 m
 // to each side, overlap while |15 - 2 t| <= 4.1213: 5.44 to 9.56 s; along the second's heading, as
 // long, while |-35 + 3 t| / sqrt 2 <= 4.1213: 9.72 to 13.61 s. The one is over when the other
-// begins, though both axes across overlap then.
+// starts, though both axes across overlap then.
 TEST(TimeToCollision2d, IsAbsentWhenOneShadowHasLeftBeforeAnotherComes) {
   const MovingBox first{{{0.0, 0.0}, 0.0, 4.0, 2.0}, {0.0, 0.0}};
   const MovingBox second{{{15.0, -50.0}, core::degreesToRadians(45.0), 4.0, 2.0}, {-2.0, 5.0}};

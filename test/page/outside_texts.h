@@ -22,7 +22,7 @@ inline const std::string& outsideText() {
   return text;
 }
 
-/// How it begins where it is shown as text.
+/// How it starts where it is shown as text.
 inline const char* escapedText() { return "&lt;script&gt;alert(1)&lt;/script&gt;&quot;&#39;&amp;"; }
 
 /// 10 000 letters without a space.

@@ -127,7 +127,7 @@ TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
   ASSERT_EQ(views.size(), 9u);
   EXPECT_DOUBLE_EQ(views[0][0], 2.8);
   EXPECT_EQ(data["vehicles"][views[0][1].get<std::size_t>()][0], "bg_1");
-  EXPECT_EQ(views[0][2].get<std::string>().substr(0, 4), "/9j/");  // JPEG begins with FF D8 FF
+  EXPECT_EQ(views[0][2].get<std::string>().substr(0, 4), "/9j/");  // JPEG starts with FF D8 FF
   EXPECT_DOUBLE_EQ(data["period"], 0.4);
   // The ego alone, then the ego and bg_1: index, slot, throttle, brake, steer, gap, 2D-TTC.
   ASSERT_EQ(data["moments"].size(), 31u);
@@ -187,11 +187,11 @@ TEST(HtmlReport, ASessionWithoutTicksHasAPage) {
   EXPECT_EQ(page.find("nan"), std::string::npos);
 }
 
-TEST(HtmlReport, TellsWhatHappenedUnderTheVerdict) {
+TEST(HtmlReport, ReportsWhatHappenedUnderTheVerdict) {
   const std::string banner =
       between(pageOf("crossing"), "class=\"banner not_judged\"", "</header>");
   EXPECT_NE(banner.find("bg_1 was the only CBV"), std::string::npos);
-  EXPECT_NE(banner.find("Nobody touched the ego."), std::string::npos);
+  EXPECT_NE(banner.find("No vehicle touched the ego."), std::string::npos);
 }
 
 TEST(HtmlReport, EqualSessionsGiveEqualPages) { EXPECT_EQ(seenPage(), seenPage()); }

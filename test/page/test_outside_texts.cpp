@@ -59,26 +59,28 @@ TEST(OutsideTexts, TheReaderOfTagsNoticesWhatIsNotEscaped) {
   EXPECT_FALSE(test::isPlain(outsideText()));
 }
 
-/// A figure as a plug-in may define it.
+/// A measure as a plug-in may define it.
 void registerNamedMetric() {
   static const std::string label = "label " + outsideText();
-  static const metrics::FigureDefinition figure = {"outside_figure",
-                                                   "",
-                                                   label.c_str(),
-                                                   "count",
-                                                   metrics::Direction::kNeither,
-                                                   metrics::Subject::kEgo,
-                                                   "A figure.",
-                                                   "",
-                                                   0};
+  static const metrics::MeasureDefinition definition = {"outside_measure",
+                                                        "",
+                                                        label.c_str(),
+                                                        "count",
+                                                        metrics::Direction::kNeither,
+                                                        metrics::Subject::kEgo,
+                                                        "A measure.",
+                                                        "",
+                                                        0};
   class Nothing final : public metrics::Metric {
     void observe(const metrics::MetricTick&) override {}
-    void report(metrics::MetricSink& sink) const override { sink.set(figure, {1.0, 1, {}, {}}); }
+    void report(metrics::MetricSink& sink) const override {
+      sink.set(definition, {1.0, 1, {}, {}});
+    }
   };
   metrics::registerMetric(
       {"outside_metric",
        "A metric.",
-       {figure},
+       {definition},
        [](const metrics::MetricContext&) { return std::make_unique<Nothing>(); },
        "a_plugin.so"});
 }
@@ -148,9 +150,10 @@ TEST(OutsideTexts, TheJunitFileIsXmlAndHoldsThem) {
 TEST(OutsideTexts, TheTrainingPageShowsThem) {
   const auto page = [](const std::string& text) {
     TrainingStage stage{"stage" + text, 10, 20.0, {}};
-    const std::vector<std::string> figures = {"loss" + text, "loss", "held_out_" + text + "_ade_m",
-                                              "held_out_b_ade_m"};
-    for (const std::string& figure : figures) stage.curves[figure] = {{10.0, 1.0}, {20.0, 0.5}};
+    const std::vector<std::string> quantities = {"loss" + text, "loss",
+                                                 "held_out_" + text + "_ade_m", "held_out_b_ade_m"};
+    for (const std::string& quantity : quantities)
+      stage.curves[quantity] = {{10.0, 1.0}, {20.0, 0.5}};
     return trainingReport("model" + text, {stage}, "card " + text);
   };
   expectSameElements(page(outsideText()), page("a"));

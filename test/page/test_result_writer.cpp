@@ -96,7 +96,7 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                   "acceleration_shapiro_wilk_p", "speed_wasserstein_mps", "rift_compat"}));
 }
 
-/// Places of all numbers (and nulls) of figures below `object`, whose own place is `place`.
+/// Places of all numbers (and nulls) of measures below `object`, whose own place is `place`.
 void addPlaces(const Json& object, const std::string& place, std::set<std::string>& places) {
   for (const auto& [key, value] : object.items()) {
     const std::string here = place + "/" + key;
@@ -109,7 +109,7 @@ void addPlaces(const Json& object, const std::string& place, std::set<std::strin
   }
 }
 
-TEST(ResultWriter, EveryFigureOfTheSummaryIsDefinedAndInItsPlace) {
+TEST(ResultWriter, EveryMeasureOfTheSummaryIsDefinedAndInItsPlace) {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
@@ -120,17 +120,17 @@ TEST(ResultWriter, EveryFigureOfTheSummaryIsDefinedAndInItsPlace) {
   for (const char* section : {"ego", "cbv", "metrics"})
     addPlaces(summary[section], "/" + std::string(section), places);
   std::set<std::string> defined;
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    defined.insert(figure.place);
-    const Json& there = summary.at(Json::json_pointer(figure.place));
-    const metrics::Measure measure = writer.result().measures.at(figure);
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    defined.insert(definition.place);
+    const Json& there = summary.at(Json::json_pointer(definition.place));
+    const metrics::Measure measure = writer.result().measures.at(definition);
     if (measure.value) {
       const double number = there.is_boolean() ? there.get<bool>() : there.get<double>();
-      EXPECT_EQ(number, *measure.value) << figure.place;
+      EXPECT_EQ(number, *measure.value) << definition.place;
     } else {
-      EXPECT_TRUE(there.is_null()) << figure.place;
+      EXPECT_TRUE(there.is_null()) << definition.place;
     }
-    EXPECT_EQ(measure.unit, figure.unit) << figure.name;
+    EXPECT_EQ(measure.unit, definition.unit) << definition.name;
   }
   EXPECT_EQ(places, defined);
 }
@@ -152,7 +152,7 @@ TEST(ResultWriter, SummaryNamesWhatSpeedsAreComparedWith) {
   EXPECT_EQ(encroachments[0].contains("reason"), encroachments[0]["seconds"].is_null());
 }
 
-TEST(ResultWriter, SummaryTellsWhatHappened) {
+TEST(ResultWriter, SummaryReportsWhatHappened) {
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut);
   const Json summary = summaryOf(scratch);
@@ -199,7 +199,7 @@ TEST(ResultWriter, SummaryTellsWhatHappened) {
 })json"));
 }
 
-TEST(ResultWriter, SummaryTellsTheEgosInfractions) {
+TEST(ResultWriter, SummaryReportsTheEgosInfractions) {
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kBlocked);
   const Json ego = summaryOf(scratch)["ego"];
@@ -223,7 +223,7 @@ TEST(ResultWriter, SummaryTellsTheEgosInfractions) {
   EXPECT_EQ(found["pedestrian_collisions_reason"], "these sessions have no pedestrians");
 }
 
-TEST(ResultWriter, SummaryTellsWhatWasPlannedAndGuided) {
+TEST(ResultWriter, SummaryReportsWhatWasPlannedAndGuided) {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
@@ -268,7 +268,7 @@ TEST(ResultWriter, TraceHashIsThatOfTheFileAndTheSameForTheSameSession) {
   EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'), 1 + 121 * 3);
 }
 
-TEST(ResultWriter, AbsentFiguresAreNullBesideAReason) {
+TEST(ResultWriter, AbsentMeasuresAreNullBesideAReason) {
   const test::TemporaryFolder scratch;
   const test::SampleSetup sample;
   ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
@@ -297,7 +297,7 @@ TEST(ResultWriter, ExitCodesFollowStatusAndVerdict) {
   EXPECT_EQ(runSample(scratch, SessionStatus::kInterrupted, strict), 130);
 }
 
-TEST(ResultWriter, JunitTellsFailureFromError) {
+TEST(ResultWriter, JunitDistinguishesFailureFromError) {
   session::ScenarioOptions options = test::sampleOptions();
   options.name = "a <b> & \"c\"";
   options.verdict.minimum_route_completion = 90.0;
@@ -408,7 +408,7 @@ TEST(ResultWriter, SessionYamlHoldsTheScenarioItWasRunWith) {
   EXPECT_EQ(core::dumpOptions(loaded), core::dumpOptions(options));
 }
 
-TEST(ResultWriter, TableNamesFiguresVerdictAndPaths) {
+TEST(ResultWriter, TableNamesMeasuresVerdictAndPaths) {
   session::ScenarioOptions options = test::sampleOptions();
   options.verdict.minimum_route_completion = 90.0;
   const test::TemporaryFolder scratch;

@@ -42,7 +42,7 @@ TEST_F(SampleSheet, ChoosesSomeOfEveryKind) {
   EXPECT_LT(all, whole);
 }
 
-TEST_F(SampleSheet, ShowsImageAndWayOfEach) {
+TEST_F(SampleSheet, ShowsImageAndRouteOfEach) {
   const learning::Dataset stored(folder_.path(), 0.0);
   const learning::DrivingDataset dataset(stored);
   const std::string page = sampleSheet("data <a>", {{"samples", "40", ""}}, dataset, 1);

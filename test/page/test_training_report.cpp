@@ -59,7 +59,7 @@ TEST(TrainingReport, NamesTheLineOfWhatIsNoCurve) {
   EXPECT_NE(errorOf(std::string(kCurves) + "x,y\n").find("line 7"), std::string::npos);
   EXPECT_NE(errorOf(std::string(kCurves) + "denoiser,six,3,loss,1\n").find("line 7"),
             std::string::npos);
-  EXPECT_NE(errorOf("stage,step,seconds,figure,value\n").find("no figure"), std::string::npos);
+  EXPECT_NE(errorOf("stage,step,seconds,figure,value\n").find("no measurement"), std::string::npos);
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ inline Points straight(double x0, double y0, double x1, double y1, double z = 0.
   return {{x0, y0, z}, {x1, y1, z}};
 }
 
-/// Straight along +x for `before` metres, 90 degrees left with `radius`, straight along +y for
-/// `after` metres; 5-degree chords.
+/// Straight along +x for `before` meters, 90 degrees left with `radius`, straight along +y for
+/// `after` meters; 5-degree chords.
 inline Points leftBend(double before, double radius, double after) {
   Points points = {{0.0, 0.0, 0.0}};
   for (int i = 0; i <= 18; ++i) {

@@ -105,8 +105,8 @@ MirrorSteers steersOn(const Points& road, const traffic::Vehicle& vehicle) {
 /// with the shipped weights: the sums of the two steers are -0.003, 0.005 and 0.015 in the three
 /// scenes below, 4 standard errors of a sum 0.015 at most. 0.05 holds both. With earlier weights
 /// and an image that was not mirrored the sums were 0.11, 0.10 and 0.15, with a route that was not,
-/// 0.16 in the bend; a steer of the wrong sign breaks the tests' first line. Measure anew for other
-/// weights.
+/// 0.16 in the bend; a steer of the wrong sign breaks the tests' first line. Measure again for
+/// other weights.
 constexpr double kTolerance = 0.05;
 
 void expectMirrored(const MirrorSteers& steers) {
@@ -132,7 +132,7 @@ TEST(MirrorSymmetry, HeadingLeftOfTheRoute) {
   expectMirrored(steers);
 }
 
-TEST(MirrorSymmetry, BeginOfALeftBend) {
+TEST(MirrorSymmetry, StartOfALeftBend) {
   const MirrorSteers steers =
       steersOn(testing::leftBend(40.0, 20.0, 60.0), testing::vehicleAt("v", 39.0, 0.0, 0.0, 6.0));
   EXPECT_GT(steers.scene.mean(), 0.0);

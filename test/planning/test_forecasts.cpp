@@ -41,7 +41,7 @@ TEST(MotionForecast, HeldSteerTurnsOnACircle) {
 
 TEST(MotionForecast, FollowsTheLaneOfACarOfSumo) {
   // Straight 20 m, then a quarter circle of 12 m: the car starts 5 m before the bend, 0.5 m left of
-  // the centre line.
+  // the centerline.
   const auto network = makeNetwork({{"bend", leftBend(20.0, 12.0, 50.0)}});
   traffic::Vehicle vehicle = vehicleAt("a", 15.0, 0.5, 0.0, 8.0);
   vehicle.lane_id = "bend_0";
@@ -64,7 +64,7 @@ TEST(MotionForecast, GoesOnIntoTheNextLaneAndLimitsTheSpeed) {
   vehicle.acceleration = 2.0;
   const auto states = forecastMotion(vehicle, network, {}, 20);
   EXPECT_EQ(states[19].speed, 9.0);
-  // The second lane begins at its own origin; the car has left the x axis there.
+  // The second lane starts at its own origin; the car has left the x axis there.
   EXPECT_GT(states[19].position.y(), 3.0);
 }
 

@@ -101,7 +101,7 @@ inline traffic::TrafficSnapshot sampleSnapshot(std::uint64_t tick) {
   return snapshot;
 }
 
-/// "bg_1" in slot 0 since tick 52; the ways cross at (102, -2), 97 m along the ego's.
+/// "bg_1" in slot 0 since tick 52; the routes cross at (102, -2), 97 m along the ego's.
 inline cbv::CbvSelection sampleSelection(std::uint64_t tick, const map::RoadNetwork& network) {
   cbv::CbvSelection selection;
   selection.tick = tick;

@@ -34,25 +34,25 @@ TEST(GuidanceLog, AveragesEachObjectiveOverItsDecisions) {
   EXPECT_EQ(log.series()[0].objective, "speed");
   EXPECT_EQ(log.series()[0].samples[1].vehicle_id, "v1");
   EXPECT_EQ(log.series()[0].samples[1].time, 0.1);
-  const ObjectiveFigures speed = figuresOf(log.series()[0]);
+  const ObjectiveSummary speed = summaryOf(log.series()[0]);
   EXPECT_EQ(speed.n, 2u);
   EXPECT_DOUBLE_EQ(*speed.weight, 2.0);
   EXPECT_DOUBLE_EQ(*speed.value, 5.0);
   EXPECT_DOUBLE_EQ(*speed.gradient_norm, 1.5);
   EXPECT_DOUBLE_EQ(*speed.capped_share, 0.25);
   EXPECT_EQ(speed.dropped, 3);
-  EXPECT_EQ(figuresOf(log.series()[1]).n, 1u);
+  EXPECT_EQ(summaryOf(log.series()[1]).n, 1u);
   EXPECT_DOUBLE_EQ(*log.trustRegion().mean, 0.5);
 }
 
 TEST(GuidanceLog, WhatIsNotFiniteIsLeftOutOfTheMean) {
   GuidanceLog log;
   decide(log, 0.0, 0, {{"speed", 1.0, kNan, kNan, 0.0, 0}});
-  EXPECT_FALSE(figuresOf(log.series()[0]).value.has_value());
+  EXPECT_FALSE(summaryOf(log.series()[0]).value.has_value());
   decide(log, 0.1, 0, {{"speed", 1.0, 3.0, kNan, 0.0, 0}});
-  EXPECT_DOUBLE_EQ(*figuresOf(log.series()[0]).value, 3.0);
-  EXPECT_FALSE(figuresOf(log.series()[0]).gradient_norm.has_value());
-  EXPECT_EQ(figuresOf(log.series()[0]).n, 2u);
+  EXPECT_DOUBLE_EQ(*summaryOf(log.series()[0]).value, 3.0);
+  EXPECT_FALSE(summaryOf(log.series()[0]).gradient_norm.has_value());
+  EXPECT_EQ(summaryOf(log.series()[0]).n, 2u);
 }
 
 TEST(GuidanceLog, TheEgoAndUnguidedPlansDoNotCount) {

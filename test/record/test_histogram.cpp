@@ -26,7 +26,7 @@ TEST(Histogram, CountsAndKeepsMeanAndDeviation) {
   EXPECT_NEAR(sample.share(2), 2.0 / 6.0, 1e-15);
 }
 
-TEST(Histogram, AnEmptySampleHasNoFigures) {
+TEST(Histogram, AnEmptySampleHasNoStatistics) {
   Histogram sample(0.0, 1.0, 3);
   EXPECT_FALSE(sample.mean().has_value());
   EXPECT_EQ(sample.share(0), 0.0);
@@ -60,7 +60,7 @@ TEST(HistogramChart, EmptySamplesLeaveAnEmptyChart) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(DrivingLog, TellsCbvsFromBackgroundAtDecisions) {
+TEST(DrivingLog, DistinguishesCbvsFromBackgroundAtDecisions) {
   DrivingLog log;
   for (std::uint64_t tick = 0; tick <= 60; ++tick) log.observe(test::sampleSnapshot(tick));
   // 31 decisions; bg_1 is a CBV after tick 52: at 54, 56, 58 and 60. bg_2 never is.

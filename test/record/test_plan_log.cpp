@@ -60,18 +60,18 @@ TEST(PlanLog, MeasuresDisplacementsBetweenPlanAndDrive) {
   drive.decide(2, 10.0, 0.5, 32, 0.75);  // as driven, but 0.5 m to the left
   for (std::uint64_t tick = 3; tick <= 41; ++tick) drive.tick(tick);
   // After 1 s (ticks 20 and 22): 1 m and 0.5 m; nearest rank ceil(0.95 x 2) = 2.
-  const SampleFigures one = displacementFigures(drive.log(), 1.0);
+  const SampleSummary one = displacementSummary(drive.log(), 1.0);
   EXPECT_EQ(one.n, 2u);
   EXPECT_NEAR(*one.mean, 0.75, 1e-12);
   EXPECT_NEAR(*one.percentile_95, 1.0, 1e-12);
   // After 2 s: tick 40 was driven, tick 42 was not.
-  const SampleFigures two = displacementFigures(drive.log(), 2.0);
+  const SampleSummary two = displacementSummary(drive.log(), 2.0);
   EXPECT_EQ(two.n, 1u);
   EXPECT_NEAR(*two.mean, 2.0, 1e-12);
-  const SampleFigures three = displacementFigures(drive.log(), 3.0);
+  const SampleSummary three = displacementSummary(drive.log(), 3.0);
   EXPECT_EQ(three.n, 0u);
   EXPECT_FALSE(three.mean.has_value());
-  const SampleFigures mismatch = mismatchFigures(drive.log());
+  const SampleSummary mismatch = mismatchSummary(drive.log());
   EXPECT_DOUBLE_EQ(*mismatch.mean, 0.5);
   EXPECT_DOUBLE_EQ(*mismatch.percentile_95, 0.75);
   EXPECT_DOUBLE_EQ(*mismatch.maximum, 0.75);
@@ -125,8 +125,8 @@ TEST(PlanLog, LeavesOutWhatIsNotFinite) {
   drive.decide(0, std::numeric_limits<double>::quiet_NaN(), 0.0, 32,
                std::numeric_limits<double>::infinity());
   for (std::uint64_t tick = 1; tick <= 30; ++tick) drive.tick(tick);
-  EXPECT_EQ(displacementFigures(drive.log(), 1.0).n, 0u);
-  EXPECT_FALSE(mismatchFigures(drive.log()).maximum.has_value());
+  EXPECT_EQ(displacementSummary(drive.log(), 1.0).n, 0u);
+  EXPECT_FALSE(mismatchSummary(drive.log()).maximum.has_value());
 }
 
 TEST(PlanLog, IsEmptyWithoutRollouts) {

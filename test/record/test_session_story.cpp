@@ -29,12 +29,12 @@ std::vector<std::string> storyUntil(std::uint64_t last, bool touch = false) {
   return sessionStory(writer.result());
 }
 
-TEST(SessionStory, TellsWayApproachAndContact) {
+TEST(SessionStory, ReportsRouteApproachAndContact) {
   const std::vector<std::string> story = storyUntil(120, true);
   ASSERT_EQ(story.size(), 3u);
   // 48 m of 190 m.
   EXPECT_EQ(story[0], "The ego drove 25.3 % of its route in 6.0 s.");
-  // At 6 s the centres are 49 m and 22 m apart. Outlines: 49 - 2.25 - 0.9 and 22 - 2.25 - 0.9.
+  // At 6 s the centers are 49 m and 22 m apart. Outlines: 49 - 2.25 - 0.9 and 22 - 2.25 - 0.9.
   EXPECT_EQ(story[1],
             "bg_1 was the only CBV and came as near as 49.57 m between the outlines, at 6.00 s.");
   EXPECT_EQ(story[2],
@@ -46,7 +46,7 @@ TEST(SessionStory, SaysWhenThereWasNoCbvAndNoContact) {
   const std::vector<std::string> story = storyUntil(20);
   ASSERT_EQ(story.size(), 3u);
   EXPECT_EQ(story[1], "No vehicle was selected as CBV.");
-  EXPECT_EQ(story[2], "Nobody touched the ego.");
+  EXPECT_EQ(story[2], "No vehicle touched the ego.");
 }
 
 TEST(SessionStory, SaysWhenNothingHappened) {

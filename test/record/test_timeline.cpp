@@ -45,7 +45,7 @@ TEST(Timeline, FindsTheSmallestGapBetweenFrames) {
   traffic::TrafficSnapshot snapshot;
   snapshot.vehicles = {test::sampleVehicle("ego", traffic::VehicleRole::kEgo, {0.0, 0.0}, 0.0, 8.0),
                        test::sampleVehicle("a", traffic::VehicleRole::kCbv, {20.0, 0.0}, 0.0, 6.0)};
-  // Boxes of 4.5 m in line: the gap is the distance of the centres less 4.5 m.
+  // Boxes of 4.5 m in line: the gap is the distance of the centers less 4.5 m.
   const double distances[] = {20.0, 15.0, 10.0, 12.0};
   for (std::uint64_t tick = 0; tick < 4; ++tick) {
     snapshot.tick = tick;

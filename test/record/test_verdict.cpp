@@ -7,25 +7,25 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "record/verdict_cases.h"
 
 namespace cdiff::record {
 namespace {
 
-namespace figures = metrics::figures;
+namespace known = metrics::known;
 using traffic::SessionStatus;
 
 metrics::SessionMeasures someMeasures() {
   metrics::SessionMeasures measures;
-  measures.set(figures::kRouteCompletion, {80.0, 1, "", ""});
+  measures.set(known::kRouteCompletion, {80.0, 1, "", ""});
   measures.protocol = "bench2drive";
-  measures.set(figures::kDrivingScore, {33.6, 1, "", ""});
-  measures.set(figures::kEgoCollisions, {1.0, 1, "", ""});
-  measures.set(figures::kRedLights, {1.0, 3, "", ""});
-  measures.set(figures::kStopSigns, {2.0, 2, "", ""});
-  measures.set(figures::kOutsideLanes, {1.25, 400, "%", ""});
-  measures.set(figures::kCbvOffRoad, {5.0, 100, "%", ""});
+  measures.set(known::kDrivingScore, {33.6, 1, "", ""});
+  measures.set(known::kEgoCollisions, {1.0, 1, "", ""});
+  measures.set(known::kRedLights, {1.0, 3, "", ""});
+  measures.set(known::kStopSigns, {2.0, 2, "", ""});
+  measures.set(known::kOutsideLanes, {1.25, 400, "%", ""});
+  measures.set(known::kCbvOffRoad, {5.0, 100, "%", ""});
   measures.ego_contacts = {{117, 5.85, "cbv_1", true, "it did", 5.0, 2.0, "front", "rear", 1, 2}};
   return measures;
 }
@@ -48,7 +48,7 @@ TEST(Verdict, WithoutAnyRuleEverythingThatEndedByItselfIsNotJudged) {
   }
 }
 
-TEST(Verdict, ContactsAreToldWhereNothingIsJudged) {
+TEST(Verdict, ContactsAreReportedWhereNothingIsJudged) {
   metrics::SessionMeasures measures = someMeasures();
   measures.ego_contacts.push_back(
       {118, 5.9, "cbv_2", false, "it did not", 5.0, 2.0, "rear", "front", 1, 2});
@@ -105,7 +105,7 @@ TEST(Verdict, NamesEveryRuleThatIsNotMet) {
            "the ego had 1 collision; at most 0 allowed",
            "red lights that the ego ran: 1; at most 0 allowed",
            "stop signs that the ego did not obey: 2; at most 1 allowed",
-           "share of its way that the ego drove outside the lanes: 1.25 %; at most 1 % allowed",
+           "share of its route that the ego drove outside the lanes: 1.25 %; at most 1 % allowed",
            "the CBVs were off the road 5.00 % of their time; at most 4 % allowed"}));
   EXPECT_EQ(verdict.decided_by,
             std::vector<std::string>({"status", "route_completion", "contacts_at_fault",
@@ -130,7 +130,7 @@ TEST(Verdict, WhatAContactWithoutFaultMeansIsTheScenarios) {
 
 TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   metrics::SessionMeasures measures = someMeasures();
-  measures.set(figures::kRedLights, {std::nullopt, 0, "", "no road network was given"});
+  measures.set(known::kRedLights, {std::nullopt, 0, "", "no road network was given"});
   session::VerdictOptions rules;
   rules.maximum_red_lights = 0.0;
   const Verdict verdict = judged(rules, SessionStatus::kCompleted, measures);
@@ -138,7 +138,7 @@ TEST(Verdict, AnAbsentInfractionIsSkippedWithItsReason) {
   EXPECT_EQ(verdict.checks[1].outcome, CheckOutcome::kSkipped);
   EXPECT_EQ(verdict.checks[1].text,
             "red_lights of the ego is not defined: no road network was given");
-  measures.set(figures::kCbvOffRoad, {std::nullopt, 0, "%", "no CBV was driven"});
+  measures.set(known::kCbvOffRoad, {std::nullopt, 0, "%", "no CBV was driven"});
   rules.maximum_cbv_off_road_percent = 0.0;
   EXPECT_EQ(judged(rules, SessionStatus::kCompleted, measures).checks[2].outcome,
             CheckOutcome::kSkipped);

@@ -17,7 +17,7 @@ inline Pixel pixelAt(const traffic::CameraImage& image, int column, int row) {
   return {at[0], at[1], at[2]};
 }
 
-/// Level camera: f = 80, centre (79.5, 47.5), eye 0.5 m ahead of the centre and 1.4 m up.
+/// Level camera: f = 80, center (79.5, 47.5), eye 0.5 m ahead of the center and 1.4 m up.
 inline CameraOptions levelCamera() {
   CameraOptions options;
   options.pitch = 0.0;

@@ -92,12 +92,12 @@ TEST(FrontCameraScenes, NearerHidesFartherInAnyOrder) {
 TEST(FrontCameraScenes, LongVehicleHidesOneWhoseCentreIsNearer) {
   FrontCamera camera(levelCamera(), straightRoad());
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
-  // A train of 30 m from x = 6 to 36, its right side at y = 2.25; its centre is 20.8 m from the
+  // A train of 30 m from x = 6 to 36, its right side at y = 2.25; its center is 20.8 m from the
   // eye.
   traffic::Vehicle train = vehicleAt("train", 21.0, 3.5);
   train.dimensions = {30.0, 2.5, 3.2};
   // The car's corners (16, 6.1) to (20.5, 7.9) are seen through y = 2.25 at x >= 0.5 + 15.5 * 2.25
-  // / 6.1 = 6.2 (and 6.2 at the far left one); its centre is 19.1 m away.
+  // / 6.1 = 6.2 (and 6.2 at the far left one); its center is 19.1 m away.
   const traffic::Vehicle car = vehicleAt("car", 18.25, 7.0);
   const auto only_train = camera.render(snapshotOf({ego, train}), ego);
   EXPECT_NE(camera.render(snapshotOf({ego, car}), ego).rgb,
@@ -177,8 +177,8 @@ TEST(FrontCameraScenes, MarkingsAreWhereTheLanesEnd) {
   FrontCamera camera(levelCamera(), mirrorableNetwork(1.0));
   traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
   const auto image = camera.render(snapshotOf({ego}), ego);
-  // Row 75: depth 112 / 27.5 = 4.07 m, 19.6 columns per metre. The right edge's line is at y =
-  // -1.63: column 111.5; the dashes at y = 1.75 (a dash begins at -40 + 45 = 5: bare here):
+  // Row 75: depth 112 / 27.5 = 4.07 m, 19.6 columns per meter. The right edge's line is at y =
+  // -1.63: column 111.5; the dashes at y = 1.75 (a dash starts at -40 + 45 = 5: bare here):
   // column 45.1; the yellow line of our side at y = 5.13 lies beyond the image, so row 57
   // (depth 11.8): column 44.7.
   const auto brightest = [&](int row, int begin, int end) {

@@ -28,7 +28,7 @@ class FakeSimulator {
   /// with `node` as the only node that the session counts on; its files go to `results`.
   FakeSimulator(const std::string& node, const std::filesystem::path& results);
 
-  /// Spins until `done` or 20 s of wall time; answers whether it is done.
+  /// Spins until `done` or 20 s of wall time; returns whether it is done.
   template <class Done>
   bool until(Done done) {
     const ::ros::WallTime limit = ::ros::WallTime::now() + ::ros::WallDuration(20.0);

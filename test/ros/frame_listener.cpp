@@ -39,7 +39,8 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   tf2_ros::Buffer frames;
   const tf2_ros::TransformListener listener(frames);
-  e2e_cdiff::TrafficSnapshot::ConstPtr last;  // its transform has come when the next snapshot does
+  e2e_cdiff::TrafficSnapshot::ConstPtr
+      last;  // its transform has arrived when the next snapshot does
   bool written = false;
   const boost::function<void(const e2e_cdiff::TrafficSnapshot::ConstPtr&)> look =
       [&](const e2e_cdiff::TrafficSnapshot::ConstPtr& traffic) {

@@ -202,9 +202,9 @@ TEST(Metrics, AcknowledgesEveryTickAndWritesTheResult) {
             1 + 4 * 2);  // header, then two vehicles at four ticks
   ASSERT_TRUE(simulator.until([&] { return simulator.reports.count(3) > 0; }));
   EXPECT_TRUE(simulator.reports.at(3)->final);
-  // All figures at the first decision, then once in a simulated second, and at the end.
-  EXPECT_EQ(simulator.reports.at(3)->measures.size(), metrics::figureDefinitions().size());
-  EXPECT_EQ(simulator.reports.at(0)->measures.size(), metrics::figureDefinitions().size());
+  // All measures at the first decision, then once in a simulated second, and at the end.
+  EXPECT_EQ(simulator.reports.at(3)->measures.size(), metrics::measureDefinitions().size());
+  EXPECT_EQ(simulator.reports.at(0)->measures.size(), metrics::measureDefinitions().size());
   EXPECT_TRUE(simulator.reports.at(2)->measures.empty());
 }
 

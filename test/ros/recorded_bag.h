@@ -23,7 +23,7 @@ inline void runInOneProcess(const session::SessionRequest& request,
   const session::SessionSetup setup(session::resolveRequest(request));
   session::ClosedLoop loop(setup);
   page::ResultWriter writer(setup, {"test", "SUMO", true}, folder);
-  ros::SessionBag bag(setup, folder / "session.bag", {"test", "SUMO"});
+  ros::SessionBagWriter bag(setup, folder / "session.bag", {"test", "SUMO"});
   loop.addObserver(writer);
   loop.addObserver(bag);
   const std::atomic<bool> never{false};

@@ -82,8 +82,8 @@ inline std::string traceInOneProcess(const session::SessionRequest& request,
 inline nlohmann::json withoutWallClock(nlohmann::json summary) {
   summary.erase("wall_seconds");
   summary.erase("real_time_factor");
-  for (auto& [planner, figures] : summary["planner_latency_ms"].items())
-    figures = {{"n", figures["n"]}};
+  for (auto& [planner, measures] : summary["planner_latency_ms"].items())
+    measures = {{"n", measures["n"]}};
   return summary;
 }
 

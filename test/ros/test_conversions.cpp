@@ -194,7 +194,7 @@ TEST(Conversions, SessionInfoRebuildsTheSameSetup) {
 }
 
 void set(metrics::SessionMeasures& measures, const char* name, const metrics::Measure& measure) {
-  measures.set(*metrics::findFigure(name), measure);
+  measures.set(*metrics::findMeasure(name), measure);
 }
 
 TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
@@ -213,18 +213,18 @@ TEST(Conversions, InfractionsAndPenaltyAreMeasures) {
   EXPECT_EQ(found.at("ego_infraction_static_collisions").reason, "none");
 }
 
-TEST(Conversions, EveryDefinedFigureGoesOut) {
+TEST(Conversions, EveryDefinedMeasureIsPublished) {
   metrics::SessionMeasures measures;
   set(measures, "ego_collisions", {2.0, 1, "", ""});
   set(measures, "speed_wasserstein_mps", {1.0 / 3.0, 7, "", "", "a target"});
   set(measures, "post_encroachment_mean_s", {std::nullopt, 0, "", "no CBV was driven"});
   const std::vector<msgs::Measure> all = toMsg(measures);
-  ASSERT_EQ(all.size(), metrics::figureDefinitions().size());
+  ASSERT_EQ(all.size(), metrics::measureDefinitions().size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const metrics::FigureDefinition& figure = metrics::figureDefinitions()[i];
-    EXPECT_EQ(all[i].name, figure.name);
-    EXPECT_EQ(std::isnan(all[i].value), !all[i].defined) << figure.name;
-    EXPECT_EQ(all[i].defined, measures.at(figure).value.has_value()) << figure.name;
+    const metrics::MeasureDefinition& definition = metrics::measureDefinitions()[i];
+    EXPECT_EQ(all[i].name, definition.name);
+    EXPECT_EQ(std::isnan(all[i].value), !all[i].defined) << definition.name;
+    EXPECT_EQ(all[i].defined, measures.at(definition).value.has_value()) << definition.name;
     if (all[i].name == "ego_collisions") {
       EXPECT_EQ(all[i].value, 2.0);
     }
@@ -239,7 +239,7 @@ TEST(Conversions, EveryDefinedFigureGoesOut) {
   }
 }
 
-TEST(MetricDiagnostics, ShowMainFiguresAndWhatIsUndefined) {
+TEST(MetricDiagnostics, ShowMainMeasuresAndWhatIsUndefined) {
   metrics::SessionMeasures measures;
   set(measures, "cbv_count", {3.0, 1, "", ""});
   set(measures, "ttc_min_s", {0.5, 12, "", "", ""});
@@ -254,7 +254,7 @@ TEST(MetricDiagnostics, ShowMainFiguresAndWhatIsUndefined) {
             "cbv_off_road_percent, post_encroachment_min_s");
 }
 
-TEST(Conversions, UndefinedFiguresAreNan) {
+TEST(Conversions, UndefinedMeasuresAreNan) {
   metrics::TickMeasures measures;
   measures.ego_speed = 1.0 / 3.0;
   const msgs::MetricReport report = toMsg(measures, test::sampleSnapshot(4));

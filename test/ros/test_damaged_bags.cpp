@@ -94,7 +94,7 @@ class DamagedBags : public testing::Test {
     test::editBag(bag(), damaged(), edit);
     return replay(damaged());
   }
-  /// Every snapshot through `change`, which answers whether it stays.
+  /// Every snapshot through `change`, which returns whether it stays.
   static Outcome replayWith(const std::function<bool(msgs&)>& change) {
     return replayEdited([&](const rosbag::MessageInstance& message, rosbag::Bag& to) {
       const auto snapshot = message.instantiate<msgs>();

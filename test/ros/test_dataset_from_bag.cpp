@@ -93,7 +93,7 @@ class DatasetFromBag : public testing::Test {
     const auto setup =
         collection::collectionSetup(collection::collectionScenario(wanted, options), options);
     collection::CollectionLoop loop(*setup, options, images);
-    SessionBag bag(*setup, file, {"test", "SUMO"});
+    SessionBagWriter bag(*setup, file, {"test", "SUMO"});
     bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
     loop.addObserver(bag);
     auto witness = std::make_unique<Witness>(loop);
@@ -152,7 +152,7 @@ TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
   }
 }
 
-TEST_F(DatasetFromBag, DisplacedSamplesLookFromBesideTheWayAndReturnToIt) {
+TEST_F(DatasetFromBag, DisplacedSamplesLookFromBesideTheRouteAndReturnToIt) {
   DatasetStatistics statistics;
   const auto samples = samplesFromBag(bag(), allDisplaced(), statistics);
   double off_route = 0.0;

@@ -209,7 +209,7 @@ TEST_F(DrivingBagTest, DrivingBackwardsGivesNoSampleButNoiseAtStandstillDoes) {
   EXPECT_EQ(statistics_.dropped["reversing"], 0U);
 }
 
-TEST_F(DrivingBagTest, TheWayDrivenGoesStraightOnWhereTheVehicleReverses) {
+TEST_F(DrivingBagTest, TheDrivenPathGoesStraightOnWhereTheVehicleReverses) {
   rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
   writeOdometry(bag, 5.0, 1.0, 3.5);
   bag.close();

@@ -75,7 +75,8 @@ TEST(PacedAnswers, TakesAVehicleOverWhenItsFirstActionHasCome) {
   PacedAnswers paced(0.05);
   EXPECT_FALSE(paced.selection(*snapshotAt(4), answers).has_value());
   answers.add(ChannelId::kSelection, selectionFor(4, 0, "bg_9"));
-  ASSERT_TRUE(paced.selection(*snapshotAt(4), answers).has_value());  // it has come: releases count
+  ASSERT_TRUE(
+      paced.selection(*snapshotAt(4), answers).has_value());  // it has arrived: releases count
   EXPECT_FALSE(paced.selection(*snapshotAt(5), answers).has_value());
   answers.add({ChannelId::kCbvControl, 0}, controlFor(4, 0, "bg_9"));
   const auto taken = paced.selection(*snapshotAt(6), answers);

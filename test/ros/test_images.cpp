@@ -95,7 +95,7 @@ TEST(ImageConversions, CameraInfoIsThePinhole) {
   std_msgs::Header header;
   header.frame_id = "bg_7/camera_optical";
   const sensor_msgs::CameraInfo info = toCameraInfoMsg({}, header);
-  // 160 x 96, 90 degrees: f = 80 / tan 45 degrees, centre (159 / 2, 95 / 2).
+  // 160 x 96, 90 degrees: f = 80 / tan 45 degrees, center (159 / 2, 95 / 2).
   const double f = 80.0 / std::tan(std::atan(1.0));
   EXPECT_NEAR(info.K[0], f, 1e-12);
   EXPECT_EQ(info.K[4], info.K[0]);

@@ -46,7 +46,7 @@ TEST(TickAnswers, GuidanceIsWaitedForWhereItIsExpected) {
   TickAnswers answers(0.05, guidance);
   answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_gone"));
-  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());  // nobody to drive
+  EXPECT_EQ(namesOf(answers.missing(snapshot)), Texts());  // no one to drive
   answers = TickAnswers(0.05, guidance);
   answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
@@ -188,10 +188,10 @@ TEST(ParticipantBook, FollowsNodesFromWaitingToFinished) {
   ParticipantBook book({kMetricsNode, kEgoPlannerNode});
   EXPECT_EQ(book.notReady(),
             (Texts{"ego_planner_node has not started", "metrics_node has not started"}));
-  book.note(ackOf(kMetricsNode, msgs::TickAck::WAITING, 0, "nobody publishes /ego/control yet"));
+  book.note(ackOf(kMetricsNode, msgs::TickAck::WAITING, 0, "no node publishes /ego/control yet"));
   book.note(ackOf(kEgoPlannerNode, msgs::TickAck::READY));
   EXPECT_EQ(book.notReady(),
-            Texts{"metrics_node is not ready (nobody publishes /ego/control yet)"});
+            Texts{"metrics_node is not ready (no node publishes /ego/control yet)"});
   book.note(ackOf(kMetricsNode, msgs::TickAck::READY));
   EXPECT_EQ(book.notReady(), Texts());
   EXPECT_EQ(book.notAcknowledged(0),

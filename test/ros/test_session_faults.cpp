@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // Sessions some of whose processes are killed or stopped: each ends in time, names who is to blame,
-// leaves a result and no process. "Campaign" runs under
-// `scripts/test --nightly`.
+// leaves a result and no process. "Campaign" runs under `scripts/test --nightly`.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -77,7 +76,7 @@ TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
   session_.launch(std::string("record:=true heartbeat_timeout:=3 ") + kLong);
   ASSERT_TRUE(session_.hasTicks()) << session_.log();
   ASSERT_TRUE(session_.signal("traffic_simulator_node", SIGSTOP));
-  // 3 s of silence and what nodes and roslaunch need to leave; before, nobody gave up.
+  // 3 s of silence and what nodes and roslaunch need to leave; before, no one gave up.
   EXPECT_LT(session_.endAfter(20.0), 12.0) << session_.log();
   expectError("traffic_simulator_node");
   EXPECT_GT(recordedTicks(), 0U);
@@ -247,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SilenceWatch, CountsOnlyTheTimeOfItsOwnLooks) {
   ros::SilenceWatch watch;
-  EXPECT_FALSE(watch.silent(100.0));  // nobody was ever heard
+  EXPECT_FALSE(watch.silent(100.0));  // no one was ever heard
   watch.heard(1.0);
   EXPECT_FALSE(watch.silent(130.0));  // one look adds 0.5 s, however long we did not look
   EXPECT_FALSE(watch.silent(130.5));  // 1.0 s is not longer than 1.0 s
@@ -285,7 +284,7 @@ TEST(Connections, KnowsWhoListenedAndDoesNotAnyMore) {
   EXPECT_FALSE(connections.stoppedListening("/my_ego"));
   connections.disconnected("/clock", "/my_ego");
   EXPECT_TRUE(connections.stoppedListening("/my_ego"));
-  EXPECT_TRUE(connections.left().empty());  // nobody had counted on it
+  EXPECT_TRUE(connections.left().empty());  // no one had counted on it
 }
 
 }  // namespace

@@ -124,8 +124,8 @@ TEST_F(PacedSession, RecordsCountsAndTimesLateAnswersAndReplaysToTheSame) {
   EXPECT_EQ(live_summary["late_answers"]["count"], counts.late);
   EXPECT_EQ(recording.snapshots.rbegin()->second->late_answers, counts.late);
   std::size_t asked = 0;
-  for (const auto& [planner, figures] : live_summary["late_answers"]["planners"].items())
-    asked += figures["asked"].get<std::size_t>();
+  for (const auto& [planner, measures] : live_summary["late_answers"]["planners"].items())
+    asked += measures["asked"].get<std::size_t>();
   EXPECT_EQ(asked, counts.asked);
   EXPECT_EQ(live_summary["planner_latency_ms"]["cbv:diffusion"]["n"], counts.calls);
   EXPECT_EQ(recording.controls, counts.answered);

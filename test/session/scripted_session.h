@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// A session on a straight road without SUMO: 600 m along x, 4 m wide, the ego's box (4.5 x 1.8 m)
-/// at x = 100 m. Vehicles are placed before the world begins.
+/// at x = 100 m. Vehicles are placed before the world starts.
 #pragma once
 
 #include <fstream>

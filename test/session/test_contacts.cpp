@@ -15,7 +15,7 @@ namespace {
 
 using traffic::TrafficSnapshot;
 
-// All boxes are 4.5 x 1.8 m and head east: they overlap where the centres are less than 4.5 m apart
+// All boxes are 4.5 x 1.8 m and head east: they overlap where the centers are less than 4.5 m apart
 // along x and less than 1.8 m along y.
 constexpr double kLength = 4.5;
 constexpr double kWidth = 1.8;
@@ -64,7 +64,7 @@ class ContactWorld {
     file << "<routes><vType id=\"car\" length=\"4.5\" width=\"1.8\"/>";
     for (const auto& [id, front] : fronts) {
       const std::string position =
-          core::formatNumber(front + 200.0);  // edge west begins at x = -200
+          core::formatNumber(front + 200.0);  // edge west starts at x = -200
       file << "<vehicle id=\"" << id << "\" type=\"car\" depart=\"0\" departPos=\"" << position
            << "\" departSpeed=\"0\"><route edges=\"west east far\"/><stop lane=\"west_0\" endPos=\""
            << position << "\" duration=\"1000\"/></vehicle>";
@@ -119,7 +119,7 @@ Texts runInto(ContactWorld& contact, const std::string& taken, int ticks) {
   return all;
 }
 
-// The car's centre is at x = -70 - 2.25 = -72.25 m, the ego's bumper 23.25 m behind its rear: at 8
+// The car's center is at x = -70 - 2.25 = -72.25 m, the ego's bumper 23.25 m behind its rear: at 8
 // m/s and full throttle less than 3 s, 60 ticks.
 TEST(Contacts, OfTheEgoWithACbvIsOnePairAtTheFirstOverlapAndTheCbvLeaves) {
   ContactWorld contact({{"car", -70.0}}, 8.0);
@@ -135,7 +135,7 @@ TEST(Contacts, OfTheEgoWithBackgroundVehiclesCountOneByOne) {
   EXPECT_EQ(contact.now().vehicles.size(), 1u) << "the ego alone";
 }
 
-// Centres up to |(4.5, 1.8)| = 4.85 m apart overlap, farther than half the lengths' sum, 4.5 m.
+// Centers up to |(4.5, 1.8)| = 4.85 m apart overlap, farther than half the lengths' sum, 4.5 m.
 TEST(Contacts, ReachToTheCornersOfBothBoxes) {
   struct Case {
     double along, aside;

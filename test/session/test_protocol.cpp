@@ -85,7 +85,7 @@ TEST_F(Protocol, DeviatedAfterThirtyPercentFifteenMetresAway) {
   EXPECT_EQ(at(42.0, 15.0, 5.0), SessionStatus::kDeviated);
 }
 
-// 10 % of the lane's 10 m/s: every metre allows 1 s more.
+// 10 % of the lane's 10 m/s: every meter allows 1 s more.
 TEST_F(Protocol, TheTimeLimitGrowsWithTheProgress) {
   ProtocolOptions options;
   options.time_limit = 5.0;

@@ -15,7 +15,7 @@ namespace cdiff::session {
 namespace {
 
 /// East along y = 0 for 400 m with a light at x = 200 m (no way through the junction). The ego
-/// drives one metre a tick; a background vehicle keeps 10 m/s beside it.
+/// drives one meter a tick; a background vehicle keeps 10 m/s beside it.
 class ProtocolScores : public testing::Test {
  protected:
   /// Changes the tick at which the ego is at x.

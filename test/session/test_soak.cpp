@@ -22,7 +22,7 @@ namespace {
 struct Holdings {
   long resident = 0;     ///< [kB]
   long descriptors = 0;  ///< open files and sockets
-  long children = 0;     ///< processes, dead ones that nobody waited for included
+  long children = 0;     ///< processes, dead ones that no one waited for included
 };
 
 Holdings holdings() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // The world over a scripted simulator: contacts, hand-over, invalid actions, a lost simulator.
-// All boxes are 4.5 x 1.8 m and head east: they overlap where the centres are less than 4.5 m apart
+// All boxes are 4.5 x 1.8 m and head east: they overlap where the centers are less than 4.5 m apart
 // along x and less than 1.8 m along y.
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(World, ACrashIsOneContactAtTheFirstOverlapAndTheCbvIsGoneAtTheNextTick) {
   EXPECT_GT(world->snapshot().ego()->state.position.x(), kEgoStart + 10.0) << "the ego goes on";
 }
 
-// Centres up to |(4.5, 1.8)| = 4.85 m apart overlap, farther than half the lengths' sum, 4.5 m.
+// Centers up to |(4.5, 1.8)| = 4.85 m apart overlap, farther than half the lengths' sum, 4.5 m.
 TEST(World, ContactsReachToTheCornersOfBothBoxes) {
   struct Case {
     double along, aside;
@@ -90,7 +90,7 @@ TEST(World, BoxesOnTwoLevelsDoNotTouch) {
   }
 }
 
-// The CBV begins 4.4 m behind a car that stands, 200 m ahead of the ego.
+// The CBV starts 4.4 m behind a car that stands, 200 m ahead of the ego.
 TEST(World, ACbvAndABackgroundVehicleInContactBothLeave) {
   ScriptedSession scripted;
   scripted.simulator().place("back", {kEgoStart + 195.6});
@@ -157,7 +157,7 @@ TEST(World, AVehicleTakenOverMovesByItsActionUntilItIsReleasedWhereItIs) {
   EXPECT_EQ(world->snapshot().find("car")->role, VehicleRole::kBackground);
 }
 
-TEST(World, ATakeOverBeginsWhereTheDisturbanceSays) {
+TEST(World, ATakeOverStartsWhereTheDisturbanceSays) {
   ScriptedSession scripted;
   scripted.simulator().place("car", {200.0});
   const auto world = scripted.makeWorld();
@@ -202,7 +202,7 @@ TEST(World, WhatTheSimulatorFailsWithEndsTheSession) {
 }
 
 // At 2.5 m/s^2 a car of 30 m/s needs 30^2 / (2 x 2.5) = 180 m to stop behind an ego that stands.
-TEST(World, WhoCouldNotAvoidTheEgoIsRemovedBeforeItBegins) {
+TEST(World, WhoCouldNotAvoidTheEgoIsRemovedBeforeItStarts) {
   ScriptedSession scripted;
   scripted.simulator().place("ahead", {kEgoStart + 20.0, 0.0, 0.0, 30.0});
   scripted.simulator().place("behind", {kEgoStart - 50.0, 0.0, 0.0, 30.0});

@@ -72,7 +72,7 @@ class CrossingWorld {
   const map::Route& route() const { return route_; }
   void close() { simulator_.reset(); }
 
-  /// Our vehicle, heading east with its centre at (x, y).
+  /// Our vehicle, heading east with its center at (x, y).
   simulation::DrivenVehicle ours(double x, double y, double speed) const {
     simulation::DrivenVehicle vehicle;
     vehicle.id = "ours";

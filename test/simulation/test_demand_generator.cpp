@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// Generated demand on a grid of 4 x 4 crossings, 150 m apart, two lanes each way; the ego route
+// Generated demand on a grid of 4 x 4 crossings, 150 m apart, two lanes each route; the ego route
 // leads straight east through the second row.
 #include <gtest/gtest.h>
 
@@ -157,7 +157,7 @@ TEST_F(Grid, NoTwoVehiclesOnALaneAreNearerThanEightMetres) {
 /// The generator and SUMO together, as a session uses them.
 class DemandInSumo : public Grid {
  protected:
-  void begin(std::uint64_t seed) {
+  void startDemand(std::uint64_t seed) {
     simulation::SumoSession session;
     session.network_file = made_.file;
     session.seed = seed;
@@ -208,7 +208,7 @@ class DemandInSumo : public Grid {
 };
 
 TEST_F(DemandInSumo, KeepsTheDensityAndPlacesOutOfSight) {
-  begin(1);
+  startDemand(1);
   for (int i = 0; i < 200; ++i) step(start(), true);
   EXPECT_GE(near(start()), 28U);
   std::size_t fewest = 1000;
@@ -231,12 +231,12 @@ TEST_F(DemandInSumo, KeepsTheDensityAndPlacesOutOfSight) {
 TEST_F(DemandInSumo, TheSameSeedGivesTheSameTraffic) {
   std::string first;
   for (int run = 0; run < 2; ++run) {
-    begin(7);
+    startDemand(7);
     for (int i = 0; i < 300; ++i) step(start(), true);
     if (run == 0) first = trace();
   }
   EXPECT_EQ(first, trace());
-  begin(8);
+  startDemand(8);
   for (int i = 0; i < 300; ++i) step(start(), true);
   EXPECT_NE(first, trace());
 }

@@ -11,7 +11,7 @@
 namespace cdiff {
 namespace {
 
-using simulation::DrivenWay;
+using simulation::DrivenRoute;
 using simulation::EdgeGraph;
 
 TEST(SumoConversion, AnglesAreClockwiseFromNorth) {
@@ -43,7 +43,7 @@ class Crossing : public testing::Test {
         route_(test::routeOnFirstLanes(lanes_, "west", "north")) {}
   std::vector<std::string> wayFrom(const std::string& edge, const map::Route* route, double length,
                                    const Eigen::Vector2d& front) const {
-    DrivenWay way(edges_, {});
+    DrivenRoute way(edges_, {});
     way.follow(route, front);
     return edges_.ids(way.edgesFrom(edges_.find(edge), length));
   }
@@ -76,7 +76,7 @@ TEST_F(Crossing, ExtendsStraightOn) {
   EXPECT_EQ(edges_.ids(way), (Names{"west", "east", "far"}));
 }
 
-TEST_F(Crossing, AWayFollowsTheRoute) {
+TEST_F(Crossing, ItsEdgesFollowTheRoute) {
   // The route turns left; the network ends 200 m behind the crossing, where only a turn back is
   // left.
   const Names way = wayFrom("west", &route_, 150.0, {-100.0, -1.6});
@@ -85,13 +85,13 @@ TEST_F(Crossing, AWayFollowsTheRoute) {
   EXPECT_EQ(way[1], "north");
 }
 
-TEST_F(Crossing, OffTheRouteAWayGoesStraightOn) {
+TEST_F(Crossing, OffTheRouteItGoesStraightOn) {
   EXPECT_EQ(wayFrom("south", &route_, 100.0, {1.6, -100.0}).at(1), "north");
   EXPECT_EQ(wayFrom("west", nullptr, 250.0, {-100.0, -1.6}), (Names{"west", "east", "far"}));
 }
 
 TEST_F(Crossing, ABridgeIsNotWithinReach) {
-  DrivenWay way(edges_, {});
+  DrivenRoute way(edges_, {});
   traffic::VehicleState state;
   state.position = {-30.0 - 2.25, -1.6};  // front bumper under the bridge at x = -30 m
   for (const map::LaneMatch& match : way.locate(state).lanes) {
@@ -105,13 +105,13 @@ TEST_F(Crossing, ABridgeIsNotWithinReach) {
 }
 
 TEST_F(Crossing, ReachEndsHalfALaneAndHalfAVehicleBesideTheLane) {
-  DrivenWay way(edges_, {});
+  DrivenRoute way(edges_, {});
   const std::vector<int> given = {edges_.find("west"), edges_.find("east")};
   traffic::VehicleState state;
   state.position = {-100.0, -1.6 - 2.4};  // (3.2 + 1.8) / 2 = 2.5 m, less 0.05 m
-  EXPECT_TRUE(way.onWay(way.locate(state), given, 1.0));
+  EXPECT_TRUE(way.onRoute(way.locate(state), given, 1.0));
   state.position.y() = -1.6 - 2.5;
-  EXPECT_FALSE(way.onWay(way.locate(state), given, 1.0));
+  EXPECT_FALSE(way.onRoute(way.locate(state), given, 1.0));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using test::kStep;
 
 const traffic::VehicleDimensions kCar;  // 4.5 x 1.8 m
 
-/// A car of SUMO on edge `west` (200 m, lane centre y = -1.6 m), driven for two seconds from x =
+/// A car of SUMO on edge `west` (200 m, lane center y = -1.6 m), driven for two seconds from x =
 /// -150 m.
 void addOther(CrossingWorld& world, double speed, int lane = 0) {
   ASSERT_TRUE(
@@ -26,7 +26,7 @@ void addOther(CrossingWorld& world, double speed, int lane = 0) {
   ASSERT_NE(world.find("other"), nullptr);
 }
 
-/// Advances a state straight ahead, sideways by `drift` metres.
+/// Advances a state straight ahead, sideways by `drift` meters.
 DrivenVehicle ahead(const CrossingWorld& world, const traffic::VehicleState& state,
                     double drift = 0.0) {
   DrivenVehicle vehicle;
@@ -141,7 +141,7 @@ TEST_P(Release, HasNoJump) {
   traffic::VehicleState state = world.find("other")->state;
   state.speed = speed;
   DrivenVehicle vehicle = ahead(world, state, offset / 40.0);
-  for (int i = 0; i < 40; ++i) {  // drifts to `offset` beside the lane's centre in 2 s
+  for (int i = 0; i < 40; ++i) {  // drifts to `offset` beside the lane's center in 2 s
     world.simulator().step({vehicle});
     if (i < 39) vehicle = ahead(world, vehicle.state, offset / 40.0);
   }
@@ -236,7 +236,7 @@ TEST(ReleaseInABend, HasNoJump) {
   EXPECT_EQ(world.find("other")->lane_id, "north_0");
 }
 
-TEST(ReleaseInAJunction, GoesOnAlongItsWay) {
+TEST(ReleaseInAJunction, GoesOnAlongItsRoute) {
   CrossingWorld world;
   addOther(world, 10.0);
   world.simulator().takeOver("other");

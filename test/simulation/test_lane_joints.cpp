@@ -16,7 +16,7 @@ using test::kStep;
 
 const traffic::VehicleDimensions kCar;  // 4.5 x 1.8 m
 
-/// Drives our vehicle along a route at `speed`, `offset` metres to the left, with a car of SUMO 8 m
+/// Drives our vehicle along a route at `speed`, `offset` meters to the left, with a car of SUMO 8 m
 /// behind its rear from the start.
 class Convoy {
  public:

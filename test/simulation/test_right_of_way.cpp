@@ -24,7 +24,7 @@ map::RoadNetwork makeNetwork() {
 
 class RightOfWayTest : public testing::Test {
  protected:
-  /// A vehicle of 4.5 m whose front bumper is `gap` metres before the stop line.
+  /// A vehicle of 4.5 m whose front bumper is `gap` meters before the stop line.
   static SimulatedVehicle on(const std::string& id, const std::string& road, double gap,
                              double speed) {
     SimulatedVehicle vehicle;
@@ -48,7 +48,7 @@ class RightOfWayTest : public testing::Test {
                         const std::string& ours = "") {
     std::string granted;
     for (double time = 0.0; time < seconds - 1e-9; time += 0.05) {
-      for (const WayChange& change :
+      for (const RightOfWayChange& change :
            row_.update(
                    vehicles, [&](const std::string& id) { return id == ours; }, 0.05)
                .vehicles) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// Traffic lights: green for everybody who still yields, or SUMO's own programme.
+// Traffic lights: green for everybody who still yields, or SUMO's own program.
 #include <gtest/gtest.h>
 
 #include <set>

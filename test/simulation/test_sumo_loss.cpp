@@ -228,7 +228,7 @@ TEST(SumoStart, ReadsDemandAndBeginTime) {
   EXPECT_DOUBLE_EQ(van.dimensions.length, 6.0);
   EXPECT_DOUBLE_EQ(van.dimensions.width, 2.0);
   EXPECT_DOUBLE_EQ(van.dimensions.height, 2.5);
-  // The front bumper departs at 50 m of the edge that begins at x = -200 m; the centre is 3 m
+  // The front bumper departs at 50 m of the edge that starts at x = -200 m; the center is 3 m
   // behind.
   EXPECT_NEAR(van.state.position.x(), -153.0, 0.2);
   EXPECT_NEAR(van.state.position.y(), -1.6, 1e-6);

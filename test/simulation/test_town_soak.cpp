@@ -20,7 +20,7 @@ using simulation::DrivenVehicle;
 using simulation::SimulatedVehicle;
 using test::kStep;
 
-/// A vehicle that we drive at constant speed along its lane's route, drifting to `target` metres
+/// A vehicle that we drive at constant speed along its lane's route, drifting to `target` meters
 /// left.
 struct Taken {
   map::Route route;

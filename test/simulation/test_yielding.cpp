@@ -14,15 +14,15 @@ using test::CrossingWorld;
 using test::kStep;
 
 constexpr double kSpeed = 8.0;          // of our vehicle [m/s]
-constexpr double kLaneY = -1.6;         // centre of the eastward lane [m]
+constexpr double kLaneY = -1.6;         // center of the eastward lane [m]
 const traffic::VehicleDimensions kCar;  // 4.5 x 1.8 m
 
 /// What happened at the crossing (times in s; -1: never).
 struct Encounter {
   double ours_through =
-      -1.0;  // our rear bumper beyond the northward lane: centre.x - 2.25 > 1.6 + 0.9
+      -1.0;  // our rear bumper beyond the northward lane: center.x - 2.25 > 1.6 + 0.9
   double other_enters =
-      -1.0;  // the other's front bumper in the eastward lane: centre.y + 2.25 > -3.2
+      -1.0;  // the other's front bumper in the eastward lane: center.y + 2.25 > -3.2
   double smallest_distance = 1e9;
 };
 

@@ -83,7 +83,7 @@ TEST_F(TrainingSuite, SameSeedGivesTheSameBytes) {
 }
 
 TEST_F(TrainingSuite, EveryRouteIsWhatItSays) {
-  std::set<std::string> ways;
+  std::set<std::string> paths;
   for (const SuiteRoute& route : suite_->routes) {
     SCOPED_TRACE(route.name);
     const session::ScenarioOptions options =
@@ -96,9 +96,9 @@ TEST_F(TrainingSuite, EveryRouteIsWhatItSays) {
     EXPECT_LE(setup.egoRoute().length(), 200.0);
     EXPECT_FALSE(setup.egoRoute().junctionStretches().empty());
     EXPECT_GE(route.conflicts, 1);
-    ways.insert(route.network + core::dumpOptions(options.route));
+    paths.insert(route.network + core::dumpOptions(options.route));
   }
-  EXPECT_EQ(ways.size(), suite_->routes.size()) << "two routes are the same";
+  EXPECT_EQ(paths.size(), suite_->routes.size()) << "two routes are the same";
 }
 
 TEST_F(TrainingSuite, SharesNoNetworkWithTheTestSuite) {

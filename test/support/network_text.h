@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Small SUMO networks written in a test: edges, junctions and connections, given by lane centre
+/// Small SUMO networks written in a test: edges, junctions and connections, given by lane center
 /// lines.
 #pragma once
 
@@ -22,7 +22,7 @@ struct LaneText {
 class NetworkText {
  public:
   /// An edge with one lane per shape (from right to left), e.g. "0,0 100,0"; internal when the id
-  /// begins with ':'.
+  /// starts with ':'.
   NetworkText& edge(const std::string& id, const std::vector<std::string>& shapes,
                     const std::string& from = "a", const std::string& to = "b",
                     const LaneText& lane = {}) {

@@ -10,7 +10,7 @@
 
 namespace cdiff::test {
 
-/// A program that a test runs; what it prints is in the file `output`, which is made anew.
+/// A program that a test runs; what it prints is in the file `output`, which is created.
 class ProgramRun : public core::GuardedProcess {
  public:
   ProgramRun(const std::filesystem::path& program, const std::vector<std::string>& arguments,

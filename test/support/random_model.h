@@ -12,7 +12,7 @@
 
 namespace cdiff::testing {
 
-/// He-scaled weights; gains of normalisations 1, their biases 0.
+/// He-scaled weights; gains of normalizations 1, their biases 0.
 inline std::map<std::string, inference::Tensor> randomTensors(
     const std::vector<inference::TensorShape>& shapes) {
   const core::RandomStream random(1, "random model");
@@ -40,7 +40,7 @@ inline std::map<std::string, inference::Tensor> randomTensors(
 }
 
 /// Without the encoder, whose 21 million weights take a second. Positions up to 20 m ahead, actions
-/// centred in their range.
+/// centered in their range.
 inline diffusion::Model randomDenoiser(const diffusion::Architecture& architecture = {}) {
   diffusion::Model model;
   model.name = "random";

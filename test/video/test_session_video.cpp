@@ -35,7 +35,7 @@ std::string outputOf(const std::string& command) {
   return output;
 }
 
-/// Frames of a video, decoded anew: rows of red, green, blue from the top left.
+/// Frames of a video, decoded again: rows of red, green, blue from the top left.
 struct Decoded {
   static constexpr std::size_t kBytes = 3U * 1280U * 720U;
   std::string rgb;
@@ -98,7 +98,7 @@ std::string videoError(const fs::path& folder, std::uint64_t last, Change change
 }
 
 void expectColor(const std::array<int, 3>& pixel, const std::array<int, 3>& wanted) {
-  // Coding loses a little; the colours of roles differ by more than 100 in some channel.
+  // Coding loses a little; the colors of roles differ by more than 100 in some channel.
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(pixel[i], wanted[i], 15) << "channel " << i;
 }
 
@@ -113,7 +113,7 @@ TEST(SessionVideo, HasEveryTenthOfASecondAndTheVerdict) {
   ASSERT_EQ(frames.count(), 3u);
   // The ego, red, in the middle of the picture from above: x 640 to 1280, y 44 to 720.
   for (std::size_t i = 0; i < 3; ++i) expectColor(frames.pixel(i, 960, 382), {198, 40, 40});
-  // 640 pixels show 120 m. The road's border is 3.2 m to the right of the ego's centre: grass 10 m
+  // 640 pixels show 120 m. The road's border is 3.2 m to the right of the ego's center: grass 10 m
   // (53 pixels) to the south.
   expectColor(frames.pixel(0, 960, 382 + 53), {238, 241, 236});
   // At 3 s the crossing vehicle is a CBV: the front view has its sky; before, there is none.
@@ -134,7 +134,7 @@ TEST(SessionVideo, ShowsACbvWhereItIs) {
             "");
   const Decoded frames = decode(scratch.path() / kVideoFile, "eq(n,10)");
   ASSERT_EQ(frames.count(), 1u);
-  // 16 / 3 pixels per metre: 160 to the left, 80 up.
+  // 16 / 3 pixels per meter: 160 to the left, 80 up.
   expectColor(frames.pixel(0, 960 - 160, 382 - 80), {123, 31, 162});
 }
 

@@ -76,7 +76,7 @@ class KeepRight : public cdiff::guidance::Objective {
   double offset_ = 0.5;
 };
 
-constexpr cdiff::metrics::FigureDefinition kEgoJerk = {
+constexpr cdiff::metrics::MeasureDefinition kEgoJerk = {
     "ego_jerk",
     "",
     "Ego jerk",

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What CBV identification says at one decision: which vehicles are critical, where they conflict
-/// with the ego, and why every other vehicle is not (paper III-B).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +10,7 @@
 
 namespace cdiff::cbv {
 
-/// Where the ways of ego and CBV meet, with the distances along each.
+/// Where the routes of ego and CBV meet, with the distances along each.
 struct ConflictPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< map frame [m]
   double ego_arc_length = 0.0;                         ///< on the ego's route, from its start [m]
@@ -48,6 +46,8 @@ struct ReleasedCbv {
   std::string reason;  ///< "contact", "gone", ...; "outranked" in life cycle "reselect"
 };
 
+/// What CBV identification says at one decision: which vehicles are critical, where they conflict
+/// with the ego, and why every other vehicle is not (paper III-B).
 struct CbvSelection {
   std::uint64_t tick = 0;
   std::vector<CbvAssignment> assignments;   ///< by slot

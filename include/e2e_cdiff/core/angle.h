@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Angles [rad]: the one place where a heading is wrapped.
 #pragma once
 
 #include <cmath>
 
 namespace cdiff::core {
+
+// Angles [rad]: the one place where a heading is wrapped.
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;  ///< [rad]

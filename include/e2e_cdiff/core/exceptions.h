@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The error types of the project: each says who must act and carries the offending value in its
-/// text.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 
 namespace cdiff::core {
+
+// The error types of the project: each says who must act and carries the offending value in its
+// text.
 
 /// Root of every error that the project throws on purpose.
 class Error : public std::runtime_error {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options structs describe their fields once (key, unit, range, sentence); loading, checking,
-/// overriding and writing them all go through that description, whatever the values come from (YAML
-/// file, `--set`, ROS parameter).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +8,10 @@
 #include <vector>
 
 namespace cdiff::core {
+
+// Options structs describe their fields once (key, unit, range, sentence); loading, checking,
+// overriding and writing them all go through that description, whatever the values come from (YAML
+// file, `--set`, ROS parameter).
 
 /// What a field is called and means.
 struct FieldInfo {
@@ -37,7 +38,7 @@ class OptionsVisitor {
   virtual void list(const FieldInfo& info, std::vector<std::string>& value) = 0;
   /// A list of points [x, y] or [x, y, z] in the map frame [m].
   virtual void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) = 0;
-  /// A nested group begins; `leave` ends it. `enter` answers whether the group is to be visited.
+  /// Enters a nested group, which `leave` ends; returns whether the group is to be visited.
   virtual bool enter(const FieldInfo& info) = 0;
   virtual void leave() = 0;
 

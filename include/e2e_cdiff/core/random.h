@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Counter-based random numbers (Philox4x32-10, Salmon et al. 2011): a draw is a pure function of
-/// (root seed, named stream, vehicle, decision, diffusion step, element), so no draw depends on the
-/// order of others.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +18,9 @@ struct RandomKey {
   std::uint16_t diffusion_step = 0;  ///< diffusion step k, or 0
 };
 
+/// Counter-based random numbers (Philox4x32-10, Salmon et al. 2011): a draw is a pure function of
+/// (root seed, named stream, vehicle, decision, diffusion step, element), so no draw depends on the
+/// order of others.
 /// A named stream of one root seed. Copyable, without state: the same arguments give the same draw.
 class RandomStream {
  public:

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Kinematic bicycle with a throttle and brake response: (throttle, steer, brake) -> next state.
-/// Map frame, SI units; one step per simulation step of 0.05 s (coefficients: reference design,
-/// PDM-Lite's fit of a mid-size car).
 #pragma once
 
 #include "e2e_cdiff/core/options.h"
@@ -10,10 +7,11 @@
 
 namespace cdiff::dynamics {
 
+/// Parameters of the bicycle model: geometry [m], steering gain and limits (SI units).
 struct BicycleModelOptions {
   double steering_gain = 0.36848336;   ///< wheel angle at steer = 1 [rad]
-  double rear_length = 1.4178275;      ///< centre to rear axle l_r [m]
-  double front_length = -0.090769015;  ///< centre to front axle l_f of the fit [m]
+  double rear_length = 1.4178275;      ///< center to rear axle l_r [m]
+  double front_length = -0.090769015;  ///< center to front axle l_f of the fit [m]
   double max_deceleration = 8.0;       ///< cap of braking [m/s^2]
   double max_speed = 40.0;             ///< [m/s]
 
@@ -29,12 +27,16 @@ struct SpeedResponse {
   double by_brake = 0.0;     ///< d next / d brake [m/s]
 };
 
-/// Slip angle of the centre and its derivative.
+/// Slip angle of the center and its derivative.
 struct SlipResponse {
   double slip = 0.0;      ///< [rad]
   double by_steer = 0.0;  ///< d slip / d steer [rad]
 };
 
+/// Kinematic bicycle with a throttle and brake response: (throttle, steer, brake) -> next state.
+/// Map frame, SI units; one step per simulation step of 0.05 s (coefficients: reference design,
+/// PDM-Lite's fit of a mid-size car).
+///
 /// Steering: slip = atan(l_r / (l_f + l_r) tan(gain steer)); x' = v cos(heading + slip),
 /// y' = v sin(heading + slip), heading' = v / l_r sin(slip); Euler with the speed at the start of
 /// the 0.05 s. Speed per 0.05 s, in km/h:

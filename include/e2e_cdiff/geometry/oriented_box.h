@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Outline of a vehicle in the plane: a rectangle with centre [m], heading [rad], length and width
-/// [m].
 #pragma once
 
 #include <array>
@@ -10,6 +8,8 @@
 
 namespace cdiff::geometry {
 
+/// Outline of a vehicle in the plane: a rectangle with center [m], heading [rad], length and width
+/// [m].
 struct OrientedBox {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m], map frame
   double heading = 0.0;                              ///< [rad]

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A line through points (x, y, z) in the map frame [m], parametrised by its arc length in the
-/// plane [m].
 #pragma once
 
 #include <cstddef>
@@ -14,12 +12,12 @@ namespace cdiff::geometry {
 
 /// Where a point lies relative to a polyline.
 struct Projection {
-  double arc_length = 0.0;  ///< of the nearest point [m]
+  double arc_length = 0.0;  ///< arc length at the nearest point [m]
   double lateral_offset =
       0.0;                 ///< signed distance to the line's direction there, positive left [m]
   double distance = 0.0;   ///< to the nearest point, in the plane [m]
-  double elevation = 0.0;  ///< of the nearest point [m]
-  double heading = 0.0;    ///< of the nearest segment [rad]
+  double elevation = 0.0;  ///< elevation at the nearest point [m]
+  double heading = 0.0;    ///< heading at the nearest segment [rad]
 };
 
 /// Part of a line around an arc length, in which a vehicle is looked for that was there before [m].
@@ -28,10 +26,12 @@ struct SearchWindow {
   double ahead = 0.0;
 };
 
+/// A line through points (x, y, z) in the map frame [m], parametrized by its arc length in the
+/// plane [m].
 class Polyline {
  public:
   Polyline() = default;
-  /// Neighbouring points nearer than 1 mm in the plane are merged. Throws InputError with fewer
+  /// Neighboring points nearer than 1 mm in the plane are merged. Throws InputError with fewer
   /// than two distinct points or a non-finite coordinate.
   explicit Polyline(const std::vector<Eigen::Vector3d>& points);
 
@@ -57,7 +57,7 @@ class Polyline {
                          const SearchWindow& window) const;
   /// The part between two arc lengths (end > begin).
   Polyline slice(double begin, double end) const;
-  /// Points every `spacing` metres from the start, the end included.
+  /// Points every `spacing` meters from the start, the end included.
   std::vector<Eigen::Vector3d> resampled(double spacing) const;
 
  private:

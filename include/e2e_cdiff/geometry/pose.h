@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x
-/// [rad]).
 #pragma once
 
 #include <Eigen/Core>
@@ -22,6 +20,8 @@ inline double cross(const Eigen::Vector2d& first, const Eigen::Vector2d& second)
   return first.x() * second.y() - first.y() * second.x();
 }
 
+/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x
+/// [rad]).
 /// Position and heading in the plane.
 struct Pose2d {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Guidance of a session: every objective with weight, window and cap; J_total = sum_i w_i J_i
-/// (paper III-D2). Profiles are YAML files of it in config/guidance.
 #pragma once
 
 #include <memory>
@@ -18,7 +16,7 @@ struct WeightedObjective {
   double weight = 0.0;          ///< w_i; 0 switches it off
   std::int64_t first_step = 0;  ///< acts at diffusion steps k <= first_step; 0: from K on
   std::int64_t last_step = 1;   ///< and k >= last_step
-  double gradient_cap = 0.0;    ///< largest norm of w_i dJ_i per sample, normalised units; 0: none
+  double gradient_cap = 0.0;    ///< largest norm of w_i dJ_i per sample, normalized units; 0: none
   std::unique_ptr<Objective> objective;
 
   bool actsAt(int diffusion_step) const {
@@ -28,6 +26,8 @@ struct WeightedObjective {
   void describe(core::OptionsVisitor& visitor);
 };
 
+/// Guidance of a session: every objective with weight, window and cap; J_total = sum_i w_i J_i
+/// (paper III-D2). Profiles are YAML files of it in config/guidance.
 /// Copyable (deep). Holds one entry per known objective, all off by default.
 struct GuidanceOptions {
   GuidanceOptions();

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
-/// frame, SI units).
 #pragma once
 
 #include <vector>
@@ -20,14 +18,17 @@ struct OtherMotion {
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
 };
 
+/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
+/// frame, SI units).
 struct GuidanceScene {
-  traffic::VehicleState state;  ///< of the planned vehicle: the body frame of rollouts
+  traffic::VehicleState
+      state;  ///< state of the planned vehicle, which is the body frame of rollouts
   traffic::VehicleDimensions dimensions;
   double target_speed = 8.0;                         ///< v* after the lane's limit [m/s]
   const map::DrivableArea* drivable_area = nullptr;  ///< never null
   const map::Route* route = nullptr;                 ///< null: no route
-  double route_arc_length = 0.0;                     ///< of the vehicle on it [m]
-  /// The vehicle that collision objectives are about (the ego, for a CBV); null: nobody to avoid
+  double route_arc_length = 0.0;                     ///< arc length of the vehicle on its route [m]
+  /// The vehicle that collision objectives are about (the ego, for a CBV); null: none
   /// or seek.
   const OtherMotion* other = nullptr;
   std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A guidance objective J(tau^0): what sampling minimises (paper III-D), with its analytic gradient
-/// with respect to states and actions in metric units.
 #pragma once
 
 #include <memory>
@@ -11,6 +9,8 @@
 
 namespace cdiff::guidance {
 
+/// A guidance objective J(tau^0): what sampling minimizes (paper III-D), with its analytic gradient
+/// with respect to states and actions in metric units.
 /// Stateless besides its options; one row per objective in the table of objectives.
 class Objective {
  public:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What is known of a guidance objective before one is made.
 #pragma once
 
 #include <functional>
@@ -11,6 +10,7 @@
 
 namespace cdiff::guidance {
 
+/// What is known of a guidance objective before one is made.
 struct ObjectiveDescriptor {
   std::string name;  ///< in guidance profiles, snake_case
   std::string help;  ///< one sentence: what a plan does to lower it

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The drivable area: union of the outlines of lanes that allow cars and of junctions, in levels of
-/// elevation, with the signed distance to its border [m], positive inside, and its gradient.
 #pragma once
 
 #include <memory>
@@ -18,6 +16,8 @@ struct SignedDistance {
       Eigen::Vector2d::Zero();  ///< unit vector of steepest increase (towards the inside)
 };
 
+/// The drivable area: union of the outlines of lanes that allow cars and of junctions, in levels of
+/// elevation, with the signed distance to its border [m], positive inside, and its gradient.
 class DrivableArea {
  public:
   explicit DrivableArea(const RoadNetwork& network);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A SUMO road network as geometry and lane graph: lanes with centre lines (x, y, z) in the map
-/// frame [m], junctions, connections and traffic lights. The map frame is the network's own plane
-/// (netOffset already applied by SUMO).
 #pragma once
 
 #include <filesystem>
@@ -31,6 +28,8 @@ struct LaneLink {
   char state = '-';  ///< SUMO's right of way: M m = s (stop) w (all-way stop) o O Z; - unknown
 };
 
+/// One lane of the network: centerline (x, y, z) in the map frame [m], width [m], limit [m/s],
+/// neighbors and links by index.
 struct Lane {
   std::string id;                 ///< SUMO's id, e.g. "edge_0" or ":junction_3_0"
   std::string edge_id;            ///< e.g. "edge"
@@ -42,13 +41,14 @@ struct Lane {
   bool allows_cars = true;        ///< a passenger car may use it (counts as drivable area)
   bool routable =
       true;  ///< allows cars and its limit is at least 2 m/s: routes and demand may use it
-  LaneIndex left = kNoLane;         ///< neighbour of the same edge
-  LaneIndex right = kNoLane;        ///< neighbour of the same edge
+  LaneIndex left = kNoLane;         ///< neighbor of the same edge
+  LaneIndex right = kNoLane;        ///< neighbor of the same edge
   std::vector<LaneLink> next;       ///< lanes that follow, by index
   std::vector<LaneIndex> previous;  ///< lanes that lead here, by index
   std::string junction_id;          ///< junction it lies in (internal) or ends at
 };
 
+/// A junction of the network: position and outline in the map frame [m].
 struct Junction {
   std::string id;
   std::string type;  ///< SUMO's type: priority, traffic_light, dead_end ...
@@ -59,10 +59,13 @@ struct Junction {
 /// A lane near a point.
 struct LaneMatch {
   LaneIndex lane = kNoLane;
-  geometry::Projection projection;  ///< onto the lane's centre line
+  geometry::Projection projection;  ///< onto the lane's centerline
   double heading_difference = 0.0;  ///< lane heading minus asked heading, in (-pi, pi] [rad]
 };
 
+/// A SUMO road network as geometry and lane graph: lanes with centerlines (x, y, z) in the map
+/// frame [m], junctions, connections and traffic lights. The map frame is the network's own plane
+/// (netOffset already applied by SUMO).
 class RoadNetwork {
  public:
   /// Parses network text as SUMO 1.15 reads it (see importNetwork for newer files). `name` is used
@@ -85,7 +88,7 @@ class RoadNetwork {
   /// netOffset of <location> [m]: network position = source position + offset.
   const Eigen::Vector2d& netOffset() const { return net_offset_; }
 
-  /// Lanes that allow cars and whose centre line passes within `radius` of a point in the plane and
+  /// Lanes that allow cars and whose centerline passes within `radius` of a point in the plane and
   /// within `level_height` of its elevation, nearest first, ties by index. `heading` fills
   /// heading_difference.
   std::vector<LaneMatch> lanesNear(const Eigen::Vector2d& position, double elevation, double radius,

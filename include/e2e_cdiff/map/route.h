@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A lane-connected way through the network: points (x, y, z) about 1 m apart in the map frame,
-/// each with its lane.
 #pragma once
 
 #include <string>
@@ -15,6 +13,8 @@ namespace cdiff::map {
 /// between, nearer than a route usually comes back to itself.
 inline constexpr geometry::SearchWindow kRouteWindow{5.0, 15.0};
 
+/// A lane-connected route through the network: points (x, y, z) about 1 m apart in the map frame,
+/// each with its lane.
 class Route {
  public:
   Route() = default;
@@ -34,20 +34,20 @@ class Route {
   double speedLimitAt(double arc_length) const;
   /// Whether the lane at an arc length lies inside a junction.
   bool inJunctionAt(double arc_length) const;
-  /// SUMO edges in driving order, without internal ones and without repetition of neighbours.
+  /// SUMO edges in driving order, without internal ones and without repetition of neighbors.
   const std::vector<std::string>& edges() const { return edges_; }
   /// Arc length of the first point on `edges()[i]`, for each edge.
-  const std::vector<double>& edgeBegins() const { return edge_begins_; }
+  const std::vector<double>& edgeStarts() const { return edge_starts_; }
   /// Arc lengths [begin, end] inside junctions, in order.
   const std::vector<std::pair<double, double>>& junctionStretches() const { return junctions_; }
-  /// A stop line of a traffic light on the way.
+  /// A stop line of a traffic light along the route.
   struct Signal {
     double arc_length = 0.0;  ///< where the light's lane ends [m]
     std::string id;           ///< traffic light
     int link = -1;            ///< position in its state text
   };
   const std::vector<Signal>& signals() const { return signals_; }
-  /// Arc lengths where the route changes to a neighbouring lane [m].
+  /// Arc lengths where the route changes to a neighboring lane [m].
   const std::vector<double>& laneChanges() const { return lane_changes_; }
 
  private:
@@ -60,17 +60,17 @@ class Route {
   std::vector<double> speed_limits_;
   std::vector<bool> in_junction_;
   std::vector<std::string> edges_;
-  std::vector<double> edge_begins_;
+  std::vector<double> edge_starts_;
   std::vector<std::pair<double, double>> junctions_;
   std::vector<Signal> signals_;
   std::vector<double> lane_changes_;
 };
 
 /// The lane of each point by dynamic programming over lanes near it (distance and heading),
-/// lane-connected from point to point. Points may lie a few metres apart; their z chooses the level
+/// lane-connected from point to point. Points may lie a few meters apart; their z chooses the level
 /// unless every z is 0 in a network with elevation. Throws InputError naming the first point
-/// (counted from 0) that is more than 1.5 m off every lane's centre line and outside every lane, or
-/// without a way to the next.
+/// (counted from 0) that is more than 1.5 m off every lane's centerline and outside every lane, or
+/// without a route to the next.
 Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace cdiff::map

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// How far a vehicle has come along a route.
 #pragma once
 
 #include "e2e_cdiff/map/route.h"
 
 namespace cdiff::map {
 
+/// How far a vehicle has come along a route.
 /// Farthest arc length reached by moving along the route (each update looks into kRouteWindow).
 class RouteProgress {
  public:

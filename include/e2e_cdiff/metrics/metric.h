@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The interface of everything that is measured in a session, and its registration. A metric
-/// observes each tick, reports its figures, and appears in summary.json, the report, the messages,
-/// the batch columns and the list of definitions by its descriptor alone.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +12,7 @@
 
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/metrics/figure.h"
+#include "e2e_cdiff/metrics/measure.h"
 #include "e2e_cdiff/metrics/metric_tick.h"
 #include "e2e_cdiff/metrics/session_metrics_options.h"
 
@@ -36,33 +33,37 @@ using MetricEntry =
 class MetricSink {
  public:
   virtual ~MetricSink() = default;
-  /// `figure` is one of the metric's; the unit of the measure is set to the figure's. Throws
-  /// core::Error for a figure that its descriptor does not have.
-  virtual void set(const FigureDefinition& figure, Measure measure) = 0;
-  /// A list beside the figures of a part of summary.json, by JSON pointer ("/cbv/NAME").
+  /// `measure` is one of the metric's; the unit of the measure is set to the measure's. Throws
+  /// core::Error for a measure that its descriptor does not have.
+  virtual void set(const MeasureDefinition& definition, Measure measure) = 0;
+  /// A list beside the measures of a part of summary.json, by JSON pointer ("/cbv/NAME").
   virtual void setList(const std::string& place, std::vector<MetricEntry> entries) = 0;
 };
 
+/// The interface of everything that is measured in a session, and its registration. A metric
+/// observes each tick, reports its measures, and appears in summary.json, the report, the messages,
+/// the batch columns and the list of definitions by its descriptor alone.
 class Metric {
  public:
   virtual ~Metric() = default;
   /// Every tick of the session, in order.
   virtual void observe(const MetricTick& tick) = 0;
-  /// The figures so far; each has a value or a reason.
+  /// The measures so far; each has a value or a reason.
   virtual void report(MetricSink& sink) const = 0;
 };
 
+/// What is known of a metric before a session: name, the measures it defines, and its constructor.
 struct MetricDescriptor {
-  std::string name;                       ///< snake_case, unique
-  std::string help;                       ///< a sentence
-  std::vector<FigureDefinition> figures;  ///< in the order of the table; names and places unique
+  std::string name;                         ///< snake_case, unique
+  std::string help;                         ///< a sentence
+  std::vector<MeasureDefinition> measures;  ///< in the order of the table; names and places unique
   std::function<std::unique_ptr<Metric>(const MetricContext&)> make;
   std::string source = "e2e_cdiff";  ///< who registers it; a plug-in gives its file
 };
 
 /// Sessions that begin from now on measure it, too. Call at start or when a plug-in is loaded, from
-/// one thread. Throws core::InputError for a descriptor without name, figures or `make`, and for a
-/// metric, figure or place that is registered already, naming both sources.
+/// one thread. Throws core::InputError for a descriptor without name, measures or `make`, and for a
+/// metric, measure or place that is registered already, naming both sources.
 void registerMetric(MetricDescriptor descriptor);
 
 }  // namespace cdiff::metrics

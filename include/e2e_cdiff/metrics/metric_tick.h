@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them
-/// (map frame, SI units). The actions are in the snapshot (`traffic::Vehicle::applied_action`).
 #pragma once
 
 #include <cstdint>
@@ -27,9 +25,9 @@ struct Interaction {
 /// A CBV of the tick.
 struct CbvSighting {
   const traffic::Vehicle* vehicle = nullptr;
-  bool off_road = false;                    ///< whether its centre is off the drivable area
+  bool off_road = false;                    ///< whether its center is off the drivable area
   std::optional<double> wanted_speed = {};  ///< target speed capped by the lane's limit [m/s]
-  std::optional<double> ego_distance = {};  ///< of the centres of ego and CBV [m]
+  std::optional<double> ego_distance = {};  ///< distance between the centers of ego and CBV [m]
   bool corner_off_road = false;             ///< whether any corner of its box is off the road
   double chord = 0.0;                       ///< driven since the last tick, where it was CBV [m]
 
@@ -54,17 +52,19 @@ struct EgoContact {
   double partner_speed = 0.0;  ///< [m/s]
   std::string ego_side;        ///< "front", "rear", "left side", "right side"; empty: not known
   std::string partner_side;
-  double x = 0.0;  ///< of the contact, map frame [m]
+  double x = 0.0;  ///< place of the contact, map frame [m]
   double y = 0.0;  ///< [m]
 };
 
+/// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them
+/// (map frame, SI units). The actions are in the snapshot (`traffic::Vehicle::applied_action`).
 struct MetricTick {
   const traffic::TrafficSnapshot& snapshot;
   const cbv::CbvSelection* selection = nullptr;  ///< at decision ticks, where known; else nullptr
   const traffic::Vehicle* ego = nullptr;         ///< nullptr without one
-  bool ego_off_road = false;                     ///< whether its centre is off the drivable area
+  bool ego_off_road = false;                     ///< whether its center is off the drivable area
   double ego_arc_length = 0.0;                   ///< farthest place reached along the ego route [m]
-  double route_completion_percent = 0.0;         ///< of the ego, by the protocol's rule
+  double route_completion_percent = 0.0;  ///< the ego's route completion, by the protocol's rule
   Interaction interaction = {};
   std::vector<CbvSighting> cbvs = {};  ///< vehicles whose role is CBV, in the snapshot's order
   std::vector<ContactSighting> contacts = {};

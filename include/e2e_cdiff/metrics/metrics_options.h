@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a scenario says about its metrics (group `metrics`): the speeds [m/s] that the speeds of
-/// CBVs are compared with.
 #pragma once
 
 #include <string>
@@ -11,10 +9,12 @@
 
 namespace cdiff::metrics {
 
+/// What a scenario says about its metrics (group `metrics`): the speeds [m/s] that the speeds of
+/// CBVs are compared with.
 struct MetricsOptions {
   std::string speed_target = "background";  ///< background | normal | file
-  double speed_target_mean = 8.0;           ///< of the normal distribution [m/s]
-  double speed_target_deviation = 2.0;      ///< of the normal distribution [m/s]
+  double speed_target_mean = 8.0;           ///< mean of the normal distribution of speeds [m/s]
+  double speed_target_deviation = 2.0;      ///< standard deviation of that distribution [m/s]
   std::string speed_target_file;            ///< speeds [m/s], one a line, or JSON
   /// Content of the file as texts; filled when the scenario is resolved, so that a recording needs
   /// no file.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the metrics of a session know about its scenario (SI units).
 #pragma once
 
 #include <string>
@@ -11,11 +10,12 @@
 
 namespace cdiff::metrics {
 
+/// What the metrics of a session know about its scenario (SI units).
 struct SessionMetricsOptions {
   double simulation_step = 0.05;          ///< [s]
   double decision_period = 0.1;           ///< [s]
-  double completion_percent = 99.0;       ///< of the protocol
-  double completion_distance = 10.0;      ///< of the protocol [m]
+  double completion_percent = 99.0;       ///< the protocol's bound on route completion
+  double completion_distance = 10.0;      ///< the protocol's bound on the distance to the goal [m]
   std::string protocol = "rift_dev10";    ///< name of the preset
   InfractionOptions infractions;          ///< its rules for the ego
   double ttc_radius = 60.0;               ///< vehicles considered for 2D-TTC [m]

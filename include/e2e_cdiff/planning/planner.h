@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The one interface of everything that drives: at a decision, an action for each of its vehicles.
 #pragma once
 
 #include <cstdint>
@@ -52,17 +51,20 @@ struct RolloutPoint {
   traffic::ControlAction action;
 };
 
+/// What a planner decided for one vehicle: the action to apply, with the rollout and the report it
+/// comes from.
 struct PlannedAction {
   int slot = traffic::kEgoSlot;
   std::string vehicle_id;
   traffic::ControlAction action;
   std::vector<RolloutPoint> rollout;    ///< may be empty
   std::string fault{};                  ///< why `action` is the fail-safe action; empty when none
-  guidance::GuidanceReport guidance{};  ///< of planners with guidance
+  guidance::GuidanceReport guidance{};  ///< what guidance did; set by planners that are guided
   double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
                                 ///< with the planned actions [m]
 };
 
+/// The one interface of everything that drives: at a decision, an action for each of its vehicles.
 class Planner {
  public:
   virtual ~Planner() = default;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What is known of a planner before one is made: name, roles, needs, options and constructor.
-/// Scenario files, the node graph, reports, tables and error texts read descriptors only.
 #pragma once
 
 #include <functional>
@@ -102,6 +100,8 @@ struct NetworkFacts {
   std::map<std::string, std::string> instruction_sets;  ///< by key in session.yaml
 };
 
+/// What is known of a planner before one is made: name, roles, needs, options and constructor.
+/// Scenario files, the node graph, reports, tables and error texts read descriptors only.
 /// Everything about a planner but the planner itself.
 struct PlannerDescriptor {
   std::string name;   ///< in scenario files, snake_case
@@ -109,7 +109,7 @@ struct PlannerDescriptor {
   std::string help;   ///< one sentence
   bool drives_ego = true;
   bool drives_cbv = true;
-  std::vector<std::string> cameras;  ///< of its vehicles that it needs: none, or "front"
+  std::vector<std::string> cameras;  ///< cameras on its vehicles: none, or "front"
   bool guided = false;               ///< follows guidance objectives
   /// Program that runs it for the CBVs in the node graph.
   std::string cbv_node = "cbv_planner_node";

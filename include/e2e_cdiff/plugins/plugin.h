@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What a package of the user's own adds: planners, guidance objectives, metrics.
-///
-/// A library exports one class or more:
-///   class MyPlugin : public cdiff::plugins::Plugin { ... };
-///   CLASS_LOADER_REGISTER_CLASS(MyPlugin, cdiff::plugins::Plugin)
-/// and its package names the library in package.xml:
-///   <export><e2e_cdiff plugin="libmy_plugins.so"/></export>
-/// `examples/my_plugins` is a whole package.
 #pragma once
 
 #include <vector>
@@ -21,6 +13,14 @@ namespace cdiff::plugins {
 /// Rises when a header of include/e2e_cdiff changes so that a compiled plug-in no longer fits.
 inline constexpr int kApiVersion = 1;
 
+/// What a package of the user's own adds: planners, guidance objectives, metrics.
+///
+/// A library exports one class or more:
+///   class MyPlugin : public cdiff::plugins::Plugin { ... };
+///   CLASS_LOADER_REGISTER_CLASS(MyPlugin, cdiff::plugins::Plugin)
+/// and its package names the library in package.xml:
+///   <export><e2e_cdiff plugin="libmy_plugins.so"/></export>
+/// `examples/my_plugins` is a whole package.
 class Plugin {
  public:
   virtual ~Plugin() = default;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Everything that is true of the world at one tick; the one input of CBV identification, planners,
-/// metrics and records.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +10,7 @@
 
 namespace cdiff::traffic {
 
-/// Colours of one traffic light, one letter per link as SUMO writes them (r y g G ...).
+/// Colors of one traffic light, one letter per link as SUMO writes them (r y g G ...).
 struct SignalState {
   std::string id;
   std::string state;
@@ -52,6 +50,8 @@ enum class SessionStatus {
 /// "error".
 const char* toText(SessionStatus status);
 
+/// Everything that is true of the world at one tick; the one input of CBV identification, planners,
+/// metrics and records.
 struct TrafficSnapshot {
   std::uint64_t tick = 0;
   double time = 0.0;                 ///< tick x simulation step [s]

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What is known of one vehicle at one tick (map frame, SI units; position = centre of its box).
 #pragma once
 
 #include <optional>
@@ -12,8 +11,8 @@ namespace cdiff::traffic {
 
 /// Motion state of a vehicle.
 struct VehicleState {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< centre of the box, map frame [m]
-  double elevation = 0.0;                              ///< z of the road below the centre [m]
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< center of the box, map frame [m]
+  double elevation = 0.0;                              ///< z of the road below the center [m]
   double heading = 0.0;                                ///< counter-clockwise from +x [rad]
   double speed = 0.0;                                  ///< along the heading, never negative [m/s]
 
@@ -43,6 +42,7 @@ struct ControlAction {
 
 bool operator==(const ControlAction& left, const ControlAction& right);
 
+/// Who drives a vehicle: the ego's planner, the planner of the CBVs, or SUMO.
 enum class VehicleRole { kEgo, kCbv, kBackground };
 
 /// "ego", "cbv" or "background".
@@ -53,6 +53,7 @@ inline constexpr const char* kEgoId = "ego";
 /// Its number where slots name vehicles.
 inline constexpr int kEgoSlot = -1;
 
+/// What is known of one vehicle at one tick (map frame, SI units; position = center of its box).
 /// One vehicle of a snapshot.
 struct Vehicle {
   std::string id;  ///< stable over the session

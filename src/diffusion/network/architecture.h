@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Sizes of the networks; they travel in the metadata of the weight files (docs/network.md draws
-/// the networks and names every tensor).
 #pragma once
 
 #include <cstdint>
@@ -15,12 +13,14 @@ namespace cdiff::diffusion {
 /// Speeds enter the networks divided by it [m/s].
 inline constexpr double kSpeedScale = 10.0;
 
+/// Sizes of the networks; they travel in the metadata of the weight files (docs/network.md draws
+/// the networks and names every tensor).
 struct Architecture {
   std::int64_t horizon = 32;                           ///< T, a multiple of 4
   std::int64_t diffusion_steps = 100;                  ///< K
-  std::vector<std::int64_t> channels = {32, 64, 128};  ///< of the U-Net's levels
-  std::int64_t kernel = 5;                             ///< of its convolutions
-  std::int64_t groups = 8;                             ///< of its group normalisation
+  std::vector<std::int64_t> channels = {32, 64, 128};  ///< channels of the U-Net's levels
+  std::int64_t kernel = 5;                             ///< kernel size of its convolutions
+  std::int64_t groups = 8;                             ///< groups of its group normalization
   std::int64_t time_width = 64;                        ///< time embedding; hidden layer: 4 times
   std::int64_t image_width = 160;                      ///< [px]
   std::int64_t image_height = 96;                      ///< [px]
@@ -30,7 +30,7 @@ struct Architecture {
   std::int64_t route_features = 64;                    ///< their hidden layer has twice as many
   std::int64_t speed_features = 32;
   std::int64_t context_width = 128;  ///< c
-  std::int64_t state_hidden = 256;   ///< of the state head
+  std::int64_t state_hidden = 256;   ///< hidden units of the state head
 
   /// Throws InputError naming the size that is out of range or does not fit the others.
   void validate() const;

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What conditions the denoiser (docs/network.md): time embedding of k and context c of each
-/// sample. The linear injection of Mish([time; c]) is split by columns: its time part is tabulated
-/// for every k at load, its context part computed once per set of contexts.
 #pragma once
 
 #include <vector>
@@ -13,6 +10,9 @@
 
 namespace cdiff::diffusion {
 
+/// What conditions the denoiser (docs/network.md): time embedding of k and context c of each
+/// sample. The linear injection of Mish([time; c]) is split by columns: its time part is tabulated
+/// for every k at load, its context part computed once per set of contexts.
 class Conditioning {
  public:
   Conditioning(const inference::DenoiserKernels& kernels, const Architecture& architecture,

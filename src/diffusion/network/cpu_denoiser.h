@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The denoiser on a CPU: a compact fused path with its own convolutions (AVX-512, AVX2 or plain,
-/// chosen at run time), forward and vector-Jacobian product. Inference only.
 #pragma once
 
 #include <memory>
@@ -12,6 +10,8 @@
 
 namespace cdiff::diffusion {
 
+/// The denoiser on a CPU: a compact fused path with its own convolutions (AVX-512, AVX2 or plain,
+/// chosen at run time), forward and vector-Jacobian product. Inference only.
 class CpuDenoiser : public Denoiser {
  public:
   enum class InstructionSet { kPlain, kAvx2, kAvx512 };

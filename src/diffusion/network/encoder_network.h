@@ -68,7 +68,7 @@ class EncoderNetwork {
   std::vector<float> projection_;  ///< [channel x row x column, image_features]
   std::vector<float> bias_;        ///< [image_features]
   std::vector<dnnl::memory> buffers_;
-  float* pixels_ = nullptr;    ///< normalised, in imageLayout()
+  float* pixels_ = nullptr;    ///< normalized, in imageLayout()
   float* stem_map_ = nullptr;  ///< before pooling
   float* squeezed_ = nullptr;
 };

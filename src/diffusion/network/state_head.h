@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
-/// pull-back to the actions. The first layer's time columns are tabulated at load, its speed column
-/// is added once per set of contexts.
 #pragma once
 
 #include <vector>
@@ -12,6 +9,9 @@
 
 namespace cdiff::diffusion {
 
+/// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
+/// pull-back to the actions. The first layer's time columns are tabulated at load, its speed column
+/// is added once per set of contexts.
 class StateHead {
  public:
   /// `time_embeddings`: [K + 1, time_width].

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its pull-back
-/// (docs/network.md).
 #pragma once
 
 #include <memory>
@@ -15,11 +13,13 @@ namespace cdiff::diffusion {
 
 /// What a residual block takes of the conditioning.
 struct Injection {
-  std::string name;  ///< of the linear layer
+  std::string name;  ///< name of the linear layer
   inference::ChannelLayout layout;
   std::int64_t first = 0;  ///< its first channel in a row of injections
 };
 
+/// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its pull-back
+/// (docs/network.md).
 class UNet {
  public:
   UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,

@@ -38,10 +38,11 @@ Markup bar(const page::ChartAxes& axes, double left, double width, double value,
   return core::element("path", {{"class", "bar " + style}, {"d", data}});
 }
 
-Markup interval(const page::ChartAxes& axes, double x, const Statistics& figure) {
-  if (!figure.half_width) return {};
-  const std::string data = "M" + svgPlace(axes.x(x), axes.y(*figure.mean - *figure.half_width)) +
-                           "V" + shortNumber(axes.y(*figure.mean + *figure.half_width));
+Markup interval(const page::ChartAxes& axes, double x, const Statistics& statistics) {
+  if (!statistics.half_width) return {};
+  const std::string data = "M" +
+                           svgPlace(axes.x(x), axes.y(*statistics.mean - *statistics.half_width)) +
+                           "V" + shortNumber(axes.y(*statistics.mean + *statistics.half_width));
   return core::element("path", {{"class", "error"}, {"d", data}});
 }
 

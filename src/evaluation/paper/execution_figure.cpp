@@ -45,7 +45,7 @@ double displacement(const PlanRow& row) {
   return (row.planned.position - row.driven->position).norm();
 }
 
-/// One way of execution over all its runs.
+/// One kind of execution over all its runs.
 struct Execution {
   std::string name;
   std::string note;
@@ -83,15 +83,15 @@ Execution executionOf(const ShownSystem& system, const std::vector<BatchRun>& ru
 std::string curveRows(const Execution& execution) {
   std::string text;
   for (const auto& [seconds, values] : execution.displacements) {
-    const record::SampleFigures figures = record::figuresOf(values);
+    const record::SampleSummary summary = record::summaryOf(values);
     std::vector<std::string> cells(kColumns);
     cells[0] = "horizon";
     cells[1] = execution.name;
     cells[6] = core::formatNumber(seconds);
-    cells[7] = core::formatNumber(*figures.mean);
-    cells[8] = core::formatNumber(*figures.percentile_95);
-    cells[9] = core::formatNumber(*record::figuresOf(execution.speed_differences.at(seconds)).mean);
-    cells[10] = std::to_string(figures.n);
+    cells[7] = core::formatNumber(*summary.mean);
+    cells[8] = core::formatNumber(*summary.percentile_95);
+    cells[9] = core::formatNumber(*record::summaryOf(execution.speed_differences.at(seconds)).mean);
+    cells[10] = std::to_string(summary.n);
     cells[11] = std::to_string(execution.runs);
     cells[12] = std::to_string(execution.seeds);
     text += core::csvRow(cells);
@@ -113,7 +113,7 @@ page::Panel curves(const std::vector<Execution>& executions,
   double right = 1.0;
   for (const Execution& execution : executions) {
     for (const auto& [seconds, values] : execution.*member) {
-      top = std::max(top, *record::figuresOf(values).mean);
+      top = std::max(top, *record::summaryOf(values).mean);
       right = std::max(right, seconds);
     }
   }
@@ -125,7 +125,7 @@ page::Panel curves(const std::vector<Execution>& executions,
     std::string data;
     for (const auto& [seconds, values] : executions[i].*member) {
       data += (data.empty() ? "M" : "L") +
-              page::svgPlace(axes.x(seconds), axes.y(*record::figuresOf(values).mean));
+              page::svgPlace(axes.x(seconds), axes.y(*record::summaryOf(values).mean));
     }
     panel.content += page::svgPath("series " + page::systemStyle(i), data);
   }
@@ -152,7 +152,7 @@ std::string exampleRows(const Execution& execution, const BatchRun& run, const P
     cells[5] = std::to_string(row.tick);
     cells[6] = core::formatNumber(row.seconds);
     std::size_t column = 13;
-    for (const record::WayPoint& point : {row.planned, *row.driven}) {
+    for (const record::Waypoint& point : {row.planned, *row.driven}) {
       for (const double value : {point.position.x(), point.position.y(), point.speed})
         cells[column++] = core::formatNumber(value);
     }
@@ -179,7 +179,7 @@ page::Panel examplePanel(const Execution& execution, const Plan& plan,
   }
   const page::MapCanvas canvas(region.grown(6.0), {panel.width, panel.height});
   const traffic::VehicleDimensions size;  // the plans do not hold it
-  const record::WayPoint& start = plan.front().planned;
+  const record::Waypoint& start = plan.front().planned;
   panel.title = execution.name + ": " + core::formatFixed(displacement(plan.back()), 2) +
                 " m apart after " + core::formatFixed(plan.back().seconds, 1) + " s";
   panel.content = page::svgPath("ground", "M0 0H540V220H0Z");

@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper/paper_figures.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "record/trace_file.h"
@@ -26,12 +26,12 @@ constexpr std::array<double, 3> kOffsets = {-1.5, 0.0, 1.0};  // of frames to th
 constexpr double kWidth = 340.0;                              // of a frame [pixels]
 constexpr double kHeight = 260.0;                             // [pixels]
 const Eigen::Vector2d kReach(34.0, 26.0);                     // shown around the approach [m]
-constexpr double kInteraction = 25.0;  // of centres up to which a circle is drawn [m]
+constexpr double kInteraction = 25.0;  // of centers up to which a circle is drawn [m]
 constexpr const char* kFrameHeader =
     "system,scenario,seed,frame,seconds,tick,vehicle_id,role,x,y,heading,speed,circled,note\n";
 
 /// Of the smallest distance between ego and CBVs in a summary.
-std::string distanceKey() { return metrics::figures::kCbvMinimumDistance.place; }
+std::string distanceKey() { return metrics::known::kCbvMinimumDistance.place; }
 
 /// What a row of frames has in common with the others.
 using Situation = std::array<std::string, 3>;  // scenario, seed, repetition
@@ -70,7 +70,7 @@ RunsBySystem chosenRuns(const std::vector<ShownSystem>& systems,
 struct Approach {
   std::uint64_t tick = 0;
   std::string vehicle;
-  double distance = 1e9;  ///< of centres [m]
+  double distance = 1e9;  ///< of centers [m]
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 };
 

@@ -5,15 +5,15 @@
 #include <iterator>
 
 #include "evaluation/paper/paper_table.h"
-#include "metrics/known_figures.h"
+#include "metrics/known_measures.h"
 
 namespace cdiff::evaluation {
 namespace {
 
-namespace figures = metrics::figures;
+namespace known = metrics::known;
 
 /// The n beside the mean of a distribution.
-std::string countBeside(const metrics::FigureDefinition& mean) {
+std::string countBeside(const metrics::MeasureDefinition& mean) {
   const std::string place = mean.place;
   return place.substr(0, place.rfind('/')) + "/n";
 }
@@ -22,47 +22,35 @@ std::string countBeside(const metrics::FigureDefinition& mean) {
 // rates of, so that they are the rate over all runs of a seed.
 
 TableColumn timeToCollision() {
-  return {"2D-TTC",
-          "s",
-          figures::kTtcMean.place,
-          countBeside(figures::kTtcMean),
-          figures::kRiftTtc.place,
+  return {"2D-TTC", "s", known::kTtcMean.place, countBeside(known::kTtcMean), known::kRiftTtc.place,
           {}};
 }
 
 TableColumn offRoadRate() {
-  return {"ORR",
-          "%",
-          figures::kCbvOffRoad.place,
-          figures::kCbvDecisions.place,
-          figures::kRiftOffRoad.place,
-          {}};
+  return {
+      "ORR", "%", known::kCbvOffRoad.place, known::kCbvDecisions.place, known::kRiftOffRoad.place,
+      {}};
 }
 
 TableColumn collisionsPerKilometre() {
   return {"CPK",
           "1/km",
-          figures::kCollisionsPerKm.place,
-          figures::kCbvDistance.place,
-          figures::kRiftCollisionsPerKm.place,
+          known::kCollisionsPerKm.place,
+          known::kCbvDistance.place,
+          known::kRiftCollisionsPerKm.place,
           {}};
 }
 
 std::vector<TableColumn> realism() {
   return {
-      {"S-SW", "", figures::kSpeedShapiroWilk.place, "", figures::kRiftSpeedShapiroWilk.place, {}},
+      {"S-SW", "", known::kSpeedShapiroWilk.place, "", known::kRiftSpeedShapiroWilk.place, {}},
       {"A-SW",
        "",
-       figures::kAccelerationShapiroWilk.place,
+       known::kAccelerationShapiroWilk.place,
        "",
-       figures::kRiftAccelerationShapiroWilk.place,
+       known::kRiftAccelerationShapiroWilk.place,
        {}},
-      {"S-WD",
-       "m/s",
-       figures::kSpeedWasserstein.place,
-       "",
-       figures::kRiftSpeedWasserstein.place,
-       {}}};
+      {"S-WD", "m/s", known::kSpeedWasserstein.place, "", known::kRiftSpeedWasserstein.place, {}}};
 }
 
 std::vector<TableColumn> controllabilityAndRealism() {
@@ -72,9 +60,9 @@ std::vector<TableColumn> controllabilityAndRealism() {
   return columns;
 }
 
-TableColumn drivingScore() { return {"DS", "", figures::kDrivingScore.place, "", "", {}}; }
+TableColumn drivingScore() { return {"DS", "", known::kDrivingScore.place, "", "", {}}; }
 
-TableColumn routeCompletion() { return {"RC", "%", figures::kRouteCompletion.place, "", "", {}}; }
+TableColumn routeCompletion() { return {"RC", "%", known::kRouteCompletion.place, "", "", {}}; }
 
 TableRow cbvRow(const PaperSystem& system, std::vector<PaperFigure> paper) {
   return {system.name, merged(naturalisticLevels(), cbvLevel(system)), std::move(paper), ""};
@@ -245,7 +233,7 @@ TableDefinition collisionFigure() {
       "figure_4",
       "Figure 4. Collisions of CBVs per km without and with collision-seeking "
       "guidance",
-      "The paper prints the figures of PDM-Lite alone, in its text. Unless told "
+      "The paper prints the values of PDM-Lite alone, in its text. Unless told "
       "otherwise, CBVs that seek collisions see the image alone, the others "
       "know their route, too.",
       "Ego planner",
@@ -274,7 +262,7 @@ TableDefinition latencyFigure() {
       "Figure 8. Latency of ego planners per decision",
       "Wall-clock time of a decision (as CBV planner: of all CBVs together), the image being there "
       "already. The paper prints means; they stand beside "
-      "our medians. A seed's figure is the mean over its runs, weighted "
+      "our medians. A seed's value is the mean over its runs, weighted "
       "by decisions.",
       "Ego planner",
       {{"p50", "ms", "/planner_latency_ms/{}/p50", "/planner_latency_ms/{}/n", "", {}},

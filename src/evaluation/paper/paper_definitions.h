@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the paper's tables and figures show, as data: rows and columns with the levels of their
-/// runs, the keys of the figures, and the values that the paper prints.
 #pragma once
 
 #include <vector>
@@ -9,6 +7,9 @@
 #include "evaluation/paper/paper_table.h"
 
 namespace cdiff::evaluation {
+
+// What the paper's tables and figures show, as data: rows and columns with the levels of their
+// runs, the keys of the measures, and the values that the paper prints.
 
 /// Tables 1 to 6.
 std::vector<TableDefinition> paperTables();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Figures 3 to 8 of the paper as a batch fills them: numbers as CSV and a picture.
 #pragma once
 
 #include <string>
@@ -13,6 +12,9 @@
 
 namespace cdiff::evaluation {
 
+// Figures 3 to 8 of the paper as a batch fills them: numbers as CSV and a picture.
+
+/// A figure of the paper, filled from a batch: numbers as CSV and a sheet of pictures.
 struct Figure {
   std::string id;  ///< "figure_3", also the name of its files
   std::string csv;

@@ -95,7 +95,7 @@ std::string reasonOf(const Factors& levels, const TableCell& cell) {
   }
   if (cell.runs == 0) return "not run";
   if (cell.failed == cell.runs) return "no run completed";
-  return "no run has this figure";
+  return "no run has this measure";
 }
 
 TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& column,
@@ -117,32 +117,32 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
 
 std::string csvLine(const Table& table, std::size_t row, std::size_t column, bool rift) {
   const TableCell& cell = table.cells[row][column];
-  const Statistics& figure = rift ? cell.rift : cell.seeds;
+  const Statistics& statistics = rift ? cell.rift : cell.seeds;
   const TableColumn& head = table.definition.columns[column];
   std::optional<double> low;
   std::optional<double> high;
-  if (figure.half_width) {
-    low = *figure.mean - *figure.half_width;
-    high = *figure.mean + *figure.half_width;
+  if (statistics.half_width) {
+    low = *statistics.mean - *statistics.half_width;
+    high = *statistics.mean + *statistics.half_width;
   }
-  return core::csvRow({table.definition.rows[row].name, head.name, head.unit,
-                       rift ? "rift_compat" : "clean", core::csvNumber(cell.paper.mean),
-                       core::csvNumber(cell.paper.deviation), core::csvNumber(figure.mean),
-                       core::csvNumber(figure.standard_deviation), core::csvNumber(low),
-                       core::csvNumber(high), std::to_string(figure.n), std::to_string(cell.runs),
-                       std::to_string(cell.used), std::to_string(cell.failed),
-                       figure.mean         ? ""
-                       : cell.note.empty() ? "no run has this figure"
-                                           : cell.note});
+  return core::csvRow(
+      {table.definition.rows[row].name, head.name, head.unit, rift ? "rift_compat" : "clean",
+       core::csvNumber(cell.paper.mean), core::csvNumber(cell.paper.deviation),
+       core::csvNumber(statistics.mean), core::csvNumber(statistics.standard_deviation),
+       core::csvNumber(low), core::csvNumber(high), std::to_string(statistics.n),
+       std::to_string(cell.runs), std::to_string(cell.used), std::to_string(cell.failed),
+       statistics.mean     ? ""
+       : cell.note.empty() ? "no run has this measure"
+                           : cell.note});
 }
 
-std::string statisticsText(const Statistics& figure) {
+std::string statisticsText(const Statistics& statistics) {
   const std::string plus_minus = " \xC2\xB1 ";
-  std::string text = core::formatFixed(*figure.mean, 2);
-  if (!figure.half_width) return text;
-  return text + plus_minus + core::formatFixed(*figure.standard_deviation, 2) + " [" +
-         core::formatFixed(*figure.mean - *figure.half_width, 2) + ", " +
-         core::formatFixed(*figure.mean + *figure.half_width, 2) + "]";
+  std::string text = core::formatFixed(*statistics.mean, 2);
+  if (!statistics.half_width) return text;
+  return text + plus_minus + core::formatFixed(*statistics.standard_deviation, 2) + " [" +
+         core::formatFixed(*statistics.mean - *statistics.half_width, 2) + ", " +
+         core::formatFixed(*statistics.mean + *statistics.half_width, 2) + "]";
 }
 
 }  // namespace

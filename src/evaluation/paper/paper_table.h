@@ -64,6 +64,8 @@ struct PaperFigure {
   std::optional<double> deviation;
 };
 
+/// A column of a table of the paper: which value of a run's summary.json it shows, and over which
+/// runs.
 struct TableColumn {
   std::string name;  ///< the paper's
   std::string unit;
@@ -73,6 +75,7 @@ struct TableColumn {
   Factors levels;        ///< that runs of this column have besides those of the row
 };
 
+/// A row of a table of the paper: the runs it covers and the values that the paper prints for them.
 struct TableRow {
   std::string name;  ///< the paper's
   Factors levels;
@@ -80,6 +83,7 @@ struct TableRow {
   std::string subject;
 };
 
+/// A table of the paper before it is filled: title, columns and rows.
 struct TableDefinition {
   std::string id;     ///< "table_1", also the name of its file
   std::string title;  ///< "Table 1. ..."
@@ -89,16 +93,18 @@ struct TableDefinition {
   std::vector<TableRow> rows;
 };
 
+/// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
 struct TableCell {
   PaperFigure paper;
   Statistics seeds;        ///< over seeds that have the figure
   Statistics rift;         ///< the same by RIFT's definition; n = 0 where it has none
-  std::size_t runs = 0;    ///< of these levels, whatever became of them
-  std::size_t failed = 0;  ///< of these, that broke, were interrupted or not run
-  std::size_t used = 0;    ///< of these, that have the figure
+  std::size_t runs = 0;    ///< runs at these levels, however they ended
+  std::size_t failed = 0;  ///< those of them that broke, were interrupted or not run
+  std::size_t used = 0;    ///< those of them that have the measure
   std::string note;        ///< why it is empty: not implemented, not run, ...
 };
 
+/// A table of the paper, filled from the runs of a batch.
 struct Table {
   TableDefinition definition;
   std::vector<std::vector<TableCell>> cells;  ///< by row and column

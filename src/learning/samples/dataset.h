@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// All shards below a folder as one list of samples, with the split by session into training and
-/// validation.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +14,8 @@ namespace cdiff::learning {
 /// session's name.
 constexpr const char* kSessionField = "session";
 
+/// All shards below a folder as one list of samples, with the split by session into training and
+/// validation.
 /// Keeps the shards in memory (packed fields compressed).
 class Dataset {
  public:

@@ -34,8 +34,8 @@ struct DrivingSample {
   std::string vehicle;         ///< id
   std::uint64_t tick = 0;      ///< planning time
   bool recovering = false;     ///< shortly (about 2 s) after a disturbance
-  std::uint8_t maneuver = 0;   ///< of the collector: 0 straight on, 1 left, 2 right, 3 other
-  std::uint8_t stop_reason = kStopNone;  ///< of the collector: a StopReason
+  std::uint8_t maneuver = 0;   ///< the collector's: 0 straight on, 1 left, 2 right, 3 other
+  std::uint8_t stop_reason = kStopNone;  ///< the collector's StopReason
   std::vector<float> auxiliary;  ///< targets that the schema names, of order 1; NaN: not known
 };
 
@@ -113,7 +113,7 @@ void mirrorRollout(traffic::Rollout& rollout);
 /// whose name in `schema` ends in "_left".
 void mirrorSample(const DrivingSchema& schema, DrivingSample& sample);
 
-/// Brightness by up to 40 of 255 grey levels, contrast by up to 20 %, and noise of up to 12 grey
+/// Brightness by up to 40 of 255 gray levels, contrast by up to 20 %, and noise of up to 12 gray
 /// levels on each value, in place.
 void changeLight(const core::RandomStream& random, const core::RandomKey& key,
                  traffic::CameraImage& image);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Samples as sets of named, typed fields, and the schema that says which fields the samples of a
-/// shard have. Whoever collects or trains decides on the fields; what stores them knows none.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +11,9 @@
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::learning {
+
+// Samples as sets of named, typed fields, and the schema that says which fields the samples of a
+// shard have. Whoever collects or trains decides on the fields; what stores them knows none.
 
 /// Type of each value; the order is that of the alternatives of FieldValue.
 enum class FieldType { kU8, kU64, kF32, kF64, kText };
@@ -27,6 +28,7 @@ constexpr std::int64_t kAnyCount = -1;
 /// Most values of a field in one sample.
 constexpr std::int64_t kMostValues = 1 << 26;
 
+/// Name, type and shape of a field of a sample.
 struct FieldSpec {
   FieldSpec() = default;
   FieldSpec(std::string name, FieldType type, std::vector<std::int64_t> shape = {});

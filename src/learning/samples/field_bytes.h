@@ -30,7 +30,7 @@ inline void putText(std::string& bytes, std::string_view text) {
 /// Reads forward through bytes that it does not own.
 class ByteReader {
  public:
-  /// `what` begins the text of errors: the file.
+  /// `what` starts the text of errors: the file.
   ByteReader(std::string_view bytes, std::string what, std::size_t begin = 0)
       : bytes_(bytes), what_(std::move(what)), place_(begin) {}
 

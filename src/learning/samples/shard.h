@@ -84,7 +84,7 @@ class ShardReader {
   ShardHeader header_;
   std::string content_;  ///< of the file, without the checksum
   std::string sha256_;
-  std::vector<std::size_t> places_;  ///< where each sample begins in `content_`
+  std::vector<std::size_t> places_;  ///< where each sample starts in `content_`
 };
 
 /// Every `*.shard` below `folder`, sorted by path. Throws InputError when there is none.

@@ -8,7 +8,7 @@
 
 namespace cdiff::map {
 
-// Runs netconvert, which neither outlives us nor runs for ever.
+// Runs netconvert, which ends with us and within its time limit.
 
 /// Name of the environment variable that replaces the limit below [s].
 inline constexpr const char* kNetconvertLimitVariable = "E2E_CDIFF_NETCONVERT_LIMIT";

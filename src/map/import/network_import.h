@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Makes any given network usable by SUMO 1.15: drops vehicle classes that it does not know,
-/// converts OpenDRIVE and OpenStreetMap through netconvert, and caches the result by the hash of
-/// the input's content. The changes are named in the record.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +8,14 @@
 
 namespace cdiff::map {
 
+/// Makes any given network usable by SUMO 1.15: drops vehicle classes that it does not know,
+/// converts OpenDRIVE and OpenStreetMap through netconvert, and caches the result by the hash of
+/// the input's content. The changes are named in the record.
 struct ImportedNetwork {
   std::filesystem::path file;  ///< network that SUMO 1.15 loads (in the cache, or the input itself
                                ///< if nothing changed)
   std::filesystem::path source;      ///< what the user gave
-  std::string source_sha256;         ///< of the input's content
+  std::string source_sha256;         ///< SHA-256 of the input's content
   std::string text;                  ///< content of `file`
   std::vector<std::string> changes;  ///< one sentence each; empty when nothing was changed
 };

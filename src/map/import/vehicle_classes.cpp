@@ -41,7 +41,7 @@ Attribute nextAttribute(std::string_view tag, std::size_t from) {
   return found;
 }
 
-/// End of the tag that begins at `begin`, behind its '>'.
+/// End of the tag that starts at `begin`, behind its '>'.
 std::size_t endOfTag(std::string_view text, std::size_t begin) {
   char quote = '\0';
   for (std::size_t i = begin; i < text.size(); ++i) {
@@ -94,7 +94,7 @@ class Rewriter {
 
  private:
   void rewriteTag(std::string_view tag) {
-    const bool closes = becomesEmpty(tag);
+    const bool closes = isEmptied(tag);
     std::size_t cursor = 0;
     for (Attribute at = nextAttribute(tag, 0); !at.name.empty(); at = nextAttribute(tag, at.end)) {
       const bool allow = at.name == "allow";
@@ -112,7 +112,7 @@ class Rewriter {
   }
 
   /// Whether the tag's `allow` names unknown classes only: afterwards nothing may use the lane.
-  static bool becomesEmpty(std::string_view tag) {
+  static bool isEmptied(std::string_view tag) {
     for (Attribute at = nextAttribute(tag, 0); !at.name.empty(); at = nextAttribute(tag, at.end)) {
       if (at.name != "allow") continue;
       const std::vector<std::string> words = core::splitText(at.value, ' ');

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Drops the vehicle classes that SUMO 1.15 does not know from the permissions of a network text;
-/// all other bytes stay.
 #pragma once
 
 #include <string>
@@ -10,6 +8,8 @@
 
 namespace cdiff::map {
 
+/// Drops the vehicle classes that SUMO 1.15 does not know from the permissions of a network text;
+/// all other bytes stay.
 struct PermissionRewrite {
   std::string text;
   std::vector<std::string>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Acceleration [m/s^2] and jerk [m/s^3] of CBVs from decision to decision, and nuPlan's limits of
-/// comfort.
 #pragma once
 
 #include <map>
@@ -25,6 +23,8 @@ BodyAcceleration bodyAcceleration(const traffic::Vehicle& vehicle);
 /// 4.89 and |jerk| < 8.37. Without a jerk the accelerations decide.
 bool isUncomfortable(const BodyAcceleration& acceleration, const std::optional<double>& jerk);
 
+/// Acceleration [m/s^2] and jerk [m/s^3] of CBVs from decision to decision, and nuPlan's limits of
+/// comfort.
 /// How one CBV moves at a decision.
 struct BodyMotion {
   BodyAcceleration acceleration;
@@ -32,6 +32,7 @@ struct BodyMotion {
                                ///< at a vehicle's first decision as CBV
 };
 
+/// Derives the motion of each CBV's body from successive decision ticks (SI units).
 class BodyMotions {
  public:
   /// `decision_period` [s].

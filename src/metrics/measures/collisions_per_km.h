@@ -6,13 +6,13 @@
 #include <set>
 #include <string>
 
-#include "e2e_cdiff/metrics/figure.h"
+#include "e2e_cdiff/metrics/measure.h"
 #include "e2e_cdiff/metrics/metric_tick.h"
 
 namespace cdiff::metrics {
 
-/// The way [m] that all CBVs drove as CBVs: chords between successive ticks.
-class CbvWay {
+/// The distance [m] that all CBVs drove as CBVs: chords between successive ticks.
+class CbvTravel {
  public:
   void observe(const MetricTick& tick) {
     for (const CbvSighting& cbv : tick.cbvs) {
@@ -31,7 +31,7 @@ class CbvWay {
   double distance_ = 0.0;
 };
 
-// Collisions per kilometre (paper's CPK) [1/km]: 1000 x collisions / metres driven.
+// Collisions per kilometer (paper's CPK) [1/km]: 1000 x collisions / meters driven.
 
 /// n = `vehicles` that drove. Absent with a reason when there was none, or none moved.
 Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles);

@@ -49,7 +49,7 @@ Eigen::Vector2d normalOf(const OrientedBox& ego, const OrientedBox& other) {
   return normal;
 }
 
-/// Mean of the corners of each that lie in the other; midway between the centres without one.
+/// Mean of the corners of each that lie in the other; midway between the centers without one.
 Eigen::Vector2d pointOf(const OrientedBox& ego, const OrientedBox& other) {
   constexpr double kTolerance = 1e-6;  // [m]
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

@@ -1,5 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/map/road_network.h"
+#include "e2e_cdiff/metrics/metric_tick.h"
+
+namespace cdiff::metrics {
+
+/// One of the two vehicles of a contact.
+struct ContactParty {
+  std::optional<traffic::VehicleState> before;  ///< at the tick before; absent: it was not there
+  traffic::VehicleState now;                    ///< at the first tick with overlap
+  traffic::VehicleDimensions dimensions;
+  std::optional<double> lane_heading;  ///< heading of its own lane [rad]
+
+  /// The box at a share in [0, 1] of the tick that led to the overlap.
+  geometry::OrientedBox boxAt(double share) const;
+  /// Velocity over the tick of the body's point that is at `point` at that share [m/s].
+  Eigen::Vector2d velocityAt(const Eigen::Vector2d& point, double share, double step) const;
+};
+
 /// Whether the ego is at fault in a contact: who strikes whom, from the motion of the two boxes
 /// over the tick in which they meet (map frame, SI units; docs/protocols.md).
 ///
@@ -17,37 +41,13 @@
 /// fault; head-on, the one that is on no lane of its direction is at fault, where the other is on
 /// one; side by side in the same direction, n is taken perpendicular to the lane, so that the one
 /// that moves sideways is at fault and not the one whose corner is touched.
-#pragma once
-
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "e2e_cdiff/map/road_network.h"
-#include "e2e_cdiff/metrics/metric_tick.h"
-
-namespace cdiff::metrics {
-
-/// One of the two vehicles of a contact.
-struct ContactParty {
-  std::optional<traffic::VehicleState> before;  ///< at the tick before; absent: it was not there
-  traffic::VehicleState now;                    ///< at the first tick with overlap
-  traffic::VehicleDimensions dimensions;
-  std::optional<double> lane_heading;  ///< of the lane of its direction that its centre is on [rad]
-
-  /// The box at a share in [0, 1] of the tick that led to the overlap.
-  geometry::OrientedBox boxAt(double share) const;
-  /// Velocity over the tick of the body's point that is at `point` at that share [m/s].
-  Eigen::Vector2d velocityAt(const Eigen::Vector2d& point, double share, double step) const;
-};
-
 /// The decision with what it stands on.
 struct ContactFault {
   bool ego_at_fault = false;
   std::string reason;      ///< a short sentence without subject "contact"
   std::string ego_side;    ///< "front", "rear", "left side" or "right side"
-  std::string other_side;  ///< of the other vehicle
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< of contact, map frame [m]
+  std::string other_side;  ///< side of the other vehicle
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< point of contact, map frame [m]
 };
 
 /// `step` is the time between the two ticks [s]; an ego slower than `standing_speed` [m/s] stands.

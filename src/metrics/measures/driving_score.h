@@ -54,7 +54,7 @@ class CollisionCounter {
  private:
   struct Collision {
     double time;
-    Eigen::Vector2d position;  ///< of the ego
+    Eigen::Vector2d position;  ///< position of the ego
     std::string partner;
   };
   bool repeats(double time, const traffic::VehicleState& ego, const std::string& partner) const;
@@ -98,7 +98,7 @@ bool isOutsideLanes(const map::RoadNetwork& network, const traffic::VehicleState
                     const InfractionOptions& options);
 
 /// Share [%] of the completed route that the ego drove outside the lanes, as CARLA's
-/// OutsideRouteLanesTest has it: its centre farther than half a lane's width plus a margin from
+/// OutsideRouteLanesTest has it: its center farther than half a lane's width plus a margin from
 /// every lane on its level, or the nearest lane outside junctions leading the other way.
 class OutsideLanes {
  public:

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::OrientedBox;
 
-/// Convex set of (s, u): the first box has gone the share s of its way, the second the share u.
+/// Convex set of (s, u): the first box has covered the share s of its path, the second the share u.
 /// Each of the eight cuts adds at most one corner to the unit square.
 using Shares = boost::container::static_vector<Eigen::Vector2d, 16>;
 
@@ -44,8 +44,8 @@ void cutByAxis(Shares& shares, const SweptBox& first, const SweptBox& second,
 }  // namespace
 
 bool farApart(const SweptBox& first, const SweptBox& second) {
-  const auto radius = [](const SweptBox& way) {
-    return 0.5 * (std::hypot(way.box.length, way.box.width) + way.offset.norm());
+  const auto radius = [](const SweptBox& sweep) {
+    return 0.5 * (std::hypot(sweep.box.length, sweep.box.width) + sweep.offset.norm());
   };
   const Eigen::Vector2d between =
       second.box.center + 0.5 * second.offset - first.box.center - 0.5 * first.offset;

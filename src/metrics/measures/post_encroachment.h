@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The time [s] between two boxes on their ways being at one place, exact for boxes that keep
-/// velocity and heading.
 #pragma once
 
 #include <optional>
@@ -10,9 +8,12 @@
 
 namespace cdiff::metrics {
 
-/// A box on its way from one tick to the next, map frame.
+// The time [s] between two moving boxes being at one place, exact for boxes that keep
+// velocity and heading.
+
+/// A box that moves from one tick to the next, map frame.
 struct SweptBox {
-  geometry::OrientedBox box;                         ///< where it begins
+  geometry::OrientedBox box;                         ///< where it starts
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< to where it ends [m]
   double elevation = 0.0;                            ///< [m]
   double begin = 0.0;                                ///< [s]
@@ -27,7 +28,7 @@ struct TimeRange {
 };
 std::optional<TimeRange> timesBetween(const SweptBox& first, const SweptBox& second);
 
-/// Whether circles around both ways keep clear of each other.
+/// Whether circles around both paths keep clear of each other.
 bool farApart(const SweptBox& first, const SweptBox& second);
 
 }  // namespace cdiff::metrics

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A histogram as RIFT's statistics keep it: bins (left, right] in the values' unit, values below
-/// the first or not below the last edge dropped, mean and variance from the bins' midpoints, and
-/// RIFT's resampling with a fixed stream.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +9,9 @@
 
 namespace cdiff::metrics {
 
+/// A histogram as RIFT's statistics keep it: bins (left, right] in the values' unit, values below
+/// the first or not below the last edge dropped, mean and variance from the bins' midpoints, and
+/// RIFT's resampling with a fixed stream.
 class RiftHistogram {
  public:
   /// `edges` ascending, at least two.

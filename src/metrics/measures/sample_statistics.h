@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "e2e_cdiff/metrics/figure.h"
+#include "e2e_cdiff/metrics/measure.h"
 
 namespace cdiff::metrics {
 
@@ -51,9 +51,9 @@ class TickShare {
 
 // What the shipped metrics say in the same words.
 
-/// Reason of every CBV figure of a session without CBVs.
+/// Reason of every CBV measure of a session without CBVs.
 inline constexpr const char* kNoCbv = "no CBV was driven";
-/// Reason of the ego's figures of a session without ego.
+/// Reason of the ego's measures of a session without ego.
 inline constexpr const char* kNoEgo = "the ego was never seen";
 
 /// A value of the session as a whole.

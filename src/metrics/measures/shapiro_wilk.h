@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/metrics/figure.h"
+#include "e2e_cdiff/metrics/measure.h"
 
 namespace cdiff::metrics {
 

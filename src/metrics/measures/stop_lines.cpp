@@ -7,7 +7,7 @@
 namespace cdiff::metrics {
 namespace {
 
-constexpr double kTail = 0.8;        // of half the length, behind the centre (CARLA's criterion)
+constexpr double kTail = 0.8;        // of half the length, behind the center (CARLA's criterion)
 constexpr double kLaneRadius = 5.0;  // [m] around that point; more than it moves in a tick
 
 bool isStopSign(const map::LaneLink& link) { return link.state == 's' || link.state == 'w'; }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Stop lines that the ego crosses (map frame [m]): red lights run and stop signs not obeyed. A
-/// line is a lane's end before a junction; it is crossed when the point 0.8 half lengths behind the
-/// ego's centre passes it inside the lane's width and on its level.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +12,9 @@
 
 namespace cdiff::metrics {
 
+/// Stop lines that the ego crosses (map frame [m]): red lights run and stop signs not obeyed. A
+/// line is a lane's end before a junction; it is crossed when the point 0.8 half lengths behind the
+/// ego's center passes it inside the lane's width and on its level.
 class StopLines {
  public:
   /// `network` must outlive the object. Of a lane on the ego route the link that the route takes
@@ -22,7 +22,7 @@ class StopLines {
   StopLines(const map::RoadNetwork& network, const map::Route& route,
             const InfractionOptions& options);
 
-  /// One tick of the ego, with the lights' colours.
+  /// One tick of the ego, with the lights' colors.
   void observe(const traffic::Vehicle& ego, const std::vector<traffic::SignalState>& signals);
 
   /// Lines crossed while the light showed red (r) or red-yellow (u).
@@ -35,7 +35,7 @@ class StopLines {
 
  private:
   using Links = std::vector<map::LaneLink>;
-  /// The ego against one line: metres beyond it, and beside the lane's centre line.
+  /// The ego against one line: meters beyond it, and beside the lane's centerline.
   struct Place {
     double beyond = 0.0;
     double beside = 0.0;

@@ -40,7 +40,7 @@ std::optional<double> rayCastTimeToCollision(const MovingBox& first, const Movin
 std::optional<double> riftTimeToCollision(const MovingBox& first, const MovingBox& second);
 
 /// RIFT's ACT [s], rounded to 0.01 s: shortest distance from a corner of one box to a corner of the
-/// other / speed at which the centres approach; nullopt unless they do.
+/// other / speed at which the centers approach; nullopt unless they do.
 std::optional<double> riftApproachTime(const MovingBox& first, const MovingBox& second);
 
 /// The paper's wording: minimum of longitudinal and lateral time to collision in the first box's
@@ -53,8 +53,9 @@ std::optional<double> longitudinalLateralTimeToCollision(const MovingBox& first,
 // The ego against the vehicles around it at one tick: smallest times to collision [s] and distance
 // between boxes [m].
 
+/// Which times to collision are computed, and up to which distance [m] and time [s].
 struct InteractionOptions {
-  double radius = 60.0;        ///< of centres, for times to collision [m]
+  double radius = 60.0;        ///< largest distance of centers for times to collision [m]
   double time_limit = 3600.0;  ///< a longer time counts as never [s]
   bool variants = false;       ///< whether ttc_lon_lat, rift_ttc and rift_act are computed
 };

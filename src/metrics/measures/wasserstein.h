@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The 1-Wasserstein distance of an empirical sample to another or to a normal distribution, in the
-/// samples' unit: W1 = integral |F_a(x) - F_b(x)| dx.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 namespace cdiff::metrics {
+
+// The 1-Wasserstein distance of an empirical sample to another or to a normal distribution, in the
+// samples' unit: W1 = integral |F_a(x) - F_b(x)| dx.
 
 /// Samples of any two sizes; nullopt when one is empty or holds a value that is not finite.
 std::optional<double> wassersteinDistance(std::vector<double> first, std::vector<double> second);

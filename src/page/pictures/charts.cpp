@@ -128,7 +128,7 @@ ChartAxes axesOf(const Chart& chart) {
   return {0.0, durationOf(chart), chart.bottom, top};
 }
 
-/// Points with a value are joined; one without neighbours is a dot.
+/// Points with a value are joined; one without neighbors is a dot.
 core::Markup seriesPath(const ChartSeries& series, const ChartAxes& axes) {
   std::string lines;
   std::string dots;

@@ -78,6 +78,7 @@ class ChartAxes {
 // A line chart over time as one SVG element: the session's time, which the page's slider marks and
 // a click chooses, or a time of its own.
 
+/// A line of a chart: values over time [s].
 struct ChartSeries {
   std::string style;  ///< CSS class of the line
   /// (time [s], value) in order of time; a value that is not finite breaks the line.
@@ -91,6 +92,7 @@ struct ChartMark {
   std::string text;
 };
 
+/// A chart of values over time [s]: title, unit, axes, lines and marks.
 struct Chart {
   std::string title;
   std::string unit;

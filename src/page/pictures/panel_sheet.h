@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Pictures side by side under one title as one SVG element, in fixed light colours: a figure for
-/// print (pixels, x right, y down).
 #pragma once
 
 #include <string>
@@ -12,6 +10,7 @@
 
 namespace cdiff::page {
 
+/// One picture of a sheet: a title above SVG content [pixels].
 struct Panel {
   std::string title;
   core::Markup content;  ///< in pixels of the panel
@@ -20,6 +19,8 @@ struct Panel {
   bool cut = false;  ///< whether what lies outside is cut off
 };
 
+/// Pictures side by side under one title as one SVG element, in fixed light colors: a figure for
+/// print (pixels, x right, y down).
 struct PanelSheet {
   std::string title;
   std::vector<std::pair<std::string, std::string>> legend = {};  ///< (CSS class of a line, text)

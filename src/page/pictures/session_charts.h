@@ -8,7 +8,7 @@
 namespace cdiff::page {
 
 // Who was CBV when: a row per slot over the session's time [s], a bar per stay, a ring where the
-// CBV touched somebody.
+// CBV touched another vehicle.
 
 /// As one HTML figure, for a session with CBVs.
 core::Markup slotChart(const record::SessionResult& result);

@@ -49,7 +49,7 @@ std::vector<std::string> levelsAt(const std::set<int>& elevations, const map::Dr
   return levels;
 }
 
-/// Elevations in the picture, in whole metres: of the ego route, or of all lanes.
+/// Elevations in the picture, in whole meters: of the ego route, or of all lanes.
 std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const MapCanvas& canvas) {
   std::set<int> elevations;
   for (const Eigen::Vector3d& point : points) {
@@ -104,7 +104,7 @@ Markup conflictRoutes(const record::SessionResult& result, const MapCanvas& canv
   return svg;
 }
 
-/// A stretch of one vehicle's way in one role.
+/// A stretch of one vehicle's path in one role.
 struct Trail {
   std::uint32_t vehicle = 0;
   VehicleRole role = VehicleRole::kBackground;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The session from above as one SVG element: drivable area, lanes, ego route, conflicts, trails,
-/// vehicles at the final tick. Names in it are cut to 40 characters; tool tips hold them whole.
 #pragma once
 
 #include <string>
@@ -10,6 +8,9 @@
 #include "page/pictures/map_canvas.h"
 
 namespace cdiff::page {
+
+// The session from above as one SVG element: drivable area, lanes, ego route, conflicts, trails,
+// vehicles at the final tick. Names in it are cut to 40 characters; tool tips hold them whole.
 
 core::Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The diffusion planner in the table of planners, and for planners that plan with it.
 #pragma once
 
 #include <memory>
@@ -9,6 +8,8 @@
 #include "planners/diffusion/diffusion_planner.h"
 
 namespace cdiff::planners {
+
+// The diffusion planner in the table of planners, and for planners that plan with it.
 
 planning::PlannerDescriptor diffusionDescriptor();
 

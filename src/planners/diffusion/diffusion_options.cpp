@@ -8,7 +8,7 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"model", "", "Shipped model, or folder with its weight files."}, model, {});
   visitor.text(
       {"conditioning", "",
-       "What the network is told: image and route, the image alone, or the image alone where "
+       "What the network is given: image and route, the image alone, or the image alone where "
        "collision_seeking has a weight."},
       conditioning, {"image_route", "image", "by_guidance"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options of the planner `diffusion` (paper III): model, what it sees, sampler, state branch.
 #pragma once
 
 #include <string>
@@ -11,6 +10,7 @@
 
 namespace cdiff::planners {
 
+/// Options of the planner `diffusion` (paper III): model, what it sees, sampler, state branch.
 struct DiffusionOptions {
   std::string model = "default";  ///< shipped model or folder of the weight files
   /// image_route | image (the paper's) | by_guidance

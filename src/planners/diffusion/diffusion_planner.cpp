@@ -35,7 +35,7 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
                                    const std::string& guidance_group)
     : options_(options),
       guidance_(guidance),
-      tells_route_(options.conditioningUnder(guidance) == "image_route"),
+      conditions_on_route_(options.conditioningUnder(guidance) == "image_route"),
       vehicle_(vehicle),
       context_(context),
       model_(diffusion::loadModel(options.model)),
@@ -63,7 +63,7 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
   if (auto fault = memory.watch.fault(expectation, task.image, task.vehicle->state, tick))
     return fault;
   const bool has_route = task.route != nullptr && !task.route->empty();
-  if (!has_route && tells_route_) return "it has no route";
+  if (!has_route && conditions_on_route_) return "it has no route";
   return std::nullopt;
 }
 

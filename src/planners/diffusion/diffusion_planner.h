@@ -1,19 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
-/// future states and throttle, steer and brake out, of which the first action drives. All vehicles
-/// of a decision form one batch.
-///
-/// Choices where the paper leaves them open:
-///  - the image is encoded once per decision, the denoiser runs on its features;
-///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
-///    nearest other vehicle, for the ego;
-///  - attackers are not told their route (DiffusionOptions::conditioningUnder);
-///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
-///    brake the larger one acts;
-///  - of several candidates the one with the lowest weighted objective drives, unless the
-///    one nearest to the previous plan is no worse
-///    by `hysteresis`.
 #pragma once
 
 #include <map>
@@ -33,6 +19,19 @@
 
 namespace cdiff::planners {
 
+/// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
+/// future states and throttle, steer and brake out, of which the first action drives. All vehicles
+/// of a decision form one batch.
+///
+/// Choices where the paper leaves them open:
+///  - the image is encoded once per decision, the denoiser runs on its features;
+///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
+///    nearest other vehicle, for the ego;
+///  - attackers are not given their route (DiffusionOptions::conditioningUnder);
+///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
+///    brake the larger one acts;
+///  - of several candidates the one with the lowest weighted objective drives, unless the one
+///    nearest to the previous plan is no worse by `hysteresis`.
 class DiffusionPlanner : public planning::Planner {
  public:
   /// Loads the model. Throws InputError for a bad model or bad options; `guidance_group` is put
@@ -75,7 +74,7 @@ class DiffusionPlanner : public planning::Planner {
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;
-  bool tells_route_;  ///< the network the route
+  bool conditions_on_route_;  ///< whether the network is given the route
   dynamics::BicycleModelOptions vehicle_;
   planning::PlanningContext context_;
   diffusion::Model model_;

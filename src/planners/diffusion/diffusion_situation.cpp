@@ -99,7 +99,7 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
 }
 
 /// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
-/// plan said, on its way to the same goal.
+/// plan said, towards the same goal.
 void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
   const std::optional<LastPlan>& last = situation.memory->plan;
   if (!last || last->tick() + ticksOf(context_) != tick) return;
@@ -142,7 +142,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
     scene.route_arc_length = arc_length;
     const double place = std::clamp(arc_length, 0.0, task.route->length());
     scene.target_speed = std::min(task.target_speed, task.route->speedLimitAt(place));
-    if (tells_route_) {
+    if (conditions_on_route_) {
       situation->context.route = diffusion::routeTokens(model_.architecture, task.route->path(),
                                                         arc_length, vehicle.state.pose());
     }

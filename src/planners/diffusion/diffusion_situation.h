@@ -57,7 +57,7 @@ struct DiffusionPlanner::Situation {
   guidance::GuidanceScene scene;
   guidance::OtherMotion other;
   std::optional<traffic::Rollout> previous;   ///< last plan as seen from here, metric
-  std::optional<diffusion::Trajectory> warm;  ///< the same, normalised, where it fits
+  std::optional<diffusion::Trajectory> warm;  ///< the same, normalized, where it fits
   std::vector<std::unique_ptr<guidance::TotalObjective>> objectives;  ///< one per candidate
   traffic::Rollout plan;                                              ///< the chosen one
   guidance::GuidanceReport report;

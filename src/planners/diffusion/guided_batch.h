@@ -12,7 +12,7 @@
 
 namespace cdiff::planners {
 
-/// Guidance on a batch of samples: joins the metric objectives of each vehicle to the normalised
+/// Guidance on a batch of samples: joins the metric objectives of each vehicle to the normalized
 /// trajectories that the sampler works on.
 /// References must outlive it.
 class GuidedBatch : public diffusion::CleanObjective {
@@ -32,7 +32,7 @@ class GuidedBatch : public diffusion::CleanObjective {
 };
 
 // Which of several sampled plans (rollouts [T, 7], body frame, SI units) is driven: the one of the
-// lowest score; or, so that a vehicle does not waver between equal ways, the one nearest to the
+// lowest score; or, so that a vehicle does not waver between equal routes, the one nearest to the
 // last plan while it is no worse by more than a share.
 
 /// Index into `plans`. `previous` is the last plan as seen from here. Plans that are not finite are

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Whether a vehicle's images can be driven by: right size, of this tick, and not frozen while the
-/// vehicle moves.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +22,8 @@ struct ImageExpectation {
   double simulation_step = 0.05;   ///< [s]
 };
 
+/// Whether a vehicle's images can be driven by: right size, of this tick, and not frozen while the
+/// vehicle moves.
 /// One per vehicle; asked once per decision.
 class ImageWatch {
  public:

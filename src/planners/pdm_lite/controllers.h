@@ -34,6 +34,7 @@ class LateralController {
 // target, full brake above 1.0313 x the target, else a regression in c = v / (100 km/h) and e =
 // max(target - v, 0) / (100 km/h). Without state.
 
+/// Pedals that a longitudinal controller asks for.
 struct PedalCommand {
   double throttle = 0.0;  ///< [0, 1]
   bool brake = false;     ///< full brake
@@ -62,7 +63,7 @@ struct IdmParameters {
 
 /// What is ahead.
 struct IdmObstacle {
-  double distance = 0.0;       ///< d: centre to centre, or along the route to a stop line [m]
+  double distance = 0.0;       ///< d: center to center, or along the route to a stop line [m]
   double speed = 0.0;          ///< [m/s]
   double length = 0.0;         ///< L: subtracted from the distance [m]
   double minimum_gap = 4.0;    ///< s0 [m]

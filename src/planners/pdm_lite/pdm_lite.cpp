@@ -28,7 +28,7 @@ constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
 constexpr double kLeastBraking = 1.0;       // of an even style that waits [m/s^2]
 constexpr double kHardestBraking = 8.0;     // of an even style [m/s^2]
 
-/// Pedals in the last metres of the route.
+/// Pedals in the last meters of the route.
 PedalCommand endPedals(double remaining, double speed, double target_speed) {
   if (remaining > 0.0 && speed < kCreepSpeed) {
     return pedals(speed, std::min(kCreepSpeed, target_speed));
@@ -53,7 +53,7 @@ double evenBraking(const traffic::VehicleState& now, const traffic::VehicleState
                     kHardestBraking);
 }
 
-/// How long the way of a vehicle that gave way must be clear before it drives on [s].
+/// How long the road ahead of a vehicle that yielded must be clear before it drives on [s].
 double restartDelay(int slot) { return slot < 0 ? 0.0 : 0.5 + 0.2 * slot; }
 
 void requireComplete(const planning::PlanningTask& task) {
@@ -76,7 +76,7 @@ IdmParameters parametersOf(const planning::DrivingStyle& style) {
   return parameters;
 }
 
-/// Target on a free road: the desired speed, or for an even style IDM's way towards it, slowing
+/// Target on a free road: the desired speed, or for an even style IDM's approach to it, slowing
 /// down by no more than b.
 double freeSpeed(const planning::PlanningTask& task, double desired) {
   if (!task.style.even()) return desired;

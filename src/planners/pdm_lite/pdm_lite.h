@@ -1,5 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "e2e_cdiff/planning/planner.h"
+#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
+
+namespace cdiff::planners {
+
 /// PDM-Lite, the rule-based planner, in RIFT's configuration (10 Hz, no scenario scripts, no
 /// steering noise, no stop signs): action from route, boxes and lights; map frame, SI units. target
 /// speed = min of the initial one, IDM behind leaders and lights, and 0 when the forecast box of
@@ -19,24 +32,10 @@
 ///    vehicle follows its present speed: two standing cars hold each other up only if the body of
 ///    one lies in the other's way.
 ///  - A task with an even style (planning::DrivingStyle) follows by IDM with that style's a and b
-///    and gives
-///    way by an even deceleration that ends before the boxes meet; its pedals are those that the
-///    vehicle dynamics needs, and no rule makes it drive after standing for long; its forecast is
-///    that of full throttle, which asks for more room. As published, pedals are full or none and
-///    IDM has a = 24 m/s^2.
-#pragma once
-
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "e2e_cdiff/planning/planner.h"
-#include "planners/pdm_lite/forecasts.h"
-#include "planners/pdm_lite/pdm_lite_options.h"
-
-namespace cdiff::planners {
-
+///    and gives route by an even deceleration that ends before the boxes meet; its pedals are those
+///    that the vehicle dynamics needs, and no rule makes it drive after standing for long; its
+///    forecast is that of full throttle, which asks for more room. As published, pedals are full or
+///    none and IDM has a = 24 m/s^2.
 class PdmLite : public planning::Planner {
  public:
   PdmLite(const PdmLiteOptions& options, const dynamics::BicycleModelOptions& vehicle,

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Options of PDM-Lite; defaults are RIFT's configuration of it.
 #pragma once
 
 #include "e2e_cdiff/core/options.h"
 
 namespace cdiff::planners {
 
+/// Options of PDM-Lite; defaults are RIFT's configuration of it.
 struct PdmLiteOptions {
   double speed_limit_share = 0.72;  ///< initial target speed as a share of the limit
   double junction_speed = 17.78;    ///< cap when a junction lies within 30 m [m/s]
-  double forecast_horizon = 2.0;    ///< of boxes [s]
+  double forecast_horizon = 2.0;    ///< how far boxes are forecast [s]
   double detection_radius = 50.0;   ///< vehicles that are forecast [m]
   double lateral_kp = 2.0;          ///< RIFT's gain (original: 3.118)
   double lateral_ki = 0.6406067986034124;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
-/// speed, lane change near, who leads, who trails, the next light.
 #pragma once
 
 #include <optional>
@@ -11,6 +9,9 @@
 #include "planners/pdm_lite/pdm_lite_options.h"
 
 namespace cdiff::planners {
+
+// PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
+// speed, lane change near, who leads, who trails, the next light.
 
 /// min(share x limit, task's target speed, limit), capped where a junction lies within 30 m [m/s].
 /// The limit is the lowest one within the distance of braking at 4 m/s^2: SUMO's lanes inside

@@ -1,18 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Two PIDs that follow planned places (body frame of the vehicle, m, one per 0.1 s): the published
-/// execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e before). One
-/// call per decision; the gains are per call, so they depend on the decision period (published: 0.1
-/// s).
-///
-/// The plan is thinned to one place a second (two a second if it is shorter than 2 s).
-///  - Desired speed: mean length of the segments between these places, from the vehicle on, per
-///    time.
-///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
-///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
-///  - Turn error: bearing of the place whose distance is nearest to the look-ahead
-///    clamp(0.5 v + 2.5,
-///    5, 8) m, in units of 90 degrees; none while it stands (below 0.01 m/s) or brakes.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,6 +47,19 @@ class WindowedPid {
   std::deque<double> errors_;  ///< newest last, of fixed length
 };
 
+/// Two PIDs that follow planned places (body frame of the vehicle, m, one per 0.1 s): the published
+/// execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e before). One
+/// call per decision; the gains are per call, so they depend on the decision period (published: 0.1
+/// s).
+///
+/// The plan is thinned to one place a second (two a second if it is shorter than 2 s).
+///  - Desired speed: mean length of the segments between these places, from the vehicle on, per
+///    time.
+///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
+///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
+///  - Turn error: bearing of the place whose distance is nearest to the look-ahead
+///    clamp(0.5 v + 2.5, 5, 8) m, in units of 90 degrees; none while it stands (below 0.01
+///    m/s) or brakes.
 /// Tracker of one vehicle.
 class TrajectoryTracker {
  public:

@@ -22,7 +22,7 @@ class TwoStagePid : public planning::Planner {
 
   /// The action is the tracker's; rollout, guidance and state mismatch are those of the plan, its
   /// denoised actions included. A vehicle with a fault keeps the fail-safe action and its tracker
-  /// starts anew, as does that of a vehicle left out of a decision.
+  /// starts over, as does that of a vehicle left out of a decision.
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;

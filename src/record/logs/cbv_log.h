@@ -30,12 +30,12 @@ struct CbvRecord {
       0;  ///< decisions that found it driven as CBV: not yet that of its selection
   std::optional<std::uint64_t> released_tick;  ///< absent when the session ended first
   std::string release_reason = kSessionEnd;
-  double route_length = 0.0;           ///< of the conflict-aware route [m]
+  double route_length = 0.0;           ///< length of the conflict-aware route [m]
   std::vector<Eigen::Vector3d> route;  ///< points of the conflict-aware route, map frame [m]
   /// Reached on the conflict-aware route, as of the decisions of the stay and that of its release
   /// [m].
   double arc_length = 0.0;
-  bool conflict_point_passed = false;  ///< its centre came that far along the conflict-aware route
+  bool conflict_point_passed = false;  ///< its center came that far along the conflict-aware route
 
   /// 100 arc_length / route_length; 100 when released because its route ended.
   double routeCompletionPercent() const;
@@ -44,7 +44,7 @@ struct CbvRecord {
   bool routeCompleted() const;
 };
 
-/// What became of every vehicle that was selected as CBV: where and when, for how many decisions,
+/// What happened to every vehicle that was selected as CBV: where and when, for how many decisions,
 /// how far along its conflict-aware route, why released; and how often which reason rejected a
 /// candidate.
 class CbvLog {
@@ -76,12 +76,14 @@ class CbvLog {
   std::map<std::string, std::map<std::string, std::size_t>> rejected_vehicles_;
 };
 
+/// The moment at which a CBV came nearest to the ego: the snapshot, and the images of both.
 struct Approach {
   std::string vehicle_id;
   double gap = 0.0;              ///< between the boxes of ego and CBV [m]
-  double center_distance = 0.0;  ///< between their centres [m]
+  double center_distance = 0.0;  ///< between their centers [m]
   traffic::TrafficSnapshot snapshot;
-  traffic::CameraImage cbv_image;  ///< of the latest decision; empty when its planner does not see
+  traffic::CameraImage
+      cbv_image;  ///< image of the latest decision; empty when its planner does not see
   traffic::CameraImage ego_image;  ///< likewise of the ego
 
   double time() const { return snapshot.time; }

@@ -31,6 +31,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes);
 /// All views of a session take at most this much [bytes]; as text a third more.
 inline constexpr std::size_t kFrontViewBytes = 2'400'000;
 
+/// The front view of a slot's vehicle at one tick, as JPEG.
 struct FrontView {
   std::uint64_t tick = 0;
   double time = 0.0;  ///< [s]

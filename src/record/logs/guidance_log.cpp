@@ -26,20 +26,20 @@ GuidanceSeries& GuidanceLog::seriesOf(const std::string& objective) {
   return series_.back();
 }
 
-ObjectiveFigures figuresOf(const GuidanceSeries& series) {
+ObjectiveSummary summaryOf(const GuidanceSeries& series) {
   const auto mean = [&](double guidance::ObjectiveReport::*quantity) {
     std::vector<double> values;
     for (const GuidanceSample& sample : series.samples) values.push_back(sample.report.*quantity);
-    return figuresOf(values).mean;
+    return summaryOf(values).mean;
   };
-  ObjectiveFigures figures;
-  if (!series.samples.empty()) figures.weight = series.samples.back().report.weight;
-  figures.value = mean(&guidance::ObjectiveReport::value);
-  figures.gradient_norm = mean(&guidance::ObjectiveReport::gradient_norm);
-  figures.capped_share = mean(&guidance::ObjectiveReport::capped_share);
-  for (const GuidanceSample& sample : series.samples) figures.dropped += sample.report.dropped;
-  figures.n = series.samples.size();
-  return figures;
+  ObjectiveSummary summary;
+  if (!series.samples.empty()) summary.weight = series.samples.back().report.weight;
+  summary.value = mean(&guidance::ObjectiveReport::value);
+  summary.gradient_norm = mean(&guidance::ObjectiveReport::gradient_norm);
+  summary.capped_share = mean(&guidance::ObjectiveReport::capped_share);
+  for (const GuidanceSample& sample : series.samples) summary.dropped += sample.report.dropped;
+  summary.n = series.samples.size();
+  return summary;
 }
 
 }  // namespace cdiff::record

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What guidance did to the plans of CBVs: every objective's report at every decision.
 #pragma once
 
 #include <optional>
@@ -26,8 +25,8 @@ struct GuidanceSeries {
 };
 
 /// Over the decisions in which the objective was active.
-struct ObjectiveFigures {
-  std::optional<double> weight;  ///< of the last decision
+struct ObjectiveSummary {
+  std::optional<double> weight;  ///< weight at the last decision
   // Means; values that are not finite are left out.
   std::optional<double> value;
   std::optional<double> gradient_norm;
@@ -36,13 +35,14 @@ struct ObjectiveFigures {
   std::size_t n = 0;         ///< decisions
 };
 
+/// What guidance did to the plans of CBVs: every objective's report at every decision.
 class GuidanceLog {
  public:
   void observe(const session::TickRecord& record);
   /// In the order in which objectives appeared first.
   const std::vector<GuidanceSeries>& series() const { return series_; }
   /// Share of guided steps in which the trust region acted, over decisions with guidance.
-  SampleFigures trustRegion() const { return figuresOf(trust_region_shares_); }
+  SampleSummary trustRegion() const { return summaryOf(trust_region_shares_); }
 
  private:
   GuidanceSeries& seriesOf(const std::string& objective);
@@ -50,6 +50,6 @@ class GuidanceLog {
   std::vector<double> trust_region_shares_;
 };
 
-ObjectiveFigures figuresOf(const GuidanceSeries& series);
+ObjectiveSummary summaryOf(const GuidanceSeries& series);
 
 }  // namespace cdiff::record

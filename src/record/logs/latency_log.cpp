@@ -10,20 +10,20 @@
 
 namespace cdiff::record {
 
-SampleFigures figuresOf(const std::vector<double>& values) {
+SampleSummary summaryOf(const std::vector<double>& values) {
   std::vector<double> sorted;
   for (const double value : values) {
     if (std::isfinite(value)) sorted.push_back(value);
   }
   std::sort(sorted.begin(), sorted.end());
-  SampleFigures figures;
-  figures.n = sorted.size();
-  if (sorted.empty()) return figures;
-  figures.mean =
+  SampleSummary summary;
+  summary.n = sorted.size();
+  if (sorted.empty()) return summary;
+  summary.mean =
       std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
-  figures.percentile_95 = nearestRank(sorted, 95.0);
-  figures.maximum = sorted.back();
-  return figures;
+  summary.percentile_95 = nearestRank(sorted, 95.0);
+  summary.maximum = sorted.back();
+  return summary;
 }
 
 double nearestRank(const std::vector<double>& sorted, double percent) {
@@ -38,58 +38,58 @@ void LatencyLog::observe(const std::vector<session::PlannerLatency>& latencies) 
   }
 }
 
-std::map<std::string, LatencyFigures> LatencyLog::figures() const {
-  std::map<std::string, LatencyFigures> figures;
+std::map<std::string, LatencySummary> LatencyLog::summaries() const {
+  std::map<std::string, LatencySummary> summaries;
   for (const auto& [planner, samples] : samples_) {
     std::vector<double> sorted = samples;
     std::sort(sorted.begin(), sorted.end());
-    figures[planner] = {nearestRank(sorted, 50.0), nearestRank(sorted, 95.0), sorted.back(),
-                        sorted.size()};
+    summaries[planner] = {nearestRank(sorted, 50.0), nearestRank(sorted, 95.0), sorted.back(),
+                          sorted.size()};
   }
-  return figures;
+  return summaries;
 }
 
 using session::AnswerTiming;
 
 void LateLog::observe(const std::vector<AnswerTiming>& timings) {
   for (const AnswerTiming& timing : timings) {
-    LateFigures& figures = counts_[timing.planner];
-    ++figures.asked;
+    LateCounts& counts = counts_[timing.planner];
+    ++counts.asked;
     if (timing.punctual()) continue;
-    ++(timing.came ? figures.late : figures.missing);
+    ++(timing.came ? counts.late : counts.missing);
     if (timing.came) lateness_[timing.planner].push_back(timing.lateness);
-    figures.by_plan += timing.instead == AnswerTiming::Instead::kPlan;
-    figures.by_full_brake += timing.instead == AnswerTiming::Instead::kFullBrake;
-    figures.not_driven += timing.instead == AnswerTiming::Instead::kNotDriven;
+    counts.by_plan += timing.instead == AnswerTiming::Instead::kPlan;
+    counts.by_full_brake += timing.instead == AnswerTiming::Instead::kFullBrake;
+    counts.not_driven += timing.instead == AnswerTiming::Instead::kNotDriven;
   }
 }
 
-std::map<std::string, LateFigures> LateLog::figures() const {
-  std::map<std::string, LateFigures> all = counts_;
+std::map<std::string, LateCounts> LateLog::counts() const {
+  std::map<std::string, LateCounts> all = counts_;
   for (const auto& [planner, samples] : lateness_) {
     std::vector<double> sorted = samples;
     std::sort(sorted.begin(), sorted.end());
-    LateFigures& figures = all[planner];
-    figures.median = nearestRank(sorted, 50.0);
-    figures.percentile_95 = nearestRank(sorted, 95.0);
-    figures.maximum = sorted.back();
+    LateCounts& counts = all[planner];
+    counts.median = nearestRank(sorted, 50.0);
+    counts.percentile_95 = nearestRank(sorted, 95.0);
+    counts.maximum = sorted.back();
   }
   return all;
 }
 
-std::size_t lateAnswers(const std::map<std::string, LateFigures>& figures) {
+std::size_t lateAnswers(const std::map<std::string, LateCounts>& counts) {
   std::size_t count = 0;
-  for (const auto& [planner, one] : figures) count += one.late + one.missing;
+  for (const auto& [planner, one] : counts) count += one.late + one.missing;
   return count;
 }
 
-std::string latenessText(const std::map<std::string, LateFigures>& figures) {
-  const std::size_t late = lateAnswers(figures);
+std::string latenessText(const std::map<std::string, LateCounts>& counts) {
+  const std::size_t late = lateAnswers(counts);
   if (late == 0) return "";
   std::size_t asked = 0;
   std::size_t by_plan = 0;
   std::size_t by_full_brake = 0;
-  for (const auto& [planner, one] : figures) {
+  for (const auto& [planner, one] : counts) {
     asked += one.asked;
     by_plan += one.by_plan;
     by_full_brake += one.by_full_brake;

@@ -14,16 +14,17 @@ namespace cdiff::record {
 
 /// Mean, 95th percentile (nearest rank) and maximum of a sample; values that are not finite are
 /// left out.
-struct SampleFigures {
+struct SampleSummary {
   std::optional<double> mean;  ///< absent when n = 0, and so on
   std::optional<double> percentile_95;
   std::optional<double> maximum;
   std::size_t n = 0;
 };
 
-SampleFigures figuresOf(const std::vector<double>& values);
+SampleSummary summaryOf(const std::vector<double>& values);
 
-struct LatencyFigures {
+/// Latencies [ms] of a planner over its decisions.
+struct LatencySummary {
   double median = 0.0;         ///< [ms]
   double percentile_95 = 0.0;  ///< [ms]
   double maximum = 0.0;        ///< [ms]
@@ -40,16 +41,18 @@ class LatencyLog {
  public:
   void observe(const std::vector<session::PlannerLatency>& latencies);
   /// By planner name.
-  std::map<std::string, LatencyFigures> figures() const;
+  std::map<std::string, LatencySummary> summaries() const;
 
  private:
   std::map<std::string, std::vector<double>> samples_;
 };
 
-struct LateFigures {
+/// How often a planner's answers came late in a paced session, what drove instead, and how late
+/// they came [s].
+struct LateCounts {
   std::size_t asked = 0;          ///< answers that were due
-  std::size_t late = 0;           ///< of them, those that came after their tick
-  std::size_t missing = 0;        ///< of them, those that never came
+  std::size_t late = 0;           ///< answers that came after their tick
+  std::size_t missing = 0;        ///< answers that never came
   std::size_t by_plan = 0;        ///< late or missing: the last plan's next action drove instead
   std::size_t by_full_brake = 0;  ///< late or missing: full braking instead
   std::size_t not_driven = 0;     ///< late or missing: the vehicle was not taken over yet
@@ -65,16 +68,16 @@ class LateLog {
   void observe(const std::vector<session::AnswerTiming>& timings);
   /// By planner ("cbv_identification" for the selection); empty for sessions that wait for every
   /// answer.
-  std::map<std::string, LateFigures> figures() const;
+  std::map<std::string, LateCounts> counts() const;
 
  private:
-  std::map<std::string, LateFigures> counts_;
+  std::map<std::string, LateCounts> counts_;
   std::map<std::string, std::vector<double>> lateness_;  ///< [s]
 };
 
 /// Answers of all planners that came late or never.
-std::size_t lateAnswers(const std::map<std::string, LateFigures>& figures);
+std::size_t lateAnswers(const std::map<std::string, LateCounts>& counts);
 /// "342 of 802 answers came late or never and were replaced; ..." ; empty when none did.
-std::string latenessText(const std::map<std::string, LateFigures>& figures);
+std::string latenessText(const std::map<std::string, LateCounts>& counts);
 
 }  // namespace cdiff::record

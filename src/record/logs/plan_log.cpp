@@ -15,11 +15,11 @@
 namespace cdiff::record {
 namespace {
 
-WayPoint wayPointOf(const traffic::VehicleState& state) {
+Waypoint wayPointOf(const traffic::VehicleState& state) {
   return {state.position, state.heading, state.speed};
 }
 
-WayPoint between(const WayPoint& from, const WayPoint& to, double share) {
+Waypoint between(const Waypoint& from, const Waypoint& to, double share) {
   return {from.position + share * (to.position - from.position),
           from.heading + share * core::wrapAngle(to.heading - from.heading),
           from.speed + share * (to.speed - from.speed)};
@@ -82,7 +82,7 @@ bool PlanLog::empty() const {
                      [](const VehiclePlans& vehicle) { return vehicle.plans.empty(); });
 }
 
-std::optional<WayPoint> PlanLog::drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
+std::optional<Waypoint> PlanLog::drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
                                              double seconds) const {
   const double ticks = seconds / simulation_step_;
   const auto whole = static_cast<std::uint64_t>(std::floor(ticks + 1e-6));
@@ -99,11 +99,11 @@ std::optional<WayPoint> PlanLog::drivenAfter(const VehiclePlans& vehicle, const 
   if (driven.end() - begin <= index || (begin + index)->first != last) return std::nullopt;
   const auto& [tick, state] = *(begin + index);
   if (share <= 1e-6) return state;
-  const WayPoint& before = index > 0 ? (begin + index - 1)->second : plan.start;
+  const Waypoint& before = index > 0 ? (begin + index - 1)->second : plan.start;
   return between(before, state, share);
 }
 
-const WayPoint* plannedAfter(const LoggedPlan& plan, double seconds) {
+const Waypoint* plannedAfter(const LoggedPlan& plan, double seconds) {
   const auto row = static_cast<std::size_t>(std::lround(seconds / traffic::kRolloutStep));
   return row >= 1 && row <= plan.points.size() ? &plan.points[row - 1] : nullptr;
 }
@@ -111,9 +111,9 @@ const WayPoint* plannedAfter(const LoggedPlan& plan, double seconds) {
 std::vector<double> PlanLog::displacements(const VehiclePlans& vehicle, double seconds) const {
   std::vector<double> values;
   for (const LoggedPlan& plan : vehicle.plans) {
-    const WayPoint* planned = plannedAfter(plan, seconds);
+    const Waypoint* planned = plannedAfter(plan, seconds);
     if (planned == nullptr) continue;
-    const std::optional<WayPoint> driven = drivenAfter(vehicle, plan, seconds);
+    const std::optional<Waypoint> driven = drivenAfter(vehicle, plan, seconds);
     if (driven) values.push_back((planned->position - driven->position).norm());
   }
   return values;
@@ -129,26 +129,26 @@ const LoggedPlan* PlanLog::drivenPlanNear(const VehiclePlans& vehicle, double ti
   return best;
 }
 
-SampleFigures displacementFigures(const PlanLog& log, double seconds) {
+SampleSummary displacementSummary(const PlanLog& log, double seconds) {
   std::vector<double> values;
   for (const VehiclePlans& vehicle : log.vehicles()) {
     const std::vector<double> own = log.displacements(vehicle, seconds);
     values.insert(values.end(), own.begin(), own.end());
   }
-  return figuresOf(values);
+  return summaryOf(values);
 }
 
-SampleFigures mismatchFigures(const PlanLog& log) {
+SampleSummary mismatchSummary(const PlanLog& log) {
   std::vector<double> values;
   for (const VehiclePlans& vehicle : log.vehicles()) {
     const std::vector<double> own = mismatches(vehicle);
     values.insert(values.end(), own.begin(), own.end());
   }
-  return figuresOf(values);
+  return summaryOf(values);
 }
 
-SampleFigures mismatchFigures(const VehiclePlans& vehicle) {
-  return figuresOf(mismatches(vehicle));
+SampleSummary mismatchSummary(const VehiclePlans& vehicle) {
+  return summaryOf(mismatches(vehicle));
 }
 
 namespace {
@@ -158,13 +158,13 @@ constexpr const char* kHeader =
     "driven_heading,driven_speed\n";
 constexpr std::size_t kStride = 4;  // rollout steps from row to row
 
-void append(std::vector<std::string>& cells, const WayPoint& point) {
+void append(std::vector<std::string>& cells, const Waypoint& point) {
   for (const double value : {point.position.x(), point.position.y(), point.heading, point.speed})
     cells.push_back(core::formatNumber(value));
 }
 
 std::string rowOf(const std::string& vehicle, const LoggedPlan& plan, std::size_t steps,
-                  const WayPoint& planned, const std::optional<WayPoint>& driven) {
+                  const Waypoint& planned, const std::optional<Waypoint>& driven) {
   // Divided by 10, not multiplied by 0.1: 1.2, not 1.2000000000000002.
   const double seconds = static_cast<double>(steps) / (1.0 / traffic::kRolloutStep);
   std::vector<std::string> cells = {vehicle, std::to_string(plan.tick),
@@ -178,14 +178,14 @@ std::string rowOf(const std::string& vehicle, const LoggedPlan& plan, std::size_
   return core::csvRow(cells);
 }
 
-std::optional<WayPoint> wayPointOf(const std::vector<std::string>& cells, std::size_t first) {
+std::optional<Waypoint> wayPointOf(const std::vector<std::string>& cells, std::size_t first) {
   std::vector<double> values;
   for (std::size_t i = first; i < first + 4; ++i) {
     const auto value = core::parseNumber(cells[i]);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }
-  return WayPoint{{values[0], values[1]}, values[2], values[3]};
+  return Waypoint{{values[0], values[1]}, values[2], values[3]};
 }
 
 std::optional<PlanRow> rowOf(const std::string& line) {
@@ -207,7 +207,7 @@ std::string plansCsv(const PlanLog& plans) {
     for (const LoggedPlan& plan : vehicle.plans) {
       text += rowOf(vehicle.vehicle_id, plan, 0, plan.start, plan.start);
       for (std::size_t steps = kStride; steps <= plan.points.size(); steps += kStride) {
-        const WayPoint& planned = plan.points[steps - 1];
+        const Waypoint& planned = plan.points[steps - 1];
         if (!planned.position.allFinite()) break;
         const double seconds = static_cast<double>(steps) * traffic::kRolloutStep;
         text += rowOf(vehicle.vehicle_id, plan, steps, planned,

@@ -15,7 +15,7 @@
 namespace cdiff::record {
 
 /// A state of a plan or a drive.
-struct WayPoint {
+struct Waypoint {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
   double heading = 0.0;                                ///< [rad]
   double speed = 0.0;                                  ///< [m/s]
@@ -25,8 +25,8 @@ struct WayPoint {
 struct LoggedPlan {
   std::uint64_t tick = 0;
   double time = 0.0;  ///< [s]
-  WayPoint start;     ///< where the vehicle was
-  std::vector<WayPoint> points;
+  Waypoint start;     ///< where the vehicle was
+  std::vector<Waypoint> points;
   double state_mismatch = 0.0;  ///< see planning::PlannedAction [m]
 
   double horizon() const;  ///< [s]
@@ -37,7 +37,7 @@ struct VehiclePlans {
   std::string vehicle_id;
   traffic::VehicleDimensions dimensions;
   std::vector<LoggedPlan> plans;
-  std::vector<std::pair<std::uint64_t, WayPoint>> driven;  ///< (tick, state) while driven as CBV
+  std::vector<std::pair<std::uint64_t, Waypoint>> driven;  ///< (tick, state) while driven as CBV
 };
 
 /// What each CBV planned at its decisions and what it drove (map frame, SI units), and how far
@@ -58,7 +58,7 @@ class PlanLog {
 
   /// Where the vehicle was `seconds` after the decision, between ticks by interpolation; nullopt
   /// unless it was driven from the decision until then.
-  std::optional<WayPoint> drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
+  std::optional<Waypoint> drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
                                       double seconds) const;
   /// Over the decisions whose plan and drive reach that far [m].
   std::vector<double> displacements(const VehiclePlans& vehicle, double seconds) const;
@@ -74,13 +74,13 @@ class PlanLog {
 };
 
 /// Planned state `seconds` after the decision (a multiple of 0.1 s); nullptr beyond the plan.
-const WayPoint* plannedAfter(const LoggedPlan& plan, double seconds);
+const Waypoint* plannedAfter(const LoggedPlan& plan, double seconds);
 
 /// Displacements of all vehicles together [m].
-SampleFigures displacementFigures(const PlanLog& log, double seconds);
+SampleSummary displacementSummary(const PlanLog& log, double seconds);
 /// State mismatches of all plans together [m].
-SampleFigures mismatchFigures(const PlanLog& log);
-SampleFigures mismatchFigures(const VehiclePlans& vehicle);
+SampleSummary mismatchSummary(const PlanLog& log);
+SampleSummary mismatchSummary(const VehiclePlans& vehicle);
 
 // plans.csv: planned against driven states of CBVs (map frame, SI units), a row per decision and
 // 0.4 s of the plan.
@@ -94,8 +94,8 @@ struct PlanRow {
   std::string vehicle_id;
   std::uint64_t tick = 0;  ///< of the decision
   double seconds = 0.0;    ///< since the decision
-  WayPoint planned;
-  std::optional<WayPoint> driven;
+  Waypoint planned;
+  std::optional<Waypoint> driven;
 };
 
 /// Rows in the file's order. Throws InputError naming file and line for anything else.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame) with
-/// times to collision, contacts, and the smallest gap between ego and CBVs over all ticks.
 #pragma once
 
 #include <cstdint>
@@ -33,17 +31,19 @@ struct TimelinePose {
   bool driven = false;        ///< whether the three commands are there
   std::uint32_t vehicle = 0;  ///< index in Timeline::vehicles()
   traffic::VehicleRole role = traffic::VehicleRole::kBackground;
-  int slot = -1;      ///< of a CBV
-  float gap = -1.0F;  ///< of a CBV to the ego's box [m]; negative: not defined
+  int slot = -1;      ///< slot of a CBV
+  float gap = -1.0F;  ///< gap from a CBV to the ego's box [m]; negative: not defined
   /// 2D-TTC [s] of a CBV and the ego; of the ego and any vehicle; negative: not defined.
   float time_to_collision = -1.0F;
 };
 
+/// Poses of all vehicles at one time.
 struct TimelineFrame {
   double time = 0.0;  ///< [s]
   std::vector<TimelinePose> poses;
 };
 
+/// A contact of two vehicles, with its place in the map frame [m].
 struct TimelineContact {
   double time = 0.0;  ///< [s]
   std::string first;
@@ -59,6 +59,8 @@ struct SmallestGap {
   std::string vehicle_id;
 };
 
+/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame) with
+/// times to collision, contacts, and the smallest gap between ego and CBVs over all ticks.
 class Timeline {
  public:
   explicit Timeline(double simulation_step);

@@ -23,7 +23,7 @@ void record(const collection::CollectRequest& request, const collection::Collect
             const fs::path& file, const std::atomic<bool>& stop) {
   const auto setup = collection::collectionSetup(settings.scenario, settings.collection);
   collection::CollectionLoop loop(*setup, settings.collection, request.images);
-  SessionBag bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
+  SessionBagWriter bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
   bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
   loop.addObserver(bag);
   const traffic::SessionStatus status = loop.run(stop);

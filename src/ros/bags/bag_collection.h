@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Collecting data through bags: a session is driven and recorded, or bags of others are taken, and
-/// each bag becomes a shard of samples in the data set's folder.
 #pragma once
 
 #include <atomic>
@@ -14,12 +12,15 @@
 
 namespace cdiff::ros {
 
+// Collecting data through bags: a session is driven and recorded, or bags of others are taken, and
+// each bag becomes a shard of samples in the data set's folder.
+
 /// Drives the session and writes its bag, and, where it has images, its shard and statistics. A
 /// session without samples leaves no shard, and is driven again when it is asked for again. Throws
 /// core::Interrupted after `stop`, SimulatorError for a session that ends with an error.
 void collectSession(const collection::CollectRequest& request, const std::atomic<bool>& stop);
 
-/// Bags of drives that somebody else recorded.
+/// Bags of drives that someone else recorded.
 struct BagRequest {
   std::vector<std::string> bags;
   std::string topics;             ///< YAML file: collection::DriveOptions

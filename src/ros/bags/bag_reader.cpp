@@ -65,13 +65,13 @@ void BagReader::note(const std::string& text) { damage_.push_back(text); }
 /// Finds all chunks, and the connections that the bag's end repeats.
 void BagReader::scan() {
   const std::string_view text = bytes_->text();
-  const bool begins = text.substr(0, kBagMagic.size()) == kBagMagic;
-  if (!begins && !findChunk(text, 0)) {
+  const bool has_magic = text.substr(0, kBagMagic.size()) == kBagMagic;
+  if (!has_magic && !findChunk(text, 0)) {
     throw InputError("'" + file_.string() +
                      "' is no ROS bag of format 2.0 (its first line is not '" +
                      std::string(kBagMagic.substr(0, kBagMagic.size() - 1)) + "')");
   }
-  std::uint64_t offset = begins ? kBagMagic.size() : 0;
+  std::uint64_t offset = has_magic ? kBagMagic.size() : 0;
   bool whole = true;
   while (offset < text.size()) {
     if (takeRecord(offset)) continue;

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The messages of a bag (ROS bag format 2.0) in the order of the file, read chunk by chunk without
-/// the bag's index. A bag whose recording was cut off, or of which bytes are lost, gives what is
-/// whole and names the rest. rosbag's C++ library refuses such bags, and its reindexing exists in
-/// Python only.
 #pragma once
 
 #include <boost/make_shared.hpp>
@@ -22,10 +18,11 @@
 
 namespace cdiff::ros {
 
+/// A connection record of a bag: topic and message type.
 struct BagConnection {
   std::string topic;
   std::string type;    ///< "e2e_cdiff/TrafficSnapshot"
-  std::string md5sum;  ///< of the type's definition
+  std::string md5sum;  ///< MD5 of the type's definition
 };
 
 /// One message as the bag holds it; valid until the reader goes on.
@@ -34,6 +31,10 @@ struct BagMessage {
   std::string_view bytes;
 };
 
+/// The messages of a bag (ROS bag format 2.0) in the order of the file, read chunk by chunk without
+/// the bag's index. A bag whose recording was cut off, or of which bytes are lost, gives what is
+/// whole and names the rest. rosbag's C++ library refuses such bags, and its reindexing exists in
+/// Python only.
 class BagReader {
  public:
   /// Throws InputError naming the file when it cannot be read, is empty, is no bag of format 2.0 or

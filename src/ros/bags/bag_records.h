@@ -16,6 +16,7 @@ namespace cdiff::ros {
 /// First line of a bag.
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 
+/// Kind of a bag's record: the `op` field of format 2.0.
 enum class BagOp : std::uint8_t {
   kMessage = 2,
   kFileHeader = 3,
@@ -31,10 +32,11 @@ using BagFields = std::map<std::string_view, std::string_view>;
 /// Fields written one after the other; nullopt when they do not fill `bytes` exactly.
 std::optional<BagFields> parseFields(std::string_view bytes);
 
+/// One record of a bag's file: header fields, and the data as far as the file holds them.
 struct BagRecord {
   BagOp op = BagOp::kMessage;
   BagFields fields;
-  std::string_view data;          ///< what is there of it
+  std::string_view data;          ///< the bytes of it that exist
   std::uint64_t data_begin = 0;   ///< offset in the bytes
   std::uint64_t data_length = 0;  ///< as written; more than `data` holds when the bytes end before
 
@@ -58,6 +60,7 @@ std::string_view textIn(const BagFields& fields, std::string_view name);
 
 // The records of a chunk of a bag, decompressed (none, lz4 or bz2).
 
+/// The decompressed content of a chunk.
 struct ChunkText {
   std::string bytes;
   std::string fault;  ///< why the chunk is not whole; empty when it is
@@ -65,8 +68,8 @@ struct ChunkText {
 
 /// `size` is what the chunk's header says it holds, 0 when its recording was cut off; compressed
 /// data know it themselves. Data that end early give the whole blocks before the end (rosbag writes
-/// a chunk as one lz4 block), wrong data (checksum,
-/// format) nothing; what lies behind their end does not matter.
+/// a chunk as one lz4 block), wrong data (checksum, format) nothing; what lies behind their end
+/// does not matter.
 ChunkText decompressChunk(std::string_view compression, std::string_view data, std::uint64_t size);
 
 }  // namespace cdiff::ros

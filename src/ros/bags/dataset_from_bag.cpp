@@ -117,7 +117,7 @@ class SessionReader {
 
 }  // namespace
 
-collection::DrivenSession readBagSession(const std::filesystem::path& file) {
+collection::DrivenSession readSessionBag(const std::filesystem::path& file) {
   SessionReader reader(file);
   try {
     return reader.read();
@@ -131,7 +131,7 @@ using core::InputError;
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
                                                     const collection::DatasetOptions& options,
                                                     collection::DatasetStatistics& statistics) {
-  const collection::DrivenSession session = readBagSession(bag);
+  const collection::DrivenSession session = readSessionBag(bag);
   try {
     return collection::samplesOf(session, options, statistics);
   } catch (const InputError& error) {

@@ -13,9 +13,9 @@ namespace cdiff::ros {
 // A recorded session, read from its bag.
 
 /// Throws InputError naming the file and what is wrong with it.
-collection::DrivenSession readBagSession(const std::filesystem::path& bag);
+collection::DrivenSession readSessionBag(const std::filesystem::path& bag);
 
-// Training samples from bags: of sessions of ours, and of drives that somebody else recorded.
+// Training samples from bags: of sessions of ours, and of drives that someone else recorded.
 
 /// Samples of a session's bag (collection/session_samples.h). Throws InputError for a file that is
 /// no bag, holds no session of ours, no images, images of another size, or decisions that are not

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Which topic of a session a connection of its bag is, and whether it holds the type that it must.
 #pragma once
 
 #include <optional>
@@ -12,8 +11,9 @@
 
 namespace cdiff::ros {
 
+/// Which topic of a session a connection of its bag is, and whether it holds the type that it must.
 struct RecordedTopic {
-  std::optional<Topic> topic;  ///< nullopt for what no figure is made of
+  std::optional<Topic> topic;  ///< nullopt for what no measure is made of
   std::string wrong_type;      ///< what is wrong with the type; empty when nothing is
 };
 

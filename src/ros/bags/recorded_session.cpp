@@ -137,7 +137,7 @@ void RecordedSession::dispatch(const Topic& topic, const BagMessage& message) {
   answers_.add(topic, topic.row().type.decode(message));
 }
 
-/// A latched message may be recorded again; another one begins another session.
+/// A latched message may be recorded again; another one starts another session.
 void RecordedSession::takeSession(const BagMessage& message) {
   const auto info = decode<msgs::SessionInfo>(message);
   const bool same = info->scenario_yaml == info_->scenario_yaml &&

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A session read from its bag, tick by tick, as the nodes saw it: set-up from SessionInfo, then
-/// each snapshot with the answers to it. What of the recording is missing or cannot be read is
-/// named among the faults of the snapshots that follow, and the session goes on with what there is.
 #pragma once
 
 #include <deque>
@@ -27,9 +24,13 @@ inline constexpr const char* kBagSource = "bag";
 /// Which images of a recording are read.
 enum class RecordedImages {
   kSeen,  ///< those that planners saw; a decision waits for them as in the session
-  kAll    ///< whatever was recorded; nothing is said of answers that are missing
+  kAll    ///< everything that was recorded; missing answers are not reported
 };
 
+/// A session read from its bag, tick by tick, as the nodes saw it: set-up from SessionInfo, then
+/// each snapshot with the answers to it. What of the recording is missing or cannot be read is
+/// named among the faults of the snapshots that follow, and the session continues with what could
+/// be read.
 class RecordedSession {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
@@ -85,7 +86,7 @@ class RecordedSession {
   std::optional<std::uint64_t> newest_;  ///< largest tick read
   std::size_t newest_hash_ = 0;          ///< of its bytes
   std::string unanswered_;               ///< what the last decision lacked
-  bool session_over_ = false;            ///< a second session begins in the bag
+  bool session_over_ = false;            ///< a second session starts in the bag
   std::size_t damage_copied_ = 0;        ///< of the reader's
   std::size_t handed_out_ = 0;           ///< findings
   std::vector<std::string> findings_;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The result folder of a recorded session, made from its bag alone by the code that makes the live
-/// one; no master, no simulator, no network file.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +31,8 @@ record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministi
 void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem::path& results,
                          bool overwrite = false);
 
+/// The result folder of a recorded session, made from its bag alone by the code that makes the live
+/// one; no master, no simulator, no network file.
 struct ReplayResult {
   int exit_code = 0;  ///< the session's; 2 when the recording is damaged or a video is missing
   std::string table;  ///< what a terminal shows
@@ -44,8 +44,7 @@ struct ReplayResult {
 /// Reads the bag and writes the result folder, with a video where the scenario asks for one.
 /// `wall_seconds` of the result is what this took. Throws InputError when the bag holds nothing to
 /// evaluate, or the folder cannot be made, is in use or refused (requireReplayFolder; nothing is
-/// written then),
-/// core::Error when the result cannot be written to its end.
+/// written then), core::Error when the result cannot be written to its end.
 ReplayResult replayBag(const std::filesystem::path& bag, const std::filesystem::path& results,
                        bool overwrite = false);
 

@@ -112,8 +112,8 @@ double latencyOf(const session::TickRecord& record, const std::string& planner) 
 
 }  // namespace
 
-SessionBag::SessionBag(const session::SessionSetup& setup, const fs::path& file,
-                       const BagOrigin& origin)
+SessionBagWriter::SessionBagWriter(const session::SessionSetup& setup, const fs::path& file,
+                                   const BagOrigin& origin)
     : setup_(setup), file_(file, setup.options(), bagTopic), reporter_(setup) {
   msgs::SessionInfo info = toMsg(setup);
   info.deployment = origin.deployment;
@@ -124,9 +124,9 @@ SessionBag::SessionBag(const session::SessionSetup& setup, const fs::path& file,
   file_.write(toPathMsg(setup.egoRoute()));
 }
 
-SessionBag::~SessionBag() = default;
+SessionBagWriter::~SessionBagWriter() = default;
 
-void SessionBag::observe(const session::TickRecord& record) {
+void SessionBagWriter::observe(const session::TickRecord& record) {
   const session::ScenarioOptions& options = setup_.options();
   TickValues values{*record.snapshot, &setup_.network(), options.simulation_step,
                     planners::canBeGuided(options.cbv_planner)};
@@ -141,12 +141,12 @@ void SessionBag::observe(const session::TickRecord& record) {
   file_.write(messages);
 }
 
-std::string SessionBag::plannerOf(int slot) const {
+std::string SessionBagWriter::plannerOf(int slot) const {
   const session::ScenarioOptions& options = setup_.options();
   return slot == kEgoSlot ? "ego:" + options.ego_planner : "cbv:" + options.cbv_planner;
 }
 
-std::vector<Answer> SessionBag::answersOf(const session::TickRecord& record) const {
+std::vector<Answer> SessionBagWriter::answersOf(const session::TickRecord& record) const {
   std::vector<Answer> answers;
   for (const planning::PlannedAction& action : *record.actions) {
     Answer answer;
@@ -159,6 +159,6 @@ std::vector<Answer> SessionBag::answersOf(const session::TickRecord& record) con
   return answers;
 }
 
-void SessionBag::finish() { file_.finish(); }
+void SessionBagWriter::finish() { file_.finish(); }
 
 }  // namespace cdiff::ros

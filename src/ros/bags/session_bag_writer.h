@@ -69,12 +69,12 @@ struct BagOrigin {
 
 /// The bag of a session that one process drives: the same topics, stamps and order as the
 /// recorder's, and the images that planners or records were given.
-class SessionBag : public session::SessionObserver {
+class SessionBagWriter : public session::SessionObserver {
  public:
   /// `setup` must outlive the object. Throws InputError naming the file when it cannot be written.
-  SessionBag(const session::SessionSetup& setup, const std::filesystem::path& file,
-             const BagOrigin& origin);
-  ~SessionBag() override;
+  SessionBagWriter(const session::SessionSetup& setup, const std::filesystem::path& file,
+                   const BagOrigin& origin);
+  ~SessionBagWriter() override;
 
   /// Asked at each action whether it carries noise; without it none does.
   void setNoiseQuery(std::function<bool(const std::string& vehicle_id)> query) {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The decisions of a session that may go on without an answer: which answers have come, how late,
-/// and what drove each vehicle meanwhile. A decision is settled once nothing more of it is awaited.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +18,9 @@
 
 namespace cdiff::ros {
 
+/// The decisions of a session that may go on without an answer: which answers have arrived, how
+/// late, and what drove each vehicle meanwhile. A decision is settled once nothing more of it is
+/// awaited.
 class DecisionBook {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The traffic simulator's sign of life once a second of wall time, and how the other nodes judge
-/// its absence.
 #pragma once
 
 #include <condition_variable>
@@ -11,6 +9,9 @@
 #include "ros/ros.h"
 
 namespace cdiff::ros {
+
+// The traffic simulator's sign of life once a second of wall time, and how the other nodes judge
+// its absence.
 
 /// Publishes the topic heartbeat from a thread of its own, so that neither a long tick nor a long
 /// wait of the node looks like its death.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Images that came for the vehicles of a node, by tick and slot, and the planning of a decision
-/// from them: a vehicle without a usable image gets the fail-safe action and a named fault.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +13,8 @@
 
 namespace cdiff::ros {
 
+/// Images that came for the vehicles of a node, by tick and slot, and the planning of a decision
+/// from them: a vehicle without a usable image gets the fail-safe action and a named fault.
 class ImageInbox {
  public:
   ImageInbox() = default;
@@ -24,7 +24,7 @@ class ImageInbox {
 
   /// Keeps an image under the tick nearest to its stamp; the first of a tick counts.
   void add(int slot, const sensor_msgs::Image::ConstPtr& message);
-  /// The image of a slot (kEgoSlot: the ego) at a tick; nullptr when none has come.
+  /// The image of a slot (kEgoSlot: the ego) at a tick; nullptr when none has arrived.
   sensor_msgs::Image::ConstPtr find(int slot, std::uint64_t tick) const;
   /// The image that a vehicle sees at a tick. Throws InputError for one that is not as expected;
   /// there must be one.
@@ -42,7 +42,7 @@ class ImageInbox {
 struct PlannerDecision {
   std::vector<planning::PlannedAction> actions;  ///< one per task, in their order
   double latency_ms = 0.0;                       ///< wall time of the planning call
-  std::string fault;                             ///< of the whole call; empty when none
+  std::string fault;                             ///< fault of the whole call; empty when none
   double image_age = 0.0;  ///< simulated time from the oldest image to the snapshot [s]
   int missing = 0;         ///< vehicles whose image did not come
   int refused = 0;         ///< vehicles whose image was not as expected

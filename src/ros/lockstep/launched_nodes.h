@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The other nodes of a session as processes: those that the same roslaunch has started on this
-/// machine, and the command line it was given. Read from /proc; where a node was started otherwise
-/// (rosrun, another machine) there is nothing to find.
 #pragma once
 
 #include <sys/types.h>
@@ -13,6 +10,10 @@
 #include <string>
 
 namespace cdiff::ros {
+
+// The other nodes of a session as processes: those that the same roslaunch has started on this
+// machine, and the command line it was given. Read from /proc; where a node was started otherwise
+// (rosrun, another machine) there is nothing to find.
 
 /// The process of a node (name without namespace) that the parent of this process has started for
 /// the same ROS master and namespace; nothing when there is none or it has ended.
@@ -25,7 +26,7 @@ bool killLaunchedProcess(const std::string& node);
 /// [s] since the epoch at which the parent of this process started.
 std::optional<double> launchTime();
 
-/// What roslaunch was asked for.
+/// What roslaunch was requested to start.
 struct LaunchCommand {
   std::filesystem::path file;                    ///< absolute
   std::filesystem::path folder;                  ///< where it runs

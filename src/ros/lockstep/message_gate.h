@@ -41,7 +41,7 @@ class Connections {
   /// Whether a node (full name) listens to any of the topics, counted on or not.
   bool listens(const std::string& node) const { return links_.count(node) > 0; }
   /// Whether it did and does not any more: its process has ended, or it has left. roscpp counts a
-  /// publisher that was killed among `getNumPublishers()` for ever; the end of its connections as a
+  /// publisher that was killed among `getNumPublishers()` forever; the end of its connections as a
   /// listener is what shows.
   bool stoppedListening(const std::string& node) const {
     return once_.count(node) > 0 && !listens(node);

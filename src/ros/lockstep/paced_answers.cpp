@@ -22,7 +22,7 @@ bool drivenIn(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_
   });
 }
 
-/// The action that a plan has for `age` seconds after its decision. A plan that does not begin with
+/// The action that a plan has for `age` seconds after its decision. A plan that does not start with
 /// the action itself (a tracker follows it) says nothing of later actions: the first is held.
 traffic::ControlAction actionAt(const msgs::ControlAction& first, const TickAnswers::Rollout& plan,
                                 double age) {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Which actions move the world when wall-clock time rules (real_time_factor > 0): those of each
-/// vehicle's newest plan; while the next is late, that plan's next actions, and full braking once
-/// it is older than 0.5 s. A vehicle is taken over when its first action has come.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +16,15 @@ namespace cdiff::ros {
 struct AppliedAction {
   planning::PlannedAction planned;
   std::uint8_t driven_by = 0;   ///< as in DecidedVehicle
-  std::uint64_t plan_tick = 0;  ///< of the decision whose plan it is
+  std::uint64_t plan_tick = 0;  ///< tick of the decision whose plan it is
 };
 
 /// The actions alone.
 std::vector<planning::PlannedAction> actionsOf(const std::vector<AppliedAction>& applied);
 
+/// Which actions move the world when wall-clock time rules (real_time_factor > 0): those of each
+/// vehicle's newest plan; while the next is late, that plan's next actions, and full braking once
+/// it is older than 0.5 s. A vehicle is taken over when its first action has arrived.
 class PacedAnswers {
  public:
   /// `simulation_step` in [s].
@@ -49,7 +49,7 @@ class PacedAnswers {
 
   double simulation_step_;
   std::uint64_t ticks_per_decision_;
-  TickAnswers::Selection newest_;  ///< that has come
+  TickAnswers::Selection newest_;  ///< that has arrived
 };
 
 }  // namespace cdiff::ros

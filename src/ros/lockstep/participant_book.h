@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
-/// tick acknowledged, finished, in error, when last heard.
 #pragma once
 
 #include <chrono>
@@ -15,6 +13,8 @@
 
 namespace cdiff::ros {
 
+/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
+/// tick acknowledged, finished, in error, when last heard.
 class ParticipantBook {
  public:
   /// Nodes that the session counts on, without namespace.
@@ -34,7 +34,7 @@ class ParticipantBook {
   /// Observers that have not said that they are finished.
   std::vector<std::string> notFinished() const;
   bool finished(const std::string& node) const;
-  /// Whether any message of the node has come.
+  /// Whether any message of the node has arrived.
   bool heard(const std::string& node) const;
   /// Nodes, in order of their names, that were heard but not for `seconds` before `now`. Who waits
   /// for others says so every second; who says nothing computes, hangs or is stopped.

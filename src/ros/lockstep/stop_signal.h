@@ -15,7 +15,7 @@ class StopSignal {
  public:
   /// Make it before any other thread exists, hence before ros::init.
   StopSignal();
-  /// Whether one of them has come, now or before.
+  /// Whether one of them has arrived, now or before.
   bool raised();
 
  private:
@@ -31,7 +31,7 @@ inline double secondsSince(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Calls what has come; waits at most `seconds` for it.
+/// Handles what has arrived; waits at most `seconds` for it.
 inline void spin(double seconds) {
   ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(seconds));
 }

@@ -24,6 +24,7 @@ namespace cdiff::ros {
 
 // What a planner answers for one vehicle at one decision.
 
+/// A planner's answer for one vehicle at one decision.
 struct Answer {
   planning::PlannedAction action;
   std::string planner;                        ///< "ego:NAME" or "cbv:NAME"
@@ -69,14 +70,14 @@ struct TickValues {
   double simulation_step = 0.0;                  ///< [s]
   bool cbvs_guided = false;                      ///< the CBVs' planner follows objectives
   double image_age = 0.0;                        ///< as in GuidanceReport [s]
-  std::vector<Answer> answers = {};              ///< of planners; ego first, then slots
+  std::vector<Answer> answers = {};              ///< the planners' answers; ego first, then slots
   const cbv::CbvSelection* selection = nullptr;  ///< may be nullptr
   const std::vector<session::SlotImage>* images = nullptr;  ///< may be nullptr
 };
 
 /// What it takes to read messages.
 struct TickReading {
-  rendering::CameraOptions camera;  ///< that images must be of
+  rendering::CameraOptions camera;  ///< camera whose images are expected
   double simulation_step = 0.05;    ///< [s]
 };
 
@@ -92,7 +93,8 @@ std::optional<Answer> readAnswer(const TickMessages& tick, int slot, const std::
 
 /// Collects what the other nodes answer to a tick, whatever the order of arrival, and says what is
 /// still missing. Traffic simulator, metrics and recorder wait by the same rule: a decision is
-/// complete when every message has come that the table of channels requires of what they hear.
+/// complete when every message has arrived that the table of channels requires of what they listen
+/// to.
 class TickAnswers {
  public:
   using Selection = ::e2e_cdiff::CbvSelection::ConstPtr;
@@ -116,7 +118,7 @@ class TickAnswers {
   /// What `snapshot` still needs. Once its decision's record is here, what that names. Empty at
   /// ticks without decision.
   std::vector<Topic> missing(const ::e2e_cdiff::TrafficSnapshot& snapshot) const;
-  /// What has come for a tick; of a decision with a record what that names.
+  /// What has arrived for a tick; of a decision with a record what that names.
   TickMessages messages(std::uint64_t tick) const;
   /// One of them; nullptr where there is none.
   Selection selection(std::uint64_t tick) const;
@@ -133,7 +135,7 @@ class TickAnswers {
   Image image(int slot, std::uint64_t tick) const {
     return get<sensor_msgs::Image>(imageOf(slot), tick);
   }
-  /// Whether a message of a topic has come for a tick.
+  /// Whether a message of a topic has arrived for a tick.
   bool has(const Topic& topic, std::uint64_t tick) const { return find(topic, tick) != nullptr; }
   /// Answers of planners to a decision: the ego's, then those of assigned CBVs by slot; those that
   /// are missing are left out.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What observers are shown of a tick, made of its messages: the same whether these come from nodes
-/// or from a bag.
 #pragma once
 
 #include <optional>
@@ -13,9 +11,11 @@
 
 namespace cdiff::ros {
 
+/// What observers are shown of a tick, made of its messages: the same whether these come from nodes
+/// or from a bag.
 class TickRecordView {
  public:
-  /// `answers` as far as they have come. Throws InputError for a selection that does not fit
+  /// `answers` as far as they have arrived. Throws InputError for a selection that does not fit
   /// `network`.
   TickRecordView(const ::e2e_cdiff::TrafficSnapshot& message, const TickAnswers& answers,
                  const map::RoadNetwork& network);

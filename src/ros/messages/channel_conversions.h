@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Conversions of the rows of the table of channels: from the values of a tick to its messages and
-/// back, and to messages that say the same for tools.
 #pragma once
 
 #include "e2e_cdiff/rendering/camera_options.h"
@@ -12,6 +10,9 @@
 #include "ros/messages/image_conversions.h"
 
 namespace cdiff::ros {
+
+// Conversions of the rows of the table of channels: from the values of a tick to its messages and
+// back, and to messages that say the same for tools.
 
 AnyMessage makeTraffic(const TickValues& values, int slot);
 AnyMessage makeSelection(const TickValues& values, int slot);

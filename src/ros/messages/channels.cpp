@@ -35,8 +35,8 @@ constexpr Condition kEgoSees = {"where the planner sees",
 constexpr Condition kCbvsSee = {"where the planner sees",
                                 [](const Graph& graph) { return graph.cbvsPlanFromImages(); }};
 
-/// A row that is being written: what it does not say is that of a topic which no
-/// tick waits for and no bag holds.
+/// Builds a row; what is not set stays as for a topic that no tick waits for and no bag
+/// holds.
 class Row {
  public:
   template <class Message>
@@ -222,7 +222,7 @@ Rows cameraRows() {
 Rows otherRows() {
   return {Row::of<msgs::MetricReport>(
               ChannelId::kMetrics, "metrics", Party::kMetrics,
-              "Figures of a decision; of the whole session once a second and at its end.")
+              "Measures of a decision; those of the whole session once a second and at its end.")
               .heardBy(Party::kRecorder, kMeasured)
               .recorded(Recorded::kDecision, Use::kReport),
           Row::of<tf2_msgs::TFMessage>(ChannelId::kTransforms, "/tf", Party::kSimulator,
@@ -241,7 +241,7 @@ Rows otherRows() {
                                "Network and ego route for rviz.")
               .latched(),
           Row::of<MarkerArray>(ChannelId::kRolloutMarkers, "markers/rollouts", Party::kCbvPlanner,
-                               "Plans of CBVs for rviz, while somebody looks.")};
+                               "Plans of CBVs for rviz, while anyone subscribes.")};
 }
 
 }  // namespace

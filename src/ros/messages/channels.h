@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The table of channels: one row per topic of a session, from which publishers, listeners, the
-/// recorder, the bag reader, the replay, the book-keeping of the lockstep and docs/ros_api.md
-/// follow. A topic's name stands in channels.cpp and nowhere else.
 #pragma once
 
 #include <string>
@@ -12,6 +9,10 @@
 #include "ros/session_graph.h"
 
 namespace cdiff::ros {
+
+// The table of channels: one row per topic of a session, from which publishers, listeners, the
+// recorder, the bag reader, the replay, the book-keeping of the lockstep and docs/ros_api.md
+// follow. A topic's name stands in channels.cpp and nowhere else.
 
 /// In the order of the table, which is the order within a tick of a bag.
 enum class ChannelId {
@@ -48,7 +49,7 @@ enum class Scope {
 
 /// What the messages of a channel are for.
 enum class Use {
-  kSetUp,   ///< describes the session; a bag begins with it
+  kSetUp,   ///< describes the session; a bag starts with it
   kTick,    ///< the snapshot that makes a tick
   kAnswer,  ///< belongs to a tick; observers collect it, a replay reads it back
   kReport,  ///< belongs to a tick; the recorder collects it, nothing is computed from it
@@ -74,6 +75,7 @@ struct Condition {
   bool (*holds)(const SessionGraph& graph);
 };
 
+/// A party that takes a topic's messages, and in which sessions.
 struct Listener {
   Party party;
   Condition when;
@@ -88,10 +90,12 @@ struct TickReading;
 using MakeMessage = AnyMessage (*)(const TickValues& values, int slot);
 /// From a message into the answer for one vehicle.
 using TakeAnswer = void (*)(const AnyMessage& message, const TickReading& reading, Answer& answer);
-/// A message that says again what other messages of the tick say, for tools.
+/// A message for tools that repeats what other messages of the tick contain.
 using DeriveMessage = AnyMessage (*)(const TickMessages& tick, const TickReading& reading,
                                      int slot);
 
+/// One row of the table of channels: a topic, its message, who publishes and takes it, and how it
+/// is converted.
 struct Channel {
   ChannelId id;
   const char* name;  ///< relative to the session's namespace, or absolute
@@ -105,8 +109,8 @@ struct Channel {
   Need need;
   Recorded recorded;
   MakeMessage make;      ///< may be nullptr, as the two below
-  TakeAnswer take;       ///< of messages that say something of a vehicle's answer
-  DeriveMessage derive;  ///< of messages that are made from others
+  TakeAnswer take;       ///< set for messages that carry part of a vehicle's answer
+  DeriveMessage derive;  ///< set for messages that are made from others
   const char* help;      ///< a sentence
 };
 

@@ -88,7 +88,7 @@ std::vector<Eigen::Vector3d> fromMsg(const nav_msgs::Path& message);
 
 msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
                          const traffic::TrafficSnapshot& snapshot);
-/// All figures of a session, in a fixed order.
+/// All measures of a session, in a fixed order.
 std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures);
 
 }  // namespace cdiff::ros

@@ -30,7 +30,7 @@ geometry_msgs::TransformStamped transformBetween(const std::string& parent,
   return transform;
 }
 
-/// Where the camera sits: base_link lies on the road below the box's centre.
+/// Where the camera sits: base_link lies on the road below the box's center.
 geometry_msgs::TransformStamped mount(const traffic::Vehicle& vehicle, double time,
                                       const rendering::CameraOptions& camera) {
   auto transform = transformBetween(frameOf(vehicle), vehicle.id + "/camera", time);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// What people and tools look at, besides the session's own messages: /ego/odometry (while somebody
-/// listens) and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every tick and,
-/// once a vehicle, those of its camera. Nothing of the session is computed from it.
 #pragma once
 
 #include <optional>
@@ -33,6 +30,9 @@ Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
                             const rendering::CameraOptions* camera = nullptr);
 
+/// What people and tools look at, besides the session's own messages: /ego/odometry (while someone
+/// listens) and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every tick and,
+/// once a vehicle, those of its camera. Nothing of the session is computed from it.
 class Display {
  public:
   explicit Display(::ros::NodeHandle& node);

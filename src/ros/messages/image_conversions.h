@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Between traffic::CameraImage and sensor_msgs/Image (rgb8, rows from the top left), byte by byte.
-///
-/// sensor_msgs/Image has no tick field, and roscpp overwrites header.seq when it publishes: the
-/// tick of an image is header.stamp / simulation step, and the stamp must be that tick's own to the
-/// nanosecond.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +11,12 @@
 #include "sensor_msgs/Image.h"
 
 namespace cdiff::ros {
+
+// Between traffic::CameraImage and sensor_msgs/Image (rgb8, rows from the top left), byte by byte.
+//
+// sensor_msgs/Image has no tick field, and roscpp overwrites header.seq when it publishes: the
+// tick of an image is header.stamp / simulation step, and the stamp must be that tick's own to the
+// nanosecond.
 
 /// "<vehicle>/camera_optical": x right, y down, z forward.
 std::string opticalFrame(const std::string& vehicle_id);

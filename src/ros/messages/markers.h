@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The session as rviz markers in `map`: the network and the ego's route once, then vehicles by
-/// role (ego red, CBV purple, background blue), conflict points and conflict-aware routes.
 #pragma once
 
 #include <map>
@@ -13,7 +11,7 @@
 
 namespace cdiff::ros {
 
-/// Lane borders, junction outlines and the ego's route; begins with DELETEALL. Stays until the
+/// Lane borders, junction outlines and the ego's route; starts with DELETEALL. Stays until the
 /// session ends.
 visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup);
 
@@ -21,11 +19,13 @@ visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup);
 visualization_msgs::MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions,
                                                double time);
 
+/// The session as rviz markers in `map`: the network and the ego's route once, then vehicles by
+/// role (ego red, CBV purple, background blue), conflict points and conflict-aware routes.
 /// One per session: gives each vehicle an id that it keeps.
 class SessionMarkers {
  public:
   /// Vehicles of a snapshot; conflict points and routes when there is a selection. Each lives for
-  /// 0.5 s of simulated time, so what is not sent again vanishes. The first begins with DELETEALL.
+  /// 0.5 s of simulated time, so what is not sent again vanishes. The first starts with DELETEALL.
   visualization_msgs::MarkerArray build(const traffic::TrafficSnapshot& snapshot,
                                         const cbv::CbvSelection* selection);
 

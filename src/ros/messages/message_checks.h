@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Whether messages can be what a session's nodes publish: bytes that were overwritten in a bag can
-/// still be a message, and so can what a node of the user's sends.
 #pragma once
 
 #include <string>
@@ -11,6 +9,9 @@
 #include "e2e_cdiff/map/road_network.h"
 
 namespace cdiff::ros {
+
+// Whether messages can be what a session's nodes publish: bytes that were overwritten in a bag can
+// still be a message, and so can what a node of the user's sends.
 
 /// Why a snapshot cannot be used (unknown status or role, two egos, two vehicles of one id, a
 /// number that is not finite or out of all range, a time that is not its tick's); empty when it

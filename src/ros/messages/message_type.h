@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The types of messages as values, so that a table can name them: how a message of a type is
-/// published, taken, written to a bag and read from one. Every such message is kept as AnyMessage.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +24,8 @@ using AnyMessage = boost::shared_ptr<const void>;
 /// Takes a message and returns why it cannot be used; empty when it can.
 using TakeMessage = std::function<std::string(const AnyMessage&)>;
 
+/// The types of messages as values, so that a table can name them: how a message of a type is
+/// published, taken, written to a bag and read from one. Every such message is kept as AnyMessage.
 struct MessageType {
   std::type_index type;
   std::string name;    ///< "e2e_cdiff/Rollout"
@@ -62,14 +62,17 @@ boost::shared_ptr<const Message> shared(Message message) {
 
 namespace detail {
 
+/// Whether a message type has a field `tick`.
 template <class Message, class = void>
 struct HasTick : std::false_type {};
 template <class Message>
 struct HasTick<Message, std::void_t<decltype(std::declval<Message>().tick)>> : std::true_type {};
+/// Whether a message type has a field `slot`.
 template <class Message, class = void>
 struct HasSlot : std::false_type {};
 template <class Message>
 struct HasSlot<Message, std::void_t<decltype(std::declval<Message>().slot)>> : std::true_type {};
+/// Whether a message type has a field `header`.
 template <class Message, class = void>
 struct HasHeader : std::false_type {};
 template <class Message>

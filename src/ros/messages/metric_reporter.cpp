@@ -15,7 +15,7 @@
 namespace cdiff::ros {
 namespace {
 
-/// Figures of the whole session go out once in a simulated second.
+/// Measures of the whole session go out once in a simulated second.
 std::uint64_t decisionsPerReport(const session::SessionSetup& setup) {
   const double decisions = 1.0 / setup.options().decision_period;
   return static_cast<std::uint64_t>(std::max(1L, std::lround(decisions)));
@@ -45,9 +45,10 @@ msgs::MetricReport::ConstPtr MetricReporter::observe(const traffic::TrafficSnaps
 
 namespace {
 
-std::string valueText(const metrics::FigureDefinition& figure, const metrics::Measure& measure) {
+std::string valueText(const metrics::MeasureDefinition& definition,
+                      const metrics::Measure& measure) {
   if (measure.unit == "count" && measure.value) return core::formatNumber(*measure.value);
-  return record::measureText(measure, figure.decimals);
+  return record::measureText(measure, definition.decimals);
 }
 
 }  // namespace
@@ -56,10 +57,10 @@ std::vector<std::pair<std::string, std::string>> metricDiagnostics(
     const metrics::SessionMeasures& measures) {
   std::vector<std::pair<std::string, std::string>> values;
   std::map<std::string, std::vector<std::string>> undefined;
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    const metrics::Measure measure = measures.at(figure);
-    if (figure.main) values.emplace_back(figure.label, valueText(figure, measure));
-    if (!measure.value) undefined[measure.reason].emplace_back(figure.name);
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const metrics::Measure measure = measures.at(definition);
+    if (definition.main) values.emplace_back(definition.label, valueText(definition, measure));
+    if (!measure.value) undefined[measure.reason].emplace_back(definition.name);
   }
   for (const auto& [reason, names] : undefined)
     values.emplace_back("not defined: " + reason, core::joinText(names, ", "));

@@ -12,7 +12,7 @@
 
 namespace cdiff::ros {
 
-/// The session's metrics as messages: one report per decision; all figures in it once in a
+/// The session's metrics as messages: one report per decision; all measures in it once in a
 /// simulated second and at the end.
 class MetricReporter {
  public:
@@ -23,7 +23,7 @@ class MetricReporter {
   /// between decisions.
   ::e2e_cdiff::MetricReport::ConstPtr observe(const traffic::TrafficSnapshot& snapshot,
                                               const cbv::CbvSelection* selection);
-  /// All figures as of the last report that held them.
+  /// All measures as of the last report that held them.
   const metrics::SessionMeasures& session() const { return session_; }
 
  private:
@@ -34,10 +34,10 @@ class MetricReporter {
   std::uint64_t decisions_ = 0;
 };
 
-// A session's figures so far as keys and values of /diagnostics.
+// A session's measures so far as keys and values of /diagnostics.
 
-/// The main figures, each "value unit (n = ...)" or "not defined: reason" under its label; then
-/// under "not defined: REASON" the names of all figures that have no value for it.
+/// The main measures, each "value unit (n = ...)" or "not defined: reason" under its label; then
+/// under "not defined: REASON" the names of all measures that have no value for it.
 std::vector<std::pair<std::string, std::string>> metricDiagnostics(
     const metrics::SessionMeasures& measures);
 

@@ -114,8 +114,8 @@ msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
 
 std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures) {
   std::vector<msgs::Measure> all;
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions())
-    all.push_back(toMsg(figure.name, measures.at(figure)));
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions())
+    all.push_back(toMsg(definition.name, measures.at(definition)));
   return all;
 }
 

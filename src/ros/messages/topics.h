@@ -21,7 +21,7 @@ struct Topic {
   int slot;  ///< kEgoSlot unless the channel is of slots
 
   const Channel& row() const { return channel(id); }
-  /// Name relative to the session's namespace; absolute names begin with a slash.
+  /// Name relative to the session's namespace; absolute names start with a slash.
   std::string name() const;
   bool operator==(const Topic& other) const { return id == other.id && slot == other.slot; }
   bool operator<(const Topic& other) const {

@@ -30,7 +30,7 @@ constexpr std::size_t kRows = test::kRows;
 
 /// A random small network, a vehicle 1.2 m left in a lane of 4 m with an oblique heading, another
 /// 12 m ahead and two more near. Differences are taken on a path of its own: reference network,
-/// normaliser formula and objective in double.
+/// normalizer formula and objective in double.
 class ComposedGradients : public ::testing::Test {
  protected:
   ComposedGradients() {
@@ -55,7 +55,7 @@ class ComposedGradients : public ::testing::Test {
     return options;
   }
 
-  /// J of a clean normalised trajectory.
+  /// J of a clean normalized trajectory.
   double valueOf(const guidance::GuidanceOptions& options, const Doubles& states,
                  const Doubles& actions) {
     Rollout metric(static_cast<Eigen::Index>(kRows), kRolloutColumns);
@@ -153,9 +153,9 @@ Doubles differences(const Function& function, const Doubles& point) {
 }
 
 /// The sampler's path is in float32 (2^-24 = 6e-8): states agree with the reference within 1e-5 of
-/// the largest (test_diffusion_cpu_denoiser), so a gradient whose relative change per normalised
+/// the largest (test_diffusion_cpu_denoiser), so a gradient whose relative change per normalized
 /// unit is up to 10 agrees within 1e-4 of its largest cell; its own sums of up to 200 products add
-/// 200 x 6e-8 = 1e-5. A forgotten factor of the normaliser (0.5 or 5) or of a head is 0.5 at least.
+/// 200 x 6e-8 = 1e-5. A forgotten factor of the normalizer (0.5 or 5) or of a head is 0.5 at least.
 constexpr double kTolerance = 2e-4;
 
 constexpr double kTiny = 1e-3;
@@ -206,7 +206,7 @@ TEST_F(ComposedGradients, SumOfAllObjectives) {
             kTolerance);
 }
 
-/// Normalised actions off every bound and switch: rows drive with throttle 0.4 to 0.9, every third
+/// Normalized actions off every bound and switch: rows drive with throttle 0.4 to 0.9, every third
 /// brakes with 0.1 to 0.4; the pedal that does not act is 0.1 beyond its bound 0.
 std::vector<float> smoothActions(const diffusion::Normalizer& normalizer) {
   const core::RandomStream random(6, "actions");

@@ -204,7 +204,7 @@ TEST_F(CandidateChoice, WithoutHysteresisTheBestOfMoreIsNoWorse) {
 
 class WarmStart : public DiffusionModes {
  protected:
-  /// Plans at tick 0, moves the first CBV to the plan's first row and `jump` metres beyond, and
+  /// Plans at tick 0, moves the first CBV to the plan's first row and `jump` meters beyond, and
   /// plans at tick 2.
   planning::PlannedAction secondPlan(bool warm, double jump) {
     DiffusionOptions options = optionsOf();
@@ -278,7 +278,7 @@ TEST(DiffusionOptions, WhatConditioningComesTo) {
   EXPECT_EQ(options.conditioningUnder(natural), "image");
 }
 
-TEST_F(DiffusionModes, ConditioningByGuidanceTellsAttackersAloneNoRoute) {
+TEST_F(DiffusionModes, ConditioningByGuidanceWithholdsTheRouteFromAttackersAlone) {
   const auto planOf = [this](const std::string& conditioning) {
     DiffusionOptions options = optionsOf();
     options.conditioning = conditioning;
@@ -298,14 +298,14 @@ TEST_F(DiffusionModes, ConditioningByGuidanceTellsAttackersAloneNoRoute) {
 
 /// The ego drives out along y = 0 and comes back along y = 3; a CBV stands beside the place where
 /// it began.
-class EgoOnItsWay : public DiffusionModes {
+class EgoUnderWay : public DiffusionModes {
  protected:
-  EgoOnItsWay() {
+  EgoUnderWay() {
     context_.ego_route = &there_and_back_;
     guidance_ = guidance::loadProfile("safety_critical");
   }
 
-  /// Decision `number`, half a second and 10 m of ego way after the one before.
+  /// Decision `number`, half a second and 10 m of ego route after the one before.
   void goToDecision(int number) {
     goTo(static_cast<std::uint64_t>(10 * number));
     const double way = 10.0 * number;
@@ -322,7 +322,7 @@ class EgoOnItsWay : public DiffusionModes {
   map::Route there_and_back_ = testing::routeAlong(loop_, {"loop"});
 };
 
-TEST_F(EgoOnItsWay, AGapWithoutCbvsDoesNotLoseIt) {
+TEST_F(EgoUnderWay, AGapWithoutCbvsDoesNotLoseIt) {
   const auto steady = makeDiffusion(optionsOf());
   const auto idle = makeDiffusion(optionsOf());
   const auto absent = makeDiffusion(optionsOf());

@@ -12,7 +12,7 @@
 namespace cdiff::planners {
 namespace {
 
-/// Ways between lanes drawn at random (fixed seed), 150 to 500 m long.
+/// Routes between lanes drawn at random (fixed seed), 150 to 500 m long.
 std::vector<map::Route> randomRoutes(const map::RoadNetwork& network, std::size_t count) {
   const map::LaneGraph graph(network);
   std::vector<map::LaneIndex> candidates;

@@ -241,7 +241,7 @@ Encounter meetAtCrossing(ClosedLoop& loop) {
 
 TEST_F(CrossRoads, EgoAndCbvPassOneAfterTheOtherWithoutADeadlock) {
   // Distances to the crossing and speed of both, mirror images: nothing but the rule of giving way
-  // tells them apart.
+  // distinguishes them.
   const std::vector<std::pair<double, double>> starts = {{8.0, 0.0},  {6.0, 0.0},  {12.0, 3.0},
                                                          {30.0, 8.0}, {60.0, 8.0}, {70.0, 0.0}};
   for (const auto& [distance, speed] : starts) {
@@ -317,7 +317,7 @@ TEST_F(Light, StopsSixMetresBeforeRedAndGoesOnGreen) {
   loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
   loop.setSignal("light", "r");
   loop.run(15.0);
-  // s0 = 6 m from the centre to the stop line.
+  // s0 = 6 m from the center to the stop line.
   EXPECT_NEAR(80.0 - loop.vehicle(0).state.position.x(), 6.0, 1.5);
   EXPECT_LT(loop.vehicle(0).state.speed, 0.1);
   RecordProperty("stop_distance_m", std::to_string(80.0 - loop.vehicle(0).state.position.x()));
@@ -326,7 +326,7 @@ TEST_F(Light, StopsSixMetresBeforeRedAndGoesOnGreen) {
   EXPECT_GT(loop.vehicle(0).state.position.x(), 90.0);
 }
 
-TEST_F(Light, IsIgnoredWhenToldSo) {
+TEST_F(Light, IsIgnoredWhereTheOptionSaysSo) {
   PdmLiteOptions options;
   options.obey_lights = false;
   ClosedLoop loop(network_, options);

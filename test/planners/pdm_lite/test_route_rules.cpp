@@ -48,7 +48,7 @@ TEST_F(StraightRoad, TrailerIsNearTheRouteBehindAndAlongIt) {
   EXPECT_FALSE(isTrailing(route_, 50.0, stateAt(40.0, 3.1, 0.0)));
   EXPECT_FALSE(isTrailing(route_, 50.0, stateAt(40.0, 0.0, 31.0)));
   EXPECT_FALSE(isTrailing(route_, 50.0, stateAt(56.0, 0.0, 0.0)));
-  // The route begins at 0: behind it goes straight on.
+  // The route starts at 0: behind it goes straight on.
   EXPECT_TRUE(isTrailing(route_, 0.0, stateAt(-20.0, 1.0, 0.0)));
 }
 

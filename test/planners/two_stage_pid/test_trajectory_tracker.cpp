@@ -154,7 +154,7 @@ TEST(TrackerLoop, FollowsAStraightPlanFromAside) {
 }
 
 TEST(TrackerLoop, CutsACurveByTheDerivedAmount) {
-  // Circle of 30 m to the left at 6 m/s. The vehicle's centre moves along heading + slip with
+  // Circle of 30 m to the left at 6 m/s. The vehicle's center moves along heading + slip with
   // sin(slip) = l_r / R = 1.4178 / 30, slip 0.0473; it takes steer = atan(l / l_r tan(slip)) /
   // 0.3685 = atan(0.93598 x 0.04731) / 0.3685 = 0.1201, and with P and the mean (1.25 + 0.75) e =
   // 0.1201 a bearing of 0.06005 x pi / 2 = 0.0943 rad. The aim, 6 m along the arc, is 0.1 rad left

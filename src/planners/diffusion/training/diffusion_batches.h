@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Batches of the diffusion stages: which samples come at which step, how each is changed, and the
-/// noise of the diffusion loss. All of it is a function of (seed, stage, step), so that a resumed
-/// run goes on as if it had never stopped.
 #pragma once
 
 #include <string>
@@ -15,6 +12,10 @@
 
 namespace cdiff::planners {
 
+// Batches of the diffusion stages: which samples come at which step, how each is changed, and the
+// noise of the diffusion loss. All of it is a function of (seed, stage, step), so that a resumed
+// run goes on as if it had never stopped.
+
 /// Features of every sample, each of one variant: as it is, or, where the stage mirrors, in half of
 /// the cases mirrored (one variant takes half the time, and the other samples show the other side).
 struct FeatureCache {
@@ -23,11 +24,13 @@ struct FeatureCache {
 /// Which samples those are.
 bool mirroredInCache(std::size_t index);
 
+/// Tensors of one batch of samples: images or features, context, normalized rollouts, auxiliary
+/// targets, diffusion steps and noise.
 struct TrainingBatch {
   std::vector<std::size_t> samples;
   at::Tensor images;           ///< [B, 3, H, W] scaled; undefined on cached features
   ContextBatch context;        ///< without features where there are images
-  at::Tensor rollouts;         ///< [B, T, 7] normalised
+  at::Tensor rollouts;         ///< [B, T, 7] normalized
   at::Tensor auxiliary;        ///< [B, A], 0 where not known
   at::Tensor auxiliary_known;  ///< [B, A], 0 or 1
   at::Tensor k;                ///< [B] int64 in 1..K
@@ -48,6 +51,8 @@ struct BatchOptions {
   std::uint64_t seed = 1;
 };
 
+/// Makes batches of tensors on a device from stored samples; every draw depends on the seed and the
+/// step alone.
 class BatchMaker {
  public:
   BatchMaker(const learning::DrivingDataset& dataset, const diffusion::Normalizer& normalizer,

@@ -8,8 +8,8 @@
 namespace cdiff::planners {
 namespace {
 
-using learning::Figures;
 using learning::Loss;
+using learning::Measures;
 using learning::toTensor;
 using learning::toVector;
 
@@ -91,20 +91,20 @@ at::Tensor DiffusionLoss::sample(const DenoiserNet& denoiser, const at::Tensor& 
   return noisy;
 }
 
-void DiffusionLoss::addFigures(const std::string& prefix, const at::Tensor& predicted,
-                               const at::Tensor& clean, Figures& figures) const {
+void DiffusionLoss::addMeasures(const std::string& prefix, const at::Tensor& predicted,
+                                const at::Tensor& clean, Measures& measures) const {
   const at::Tensor error = ((predicted - clean) * scale_).abs();
   const at::Tensor distance =
       (error.select(2, traffic::kRolloutX).pow(2) + error.select(2, traffic::kRolloutY).pow(2))
           .sqrt();
   const auto mean = [&](int column) { return error.select(2, column).mean().item<double>(); };
-  figures[prefix + "ade_m"] = distance.mean().item<double>();
-  figures[prefix + "fde_m"] = distance.select(1, architecture_.horizon - 1).mean().item<double>();
-  figures[prefix + "heading_rad"] = mean(traffic::kRolloutHeading);
-  figures[prefix + "speed_mps"] = mean(traffic::kRolloutSpeed);
-  figures[prefix + "throttle"] = mean(traffic::kRolloutThrottle);
-  figures[prefix + "steer"] = mean(traffic::kRolloutSteer);
-  figures[prefix + "brake"] = mean(traffic::kRolloutBrake);
+  measures[prefix + "ade_m"] = distance.mean().item<double>();
+  measures[prefix + "fde_m"] = distance.select(1, architecture_.horizon - 1).mean().item<double>();
+  measures[prefix + "heading_rad"] = mean(traffic::kRolloutHeading);
+  measures[prefix + "speed_mps"] = mean(traffic::kRolloutSpeed);
+  measures[prefix + "throttle"] = mean(traffic::kRolloutThrottle);
+  measures[prefix + "steer"] = mean(traffic::kRolloutSteer);
+  measures[prefix + "brake"] = mean(traffic::kRolloutBrake);
 }
 
 at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& name) const {
@@ -115,29 +115,29 @@ at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& 
   return toTensor(values, like.sizes(), device_);
 }
 
-Figures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                             const at::Tensor& grey_features) const {
+Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
+                              const at::Tensor& grey_features) const {
   const at::NoGradGuard no_gradient;
   const at::Tensor& clean = held_out.rollouts;
   const at::Tensor noise = fixedNoise(clean, "validation noise");
-  Figures figures;
+  Measures measures;
   const std::int64_t last = schedule_.steps();
   for (const auto& [prefix, k] :
        {std::pair<std::string, std::int64_t>{"one_step_half_", (last + 1) / 2},
         {"one_step_noise_", last}}) {
     const at::Tensor noisy = addNoise(clean, steps(clean.size(0), k, device_), noise);
-    addFigures(prefix, predictClean(denoiser, noisy, k, held_out.context), clean, figures);
+    addMeasures(prefix, predictClean(denoiser, noisy, k, held_out.context), clean, measures);
   }
   const std::int64_t count = std::min(kJudgeSteps, last);
-  addFigures("sample_", sample(denoiser, noise, held_out.context, count), clean, figures);
+  addMeasures("sample_", sample(denoiser, noise, held_out.context, count), clean, measures);
   ContextBatch context = held_out.context;
   context.has_route = at::zeros_like(context.has_route);
-  addFigures("sample_no_route_", sample(denoiser, noise, context, count), clean, figures);
+  addMeasures("sample_no_route_", sample(denoiser, noise, context, count), clean, measures);
   context.features = grey_features.view({1, -1}).expand_as(context.features).contiguous();
-  addFigures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, figures);
+  addMeasures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, measures);
   context.has_route = held_out.context.has_route;
-  addFigures("sample_grey_", sample(denoiser, noise, context, count), clean, figures);
-  return figures;
+  addMeasures("sample_grey_", sample(denoiser, noise, context, count), clean, measures);
+  return measures;
 }
 
 traffic::Rollout DiffusionLoss::spread(const DenoiserNet& denoiser,

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The paper's loss on a batch (clean prediction, detached actions for the state head) and the
-/// figures by which held-out samples judge a denoiser.
 #pragma once
 
 #include <string>
@@ -13,6 +11,8 @@
 
 namespace cdiff::planners {
 
+/// The paper's loss on a batch (clean prediction, detached actions for the state head) and the
+/// measures by which held-out samples judge a denoiser.
 class DiffusionLoss {
  public:
   DiffusionLoss(const diffusion::Architecture& architecture,
@@ -20,7 +20,7 @@ class DiffusionLoss {
 
   /// tau^k = sqrt(alpha_bar_k) tau^0 + sqrt(1 - alpha_bar_k) noise.
   at::Tensor addNoise(const at::Tensor& clean, const at::Tensor& k, const at::Tensor& noise) const;
-  /// L = mean of w_t (a - a_hat)^2 + mean of (s - s_hat)^2, w_t = 1 + 4 exp(-t / 4), normalised.
+  /// L = mean of w_t (a - a_hat)^2 + mean of (s - s_hat)^2, w_t = 1 + 4 exp(-t / 4), normalized.
   learning::Loss loss(const DenoiserNet& denoiser, const TrainingBatch& batch) const;
   /// [states; actions] [B, T, 7] as predicted from tau^k in one step.
   at::Tensor predictClean(const DenoiserNet& denoiser, const at::Tensor& noisy, std::int64_t k,
@@ -28,15 +28,15 @@ class DiffusionLoss {
   /// DDIM from noise over `steps` evenly spaced diffusion steps.
   at::Tensor sample(const DenoiserNet& denoiser, const at::Tensor& noise,
                     const ContextBatch& context, std::int64_t steps) const;
-  /// Mean absolute errors of a normalised prediction: ade_m, fde_m, speed_mps, heading_rad,
+  /// Mean absolute errors of a normalized prediction: ade_m, fde_m, speed_mps, heading_rad,
   /// throttle, steer, brake; keys get `prefix`.
-  void addFigures(const std::string& prefix, const at::Tensor& predicted, const at::Tensor& clean,
-                  learning::Figures& figures) const;
+  void addMeasures(const std::string& prefix, const at::Tensor& predicted, const at::Tensor& clean,
+                   learning::Measures& measures) const;
   /// One-step predictions at K/2 and K and DDIM samples of held-out samples, the latter also with
-  /// the features of a grey image and without route.
-  learning::Figures judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                          const at::Tensor& grey_features) const;
-  /// Standard deviation of the clean prediction's error at k = K, [T, 7] normalised.
+  /// the features of a gray image and without route.
+  learning::Measures judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
+                           const at::Tensor& grey_features) const;
+  /// Standard deviation of the clean prediction's error at k = K, [T, 7] normalized.
   traffic::Rollout spread(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
 
  private:

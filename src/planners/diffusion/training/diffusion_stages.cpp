@@ -9,13 +9,13 @@
 namespace cdiff::planners {
 namespace {
 
-using learning::Figures;
 using learning::Loss;
+using learning::Measures;
 using learning::TrainedPart;
 
 constexpr std::int64_t kImageBatch = 32;
 constexpr std::int64_t kFeatureBatch = 128;
-/// The regression head must also do without a route, so that features tell where the road goes.
+/// The regression head must also do without a route, so that features show where the road goes.
 constexpr double kHeadRouteDrop = 0.5;
 constexpr std::size_t kEncodeBatch = 32;
 
@@ -68,7 +68,7 @@ class EncoderStage : public learning::Stage {
     return loss;
   }
 
-  Figures judge() override {
+  Measures judge() override {
     const at::NoGradGuard no_gradient;
     std::vector<at::Tensor> clean, with_route, without;
     for (std::size_t begin = 0; begin < state_.run.held_out.size(); begin += kEncodeBatch) {
@@ -82,10 +82,10 @@ class EncoderStage : public learning::Stage {
       batch.context.has_route = at::zeros_like(batch.context.has_route);
       without.push_back(rolloutOf(state_.head.forward(batch.context), batch.rollouts));
     }
-    Figures figures;
-    state_.loss.addFigures("regression_", at::cat(with_route), at::cat(clean), figures);
-    state_.loss.addFigures("regression_no_route_", at::cat(without), at::cat(clean), figures);
-    return figures;
+    Measures measures;
+    state_.loss.addMeasures("regression_", at::cat(with_route), at::cat(clean), measures);
+    state_.loss.addMeasures("regression_no_route_", at::cat(without), at::cat(clean), measures);
+    return measures;
   }
 
  private:
@@ -142,7 +142,7 @@ class DiffusionStage : public learning::Stage {
     return state_.loss.loss(state_.denoiser, batch);
   }
 
-  Figures judge() override {
+  Measures judge() override {
     if (cache_ == nullptr) held_out_ = encodeHeldOut(state_);
     return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.grey_features);
   }

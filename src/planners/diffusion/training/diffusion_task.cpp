@@ -15,7 +15,7 @@ namespace cdiff::planners {
 namespace {
 
 using core::InputError;
-using learning::Figures;
+using learning::Measures;
 using learning::PartSource;
 
 constexpr const char* kNoDenoiser = "train stage denoiser on this encoder next";
@@ -59,27 +59,28 @@ std::optional<diffusion::Model> initialModel(const std::string& name,
                    model.architecture.toJson() + ", this run has " + architecture.toJson());
 }
 
-std::string figureRow(const std::string& label, const std::string& prefix, const Figures& figures) {
+std::string heldOutRow(const std::string& label, const std::string& prefix,
+                       const Measures& measures) {
   std::string row = "| " + label + " |";
   for (const char* name : {"ade_m", "fde_m", "speed_mps", "throttle", "steer", "brake"}) {
-    const auto found = figures.find(prefix + name);
-    row += " " + (found == figures.end() ? "-" : core::formatFixed(found->second, 3)) + " |";
+    const auto found = measures.find(prefix + name);
+    row += " " + (found == measures.end() ? "-" : core::formatFixed(found->second, 3)) + " |";
   }
   return row + "\n";
 }
 
-std::string figureTable(const Figures& held_out) {
+std::string heldOutTable(const Measures& held_out) {
   return "Mean absolute errors against the recorded rollouts: ADE and FDE [m], speed [m/s], "
          "actions "
          "as they are.\n\n"
          "| Prediction | ADE | FDE | speed | throttle | steer | brake "
          "|\n|---|---|---|---|---|---|---|\n" +
-         figureRow("one step from k = K/2", "one_step_half_", held_out) +
-         figureRow("one step from noise, k = K", "one_step_noise_", held_out) +
-         figureRow("DDIM sample", "sample_", held_out) +
-         figureRow("DDIM sample, grey image", "sample_grey_", held_out) +
-         figureRow("DDIM sample, no route", "sample_no_route_", held_out) +
-         figureRow("DDIM sample, grey image, no route", "sample_grey_no_route_", held_out);
+         heldOutRow("one step from k = K/2", "one_step_half_", held_out) +
+         heldOutRow("one step from noise, k = K", "one_step_noise_", held_out) +
+         heldOutRow("DDIM sample", "sample_", held_out) +
+         heldOutRow("DDIM sample, grey image", "sample_grey_", held_out) +
+         heldOutRow("DDIM sample, no route", "sample_no_route_", held_out) +
+         heldOutRow("DDIM sample, grey image, no route", "sample_grey_no_route_", held_out);
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ std::vector<std::string> DiffusionTask::weightFiles() const {
 
 std::vector<std::string> DiffusionTask::otherFiles() const { return {kFeatureFile}; }
 
-void DiffusionTask::begin(const learning::TrainingRun& run) {
+void DiffusionTask::start(const learning::TrainingRun& run) {
   const learning::DrivingDataset dataset(run.dataset);
   const diffusion::Architecture architecture = architectureOf(settings, dataset.schema());
   const auto initial = initialModel(run.options.init, architecture);
@@ -178,7 +179,7 @@ learning::TrainedModel DiffusionTask::finish() {
                       {"mirror", settings.mirror},
                       {"precision", state_->half_precision ? "bf16" : "f32"}};
   trained.title = "Diffusion planner";
-  trained.figures = figureTable(trained.held_out);
+  trained.measures = heldOutTable(trained.held_out);
   return trained;
 }
 

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The training of the diffusion planner by the paper's loss in stages: `encoder` (image encoder
-/// with a regression head, optionally on smaller images), `fine_tune` (the same at full size),
-/// `denoiser` (on the frozen encoder's features, computed once) and `joint` (everything by the
-/// diffusion loss). `fine_tune` alone makes a model with the denoiser of the output folder or of
-/// the initial model, where one is.
 #pragma once
 
 #include <memory>
@@ -18,6 +13,11 @@
 
 namespace cdiff::planners {
 
+/// The training of the diffusion planner by the paper's loss in stages: `encoder` (image encoder
+/// with a regression head, optionally on smaller images), `fine_tune` (the same at full size),
+/// `denoiser` (on the frozen encoder's features, computed once) and `joint` (everything by the
+/// diffusion loss). `fine_tune` alone makes a model with the denoiser of the output folder or of
+/// the initial model, where one is.
 class DiffusionTask : public learning::Task {
  public:
   learning::TaskTexts texts() const override;
@@ -30,7 +30,7 @@ class DiffusionTask : public learning::Task {
   void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
   void validate() const override { settings.validate(); }
 
-  void begin(const learning::TrainingRun& run) override;
+  void start(const learning::TrainingRun& run) override;
   nlohmann::json facts() const override;
   std::vector<learning::TrainedPart> parts() override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;

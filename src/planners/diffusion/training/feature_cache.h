@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Features of all samples by the present encoder, kept in files so that an interrupted run goes
-/// on.
 #pragma once
 
 #include "planners/diffusion/training/diffusion_stages.h"
 
 namespace cdiff::planners {
+
+// Features of all samples by the present encoder, kept in files so that an interrupted run goes
+// on.
 
 /// Reads or computes them; kFeatureFile in the output folder. Throws core::Interrupted after
 /// saving what there is.

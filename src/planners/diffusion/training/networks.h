@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The networks of docs/network.md with gradients: image encoder, denoiser, and the regression head
-/// that trains the encoder. Float32; B is the batch.
 #pragma once
 
 #include "diffusion/network/architecture.h"
@@ -9,6 +7,10 @@
 
 namespace cdiff::planners {
 
+// The networks of docs/network.md with gradients: image encoder, denoiser, and the regression head
+// that trains the encoder. Float32; B is the batch.
+
+/// The image encoder with gradients: images [B, 3, H, W] to features.
 class ImageEncoderNet {
  public:
   ImageEncoderNet(const diffusion::Architecture& architecture, std::uint64_t seed);
@@ -42,6 +44,7 @@ struct ContextBatch {
   at::Tensor speed;      ///< [B, 1], v / 10
 };
 
+/// The denoiser with gradients: action head, and state head on actions; everything normalized.
 class DenoiserNet {
  public:
   DenoiserNet(const diffusion::Architecture& architecture, std::uint64_t seed);
@@ -75,7 +78,7 @@ class DenoiserNet {
   at::Tensor sinusoids_;  ///< [K + 1, time_width]
 };
 
-/// Normalised rollout and auxiliary targets from [features; speed; route or 0; whether there is
+/// Normalized rollout and auxiliary targets from [features; speed; route or 0; whether there is
 /// one].
 class RegressionHead {
  public:

@@ -9,7 +9,7 @@
 
 namespace cdiff::planners {
 
-// The normaliser of a data set.
+// The normalizer of a data set.
 
 /// Actions: throttle and brake [0, 1] -> [-1, 1], steer by twice its standard deviation over all
 /// rows. States: mean and standard deviation of each cell, at least 0.05 m, 0.01 rad and 0.1 m/s.

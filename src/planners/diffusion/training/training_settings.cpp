@@ -13,8 +13,8 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
                  0.5, 1.0);
   visitor.number({"route_drop", "", "Share of samples without route."}, route_drop, 0.0, 1.0);
-  visitor.number({"balance", "", "Rare kinds of driving: 0 as collected, 1 all alike."}, balance,
-                 0.0, 1.0);
+  visitor.number({"balance", "", "Rare kinds of driving: 0 as collected, 1 all equally often."},
+                 balance, 0.0, 1.0);
   visitor.number({"yielding_share", "", "Part kept of samples that stop to give way."},
                  yielding_share, 0.0, 1.0);
   visitor.flag({"mirror", "", "Mirror every second sample."}, mirror);

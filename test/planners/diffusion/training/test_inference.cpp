@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // What trains and what drives are two implementations of docs/network.md: with the same weights
-// they must give the same figures. Tolerances: float32 sums of up to 4,608 products in another
+// they must give the same measures. Tolerances: float32 sums of up to 4,608 products in another
 // order.
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 namespace cdiff::record {
 
-// Figures of a session as they stand in summary.json: null where absent, with the reason beside.
+// Measures of a session as they stand in summary.json: null where absent, with the reason beside.
 
 using Json = nlohmann::ordered_json;
 
@@ -22,12 +22,13 @@ Json number(const std::optional<double>& value);
 void addMeasure(Json& object, const std::string& key, const metrics::Measure& measure);
 
 /// The same with a whole number for a count.
-void addPlainFigure(Json& object, const std::string& key, const metrics::Measure& measure);
+void addPlainMeasure(Json& object, const std::string& key, const metrics::Measure& measure);
 
-/// Adds the figures, then the lists, whose place in the summary begins with "/section/".
-void addFigures(Json& object, const std::string& section, const metrics::SessionMeasures& measures);
+/// Adds the measures, then the lists, whose place in the summary starts with "/section/".
+void addMeasures(Json& object, const std::string& section,
+                 const metrics::SessionMeasures& measures);
 
-/// What summary.json says of the CBVs: their figures, selections, plans and faults.
+/// What summary.json says of the CBVs: their measures, selections, plans and faults.
 Json cbvObject(const SessionResult& result);
 
 }  // namespace cdiff::record

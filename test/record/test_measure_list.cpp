@@ -9,18 +9,18 @@
 namespace cdiff::record {
 namespace {
 
-TEST(FigureList, IsInTheDocumentationWordByWord) {
+TEST(MeasureList, IsInTheDocumentationWordByWord) {
   const std::string page = core::readFile(core::shareFolder() / "docs" / "metrics.md", "page");
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    EXPECT_NE(page.find(figure.definition), std::string::npos) << figure.name;
-    EXPECT_NE(page.find(figure.rift_compat), std::string::npos) << figure.name;
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    EXPECT_NE(page.find(definition.definition), std::string::npos) << definition.name;
+    EXPECT_NE(page.find(definition.rift_compat), std::string::npos) << definition.name;
   }
-  EXPECT_NE(page.find(figureList()), std::string::npos)
+  EXPECT_NE(page.find(measureList()), std::string::npos)
       << "put the output of `cdiff metric definitions` into docs/metrics.md";
 }
 
-TEST(FigureList, HasASectionAFigure) {
-  const std::string list = figureList();
+TEST(MeasureList, HasASectionPerMeasure) {
+  const std::string list = measureList();
   const std::string section =
       "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; "
       "`/cbv/collisions`\n\n";

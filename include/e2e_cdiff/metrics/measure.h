@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A figure of a session: the row that defines it and the value that a session has for it.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +11,11 @@ namespace cdiff::metrics {
 /// Whether a larger value is a better session.
 enum class Direction { kHigherIsBetter, kLowerIsBetter, kNeither };
 
-/// Whose driving a figure describes.
+/// Whose driving a measure describes.
 enum class Subject { kEgo, kCbvs, kEgoAndOthers };
 
-/// The definition of one figure. Its texts must live as long as the program: string literals.
-struct FigureDefinition {
+/// The definition of one measure. Its texts must live as long as the program: string literals.
+struct MeasureDefinition {
   const char* name;   ///< snake_case, unique; of messages and batch columns
   const char* place;  ///< JSON pointer to the number in summary.json; "": /metrics/NAME/value
   const char* label;  ///< for people
@@ -29,11 +28,11 @@ struct FigureDefinition {
   bool main = false;        ///< whether /diagnostics shows it
 };
 
-/// What a session has for a figure.
+/// What a session has for a measure.
 struct Measure {
-  std::optional<double> value;  ///< absent when n is too small or the figure is undefined
+  std::optional<double> value;  ///< absent when n is too small or the measure is undefined
   std::size_t n = 0;            ///< samples it stands on
-  std::string unit;             ///< of the definition: the sink fills it in
+  std::string unit;             ///< the definition's unit, which the sink fills in
   std::string reason;  ///< why the value is absent, or how its samples were thinned out; else empty
   std::string target = {};  ///< what the samples are compared with; empty where with nothing
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "record/summary_figures.h"
+#include "record/summary_measures.h"
 
 #include <cmath>
 
@@ -50,20 +50,20 @@ void addMeasure(Json& object, const std::string& key, const metrics::Measure& me
   if (!measure.reason.empty()) object[key + "_reason"] = measure.reason;
 }
 
-void addPlainFigure(Json& object, const std::string& key, const metrics::Measure& measure) {
+void addPlainMeasure(Json& object, const std::string& key, const metrics::Measure& measure) {
   addMeasure(object, key, measure);
   if (measure.unit == "count" && measure.value)
     object[key] = static_cast<std::uint64_t>(*measure.value);
 }
 
-void addFigures(Json& object, const std::string& section,
-                const metrics::SessionMeasures& measures) {
-  for (const metrics::FigureDefinition& figure : metrics::figureDefinitions()) {
-    const std::vector<std::string> keys = core::splitText(figure.place, '/');
+void addMeasures(Json& object, const std::string& section,
+                 const metrics::SessionMeasures& measures) {
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(definition.place, '/');
     if (keys.front() != section) continue;
-    const metrics::Measure measure = measures.at(figure);
+    const metrics::Measure measure = measures.at(definition);
     if (keys.size() == 2) {
-      addPlainFigure(object, keys[1], measure);
+      addPlainMeasure(object, keys[1], measure);
       continue;
     }
     Json* parent = &object;
@@ -82,8 +82,8 @@ void addFigures(Json& object, const std::string& section,
 
 namespace {
 
-Json figuresObject(const SampleFigures& figures) {
-  return {{"mean", number(figures.mean)}, {"p95", number(figures.percentile_95)}, {"n", figures.n}};
+Json summaryObject(const SampleSummary& summary) {
+  return {{"mean", number(summary.mean)}, {"p95", number(summary.percentile_95)}, {"n", summary.n}};
 }
 
 Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
@@ -132,9 +132,9 @@ Json planObject(const SessionResult& result) {
   Json object = Json::object();
   for (const int seconds : {1, 2, 3}) {
     object["displacement_" + std::to_string(seconds) + "s_m"] =
-        figuresObject(displacementFigures(result.plans, seconds));
+        summaryObject(displacementSummary(result.plans, seconds));
   }
-  const SampleFigures mismatch = mismatchFigures(result.plans);
+  const SampleSummary mismatch = mismatchSummary(result.plans);
   object["state_mismatch_m"] = {{"mean", number(mismatch.mean)},
                                 {"p95", number(mismatch.percentile_95)},
                                 {"max", number(mismatch.maximum)},
@@ -169,7 +169,7 @@ std::optional<std::string> contactPartner(const CbvRecord& record, const Session
 
 Json cbvObject(const SessionResult& result) {
   Json object = Json::object();
-  addFigures(object, "cbv", result.measures);
+  addMeasures(object, "cbv", result.measures);
   object["selections"] = Json::array();
   for (const CbvRecord& record : result.cbv.records()) {
     object["selections"].push_back(selectionObject(record, result));

@@ -10,7 +10,7 @@
 namespace cdiff::evaluation {
 namespace {
 
-TEST(Figures, OfASummary) {
+TEST(RunMeasures, OfASummary) {
   // Two of three CBVs passed their conflict point; they drove 50 % and 100 % of their routes.
   const SummaryFacts facts = readSummary(R"({
     "status": "completed", "simulated_seconds": 12.5, "real_time_factor": null,
@@ -28,20 +28,20 @@ TEST(Figures, OfASummary) {
   EXPECT_EQ(facts.verdict, record::Outcome::kFailed);
   EXPECT_EQ(facts.reasons, std::vector<std::string>{"too slow"});
   EXPECT_DOUBLE_EQ(facts.simulated_seconds, 12.5);
-  EXPECT_DOUBLE_EQ(facts.figures.at("ego_completion_percent"), 80.0);
-  EXPECT_DOUBLE_EQ(facts.figures.at("ego_collisions"), 0.0);
-  EXPECT_NEAR(facts.figures.at("cbv_passed_percent"), 200.0 / 3.0, 1e-12);
-  EXPECT_DOUBLE_EQ(facts.figures.at("cbv_completion_percent"), 75.0);
-  EXPECT_EQ(facts.figures.count("cbv_off_road_percent"), 0U);  // null
-  EXPECT_EQ(facts.figures.count("real_time_factor"), 0U);
-  EXPECT_EQ(facts.figures.count("ttc_mean_s"), 0U);  // absent
-  for (const auto& [name, value] : facts.figures) {
-    const auto& names = figureNames();
+  EXPECT_DOUBLE_EQ(facts.measures.at("ego_completion_percent"), 80.0);
+  EXPECT_DOUBLE_EQ(facts.measures.at("ego_collisions"), 0.0);
+  EXPECT_NEAR(facts.measures.at("cbv_passed_percent"), 200.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(facts.measures.at("cbv_completion_percent"), 75.0);
+  EXPECT_EQ(facts.measures.count("cbv_off_road_percent"), 0U);  // null
+  EXPECT_EQ(facts.measures.count("real_time_factor"), 0U);
+  EXPECT_EQ(facts.measures.count("ttc_mean_s"), 0U);  // absent
+  for (const auto& [name, value] : facts.measures) {
+    const auto& names = measureNames();
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }
 
-TEST(Figures, RefuseATextThatIsNoSummary) {
+TEST(RunMeasures, RefuseATextThatIsNoSummary) {
   EXPECT_THROW(readSummary("{\"status\": \"comp", "file"), core::InputError);
   EXPECT_THROW(readSummary("{}", "file"), core::InputError);
 }
