@@ -28,8 +28,9 @@ session::ScenarioOptions town05(std::int64_t seed) {
   request.network = (data / "carla_towns" / "Town05.net.xml").string();
   request.seed = std::to_string(seed);
   request.cbv_planner = "pdm_lite";  // the loop, not the denoising
-  request.set = {"traffic.density=50", "traffic.forget_distance=160", "max_cbv=2",
-                 "protocol.blocked_time=1000", "protocol.time_limit=60"};
+  request.set = {"traffic.density=50",  "traffic.forget_distance=160",
+                 "max_cbv=2",           "protocol.blocked_time=1000",
+                 "verdict.judge=false", "protocol.time_limit=60"};
   return session::resolveRequest(request);
 }
 
@@ -132,8 +133,8 @@ std::vector<double> nodeGraphLoop(const fs::path& folder) {
         (data / "bench2drive/bench2drive220.xml").string() + "' route:=25318 network:='" +
         (data / "carla_towns/Town05.net.xml").string() +
         "' cbv_planner:=pdm_lite set:='traffic.density=50 traffic.forget_distance=160 "
-        "protocol.blocked_time=1000' seed:=1 "
-        "record:=true results:='" +
+        "protocol.blocked_time=1000 verdict.judge=false' seed:=1 "
+        "record:=true overwrite:=true results:='" +
         folder.string() + "' >/dev/null 2>&1";
     if (std::system(command.c_str()) != 0)
       throw core::SimulatorError("the session of the node graph failed: " + command);
