@@ -95,7 +95,7 @@ def main():
     figures = Figures()
     with tempfile.TemporaryDirectory(prefix="e2e_cdiff_build_", dir=options.folder) as folder:
         if not options.targets:
-            figures.measure("build_demo", ["scripts/setup", "--no-tests"], Path(folder) / "demo")
+            figures.measure("build_demo", ["scripts/setup", "--only", "e2e_cdiff_session_programs"], Path(folder) / "demo")
         build = Path(folder) / "all"
         figures.measure("build_targets" if options.targets else "build_all",
                         ["scripts/setup", *(["--only", *options.targets] if options.targets else [])], build)
