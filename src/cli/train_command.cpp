@@ -24,8 +24,9 @@ fs::path findTrainer() {
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   const fs::path trainer = here / "cdiff_train";
   if (::access(trainer.c_str(), X_OK) == 0) return trainer;
-  throw core::InputError("no cdiff_train beside " + here.string() +
-                         ": this build is without the trainer (E2E_CDIFF_TRAINING)");
+  throw core::InputError(
+      "no cdiff_train beside " + here.string() +
+      ": the trainer is not built; run scripts/setup, or configure with E2E_CDIFF_TRAINING");
 }
 
 /// Runs to its end; a stop signal to us is one to it, which then leaves a checkpoint.

@@ -21,8 +21,10 @@ constexpr double kAlivePeriod = 1.0;  // [s] between messages of a node that wai
 constexpr double kStopPatience =
     6.0;  // [s] after a stop signal until a node leaves without a last snapshot
 constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
-constexpr double kLead =
-    1.0;  // [s] beyond the next decision that answers may come before their snapshot
+/// Simulated time by which an answer may come before its snapshot [s]: nothing waits for a node of
+/// which no vehicle needs an answer, so it may lag behind far; beyond that the bound is one of
+/// memory.
+constexpr double kLead = 100.0;
 constexpr double kFirstHeartbeat = 30.0;  // [s] for a simulator of the same launch to begin
 
 void spin() { ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(kPeriod)); }
