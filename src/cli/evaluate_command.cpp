@@ -28,6 +28,7 @@ using evaluation::RunRecord;
 
 struct EvaluateArguments {
   std::string matrix;
+  std::string suite;
   std::string bench2drive;
   std::string networks;
   std::string results;
@@ -41,27 +42,35 @@ struct EvaluateArguments {
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 
-/// The matrix file, or the one that the Bench2Drive arguments stand for.
-MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
-  const bool routes = !arguments.bench2drive.empty();
-  if (routes == !arguments.matrix.empty()) {
+void requireRoutes(const EvaluateArguments& arguments) {
+  if (arguments.matrix.empty() && arguments.bench2drive.empty() && arguments.suite.empty()) {
     throw InputError(
-        "give either a matrix (file or shipped name), or --bench2drive FILE --networks DIR");
+        "give a matrix (file or shipped name), or routes: --suite NAME, or --bench2drive FILE "
+        "--networks DIR, or a matrix and the routes to run it on instead of its own");
   }
-  if (!routes) return evaluation::loadMatrix(arguments.matrix);
-  if (arguments.networks.empty()) {
+  if (!arguments.suite.empty() && !arguments.bench2drive.empty())
+    throw InputError("give either --suite or --bench2drive: a batch has routes of one kind");
+  if (!arguments.bench2drive.empty() && arguments.networks.empty()) {
     throw InputError("--bench2drive " + arguments.bench2drive +
                      " needs --networks DIR (a folder with TOWN.net.xml files)");
   }
-  MatrixOptions matrix;
-  matrix.name = "bench2drive";
-  matrix.bench2drive = {fs::absolute(arguments.bench2drive).string(),
-                        fs::absolute(arguments.networks).string(), arguments.routes};
-  return matrix;
 }
 
+/// The matrix with the routes that were asked for instead of its own.
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {
-  MatrixOptions matrix = baseMatrix(arguments);
+  requireRoutes(arguments);
+  MatrixOptions matrix;
+  matrix.name = arguments.suite.empty() ? "bench2drive" : arguments.suite;
+  if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
+  if (!arguments.suite.empty() || !arguments.bench2drive.empty()) {
+    matrix.scenarios.clear();
+    matrix.bench2drive = {};
+    matrix.suite = arguments.suite;
+  }
+  if (!arguments.bench2drive.empty()) {
+    matrix.bench2drive = {fs::absolute(arguments.bench2drive).string(),
+                          fs::absolute(arguments.networks).string(), arguments.routes};
+  }
   if (!arguments.seeds.empty()) matrix.seeds = arguments.seeds;
   matrix.set.insert(matrix.set.end(), arguments.set.begin(), arguments.set.end());
   return matrix;
@@ -147,8 +156,8 @@ int evaluate(const EvaluateArguments& arguments) {
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
   core::temporaryFolder();  // without one each run would fail
-  const auto plan = evaluation::planRuns(
-      matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
+  const auto plan =
+      evaluation::planRuns(matrix, arguments.matrix.empty() ? "evaluate" : arguments.matrix);
   const core::FolderLock lock(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(results, matrix, arguments.overwrite);
@@ -156,7 +165,7 @@ int evaluate(const EvaluateArguments& arguments) {
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records);
-  if (arguments.matrix.empty()) {
+  if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
     text = routeTable(records, arguments.bench2drive, results);
     core::writeFileAtomically(results / "table.md", text);
   }
@@ -172,8 +181,11 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
       program.add_subcommand("evaluate", "Run a matrix of sessions in parallel and sum it up");
   command->add_option("matrix", arguments->matrix, "Matrix file or shipped evaluation");
   command->add_option("--bench2drive", arguments->bench2drive,
-                      "Instead of a matrix: every Bench2Drive route of this file whose town's "
-                      "network is at hand");
+                      "Routes instead of the matrix's, or without one: every Bench2Drive route of "
+                      "this file whose town's network is at hand");
+  command->add_option("--suite", arguments->suite,
+                      "Routes instead of the matrix's, or without one: a shipped route suite, or "
+                      "the folder of one");
   command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files");
   command
       ->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")

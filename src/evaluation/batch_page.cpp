@@ -127,7 +127,10 @@ Markup paperTable(const Table& table) {
     for (const TableCell& cell : table.cells[i]) cells.push_back(cellOf(cell));
     rows.row(cells);
   }
-  return rows.html() + (definition.note.empty() ? Markup() : page::pageNote(definition.note));
+  Markup html = rows.html();
+  if (!definition.note.empty()) html += page::pageNote(definition.note);
+  for (const std::string& line : settingsLines(table)) html += page::pageNote(line);
+  return html;
 }
 
 }  // namespace

@@ -66,6 +66,8 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
       for (const TableCell& cell : table.cells[i]) cells.push_back(markdownCell(cell));
       text += row(cells);
     }
+    text += "\n";
+    for (const std::string& line : settingsLines(table)) text += "- " + line + "\n";
   }
   return text;
 }

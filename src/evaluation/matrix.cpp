@@ -47,13 +47,14 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
   visitor.list({"cbv_planners", "", "Planners of the CBVs; empty: the scenario's."}, cbv_planners);
   visitor.list({"modes", "", "naturalistic, safety_critical; empty: the scenario's."}, modes);
+  visitor.list({"methods", "", "Shipped methods; empty: the scenario's."}, methods);
   visitor.list(
       {"guidance_profiles", "", "Of the CBVs: shipped profiles or files; empty: that of the mode."},
       guidance_profiles);
   visitor.list({"combinations", "",
-                "Instead of the product of the four lists above: sets of their levels, each "
-                "\"ego_planner=NAME cbv_planner=NAME mode=MODE guidance_profile=NAME\" or a part "
-                "of it."},
+                "Instead of the product of the five lists above: sets of their levels, each "
+                "\"ego_planner=NAME cbv_planner=NAME mode=MODE method=NAME guidance_profile=NAME\" "
+                "or a part of it."},
                combinations);
   visitor.list({"variants", "", "Sets of overrides, each \"name: key=value key=value\"."},
                variants);
@@ -133,13 +134,14 @@ Combination combinationOf(const std::string& text, const std::string& source) {
       {"ego_planner", &combination.ego_planner},
       {"cbv_planner", &combination.cbv_planner},
       {"mode", &combination.mode},
+      {"method", &combination.method},
       {"guidance_profile", &combination.guidance_profile}};
   for (const std::string& word : core::splitText(text, ' ')) {
     const std::size_t equals = word.find('=');
     const auto field = fields.find(word.substr(0, equals));
     if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
       throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
-                       "' is wrong; expected ego_planner=, cbv_planner=, mode= and "
+                       "' is wrong; expected ego_planner=, cbv_planner=, mode=, method= and "
                        "guidance_profile=, each once at most");
     }
     *field->second = word.substr(equals + 1);
@@ -147,15 +149,21 @@ Combination combinationOf(const std::string& text, const std::string& source) {
   return combination;
 }
 
+/// Lists of the factors that a combination holds.
+std::vector<const std::vector<std::string>*> chosenTogether(const MatrixOptions& matrix) {
+  return {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.methods,
+          &matrix.guidance_profiles};
+}
+
 /// A product of lists, of which an empty one leaves the factor as the scenario has it.
 std::vector<Combination> productOf(const MatrixOptions& matrix, const std::string& source) {
   double count = 1.0;
-  for (const auto* list :
-       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles})
+  for (const auto* list : chosenTogether(matrix))
     count *= static_cast<double>(std::max<std::size_t>(1, list->size()));
   if (count > static_cast<double>(kMostRuns)) {
-    throw InputError(source + ": planners, modes and profiles give " + core::formatFixed(count, 0) +
-                     " combinations; at most " + std::to_string(kMostRuns) + " runs were expected");
+    throw InputError(source + ": planners, modes, methods and profiles give " +
+                     core::formatFixed(count, 0) + " combinations; at most " +
+                     std::to_string(kMostRuns) + " runs were expected");
   }
   const auto levels = [](const std::vector<std::string>& given) {
     return given.empty() ? std::vector<std::string>{""} : given;
@@ -164,8 +172,10 @@ std::vector<Combination> productOf(const MatrixOptions& matrix, const std::strin
   for (const std::string& ego : levels(matrix.ego_planners)) {
     for (const std::string& cbv : levels(matrix.cbv_planners)) {
       for (const std::string& mode : levels(matrix.modes)) {
-        for (const std::string& profile : levels(matrix.guidance_profiles))
-          product.push_back({ego, cbv, mode, profile});
+        for (const std::string& method : levels(matrix.methods)) {
+          for (const std::string& profile : levels(matrix.guidance_profiles))
+            product.push_back({ego, cbv, mode, method, profile});
+        }
       }
     }
   }
@@ -208,11 +218,10 @@ std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& 
 
 std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source) {
   if (matrix.combinations.empty()) return productOf(matrix, source);
-  for (const auto* list :
-       {&matrix.ego_planners, &matrix.cbv_planners, &matrix.modes, &matrix.guidance_profiles}) {
+  for (const auto* list : chosenTogether(matrix)) {
     if (list->empty()) continue;
     throw InputError(source +
-                     ": key 'combinations' replaces ego_planners, cbv_planners, modes "
+                     ": key 'combinations' replaces ego_planners, cbv_planners, modes, methods "
                      "and guidance_profiles; give either it or them");
   }
   std::vector<Combination> combinations;

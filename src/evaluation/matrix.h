@@ -33,9 +33,10 @@ struct MatrixOptions {
   std::vector<std::string> ego_planners;
   std::vector<std::string> cbv_planners;
   std::vector<std::string> modes;
+  std::vector<std::string> methods;
   std::vector<std::string> guidance_profiles;
-  /// "ego_planner=NAME cbv_planner=NAME mode=MODE guidance_profile=NAME" each, any of the four:
-  /// instead of the product of those lists.
+  /// "ego_planner=NAME cbv_planner=NAME mode=MODE method=NAME guidance_profile=NAME" each, any of
+  /// the five: instead of the product of those lists.
   std::vector<std::string> combinations;
   std::vector<std::string> variants;  ///< "name: key=value key=value" each
   std::vector<std::string> seeds;     ///< whole numbers
@@ -82,6 +83,7 @@ struct Combination {
   std::string ego_planner;
   std::string cbv_planner;
   std::string mode;
+  std::string method;
   std::string guidance_profile;
 };
 
@@ -91,7 +93,7 @@ std::vector<ScenarioLevel> scenarioLevels(const MatrixOptions& matrix, const std
 /// One without a name where the matrix has none.
 std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& source);
 
-/// Those given, or the product of the four lists.
+/// Those given, or the product of the five lists.
 std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source);
 
 /// Whole numbers from 0 on.

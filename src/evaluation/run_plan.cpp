@@ -137,8 +137,8 @@ class RunPlanner {
     throw InputError(source_ + ": " + core::formatFixed(runs, 0) + " runs would be planned (" +
                      std::to_string(scenarios) + " scenarios x " +
                      std::to_string(combinations_.size()) +
-                     " combinations of planners, modes and "
-                     "profiles x " +
+                     " combinations of planners, modes, "
+                     "methods and profiles x " +
                      std::to_string(variants_.size()) + " variants x " +
                      std::to_string(std::max<std::size_t>(1, matrix_.seeds.size())) + " seeds x " +
                      std::to_string(matrix_.repetitions) + " repetitions); at most " +
@@ -153,6 +153,7 @@ class RunPlanner {
       next.request.mode = combination.mode;
       auto& set = next.request.set = matrix_.set;
       const std::string& profile = combination.guidance_profile;
+      if (!combination.method.empty()) set.push_back("method=" + combination.method);
       if (!profile.empty()) set.push_back("guidance_profile=" + profile);
       set.insert(set.end(), variant.set.begin(), variant.set.end());
       next.request.set_source =
@@ -204,6 +205,7 @@ class RunPlanner {
                    {"ego_planner", options.ego_planner},
                    {"cbv_planner", options.cbv_planner},
                    {"mode", options.mode},
+                   {"method", options.method},
                    {"guidance_profile", profile.empty() ? method.profileOf(options.mode) : profile},
                    {"seed", std::to_string(options.seed)}};
     run.scenario_text = core::dumpOptions(options);
@@ -260,9 +262,9 @@ class RunPlanner {
 }  // namespace
 
 const std::vector<std::string>& factorNames() {
-  static const std::vector<std::string> names = {"scenario", "ego_planner",      "cbv_planner",
-                                                 "mode",     "guidance_profile", "variant",
-                                                 "seed",     "repetition"};
+  static const std::vector<std::string> names = {"scenario", "ego_planner", "cbv_planner",
+                                                 "mode",     "method",      "guidance_profile",
+                                                 "variant",  "seed",        "repetition"};
   return names;
 }
 

@@ -47,8 +47,8 @@ std::string changedInputs(const InputHashes& before, const InputHashes& now);
 /// Level of every factor by name (see factorNames).
 using Factors = std::map<std::string, std::string>;
 
-/// "scenario", "ego_planner", "cbv_planner", "mode", "guidance_profile", "variant", "seed",
-/// "repetition".
+/// "scenario", "ego_planner", "cbv_planner", "mode", "method", "guidance_profile", "variant",
+/// "seed", "repetition".
 const std::vector<std::string>& factorNames();
 
 /// One session of a matrix that is to be run: its factors, and the resolved scenario with hashes of

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
+#include "evaluation/run_settings.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 
@@ -111,7 +112,8 @@ RunRecord fromJson(const Json& json) {
   record.id = json.at("id");
   for (const auto& [factor, level] : json.at("factors").items()) record.factors[factor] = level;
   for (const std::string& factor : factorNames()) {
-    if (record.factors.count(factor) == 0) record.factors[factor] = "";
+    if (record.factors.count(factor) == 0)
+      record.factors[factor] = factor == "method" ? "default" : "";
   }
   record.scenario_sha256 = json.at("scenario_sha256");
   if (json.contains("inputs")) record.inputs = json.at("inputs").get<InputHashes>();
@@ -231,14 +233,23 @@ std::optional<double> BatchRun::number(const std::string& pointer) const {
   return found == numbers.end() ? std::nullopt : std::optional<double>(found->second);
 }
 
+session::ScenarioOptions scenarioOf(const BatchRun& run) {
+  const auto file = run.folder / "scenario.yaml";
+  session::ScenarioOptions options;
+  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
+  return options;
+}
+
 std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results) {
   std::vector<BatchRun> runs;
   for (RunRecord& record : readRecords(results)) {
     BatchRun run;
     run.folder = runFolder(results, record.id);
     const auto file = run.folder / "summary.json";
-    if (record.complete())
+    if (record.complete()) {
       run.numbers = summaryNumbers(core::readFile(file, "summary"), file.string());
+      run.settings = settingsOf(scenarioOf(run));
+    }
     run.record = std::move(record);
     runs.push_back(std::move(run));
   }

@@ -87,10 +87,14 @@ struct BatchRun {
   RunRecord record;
   std::filesystem::path folder;
   SummaryNumbers numbers;  ///< empty unless the run is complete
+  std::string settings{};  ///< see settingsOf; empty unless the run is complete
 
   /// Value at a JSON pointer; nullopt where the summary has no number there.
   std::optional<double> number(const std::string& pointer) const;
 };
+
+/// The resolved scenario of a run. Throws InputError when it cannot be read.
+session::ScenarioOptions scenarioOf(const BatchRun& run);
 
 /// Every record of a result folder, by id. Throws InputError for a folder without records, a
 /// damaged record or a damaged summary.

@@ -23,6 +23,7 @@ inline evaluation::RunRecord recordWithout(const Levels& levels, const std::stri
                     {"ego_planner", "pdm_lite"},
                     {"cbv_planner", "pdm_lite"},
                     {"mode", "naturalistic"},
+                    {"method", "default"},
                     {"guidance_profile", levels.profile},
                     {"variant", ""},
                     {"seed", levels.seed},

@@ -82,7 +82,7 @@ class NamedBatch {
  private:
   void add(const std::string& planner) {
     RunRecord record = test::recordWith({"scenario" + text_, "1"}, 50.0);
-    for (const auto& [factor, level] : naturalisticLevels()) record.factors[factor] = level;
+    for (const auto& [factor, level] : cbvLevels(paper::kDiffusion)) record.factors[factor] = level;
     record.factors["cbv_planner"] = planner;
     record.factors["variant"] = "variant" + text_;
     record.verdict = record::Outcome::kFailed;

@@ -71,8 +71,8 @@ TEST(Matrix, TooManyRunsAreRefusedBeforeAnyIsResolved) {
   matrix.repetitions = 1000;
   for (int seed = 0; seed < 101; ++seed) matrix.seeds.push_back(std::to_string(seed));
   expectIn(
-      "101000 runs would be planned (1 scenarios x 1 combinations of planners, modes and "
-      "profiles x 1 variants x 101 seeds x 1000 repetitions); at most 100000",
+      "101000 runs would be planned (1 scenarios x 1 combinations of planners, modes, "
+      "methods and profiles x 1 variants x 101 seeds x 1000 repetitions); at most 100000",
       errorOf(matrix));
   matrix.ego_planners.assign(1000, "pdm_lite");
   matrix.cbv_planners.assign(1000, "pdm_lite");
@@ -90,7 +90,9 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("conditioning_effect"), "").size(), 10U * 3U * 9U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("image_effect"), "").size(), 10U * 3U * 4U);
   EXPECT_EQ(planRuns(loadMatrix("sampler_effect"), "").size(), 10U * 3U * 3U);
-  EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 3U * 10U);
+  EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 5U * 18U);
+  EXPECT_EQ(planRuns(loadMatrix("main_rows"), "").size(), 10U * 5U * 5U);
+  EXPECT_EQ(planRuns(loadMatrix("attack_effect"), "").size(), 10U * 5U * 2U * 2U);
 }
 
 TEST(Plan, IsTheProductOfItsFactors) {
@@ -115,7 +117,7 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   MatrixOptions matrix = oneScenario();
   matrix.combinations = {"cbv_planner=pdm_lite",
                          "ego_planner=diffusion cbv_planner=diffusion mode=safety_critical "
-                         "guidance_profile=none"};
+                         "method=paper guidance_profile=none"};
   matrix.seeds = {"1", "2"};
   const auto plan = planRuns(matrix, "matrix.yaml");
   ASSERT_EQ(plan.size(), 4U);
@@ -123,7 +125,10 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   EXPECT_EQ(plan[0].factors.at("mode"), session::ScenarioOptions().mode);
   EXPECT_EQ(plan[3].factors.at("ego_planner"), "diffusion");
   EXPECT_EQ(plan[3].factors.at("mode"), "safety_critical");
+  EXPECT_EQ(plan[0].factors.at("method"), "default");
+  EXPECT_EQ(plan[3].factors.at("method"), "paper");
   EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");
+  expectIn("conditioning: image\n", plan[3].scenario_text);
   matrix.modes = {"naturalistic"};
   expectIn("key 'combinations' replaces ego_planners", errorOf(matrix));
   matrix.modes = {};

@@ -97,6 +97,7 @@ struct PlannerParts {
 struct NetworkFacts {
   std::string model;         ///< shipped name, or folder of its weight files
   std::string conditioning;  ///< what it is given, in the planner's own words
+  std::string sampling;      ///< how a decision comes from it, likewise
   std::map<std::string, std::string> instruction_sets;  ///< by key in session.yaml
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "core/csv.h"
 #include "core/text.h"
@@ -191,44 +192,60 @@ page::Panel examplePanel(const Execution& execution, const Plan& plan,
   return panel;
 }
 
-/// One decision of each execution from the scenario and seed with most driven plans of both.
-void addExamples(std::vector<Execution>& executions, Figure& figure) {
-  std::pair<std::string, std::string> best;
-  std::size_t most = 0;
-  for (const auto& [key, plans] : executions[0].plans) {
-    const auto other = executions[1].plans.find(key);
-    if (other == executions[1].plans.end()) continue;
-    const std::size_t least = std::min(plans.size(), other->second.size());
-    if (least > most) {
-      most = least;
-      best = key;
-    }
+using ScenarioAndSeed = std::pair<std::string, std::string>;
+
+/// The scenario and seed with most driven plans of every execution that has any; none where they
+/// share none.
+std::optional<ScenarioAndSeed> sharedRun(const std::vector<Execution>& executions) {
+  std::map<ScenarioAndSeed, std::vector<std::size_t>> counts;
+  std::size_t with_plans = 0;
+  for (const Execution& execution : executions) {
+    if (!execution.plans.empty()) ++with_plans;
+    for (const auto& [key, plans] : execution.plans) counts[key].push_back(plans.size());
   }
-  if (most == 0) return;
+  std::optional<ScenarioAndSeed> best;
+  std::size_t most = 0;
+  for (const auto& [key, sizes] : counts) {
+    const std::size_t least = *std::min_element(sizes.begin(), sizes.end());
+    if (with_plans < 2 || sizes.size() < with_plans || least <= most) continue;
+    most = least;
+    best = key;
+  }
+  return best;
+}
+
+/// One decision of each execution from the run that they share.
+void addExamples(std::vector<Execution>& executions, Figure& figure) {
+  const auto best = sharedRun(executions);
+  if (!best) return;
+  executions.erase(std::remove_if(executions.begin(), executions.end(),
+                                  [](const Execution& one) { return one.plans.empty(); }),
+                   executions.end());
   std::unique_ptr<session::SessionSetup> setup;
   try {
-    setup = std::make_unique<session::SessionSetup>(scenarioOf(*executions[0].run_of.at(best)));
+    setup = std::make_unique<session::SessionSetup>(scenarioOf(*executions[0].run_of.at(*best)));
   } catch (const core::InputError& error) {
     figure.sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
   }
-  std::vector<page::Panel> panels;
-  for (Execution& execution : executions) {
-    const Plan& plan = medianPlan(execution.plans.at(best));
-    figure.csv += exampleRows(execution, *execution.run_of.at(best), plan);
-    panels.push_back(examplePanel(execution, plan, setup.get()));
+  for (std::size_t i = 0; i < executions.size(); ++i) {
+    Execution& execution = executions[i];
+    const Plan& plan = medianPlan(execution.plans.at(*best));
+    figure.csv += exampleRows(execution, *execution.run_of.at(*best), plan);
+    if (i % 2 == 0) figure.sheet.rows.emplace_back();
+    figure.sheet.rows.back().push_back(examplePanel(execution, plan, setup.get()));
   }
-  figure.sheet.rows.push_back(panels);
   figure.sheet.notes.push_back(
-      "Below: one decision each (scenario " + best.first + ", seed " + best.second +
+      "Below: one decision each (scenario " + best->first + ", seed " + best->second +
       "), the one with the median displacement; dashed: planned, solid: driven.");
 }
 
 /// Of CBVs in naturalistic runs with ego PDM-Lite.
 std::vector<Execution> executionsOf(const std::vector<BatchRun>& runs) {
-  const Factors levels = merged(naturalisticLevels(), egoLevel(paper::kPdmLite));
   std::vector<Execution> executions;
-  for (const PaperSystem& system : paperExecutions())
-    executions.push_back(executionOf({system.name, merged(levels, cbvLevel(system))}, runs));
+  for (const PaperSystem& system : paperExecutions()) {
+    const Factors levels = merged(egoLevel(paper::kPdmLite), cbvLevels(system));
+    executions.push_back(executionOf({system.name, levels}, runs));
+  }
   return executions;
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/paper/paper_definitions.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "evaluation/paper/paper_table.h"
@@ -65,7 +66,13 @@ TableColumn drivingScore() { return {"DS", "", known::kDrivingScore.place, "", "
 TableColumn routeCompletion() { return {"RC", "%", known::kRouteCompletion.place, "", "", {}}; }
 
 TableRow cbvRow(const PaperSystem& system, std::vector<PaperFigure> paper) {
-  return {system.name, merged(naturalisticLevels(), cbvLevel(system)), std::move(paper), ""};
+  return {system.name, cbvLevels(system), std::move(paper), ""};
+}
+
+/// What the paper prints for its own system stands beside both methods.
+void addOwnRows(const std::vector<PaperFigure>& paper, TableDefinition& table) {
+  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod})
+    table.rows.push_back(cbvRow(own, paper));
 }
 
 TableDefinition withLevels(TableDefinition table, const Factors& levels) {
@@ -74,7 +81,7 @@ TableDefinition withLevels(TableDefinition table, const Factors& levels) {
 }
 
 TableDefinition table1() {
-  const TableDefinition table = {
+  TableDefinition table = {
       "table_1",
       "Table 1. Controllability and realism under ego planner PDM-Lite",
       "",
@@ -83,14 +90,14 @@ TableDefinition table1() {
       {cbvRow(paper::kPpo, {{2.41, 1.52}, {8.82, 8.83}, {0.80, 0.01}, {0.65, 0.02}, {6.48, 0.10}}),
        cbvRow(paper::kPluto,
               {{2.56, 1.55}, {3.02, 3.09}, {0.84, 0.08}, {0.83, 0.12}, {6.13, 0.59}}),
-       cbvRow(paper::kRift, {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}}),
-       cbvRow(paper::kDiffusion,
-              {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}})}};
+       cbvRow(paper::kRift,
+              {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}})}};
+  addOwnRows({{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}, table);
   return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
 TableDefinition table2() {
-  const TableDefinition table = {
+  TableDefinition table = {
       "table_2",
       "Table 2. Controllability and realism under ego planner PlanT",
       "",
@@ -99,13 +106,14 @@ TableDefinition table2() {
       {cbvRow(paper::kPpo, {{2.04, 2.08}, {4.50, 1.15}, {0.93, 0.01}, {0.94, 0.02}, {5.02, 0.19}}),
        cbvRow(paper::kPluto,
               {{2.59, 1.88}, {6.44, 1.57}, {0.84, 0.02}, {0.78, 0.03}, {6.20, 0.23}}),
-       cbvRow(paper::kRift, {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}}),
-       cbvRow(paper::kDiffusion,
-              {{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}})}};
+       cbvRow(paper::kRift,
+              {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}})}};
+  addOwnRows({{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}}, table);
   return withLevels(table, egoLevel(paper::kPlanT));
 }
 
-/// Mean and deviation of DS and RC under each ego planner of Table 3, in the order of its columns.
+/// Mean and deviation of DS and RC under each ego planner of Table 3, in the order of its columns;
+/// rows PPO, Pluto, RIFT, E2E-CDiff.
 constexpr double kTable3[4][8][2] = {{{89.77, 5.18},
                                       {92.75, 3.45},
                                       {45.43, 2.10},
@@ -147,9 +155,10 @@ TableDefinition table3() {
       "CBV planner",
       {},
       {}};
-  for (std::size_t i = 0; i < std::size(kTable3); ++i) {
+  for (std::size_t i = 0; i < paperCbvPlanners().size(); ++i) {
     std::vector<PaperFigure> paper;
-    for (const auto& figure : kTable3[i]) paper.push_back({figure[0], figure[1]});
+    const std::size_t printed = std::min(i, std::size(kTable3) - 1);
+    for (const auto& figure : kTable3[printed]) paper.push_back({figure[0], figure[1]});
     table.rows.push_back(cbvRow(paperCbvPlanners()[i], paper));
   }
   for (const PaperSystem& ego : paperEgoPlanners()) {
@@ -164,41 +173,71 @@ TableDefinition table3() {
 }
 
 TableDefinition table4() {
-  const TableDefinition table = {
-      "table_4",
-      "Table 4. Two-stage trajectory-then-PID against end-to-end control",
-      "Ego planner PDM-Lite; the two drive the CBVs with the same model.",
-      "Execution",
-      {drivingScore(), routeCompletion(), timeToCollision(), offRoadRate()},
-      {cbvRow(paper::kTwoStage, {{95.08, 2.48}, {96.41, 0.21}, {2.68, 1.27}, {6.22, 0.03}}),
-       {"End-to-end control",
-        merged(naturalisticLevels(), cbvLevel(paper::kDiffusion)),
-        {{96.49, 0.10}, {96.49, 0.10}, {2.94, 1.24}, {2.17, 1.47}},
-        ""}}};
+  TableDefinition table = {"table_4",
+                           "Table 4. Two-stage trajectory-then-PID against end-to-end control",
+                           "Ego planner PDM-Lite; the two drive the CBVs with the same model.",
+                           "Execution",
+                           {drivingScore(), routeCompletion(), timeToCollision(), offRoadRate()},
+                           {}};
+  const std::vector<PaperFigure> paper[] = {
+      {{95.08, 2.48}, {96.41, 0.21}, {2.68, 1.27}, {6.22, 0.03}},
+      {{96.49, 0.10}, {96.49, 0.10}, {2.94, 1.24}, {2.17, 1.47}}};
+  for (std::size_t i = 0; i < paperExecutions().size(); ++i)
+    table.rows.push_back(cbvRow(paperExecutions()[i], paper[i % std::size(paper)]));
   return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
+/// Rows of Table 5: objectives, the profiles that hold them alone by method default and by method
+/// paper, and what the paper prints.
+struct AblationRow {
+  const char* objectives;
+  const char* default_profile;
+  const char* paper_profile;
+  std::vector<PaperFigure> paper;
+};
+
+const std::vector<AblationRow>& ablationRows() {
+  static const std::vector<AblationRow> rows = {
+      {"collision + drivable + speed",
+       "ablation_all",
+       "paper_naturalistic",
+       {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}},
+      {"collision",
+       "ablation_collision",
+       "paper_ablation_collision",
+       {{2.75, 1.41}, {7.05, 2.73}, {0.96, 0.01}, {0.90, 0.00}, {4.16, 0.02}}},
+      {"drivable",
+       "ablation_drivable",
+       "paper_ablation_drivable",
+       {{2.83, 1.20}, {3.50, 1.93}, {0.88, 0.03}, {0.77, 0.03}, {5.61, 0.38}}},
+      {"speed",
+       "ablation_speed",
+       "paper_ablation_speed",
+       {{2.79, 1.25}, {6.25, 2.11}, {0.89, 0.11}, {0.83, 0.13}, {5.11, 1.50}}},
+      {"none",
+       "none",
+       "none",
+       {{2.62, 1.28}, {7.31, 3.18}, {0.95, 0.01}, {0.89, 0.02}, {4.35, 0.24}}}};
+  return rows;
+}
+
 TableDefinition table5() {
-  const auto row = [](const char* name, const char* profile, std::vector<PaperFigure> paper) {
-    return TableRow{name, merged(guidanceLevels(profile), cbvLevel(paper::kDiffusion)),
-                    std::move(paper), ""};
-  };
-  const TableDefinition table = {
+  TableDefinition table = {
       "table_5",
       "Table 5. Ablation of the guidance objectives",
-      "Ego planner PDM-Lite, CBV planner E2E-CDiff. Rows are guidance profiles.",
+      "Ego planner PDM-Lite, CBV planner E2E-CDiff. Rows are guidance profiles by both methods.",
       "Objectives",
       controllabilityAndRealism(),
-      {row("collision + drivable + speed", "ablation_all",
-           {{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}),
-       row("collision", "ablation_collision",
-           {{2.75, 1.41}, {7.05, 2.73}, {0.96, 0.01}, {0.90, 0.00}, {4.16, 0.02}}),
-       row("drivable", "ablation_drivable",
-           {{2.83, 1.20}, {3.50, 1.93}, {0.88, 0.03}, {0.77, 0.03}, {5.61, 0.38}}),
-       row("speed", "ablation_speed",
-           {{2.79, 1.25}, {6.25, 2.11}, {0.89, 0.11}, {0.83, 0.13}, {5.11, 1.50}}),
-       row("none", "none",
-           {{2.62, 1.28}, {7.31, 3.18}, {0.95, 0.01}, {0.89, 0.02}, {4.35, 0.24}})}};
+      {}};
+  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
+    const bool paper_method = own.method == std::string(paper::kPaperMethod.method);
+    for (const AblationRow& row : ablationRows()) {
+      Factors levels = cbvLevels(own);
+      levels["guidance_profile"] = paper_method ? row.paper_profile : row.default_profile;
+      table.rows.push_back(
+          {std::string(row.objectives) + " (method " + own.method + ")", levels, row.paper, ""});
+    }
+  }
   return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
@@ -215,11 +254,13 @@ TableDefinition table6() {
                            "Ego planner",
                            {drivingScore(), routeCompletion()},
                            {}};
-  for (std::size_t i = 0; i < std::size(paper); ++i) {
+  for (std::size_t i = 0; i < paperEgoPlanners().size(); ++i) {
     const PaperSystem& ego = paperEgoPlanners()[i];
-    table.rows.push_back({ego.name, egoLevel(ego), paper[i], ""});
+    const PaperSystem cbvs(paper::kPdmLite.title, paper::kPdmLite.name, ego.method);
+    table.rows.push_back({ego.name, merged(egoLevel(ego), cbvLevels(cbvs)),
+                          paper[std::min(i, std::size(paper) - 1)], ""});
   }
-  return withLevels(table, merged(cbvLevel(paper::kPdmLite), naturalisticLevels()));
+  return table;
 }
 
 }  // namespace
@@ -233,25 +274,25 @@ TableDefinition collisionFigure() {
       "figure_4",
       "Figure 4. Collisions of CBVs per km without and with collision-seeking "
       "guidance",
-      "The paper prints the values of PDM-Lite alone, in its text. Unless told "
-      "otherwise, CBVs that seek collisions see the image alone, the others "
-      "know their route, too.",
+      "The paper prints the values of PDM-Lite alone, in its text. What the two columns of a "
+      "method differ in besides the objectives stands in the settings of its runs.",
       "Ego planner",
       {},
       {}};
-  const auto variant = [&](const char* name, const Factors& levels) {
-    TableColumn column = collisionsPerKilometre();
-    column.name = name;
-    column.levels = merged(levels, cbvLevel(paper::kDiffusion));
-    table.columns.push_back(column);
-  };
-  variant("E2E-CDiff", naturalisticLevels());
-  variant("E2E-CDiff w/ coll", safetyCriticalLevels());
+  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
+    for (const char* mode : {kNaturalistic, kSafetyCritical}) {
+      TableColumn column = collisionsPerKilometre();
+      column.name = std::string("E2E-CDiff") + (mode == kSafetyCritical ? " w/ coll" : "") +
+                    " (method " + own.method + ")";
+      column.levels = cbvLevels(own, mode);
+      table.columns.push_back(column);
+    }
+  }
   for (const PaperSystem& ego : paperEgoPlanners()) {
     if (ego.planner() == paper::kDiffusion.planner()) continue;
     table.rows.push_back({ego.name, egoLevel(ego), {}, ""});
   }
-  table.rows.front().paper = {{5.68, {}}, {20.77, {}}};
+  table.rows.front().paper = {{5.68, {}}, {20.77, {}}, {5.68, {}}, {20.77, {}}};
   return table;
 }
 
@@ -268,15 +309,17 @@ TableDefinition latencyFigure() {
       {{"p50", "ms", "/planner_latency_ms/{}/p50", "/planner_latency_ms/{}/n", "", {}},
        {"p95", "ms", "/planner_latency_ms/{}/p95", "/planner_latency_ms/{}/n", "", {}}},
       {}};
-  for (std::size_t i = 0; i < std::size(paper); ++i) {
+  for (std::size_t i = 0; i < paperEgoPlanners().size(); ++i) {
     const PaperSystem& ego = paperEgoPlanners()[i];
-    table.rows.push_back(
-        {ego.name, egoLevel(ego), {{paper[i], {}}}, "ego:" + std::string(ego.planner())});
+    const auto printed = paper[std::min(i, std::size(paper) - 1)];
+    Factors levels = egoLevel(ego);
+    if (ego.planner() == paper::kDiffusion.planner()) levels["method"] = ego.method;
+    table.rows.push_back({ego.name, levels, {{printed, {}}}, "ego:" + std::string(ego.planner())});
   }
-  const PaperSystem cbvs[] = {paper::kDiffusion, {paper::kTwoStage.title, "two-stage PID"}};
-  for (const PaperSystem& cbv : cbvs) {
+  for (const PaperSystem& cbv : paperExecutions()) {
+    const Factors levels = {{"cbv_planner", cbv.planner()}, {"method", cbv.method}};
     table.rows.push_back(
-        {"CBV: " + std::string(cbv.name), cbvLevel(cbv), {}, "cbv:" + std::string(cbv.planner())});
+        {"CBV: " + std::string(cbv.name), levels, {}, "cbv:" + std::string(cbv.planner())});
   }
   return table;
 }

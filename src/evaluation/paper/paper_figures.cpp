@@ -13,11 +13,18 @@
 namespace cdiff::evaluation {
 namespace {
 
-/// A CBV planner in runs with ego PDM-Lite.
-ShownSystem cbvSystem(const std::string& name, const std::string& planner, Factors levels) {
-  levels["ego_planner"] = paper::kPdmLite.planner();
-  levels["cbv_planner"] = planner;
-  return {name, levels};
+/// The paper's own system without and with collision-seeking guidance by both methods, ego
+/// PDM-Lite.
+std::vector<ShownSystem> shownModes() {
+  std::vector<ShownSystem> systems;
+  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
+    for (const char* mode : {kNaturalistic, kSafetyCritical}) {
+      systems.push_back({std::string("E2E-CDiff") + (mode == kSafetyCritical ? " w/ coll" : "") +
+                             " (method " + own.method + ")",
+                         merged(egoLevel(paper::kPdmLite), cbvLevels(own, mode))});
+    }
+  }
+  return systems;
 }
 
 }  // namespace
@@ -25,16 +32,19 @@ ShownSystem cbvSystem(const std::string& name, const std::string& planner, Facto
 std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs) {
   std::vector<ShownSystem> systems;
   std::set<std::string> further;
-  Factors levels = naturalisticLevels();
+  Factors levels = cbvLevels(paper::kPdmLite);
   levels["ego_planner"] = paper::kPdmLite.planner();
+  levels.erase("cbv_planner");
   for (const BatchRun* run : runsWith(runs, levels))
     further.insert(run->record.factors.at("cbv_planner"));
   for (const PaperSystem& system : paperCbvPlanners()) {
-    systems.push_back(cbvSystem(system.name, system.planner(), naturalisticLevels()));
+    systems.push_back({system.name, merged(egoLevel(paper::kPdmLite), cbvLevels(system))});
     further.erase(system.planner());
   }
-  for (const std::string& planner : further)
-    systems.push_back(cbvSystem(planner + " (not in the paper)", planner, naturalisticLevels()));
+  for (const std::string& planner : further) {
+    systems.push_back({planner + " (not in the paper)", levels});
+    systems.back().levels["cbv_planner"] = planner;
+  }
   return systems;
 }
 
@@ -62,26 +72,15 @@ std::size_t countSeeds(const std::vector<const BatchRun*>& runs) {
   return seeds.size();
 }
 
-session::ScenarioOptions scenarioOf(const BatchRun& run) {
-  const auto file = run.folder / "scenario.yaml";
-  session::ScenarioOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
-  return options;
-}
-
 std::vector<Figure> paperFigures(const std::vector<BatchRun>& runs) {
-  const PaperSystem& own = paper::kDiffusion;
   Figure latency = barFigure(latencyFigure(), runs);
   latency.wall_clock = true;
   return {
       distributionFigure(runs),
       barFigure(collisionFigure(), runs),
       frameFigure("figure_5", "Figure 5. CBV planners from above", shownCbvPlanners(runs), runs),
-      frameFigure(
-          "figure_6", "Figure 6. Safety-critical scenario generation from above",
-          {cbvSystem(own.name, own.planner(), naturalisticLevels()),
-           cbvSystem(std::string(own.name) + " w/ coll", own.planner(), safetyCriticalLevels())},
-          runs),
+      frameFigure("figure_6", "Figure 6. Safety-critical scenario generation from above",
+                  shownModes(), runs),
       executionFigure(runs),
       latency};
 }

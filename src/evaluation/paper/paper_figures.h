@@ -8,7 +8,6 @@
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_record.h"
 #include "page/pictures/panel_sheet.h"
-#include "session/scenario_options.h"
 
 namespace cdiff::evaluation {
 
@@ -39,9 +38,6 @@ std::string reasonOf(const ShownSystem& system, const std::vector<BatchRun>& run
 /// Complete runs with these levels.
 std::vector<const BatchRun*> completeRuns(const std::vector<BatchRun>& runs, const Factors& levels);
 std::size_t countSeeds(const std::vector<const BatchRun*>& runs);
-
-/// The resolved scenario of a run. Throws InputError when it cannot be read.
-session::ScenarioOptions scenarioOf(const BatchRun& run);
 
 /// Figure 3: speeds and accelerations of CBVs at decisions, pooled over the runs of a planner; W of
 /// Shapiro and Wilk on at most 5000 of them (every k-th).

@@ -7,6 +7,7 @@
 #include "core/csv.h"
 #include "core/text.h"
 #include "planners/registry.h"
+#include "session/method.h"
 
 namespace cdiff::evaluation {
 
@@ -16,35 +17,34 @@ std::string PaperSystem::planner() const {
 }
 
 const std::vector<PaperSystem>& paperEgoPlanners() {
-  static const std::vector<PaperSystem> systems = {paper::kPdmLite, paper::kPlanT, paper::kUniAd,
-                                                   paper::kVad, paper::kDiffusion};
+  static const std::vector<PaperSystem> systems = {paper::kPdmLite,   paper::kPlanT,
+                                                   paper::kUniAd,     paper::kVad,
+                                                   paper::kDiffusion, paper::kPaperMethod};
   return systems;
 }
 
 const std::vector<PaperSystem>& paperCbvPlanners() {
   static const std::vector<PaperSystem> systems = {paper::kPpo, paper::kPluto, paper::kRift,
-                                                   paper::kDiffusion};
+                                                   paper::kDiffusion, paper::kPaperMethod};
   return systems;
 }
 
 const std::vector<PaperSystem>& paperExecutions() {
-  static const std::vector<PaperSystem> systems = {paper::kTwoStage,
-                                                   {paper::kDiffusion.title, "End-to-end control"}};
+  static const std::vector<PaperSystem> systems = {
+      {paper::kTwoStage.title, "Two-stage trajectory-then-PID (method default)"},
+      {paper::kDiffusion.title, "End-to-end control (method default)"},
+      {paper::kTwoStage.title, "Two-stage trajectory-then-PID (method paper)", "paper"},
+      {paper::kDiffusion.title, "End-to-end control (method paper)", "paper"}};
   return systems;
 }
 
 Factors egoLevel(const PaperSystem& system) { return {{"ego_planner", system.planner()}}; }
 
-Factors cbvLevel(const PaperSystem& system) { return {{"cbv_planner", system.planner()}}; }
-
-Factors guidanceLevels(const char* profile) {
-  return {{"mode", "naturalistic"}, {"guidance_profile", profile}};
-}
-
-Factors naturalisticLevels() { return guidanceLevels("naturalistic"); }
-
-Factors safetyCriticalLevels() {
-  return {{"mode", "safety_critical"}, {"guidance_profile", "safety_critical"}};
+Factors cbvLevels(const PaperSystem& system, const char* mode) {
+  return {{"cbv_planner", system.planner()},
+          {"method", system.method},
+          {"mode", mode},
+          {"guidance_profile", session::loadMethod(system.method).profileOf(mode)}};
 }
 
 Factors merged(Factors levels, const Factors& others) {
@@ -145,6 +145,20 @@ std::string statisticsText(const Statistics& statistics) {
          core::formatFixed(*statistics.mean + *statistics.half_width, 2) + "]";
 }
 
+/// Adds the row to the settings of each of its complete runs.
+void addSettings(const TableRow& row, const TableDefinition& definition,
+                 const std::vector<BatchRun>& runs, std::vector<TableSettings>& settings) {
+  for (const TableColumn& column : definition.columns) {
+    for (const BatchRun* run : runsWith(runs, merged(row.levels, column.levels))) {
+      if (run->settings.empty()) continue;
+      auto found = std::find_if(settings.begin(), settings.end(),
+                                [&](const auto& entry) { return entry.text == run->settings; });
+      if (found == settings.end()) found = settings.insert(settings.end(), {{}, run->settings});
+      if (found->rows.empty() || found->rows.back() != row.name) found->rows.push_back(row.name);
+    }
+  }
+}
+
 }  // namespace
 
 Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
@@ -154,6 +168,7 @@ Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& 
     table.cells.emplace_back();
     for (std::size_t i = 0; i < definition.columns.size(); ++i)
       table.cells.back().push_back(fillCell(row, i, definition.columns[i], runs));
+    addSettings(row, definition, runs, table.settings);
   }
   return table;
 }
@@ -170,6 +185,13 @@ std::string tableCsv(const Table& table) {
     }
   }
   return text;
+}
+
+std::vector<std::string> settingsLines(const Table& table) {
+  std::vector<std::string> lines;
+  for (const TableSettings& entry : table.settings)
+    lines.push_back(core::joinText(entry.rows, " | ") + ": " + entry.text + ".");
+  return lines;
 }
 
 std::string cellText(const TableCell& cell) {

@@ -15,15 +15,21 @@ namespace cdiff::evaluation {
 // The systems that the paper compares, by their names there and here, and the levels that runs of
 // them have in a batch.
 
-/// A system of the paper, whether a planner with its title is registered or not.
+/// A system of the paper, whether a planner with its title is registered or not. The paper's own
+/// is there once by each method of config/methods that tables show.
 struct PaperSystem {
-  const char* title;  ///< as the descriptor of its planner has it
-  const char* name;   ///< in the table
+  const char* title;   ///< as the descriptor of its planner has it
+  const char* name;    ///< in the table
+  const char* method;  ///< of its runs
   explicit constexpr PaperSystem(const char* a_title) : PaperSystem(a_title, a_title) {}
-  constexpr PaperSystem(const char* a_title, const char* a_name) : title(a_title), name(a_name) {}
+  constexpr PaperSystem(const char* a_title, const char* a_name, const char* a_method = "default")
+      : title(a_title), name(a_name), method(a_method) {}
   /// Name of its planner here; where there is none, a level that no run has.
   std::string planner() const;
 };
+
+inline constexpr const char* kNaturalistic = "naturalistic";
+inline constexpr const char* kSafetyCritical = "safety_critical";
 
 namespace paper {
 inline constexpr PaperSystem kPdmLite("PDM-Lite");
@@ -33,25 +39,25 @@ inline constexpr PaperSystem kVad("VAD");
 inline constexpr PaperSystem kPpo("PPO");
 inline constexpr PaperSystem kPluto("Pluto");
 inline constexpr PaperSystem kRift("RIFT");
-inline constexpr PaperSystem kDiffusion("E2E-CDiff");
+inline constexpr PaperSystem kDiffusion("E2E-CDiff", "E2E-CDiff (method default)");
+inline constexpr PaperSystem kPaperMethod("E2E-CDiff",
+                                          "E2E-CDiff (paper's sampling and guidance, our weights)",
+                                          "paper");
 inline constexpr PaperSystem kTwoStage("Two-stage trajectory-then-PID");
 }  // namespace paper
 
-/// In the paper's order.
+/// In the paper's order; its own system by method default, then by method paper.
 const std::vector<PaperSystem>& paperEgoPlanners();
 const std::vector<PaperSystem>& paperCbvPlanners();
-/// Two-stage and end-to-end.
+/// Two-stage and end-to-end, by method default, then by method paper.
 const std::vector<PaperSystem>& paperExecutions();
 
-/// Levels of runs that a system drives as ego, as CBVs.
+/// Level of runs that a system drives as ego.
 Factors egoLevel(const PaperSystem& system);
-Factors cbvLevel(const PaperSystem& system);
-/// Levels of naturalistic runs with a guidance profile.
-Factors guidanceLevels(const char* profile);
-/// Levels of runs without and with collision-seeking guidance.
-Factors naturalisticLevels();
-Factors safetyCriticalLevels();
-/// Both; where they contradict each other, the first.
+/// Levels of runs whose CBVs a system drives: planner, method, mode and the guidance profile that
+/// the method names for the mode.
+Factors cbvLevels(const PaperSystem& system, const char* mode = kNaturalistic);
+/// Of both; where they contradict each other, the first.
 Factors merged(Factors levels, const Factors& others);
 
 // A table of the paper as data, and its cells as a batch fills them: per seed the mean over runs
@@ -93,6 +99,12 @@ struct TableDefinition {
   std::vector<TableRow> rows;
 };
 
+/// How the runs behind rows or columns of a table worked.
+struct TableSettings {
+  std::vector<std::string> rows;  ///< names of rows that have runs with these settings
+  std::string text;               ///< see settingsOf
+};
+
 /// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
 struct TableCell {
   PaperFigure paper;
@@ -107,6 +119,7 @@ struct TableCell {
 /// A table of the paper, filled from the runs of a batch.
 struct Table {
   TableDefinition definition;
+  std::vector<TableSettings> settings;        ///< of complete runs, in the order of the rows
   std::vector<std::vector<TableCell>> cells;  ///< by row and column
 };
 
@@ -114,6 +127,9 @@ Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& 
 
 /// A line per row, column and definition (clean, rift_compat).
 std::string tableCsv(const Table& table);
+
+/// A line per entry of Table::settings.
+std::vector<std::string> settingsLines(const Table& table);
 
 /// "2.79 ± 0.10 [2.54, 3.04] (3 seeds, 30 runs)", or the note in parentheses.
 std::string cellText(const TableCell& cell);

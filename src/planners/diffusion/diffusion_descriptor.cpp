@@ -8,11 +8,23 @@
 namespace cdiff::planners {
 namespace {
 
+std::string samplingText(const DiffusionOptions& options) {
+  const diffusion::SamplerOptions& sampler = options.sampler;
+  const std::string candidates =
+      options.candidates == 1 ? "1 sample" : std::to_string(options.candidates) + " samples";
+  if (sampler.mode == "unguided") return "DDPM over all K steps without guidance, " + candidates;
+  if (sampler.mode == "paper")
+    return "DDPM over all K steps, gradient through the network, " + candidates;
+  return "DDIM over " + std::to_string(sampler.steps) + " steps, proximal guidance" +
+         (sampler.warm_start ? ", warm start, " : ", ") + candidates;
+}
+
 planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
                                     const guidance::GuidanceOptions& guidance) {
   const auto& options = table.of<DiffusionOptions>();
   return {options.model,
           options.conditioningUnder(guidance),
+          samplingText(options),
           {{"encoder_instruction_set", diffusion::ImageEncoder::instructionSet()},
            {"denoiser_instruction_set",
             diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())}}};

@@ -25,15 +25,21 @@ at::Tensor actions(const at::Tensor& rollouts) {
   return rollouts.narrow(2, traffic::kRolloutThrottle, traffic::kActionColumns);
 }
 
+/// w_t of the weighted loss.
+float rowWeight(std::int64_t t) {
+  return static_cast<float>(1.0 + 4.0 * std::exp(-static_cast<double>(t) / 4.0));
+}
+
 at::Tensor steps(std::int64_t count, std::int64_t k, const at::Device& device) {
   return at::full({count}, k, at::TensorOptions(device).dtype(at::kLong));
 }
 
 }  // namespace
 
-DiffusionLoss::DiffusionLoss(const diffusion::Architecture& architecture,
+DiffusionLoss::DiffusionLoss(Kind kind, const diffusion::Architecture& architecture,
                              const diffusion::Normalizer& normalizer, const at::Device& device)
-    : architecture_(architecture),
+    : kind_(kind),
+      architecture_(architecture),
       schedule_(static_cast<int>(architecture.diffusion_steps)),
       device_(device) {
   std::vector<float> signal, noise, weights;
@@ -42,7 +48,7 @@ DiffusionLoss::DiffusionLoss(const diffusion::Architecture& architecture,
     noise.push_back(static_cast<float>(std::sqrt(1.0 - schedule_.alphaBar(k))));
   }
   for (std::int64_t t = 0; t < architecture.horizon; ++t)
-    weights.push_back(static_cast<float>(1.0 + 4.0 * std::exp(-static_cast<double>(t) / 4.0)));
+    weights.push_back(kind == Kind::kPlain ? 1.0F : rowWeight(t));
   signal_ = toTensor(signal, {schedule_.steps() + 1}, device);
   noise_ = toTensor(noise, {schedule_.steps() + 1}, device);
   weights_ = toTensor(weights, {1, architecture.horizon, 1}, device);
@@ -65,7 +71,13 @@ Loss DiffusionLoss::loss(const DenoiserNet& denoiser, const TrainingBatch& batch
       denoiser.predictStates(predicted, batch.k, batch.context, true);
   const at::Tensor action_loss = (weights_ * (predicted - actions(batch.rollouts)).pow(2)).mean();
   const at::Tensor state_loss = (predicted_states - states(batch.rollouts)).pow(2).mean();
-  return {action_loss + state_loss, {{"actions", action_loss}, {"states", state_loss}}};
+  at::Tensor total = action_loss + state_loss;
+  if (kind_ == Kind::kPlain) {
+    total = (action_loss * static_cast<double>(traffic::kActionColumns) +
+             state_loss * static_cast<double>(traffic::kStateColumns)) /
+            static_cast<double>(traffic::kRolloutColumns);
+  }
+  return {total, {{"actions", action_loss}, {"states", state_loss}}};
 }
 
 at::Tensor DiffusionLoss::predictClean(const DenoiserNet& denoiser, const at::Tensor& noisy,

@@ -11,16 +11,21 @@
 
 namespace cdiff::planners {
 
-/// The paper's loss on a batch (clean prediction, detached actions for the state head) and the
-/// measures by which held-out samples judge a denoiser.
+/// The loss of a clean prediction on a batch (the state head gets detached actions), normalized:
+///  - `weighted`: mean of w_t (a - a_hat)^2 + mean of (s - s_hat)^2, w_t = 1 + 4 exp(-t / 4), for
+///    only the first actions of a plan are executed;
+///  - `plain`: mean of (tau^0 - tau^0_hat)^2 over all T x 7 cells, as the paper writes it (III-C3);
+/// and the measures by which held-out samples judge a denoiser.
 class DiffusionLoss {
  public:
-  DiffusionLoss(const diffusion::Architecture& architecture,
+  enum class Kind { kWeighted, kPlain };
+
+  DiffusionLoss(Kind kind, const diffusion::Architecture& architecture,
                 const diffusion::Normalizer& normalizer, const at::Device& device);
 
   /// tau^k = sqrt(alpha_bar_k) tau^0 + sqrt(1 - alpha_bar_k) noise.
   at::Tensor addNoise(const at::Tensor& clean, const at::Tensor& k, const at::Tensor& noise) const;
-  /// L = mean of w_t (a - a_hat)^2 + mean of (s - s_hat)^2, w_t = 1 + 4 exp(-t / 4), normalized.
+  /// Its terms `actions` and `states` are the means of the two blocks, weighted as the kind has it.
   learning::Loss loss(const DenoiserNet& denoiser, const TrainingBatch& batch) const;
   /// [states; actions] [B, T, 7] as predicted from tau^k in one step.
   at::Tensor predictClean(const DenoiserNet& denoiser, const at::Tensor& noisy, std::int64_t k,
@@ -42,6 +47,7 @@ class DiffusionLoss {
  private:
   at::Tensor fixedNoise(const at::Tensor& like, const std::string& name) const;
 
+  Kind kind_;
   diffusion::Architecture architecture_;
   diffusion::NoiseSchedule schedule_;
   at::Device device_;

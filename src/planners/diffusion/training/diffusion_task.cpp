@@ -129,7 +129,10 @@ void DiffusionTask::start(const learning::TrainingRun& run) {
   state_.reset(new TrainingState{
       run, dataset, settings, architecture, normalizer, ImageEncoderNet(architecture, seed),
       RegressionHead(architecture, auxiliary, seed), DenoiserNet(architecture, seed),
-      DiffusionLoss(architecture, normalizer, run.device), halfPrecision(settings.precision)});
+      DiffusionLoss(
+          settings.loss == "plain" ? DiffusionLoss::Kind::kPlain : DiffusionLoss::Kind::kWeighted,
+          architecture, normalizer, run.device),
+      halfPrecision(settings.precision)});
   if (initial) {
     state_->encoder.parameters().load(initial->encoder, run.options.init);
     state_->denoiser.parameters().load(initial->denoiser, run.options.init);

@@ -10,6 +10,8 @@ namespace cdiff::planners {
 void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.text({"precision", "", "Of the encoder in training."}, precision,
                {"auto", "f32", "bf16"});
+  visitor.text({"loss", "", "Of diffusion stages: first actions weighted, or the paper's."}, loss,
+               {"weighted", "plain"});
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
                  0.5, 1.0);
   visitor.number({"route_drop", "", "Share of samples without route."}, route_drop, 0.0, 1.0);

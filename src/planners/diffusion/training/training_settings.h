@@ -12,6 +12,7 @@ namespace cdiff::planners {
 /// What the training of the diffusion planner asks beyond the options of every training.
 struct DiffusionTrainingSettings {
   std::string precision = "auto";  ///< the encoder's convolutions in training: auto | f32 | bf16
+  std::string loss = "weighted";   ///< weighted | plain (the paper's), see DiffusionLoss
   double image_scale = 1.0;        ///< scale of images in stage `encoder`: 1 or 0.5
   double route_drop = 0.2;         ///< share of samples without route in diffusion stages
   double balance = 0.5;         ///< 0: samples as collected; 1: all kinds of driving equally often
