@@ -128,7 +128,7 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   EXPECT_EQ(plan[0].factors.at("method"), "default");
   EXPECT_EQ(plan[3].factors.at("method"), "paper");
   EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");
-  expectIn("conditioning: image\n", plan[3].scenario_text);
+  expectIn("conditioning: \"image\"\n", plan[3].scenario_text);
   matrix.modes = {"naturalistic"};
   expectIn("key 'combinations' replaces ego_planners", errorOf(matrix));
   matrix.modes = {};
