@@ -73,8 +73,9 @@ void describeTimes(CbvOptions& options, core::OptionsVisitor& visitor) {
 
 void CbvOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"ranking", "",
-                "Order in which candidates fill the slots: by score, or nearest to the ego first."},
-               ranking, {"score", "nearest"});
+                "Order in which candidates fill the slots: by score, nearest to the ego first, or "
+                "whoever passes the gates, by id."},
+               ranking, {"score", "nearest", "gates"});
   describeGates(*this, visitor);
   describeRoutes(*this, visitor);
   describeScore(*this, visitor);

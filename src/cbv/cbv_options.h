@@ -10,7 +10,7 @@ namespace cdiff::cbv {
 
 /// Options of CBV identification; defaults: RIFT's rule.yaml in evaluation.
 struct CbvOptions {
-  std::string ranking = "score";        ///< score | nearest
+  std::string ranking = "score";        ///< score | nearest | gates
   double search_radius = 60.0;          ///< ego center to candidate center [m]
   double minimum_distance = 10.0;       ///< [m]
   double interaction_radius = 90.0;     ///< candidate to a point of the ego's route, straight [m]

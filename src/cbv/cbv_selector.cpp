@@ -151,14 +151,20 @@ std::vector<CbvSelector::Candidate> CbvSelector::rankedCandidates(
       selection.rejected.push_back({vehicle.id, reason, 0.0});
     }
   }
-  const bool nearest_first = options_.ranking == "nearest";
   std::sort(
       candidates.begin(), candidates.end(), [&](const Candidate& left, const Candidate& right) {
-        const double left_key = nearest_first ? left.separation : -left.conflict.score;
-        const double right_key = nearest_first ? right.separation : -right.conflict.score;
+        const double left_key = rankingKey(left);
+        const double right_key = rankingKey(right);
         return left_key != right_key ? left_key < right_key : left.vehicle->id < right.vehicle->id;
       });
   return candidates;
+}
+
+/// Candidates with a smaller key come first, those with equal keys by id.
+double CbvSelector::rankingKey(const Candidate& candidate) const {
+  if (options_.ranking == "nearest") return candidate.separation;
+  if (options_.ranking == "gates") return 0.0;
+  return -candidate.conflict.score;
 }
 
 /// The first gate that the candidate's vehicle fails, or nullptr with the other fields filled.

@@ -69,6 +69,7 @@ class CbvSelector : public VehicleSelector {
   void select(const traffic::TrafficSnapshot& snapshot, CbvSelection& selection);
   std::vector<Candidate> rankedCandidates(const traffic::TrafficSnapshot& snapshot,
                                           CbvSelection& selection) const;
+  double rankingKey(const Candidate& candidate) const;
   const char* examine(const traffic::TrafficSnapshot& snapshot, Candidate& candidate) const;
   int slotFor(const Candidate& candidate, std::uint64_t tick) const;
   std::optional<HeldCbv> makeHeld(int slot, const Candidate& candidate, std::uint64_t tick) const;

@@ -33,6 +33,22 @@ const std::vector<std::pair<std::string, std::string>>& places() {
   return all;
 }
 
+/// Longest post-encroachment time of a close interaction [s].
+constexpr double kCloseEncroachment = 3.0;
+
+/// Shares of the selected CBVs whose path the ego's crossed, and crossed within kCloseEncroachment.
+void addInteractions(const json& summary, std::size_t selections, Measures& measures) {
+  const json::json_pointer place("/cbv/post_encroachments");
+  if (selections == 0 || !summary.contains(place)) return;
+  const json& times = summary.at(place);
+  double close = 0.0;
+  for (const json& time : times)
+    close += std::abs(time.at("seconds").get<double>()) <= kCloseEncroachment ? 1.0 : 0.0;
+  const auto share = [&](double count) { return 100.0 * count / static_cast<double>(selections); };
+  measures["cbv_interactions_percent"] = share(static_cast<double>(times.size()));
+  measures["cbv_close_interactions_percent"] = share(close);
+}
+
 /// Shares over the CBVs that were selected; absent where the summary does not have the keys.
 void addSelectionMeasures(const json& summary, Measures& measures) {
   const json selections = summary.value(json::json_pointer("/cbv/selections"), json::array());
@@ -56,6 +72,7 @@ void addSelectionMeasures(const json& summary, Measures& measures) {
   if (with_completion > 0) {
     measures["cbv_completion_percent"] = completion / static_cast<double>(with_completion);
   }
+  addInteractions(summary, selections.size(), measures);
 }
 
 std::string lastFault(const json& summary) {
@@ -71,7 +88,8 @@ const std::vector<std::string>& measureNames() {
     for (const auto& [name, place] : places()) {
       all.emplace_back(name);
       if (all.back() != metrics::known::kCbvMinimumDistance.name) continue;
-      all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent"});
+      all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent",
+                             "cbv_interactions_percent", "cbv_close_interactions_percent"});
     }
     return all;
   }();

@@ -208,6 +208,22 @@ TEST(CbvSelector, RankingByNearness) {
             "near");
 }
 
+TEST(CbvSelector, RankingByTheGatesAloneGoesById) {
+  // "m" is nearer and scores higher, "a" passes the gates, too; "A" is first by id but too far.
+  const std::vector<traffic::Vehicle> others = {
+      fromNorth("m", 22.0, 9.0), fromSouth("a", -40.0, 2.0), fromSouth("A", -70.0, 9.0)};
+  const auto first = [&](const char* ranking) {
+    CbvOptions options;
+    options.ranking = ranking;
+    CrossingWorld world(options, 1);
+    const auto selection = world.selector.update(crossingSnapshot(kFirst, 70.0, others));
+    return selection.assignments.at(0).vehicle_id;
+  };
+  EXPECT_EQ(first("gates"), "a");
+  EXPECT_EQ(first("score"), "m");
+  EXPECT_EQ(first("nearest"), "m");
+}
+
 TEST(CbvSelector, SelectsFromTheFirstTimeOnAndOncePerPeriod) {
   CrossingWorld world;
   const std::vector<traffic::Vehicle> one = {fromSouth("a", -30.0, 9.0)};

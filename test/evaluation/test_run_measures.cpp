@@ -15,7 +15,8 @@ TEST(RunMeasures, OfASummary) {
   const SummaryFacts facts = readSummary(R"({
     "status": "completed", "simulated_seconds": 12.5, "real_time_factor": null,
     "ego": {"route_completion_percent": 80, "collisions": 0},
-    "cbv": {"off_road_rate_percent": null, "selections": [
+    "cbv": {"off_road_rate_percent": null,
+      "post_encroachments": [{"seconds": 2.9}, {"seconds": 3.1}], "selections": [
       {"conflict_point_passed": true, "route_completion_percent": 50.0},
       {"conflict_point_passed": true, "route_completion_percent": 100.0},
       {"conflict_point_passed": false}]},
@@ -32,6 +33,8 @@ TEST(RunMeasures, OfASummary) {
   EXPECT_DOUBLE_EQ(facts.measures.at("ego_collisions"), 0.0);
   EXPECT_NEAR(facts.measures.at("cbv_passed_percent"), 200.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(facts.measures.at("cbv_completion_percent"), 75.0);
+  EXPECT_NEAR(facts.measures.at("cbv_interactions_percent"), 200.0 / 3.0, 1e-12);
+  EXPECT_NEAR(facts.measures.at("cbv_close_interactions_percent"), 100.0 / 3.0, 1e-12);
   EXPECT_EQ(facts.measures.count("cbv_off_road_percent"), 0U);  // null
   EXPECT_EQ(facts.measures.count("real_time_factor"), 0U);
   EXPECT_EQ(facts.measures.count("ttc_mean_s"), 0U);  // absent
