@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cbv/cbv_options.h"
 
-#include "core/option_ranges.h"
+#include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

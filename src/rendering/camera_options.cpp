@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/option_ranges.h"
+#include "core/option_fields.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::rendering {

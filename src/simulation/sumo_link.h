@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/guarded_process.h"
 #include "core/output_folder.h"
+#include "core/process.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::simulation {

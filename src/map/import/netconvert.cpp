@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "core/file.h"
-#include "core/guarded_process.h"
 #include "core/output_folder.h"
+#include "core/process.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

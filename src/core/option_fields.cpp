@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "core/options_path.h"
+#include "core/option_fields.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -46,30 +46,7 @@ class PathVisitor : public OptionsVisitor {
 
 std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
-}  // namespace
-
-std::string resolvePath(const std::string& key, const std::string& source, void* options,
-                        Describe describe) {
-  PathVisitor visitor;
-  describe(options, visitor);
-  const std::vector<std::string>& paths = visitor.paths();
-  if (std::find(paths.begin(), paths.end(), key) != paths.end()) return key;
-  std::vector<std::string> matches;
-  for (const std::string& path : paths) {
-    if (lastPart(path) == key) matches.push_back(path);
-  }
-  if (matches.size() == 1) return matches.front();
-  if (matches.size() > 1) {
-    throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
-                     joinText(matches, ", ") + "}");
-  }
-  throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
-                   nearestName(key, paths) + "'");
-}
-
-namespace {
-
-std::string quoted(const std::string& text) {
+std::string yamlQuoted(const std::string& text) {
   YAML::Emitter emitter;
   emitter << YAML::DoubleQuoted << text;
   return emitter.c_str();
@@ -92,11 +69,11 @@ class DumpVisitor : public OptionsVisitor {
   }
   void text(const FieldInfo& info, std::string& value,
             const std::vector<std::string>& choices) override {
-    line(info, quoted(value), joinText(choices, " | "));
+    line(info, yamlQuoted(value), joinText(choices, " | "));
   }
   void list(const FieldInfo& info, std::vector<std::string>& value) override {
     std::vector<std::string> items;
-    for (const std::string& item : value) items.push_back(quoted(item));
+    for (const std::string& item : value) items.push_back(yamlQuoted(item));
     line(info, "[" + joinText(items, ", ") + "]", "");
   }
   void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
@@ -132,7 +109,68 @@ class DumpVisitor : public OptionsVisitor {
   std::string text_;
 };
 
+class RangeVisitor : public OptionsVisitor {
+ public:
+  explicit RangeVisitor(const std::string& subject) : subject_(subject) {}
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    if (value >= minimum && value <= maximum) return;
+    fail(info, formatNumber(value), "a number in " + rangeText(minimum, maximum, info.unit));
+  }
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    if (value >= minimum && value <= maximum) return;
+    fail(info, std::to_string(value),
+         "a whole number in " + rangeText(minimum, maximum, info.unit));
+  }
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    const bool known = std::find(choices.begin(), choices.end(), value) != choices.end();
+    if (!known && !choices.empty())
+      fail(info, "'" + value + "'", "one of {" + joinText(choices, ", ") + "}");
+  }
+  void flag(const FieldInfo&, bool&) override {}
+  void list(const FieldInfo&, std::vector<std::string>&) override {}
+  void points(const FieldInfo&, std::vector<Eigen::Vector3d>&) override {}
+  bool enter(const FieldInfo& info) override {
+    groups_.emplace_back(info.key);
+    return true;
+  }
+  void leave() override { groups_.pop_back(); }
+
+ private:
+  [[noreturn]] void fail(const FieldInfo& info, const std::string& value,
+                         const std::string& expected) const {
+    std::vector<std::string> path = groups_;
+    path.emplace_back(info.key);
+    throw InputError(subject_ + " option '" + joinText(path, ".") + "' is " + value +
+                     "; expected " + expected);
+  }
+
+  const std::string& subject_;
+  std::vector<std::string> groups_;
+};
+
 }  // namespace
+
+std::string resolvePath(const std::string& key, const std::string& source, void* options,
+                        Describe describe) {
+  PathVisitor visitor;
+  describe(options, visitor);
+  const std::vector<std::string>& paths = visitor.paths();
+  if (std::find(paths.begin(), paths.end(), key) != paths.end()) return key;
+  std::vector<std::string> matches;
+  for (const std::string& path : paths) {
+    if (lastPart(path) == key) matches.push_back(path);
+  }
+  if (matches.size() == 1) return matches.front();
+  if (matches.size() > 1) {
+    throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
+                     joinText(matches, ", ") + "}");
+  }
+  throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
+                   nearestName(key, paths) + "'");
+}
 
 std::string rangeText(double low, double high, const char* unit) {
   const auto plain = [](double value) {
@@ -148,6 +186,11 @@ std::string dump(void* options, Describe describe, bool with_comments) {
   DumpVisitor visitor(with_comments);
   describe(options, visitor);
   return visitor.written();
+}
+
+void requireRanges(void* options, Describe describe, const std::string& subject) {
+  RangeVisitor visitor(subject);
+  describe(options, visitor);
 }
 
 }  // namespace cdiff::core::detail

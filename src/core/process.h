@@ -6,8 +6,12 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -105,5 +109,44 @@ class GuardedProcess {
   bool stopping_ = false;
   std::thread guardian_;
 };
+
+// Many jobs, each a process of its own, a few at a time.
+
+/// What one job runs.
+struct ProcessJob {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;  ///< without the program
+  std::filesystem::path log = {};      ///< created; empty: its output goes where ours goes
+};
+
+/// How a job's process ended.
+struct ProcessEnd {
+  std::size_t job = 0;
+  int exit_code = -1;        ///< 128 + signal when killed
+  double seconds = 0.0;      ///< of wall time that it took
+  bool timed_out = false;    ///< killed for the time-out
+  bool interrupted = false;  ///< the jobs were being stopped
+};
+
+/// How many processes of a pool run at a time, and how long each may take [s of wall time].
+struct PoolLimits {
+  int at_a_time = 1;
+  double timeout = std::numeric_limits<double>::infinity();  ///< of one process, wall time [s]
+  double grace = std::numeric_limits<double>::infinity();    ///< to end in after a stop [s]
+};
+
+/// Callbacks of a pool: one prepares a job's process, the other takes its end.
+struct PoolCalls {
+  /// Prepares a job for the start of its process.
+  std::function<ProcessJob(std::size_t job)> start;
+  /// Takes its end; returns whether the job comes again, before the others.
+  std::function<bool(const ProcessEnd& end)> ended;
+};
+
+/// Runs the jobs in their order and returns when all have ended. Once `stop` is true no process is
+/// started and those under way get SIGINT. Throws SimulatorError when no process can be made; those
+/// under way are killed then.
+void runProcesses(std::deque<std::size_t> jobs, const PoolLimits& limits,
+                  const std::atomic<bool>& stop, const PoolCalls& calls);
 
 }  // namespace cdiff::core
