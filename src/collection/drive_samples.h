@@ -10,7 +10,7 @@
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "rendering/road_scene.h"
 
 namespace cdiff::rendering {

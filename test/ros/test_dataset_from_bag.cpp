@@ -11,7 +11,7 @@
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "ros/bags/dataset_from_bag.h"
 #include "ros/bags/session_bag_writer.h"
 #include "std_msgs/String.h"

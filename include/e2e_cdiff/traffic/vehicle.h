@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "e2e_cdiff/geometry/oriented_box.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::traffic {
 

@@ -2,13 +2,70 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "e2e_cdiff/geometry/pose.h"
-
 namespace cdiff::geometry {
+
+/// Unit vector along a heading.
+inline Eigen::Vector2d direction(double heading) { return {std::cos(heading), std::sin(heading)}; }
+
+/// Vector turned by +90 degrees.
+inline Eigen::Vector2d leftNormal(const Eigen::Vector2d& vector) {
+  return {-vector.y(), vector.x()};
+}
+
+/// z component of the cross product; positive when `second` lies left of `first`.
+inline double cross(const Eigen::Vector2d& first, const Eigen::Vector2d& second) {
+  return first.x() * second.y() - first.y() * second.x();
+}
+
+/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x
+/// [rad]).
+/// Position and heading in the plane.
+struct Pose2d {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
+  double heading = 0.0;                                ///< [rad]
+
+  /// A map point in this pose's body frame (x forward, y left).
+  Eigen::Vector2d toBody(const Eigen::Vector2d& map_point) const {
+    const Eigen::Vector2d forward = direction(heading);
+    const Eigen::Vector2d offset = map_point - position;
+    return {forward.dot(offset), leftNormal(forward).dot(offset)};
+  }
+  /// A body-frame point in the map frame.
+  Eigen::Vector2d toMap(const Eigen::Vector2d& body_point) const {
+    const Eigen::Vector2d forward = direction(heading);
+    return position + forward * body_point.x() + leftNormal(forward) * body_point.y();
+  }
+};
+
+/// Outline of a vehicle in the plane: a rectangle with center [m], heading [rad], length and width
+/// [m].
+struct OrientedBox {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m], map frame
+  double heading = 0.0;                              ///< [rad]
+  double length = 0.0;                               ///< [m]
+  double width = 0.0;                                ///< [m]
+
+  /// Corners in the order front-left, front-right, rear-right, rear-left: a proper ring, clockwise.
+  std::array<Eigen::Vector2d, 4> corners() const;
+  /// Whether a point lies inside or on the border.
+  bool contains(const Eigen::Vector2d& point) const;
+};
+
+/// Half the extent of a box along a unit axis of the map frame [m].
+double halfExtent(const OrientedBox& box, const Eigen::Vector2d& axis);
+
+/// Whether two boxes share at least a point (separating axes).
+bool overlap(const OrientedBox& first, const OrientedBox& second);
+
+/// Shortest distance between two boxes [m]; 0 when they overlap.
+double distance(const OrientedBox& first, const OrientedBox& second);
 
 /// Where a point lies relative to a polyline.
 struct Projection {
