@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "page/sample_sheet.h"
 
 namespace cdiff::collection {

@@ -11,7 +11,7 @@
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/geometry/shapes.h"
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::collection {
@@ -47,7 +47,7 @@ struct RecordedDrive {
 };
 
 // Training samples from a drive that someone else recorded (SI units; rows as in
-// traffic/rollout.h).
+// traffic/vehicle.h).
 
 /// Samples of the drive called `name` in order of time; each minute is a session of its own, so
 /// that whole minutes are held out in training. An image gives one if odometry (and controls, where

@@ -13,7 +13,6 @@
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "session/session_setup.h"
 
@@ -42,7 +41,7 @@ struct DrivenSession {
 };
 
 // Training samples from a driven session: for every image of a driven vehicle what it then did, in
-// its own frame (SI units; rows as in traffic/rollout.h), and its route tokens.
+// its own frame (SI units; rows as in traffic/vehicle.h), and its route tokens.
 
 /// By tick and slot. An image gives one if its vehicle was driven, without noise, contact or jump,
 /// from the tick before it to the end of the horizon. Throws InputError for images of another size.

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planning {

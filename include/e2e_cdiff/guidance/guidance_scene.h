@@ -6,7 +6,6 @@
 
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::guidance {

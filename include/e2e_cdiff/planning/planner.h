@@ -10,7 +10,6 @@
 #include "e2e_cdiff/guidance/guidance_report.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::planning {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dynamics/action_rollout.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/route_rules.h"
