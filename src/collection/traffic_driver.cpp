@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "cbv/candidate_gates.h"
-#include "cbv/held_cbv.h"
+#include "cbv/candidates.h"
+#include "cbv/cbv_selector.h"
 #include "collection/random_route.h"
 
 namespace cdiff::collection {
