@@ -6,7 +6,7 @@
 
 #include "e2e_cdiff/guidance/objective_descriptor.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "e2e_cdiff/planning/planner.h"
 
 namespace cdiff::plugins {
 

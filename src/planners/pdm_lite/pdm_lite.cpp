@@ -12,7 +12,7 @@
 #include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/route_rules.h"
-#include "planning/motion_forecast.h"
+#include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
 namespace {
