@@ -14,7 +14,6 @@
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
-#include "e2e_cdiff/guidance/guidance_report.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/rendering/camera_options.h"
