@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "rendering/canvas.h"
 #include "rendering/road_scene.h"
 
 namespace cdiff::rendering {
@@ -58,5 +59,17 @@ class SignalHeads {
   std::vector<int> visible_heads_;
   std::vector<int> visible_masts_;
 };
+
+// Other vehicles as shaded boxes: body, cabin, wheels, tail lights that tell whether it brakes,
+// headlights, and a shadow below.
+
+/// Whether the brake lights are on: it slows down by more than 0.5 m/s^2, brakes by more than 0.1,
+/// or stands (below 0.1 m/s).
+bool brakeLightsOn(const traffic::Vehicle& vehicle);
+
+/// Color of the paint, by a hash of the id.
+Color bodyColor(const std::string& id);
+
+void drawVehicle(const traffic::Vehicle& vehicle, const View& view, Canvas& canvas);
 
 }  // namespace cdiff::rendering
