@@ -10,7 +10,7 @@
 #include "benchmark.h"
 #include "diffusion/noise_schedule.h"
 #include "diffusion/sampler.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/diffusion/training/networks.h"
 
 namespace cdiff::benchmark {

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 
 namespace cdiff::cli {
 

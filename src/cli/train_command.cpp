@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/training_page.h"
-#include "core/process_pool.h"
+#include "core/process.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 

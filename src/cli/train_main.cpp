@@ -4,7 +4,6 @@
 #include <iostream>
 #include <string>
 
-#include "core/exit_code.h"
 #include "core/program.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cli/version.h"
 
-#include "core/guarded_process.h"
+#include "core/process.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"
 #include "e2e_cdiff/core/exceptions.h"

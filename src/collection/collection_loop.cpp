@@ -7,24 +7,32 @@
 #include <utility>
 
 #include "collection/traffic_driver.h"
+#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
 
 namespace cdiff::collection {
-
-ImageSchedule::ImageSchedule(std::int64_t period) : period_(std::max<std::int64_t>(1, period)) {}
-
-bool ImageSchedule::due(const traffic::Vehicle& vehicle, int slot, std::int64_t decision,
-                        bool noisy) {
-  const bool taken_over = !vehicle.applied_action;
-  if (noisy || taken_over) disturbed_[vehicle.id] = decision;
-  if (taken_over) return false;
-  const auto disturbed = disturbed_.find(vehicle.id);
-  const std::int64_t since = disturbed == disturbed_.end() ? 0 : decision - disturbed->second;
-  return since == 1 || since == 4 || (decision + slot + 1) % period_ == 0;
-}
-
 namespace {
+
+// Elements of a burst's draws.
+constexpr std::uint32_t kInterval = 0;
+constexpr std::uint32_t kDuration = 1;
+constexpr std::uint32_t kSteer = 2;
+constexpr std::uint32_t kPedal = 3;
+constexpr std::uint32_t kSteerSign = 4;
+constexpr std::uint32_t kStall = 5;
+
+// Elements of a vehicle's style.
+constexpr std::uint32_t kTargetSpeed = 0;
+constexpr std::uint32_t kGap = 1;
+constexpr std::uint32_t kHeadway = 2;
+constexpr std::uint32_t kAcceleration = 3;
+constexpr std::uint32_t kDeceleration = 4;
+
+constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
+constexpr double kSmallest = 0.3;       // of the largest steering noise
+constexpr double kStallBrake = 0.5;     // so that who follows can stop, too
+constexpr double kLeastThrottle = 0.3;  // less does nothing (BicycleModel)
 
 std::uint64_t seedOf(const session::SessionSetup& setup) {
   return static_cast<std::uint64_t>(setup.options().seed);
@@ -54,6 +62,135 @@ std::unique_ptr<session::World> disturbedWorld(const session::SessionSetup& setu
 }
 
 }  // namespace
+
+PerturbedPlanner::PerturbedPlanner(std::unique_ptr<planning::Planner> planner,
+                                   const CollectionOptions& options, std::uint64_t seed,
+                                   double decision_period)
+    : planner_(std::move(planner)),
+      options_(options),
+      noise_(seed, "collection_noise"),
+      styles_(seed, "collection_target_speed"),
+      decision_period_(decision_period) {}
+
+PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std::uint32_t count,
+                                                double after) const {
+  const core::RandomKey key{core::hashText(vehicle), count, 0};
+  const NoiseOptions& noise = options_.noise;
+  Burst burst;
+  burst.count = count;
+  burst.begin = after - noise.interval * std::log(1.0 - noise_.uniform(key, kInterval));
+  burst.stall = noise_.uniform(key, kStall) < noise.stall_share;
+  burst.end =
+      burst.begin +
+      (burst.stall
+           ? noise_.uniform(key, kDuration, noise.stall_minimum_time, noise.stall_maximum_time)
+           : noise_.uniform(key, kDuration, noise.minimum_time, noise.maximum_time));
+  const double size = noise_.uniform(key, kSteer, kSmallest, 1.0);
+  burst.steer = noise_.uniform(key, kSteerSign) < 0.5 ? -size : size;
+  burst.pedal = noise_.uniform(key, kPedal, -1.0, 1.0);
+  return burst;
+}
+
+/// Noise is for vehicles that move; a stop that starts while one moves lasts to its end, any other
+/// is left out.
+bool PerturbedPlanner::acts(double time, double speed, Burst& burst) const {
+  if (time < burst.begin || time >= burst.end) return false;
+  const bool moves = speed > kSlow;
+  if (!burst.begun && !moves && burst.stall) {
+    burst.end = time;
+    return false;
+  }
+  burst.begun = true;
+  return moves || burst.stall;
+}
+
+void PerturbedPlanner::disturb(const Burst& burst, double speed,
+                               traffic::ControlAction& action) const {
+  if (burst.stall) {
+    action = {0.0, action.steer, std::max(action.brake, kStallBrake)};
+    return;
+  }
+  const NoiseOptions& noise = options_.noise;
+  const double largest = noise.steer * std::min(1.0, noise.steer_speed / speed);
+  action.steer = std::clamp(action.steer + burst.steer * largest, -1.0, 1.0);
+  const double pedal = burst.pedal * noise.pedal;
+  if (pedal < 0.0) {
+    action.throttle = 0.0;
+    action.brake = std::clamp(action.brake - pedal, 0.0, 1.0);
+  } else if (action.brake == 0.0) {
+    action.throttle = std::clamp(std::max(action.throttle, kLeastThrottle) + pedal, 0.0, 1.0);
+  }
+}
+
+planning::DrivingStyle PerturbedPlanner::styleOf(const core::RandomKey& key) const {
+  planning::DrivingStyle style;
+  style.minimum_gap = styles_.uniform(key, kGap, style.minimum_gap, options_.maximum_gap);
+  style.time_headway = styles_.uniform(key, kHeadway, style.time_headway, options_.maximum_headway);
+  if (options_.pedals == "published") return style;
+  style.acceleration = styles_.uniform(key, kAcceleration, options_.minimum_acceleration,
+                                       options_.maximum_acceleration);
+  style.deceleration = styles_.uniform(key, kDeceleration, options_.minimum_deceleration,
+                                       options_.maximum_deceleration);
+  return style;
+}
+
+std::vector<planning::PlannedAction> PerturbedPlanner::plan(
+    const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
+  std::vector<planning::PlanningTask> asked = tasks;
+  for (planning::PlanningTask& task : asked) {
+    const core::RandomKey key{core::hashText(task.vehicle->id), 0, 0};
+    task.target_speed =
+        styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed);
+    task.style = styleOf(key);
+  }
+  std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
+  if (snapshot.time > last_time_ + 1.5 * decision_period_) bursts_.clear();
+  last_time_ = snapshot.time;
+  std::map<std::string, Burst> kept;
+  perturbed_.clear();
+  for (std::size_t i = 0; i < std::min(actions.size(), tasks.size()); ++i) {
+    const std::string& id = tasks[i].vehicle->id;
+    const auto known = bursts_.find(id);
+    Burst burst = known != bursts_.end() ? known->second : drawn(id, 0, snapshot.time);
+    if (snapshot.time >= burst.end) burst = drawn(id, burst.count + 1, burst.end);
+    const double speed = tasks[i].vehicle->state.speed;
+    if (acts(snapshot.time, speed, burst)) {
+      disturb(burst, speed, actions[i].action);
+      perturbed_.insert(id);
+    }
+    kept.emplace(id, burst);
+  }
+  bursts_ = std::move(kept);
+  return actions;
+}
+
+traffic::VehicleState disturbedStart(const NoiseOptions& options, std::uint64_t seed,
+                                     std::uint64_t tick, const std::string& vehicle,
+                                     const traffic::VehicleState& state) {
+  const core::RandomStream random(seed, "collection_start");
+  const core::RandomKey key{core::hashText(vehicle), static_cast<std::uint32_t>(tick), 0};
+  constexpr double kMost = 2.0;  // standard deviations
+  const auto draw = [&](std::uint32_t element) {
+    return std::clamp(random.normal(key, element), -kMost, kMost);
+  };
+  traffic::VehicleState result = state;
+  result.position +=
+      options.lateral * draw(0) * geometry::leftNormal(geometry::direction(state.heading));
+  result.heading += core::degreesToRadians(options.heading) * draw(1);
+  return result;
+}
+
+ImageSchedule::ImageSchedule(std::int64_t period) : period_(std::max<std::int64_t>(1, period)) {}
+
+bool ImageSchedule::due(const traffic::Vehicle& vehicle, int slot, std::int64_t decision,
+                        bool noisy) {
+  const bool taken_over = !vehicle.applied_action;
+  if (noisy || taken_over) disturbed_[vehicle.id] = decision;
+  if (taken_over) return false;
+  const auto disturbed = disturbed_.find(vehicle.id);
+  const std::int64_t since = disturbed == disturbed_.end() ? 0 : decision - disturbed->second;
+  return since == 1 || since == 4 || (decision + slot + 1) % period_ == 0;
+}
 
 CollectionLoop::CollectionLoop(const session::SessionSetup& setup, const CollectionOptions& options,
                                bool images)

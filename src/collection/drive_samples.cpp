@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collection/drive_samples.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "collection/sample_kinds.h"
+#include "collection/dataset_statistics.h"
+#include "collection/training_samples.h"
 #include "diffusion/route_tokens.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"

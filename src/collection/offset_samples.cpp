@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collection/offset_samples.h"
-
 #include <algorithm>
 
+#include "collection/training_samples.h"
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/angle.h"
 #include "planners/pdm_lite/controllers.h"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collection/session_samples.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "collection/offset_samples.h"
-#include "collection/sample_kinds.h"
+#include "collection/dataset_statistics.h"
+#include "collection/training_samples.h"
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"

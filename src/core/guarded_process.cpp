@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "core/guarded_process.h"
-
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -15,7 +13,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "core/exit_code.h"
+#include "core/process.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

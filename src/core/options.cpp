@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "core/options_path.h"
+#include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

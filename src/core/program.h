@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "core/exit_code.h"
-
 namespace cdiff::core {
+
+/// Exit codes of `cdiff`, of the nodes and of scripts/session.
+struct ExitCode {
+  static constexpr int kPassed = 0;         ///< also a session that is struck or not judged
+  static constexpr int kVerdictFailed = 1;  ///< of a session: a rule of its verdict is not met
+  static constexpr int kRunTimeError = 2;
+  static constexpr int kBadInput = 3;
+  static constexpr int kInterrupted = 130;
+  static constexpr int kSignal = 128;  ///< plus the number of the signal that ended a process
+};
 
 // What the main functions of all programs share: standard streams that are open, signals that
 // must not end the process in the middle of a write, and stop requests as a flag.

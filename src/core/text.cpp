@@ -28,6 +28,26 @@ std::size_t editDistance(const std::string& left, const std::string& right) {
   return row.back();
 }
 
+std::string now(const char* format) {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&time, &local);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), format, &local);
+  return text.data();
+}
+
+constexpr char kMark = '\'';
+
+/// Whether a spreadsheet would compute the text: what starts with = + - @, a tab or a line end and
+/// is no number. Marks before that count too, so that texts read back as they were.
+bool isFormula(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(kMark);
+  if (first == std::string::npos) return false;
+  const bool operation = std::string_view("=+-@\t\r\n").find(text[first]) != std::string_view::npos;
+  return operation && text != "-inf" && (first > 0 || !parseNumber(text));
+}
+
 }  // namespace
 
 std::string formatNumber(double value) {
@@ -110,21 +130,47 @@ std::string joinText(const std::vector<std::string>& parts, std::string_view sep
   return joined;
 }
 
-namespace {
-
-std::string now(const char* format) {
-  const std::time_t time = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&time, &local);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), format, &local);
-  return text.data();
-}
-
-}  // namespace
-
 std::string timeText() { return now("%Y-%m-%d %H:%M:%S"); }
 
 std::string timeForFileName() { return now("%Y%m%d_%H%M%S"); }
+
+std::string csvCell(const std::string& text) {
+  const std::string shown = isFormula(text) ? kMark + text : text;
+  if (shown.find_first_of(",\"\n\r") == std::string::npos) return shown;
+  std::string quoted = "\"";
+  for (const char letter : shown) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + "\"";
+}
+
+std::string csvNumber(const std::optional<double>& value) {
+  return value ? formatNumber(*value) : "";
+}
+
+std::string csvRow(const std::vector<std::string>& cells) {
+  std::string row;
+  for (std::size_t i = 0; i < cells.size(); ++i) row += (i > 0 ? "," : "") + csvCell(cells[i]);
+  return row + "\n";
+}
+
+std::vector<std::string> csvCells(std::string_view row) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const char letter = row[i];
+    const bool doubled = quoted && letter == '"' && i + 1 < row.size() && row[i + 1] == '"';
+    if (doubled) ++i;
+    if (letter == '"' && !doubled) {
+      quoted = !quoted;
+    } else if (letter == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += letter;
+    }
+  }
+  for (std::string& cell : cells) {
+    if (!cell.empty() && cell.front() == kMark && isFormula(cell)) cell.erase(0, 1);
+  }
+  return cells;
+}
 
 }  // namespace cdiff::core

@@ -51,4 +51,20 @@ std::string timeText();
 /// For the name of a file or folder: "20260131_140509".
 std::string timeForFileName();
 
+// Rows of comma-separated values as RFC 4180 has them: cells are quoted only where they must be.
+// A text that a spreadsheet would compute (it starts with = + - @, a tab or a line end and is no
+// number) gets an apostrophe in front, which reading takes away again.
+
+/// `text` as one cell.
+std::string csvCell(const std::string& text);
+
+/// A number as one cell, empty where there is none.
+std::string csvNumber(const std::optional<double>& value);
+
+/// The cells as one row with its line end.
+std::string csvRow(const std::vector<std::string>& cells);
+
+/// Cells of a row without its line end, empty ones included.
+std::vector<std::string> csvCells(std::string_view row);
+
 }  // namespace cdiff::core

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "inference/strict_json.h"
 
 namespace cdiff::diffusion {

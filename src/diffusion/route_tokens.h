@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "diffusion/network/architecture.h"
-#include "e2e_cdiff/geometry/polyline.h"
-#include "e2e_cdiff/geometry/pose.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::diffusion {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::dynamics {
 namespace {

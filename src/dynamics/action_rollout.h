@@ -3,7 +3,6 @@
 #pragma once
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/traffic/rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::dynamics {

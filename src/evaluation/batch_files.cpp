@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/csv.h"
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/text.h"

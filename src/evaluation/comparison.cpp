@@ -6,7 +6,6 @@
 #include <map>
 #include <numeric>
 
-#include "core/csv.h"
 #include "core/markup.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -6,9 +6,9 @@
 #include <deque>
 #include <map>
 
-#include "core/exit_code.h"
 #include "core/file.h"
-#include "core/process_pool.h"
+#include "core/process.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -5,11 +5,7 @@
 #include "core/registry.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "guidance/collision_objectives.h"
-#include "guidance/comfort_objective.h"
-#include "guidance/drivable_area_objective.h"
-#include "guidance/route_objective.h"
-#include "guidance/speed_objective.h"
-#include "guidance/traffic_avoidance_objective.h"
+#include "guidance/driving_objectives.h"
 
 namespace cdiff::guidance {
 namespace {

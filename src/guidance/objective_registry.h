@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/guidance/objective_descriptor.h"
+#include "e2e_cdiff/guidance/objective.h"
 
 namespace cdiff::guidance {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "e2e_cdiff/guidance/guidance_options.h"
-#include "e2e_cdiff/guidance/guidance_report.h"
 
 namespace cdiff::guidance {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "learning/samples/dataset.h"
 
 namespace cdiff::learning {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <sstream>
 
-#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

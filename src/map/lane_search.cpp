@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "map/lane_search.h"
-
 #include <algorithm>
 #include <functional>
 
-#include "map/route_builder.h"
+#include "map/route_search.h"
 
 namespace cdiff::map {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/geometry/pose.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "map/spatial_index.h"
 
 namespace cdiff::map {

@@ -3,6 +3,7 @@
 #include "e2e_cdiff/map/road_network.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
 #include "map/network_reader.h"
@@ -10,6 +11,23 @@
 
 namespace cdiff::map {
 namespace {
+
+using Index = std::size_t;
+
+/// Squared distance in the plane to a segment of a lane, and the elevation of its nearest point.
+struct SegmentDistance {
+  double squared = 0.0;
+  double elevation = 0.0;
+};
+
+SegmentDistance distanceToSegment(const Lane& lane, int segment, const Eigen::Vector2d& position) {
+  const Eigen::Vector3d& start = lane.centerline.points()[static_cast<Index>(segment)];
+  const Eigen::Vector3d& end = lane.centerline.points()[static_cast<Index>(segment) + 1];
+  const Eigen::Vector2d along = (end - start).head<2>();
+  const Eigen::Vector2d offset = position - start.head<2>();
+  const double fraction = std::clamp(along.dot(offset) / along.squaredNorm(), 0.0, 1.0);
+  return {(offset - fraction * along).squaredNorm(), start.z() + fraction * (end.z() - start.z())};
+}
 
 /// Nearest first, ties by lane index.
 bool nearer(const LaneMatch& left, const LaneMatch& right) {
@@ -20,6 +38,109 @@ bool nearer(const LaneMatch& left, const LaneMatch& right) {
 }
 
 }  // namespace
+
+RoadNetwork::SpatialIndex::SpatialIndex(const std::vector<Lane>& lanes) {
+  setBounds(lanes);
+  const Index cells = static_cast<Index>(columns_) * static_cast<Index>(rows_);
+  cell_begin_.assign(cells + 1, 0);
+  for (const Lane& lane : lanes) {
+    visitCells(lane, [&](Index cell, int) { ++cell_begin_[cell + 1]; });
+  }
+  for (Index cell = 0; cell < cells; ++cell) cell_begin_[cell + 1] += cell_begin_[cell];
+  entries_.resize(cell_begin_.back());
+  std::vector<Index> next(cell_begin_.begin(), cell_begin_.end() - 1);
+  for (Index i = 0; i < lanes.size(); ++i) {
+    visitCells(lanes[i], [&](Index cell, int segment) {
+      entries_[next[cell]++] = {static_cast<LaneIndex>(i), segment};
+    });
+  }
+}
+
+void RoadNetwork::SpatialIndex::setBounds(const std::vector<Lane>& lanes) {
+  constexpr double kMaxCells = 1e6;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  for (const Lane& lane : lanes) {
+    if (!lane.allows_cars) continue;
+    for (const Eigen::Vector3d& point : lane.centerline.points()) {
+      low = low.cwiseMin(point.head<2>());
+      high = high.cwiseMax(point.head<2>());
+    }
+  }
+  if (!(low.x() <= high.x())) return;
+  origin_ = low;
+  const Eigen::Vector2d size = high - low;
+  const auto count = [&] { return (size.x() / cell_size_ + 1.0) * (size.y() / cell_size_ + 1.0); };
+  while (count() > kMaxCells) cell_size_ *= 2.0;
+  columns_ = static_cast<int>(size.x() / cell_size_) + 1;
+  rows_ = static_cast<int>(size.y() / cell_size_) + 1;
+}
+
+int RoadNetwork::SpatialIndex::columnOf(double x) const {
+  const double column = std::floor((x - origin_.x()) / cell_size_);
+  return static_cast<int>(std::clamp(column, 0.0, columns_ - 1.0));
+}
+
+int RoadNetwork::SpatialIndex::rowOf(double y) const {
+  const double row = std::floor((y - origin_.y()) / cell_size_);
+  return static_cast<int>(std::clamp(row, 0.0, rows_ - 1.0));
+}
+
+/// Calls visit(cell, segment) once or more for every cell that a segment of the lane passes.
+template <class Visit>
+void RoadNetwork::SpatialIndex::visitCells(const Lane& lane, Visit&& visit) const {
+  if (!lane.allows_cars) return;
+  const auto& points = lane.centerline.points();
+  for (Index i = 0; i + 1 < points.size(); ++i) {
+    const Eigen::Vector2d start = points[i].head<2>();
+    const Eigen::Vector2d along = points[i + 1].head<2>() - start;
+    const int pieces = static_cast<int>(along.norm() / cell_size_) + 1;
+    for (int piece = 0; piece < pieces; ++piece) {
+      const Eigen::Vector2d from = start + along * (static_cast<double>(piece) / pieces);
+      const Eigen::Vector2d to = start + along * (static_cast<double>(piece + 1) / pieces);
+      const int last_row = rowOf(std::max(from.y(), to.y()));
+      const int last_column = columnOf(std::max(from.x(), to.x()));
+      for (int row = rowOf(std::min(from.y(), to.y())); row <= last_row; ++row) {
+        for (int column = columnOf(std::min(from.x(), to.x())); column <= last_column; ++column) {
+          visit(static_cast<Index>(row) * static_cast<Index>(columns_) + static_cast<Index>(column),
+                static_cast<int>(i));
+        }
+      }
+    }
+  }
+}
+
+std::vector<RoadNetwork::SpatialIndex::Hit> RoadNetwork::SpatialIndex::find(
+    const std::vector<Lane>& lanes, const Query& query) const {
+  std::vector<Hit> hits;
+  if (!query.position.allFinite() || !(query.radius >= 0.0)) return hits;
+  const double limit = query.radius * query.radius;
+  const int last_row = rowOf(query.position.y() + query.radius);
+  const int first_column = columnOf(query.position.x() - query.radius);
+  const int last_column = columnOf(query.position.x() + query.radius);
+  for (int row = rowOf(query.position.y() - query.radius); row <= last_row; ++row) {
+    const Index row_begin = static_cast<Index>(row) * static_cast<Index>(columns_);
+    const Index end = cell_begin_[row_begin + static_cast<Index>(last_column) + 1];
+    for (Index i = cell_begin_[row_begin + static_cast<Index>(first_column)]; i < end; ++i) {
+      const Entry& entry = entries_[i];
+      const Lane& lane = lanes[static_cast<Index>(entry.lane)];
+      const SegmentDistance distance = distanceToSegment(lane, entry.segment, query.position);
+      if (distance.squared > limit) continue;
+      if (std::abs(distance.elevation - query.elevation) > query.level_height) continue;
+      hits.push_back({entry.lane, entry.segment, distance.squared});
+    }
+  }
+  std::sort(hits.begin(), hits.end(), [](const Hit& left, const Hit& right) {
+    if (left.lane != right.lane) return left.lane < right.lane;
+    if (left.squared_distance != right.squared_distance) {
+      return left.squared_distance < right.squared_distance;
+    }
+    return left.segment < right.segment;
+  });
+  const auto same_lane = [](const Hit& left, const Hit& right) { return left.lane == right.lane; };
+  hits.erase(std::unique(hits.begin(), hits.end(), same_lane), hits.end());
+  return hits;
+}
 
 RoadNetwork::RoadNetwork() = default;
 RoadNetwork::RoadNetwork(RoadNetwork&&) noexcept = default;

@@ -5,9 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/map/route_progress.h"
-#include "map/lane_search.h"
-#include "map/route_builder.h"
+#include "map/route_search.h"
 
 namespace cdiff::map {
 namespace {

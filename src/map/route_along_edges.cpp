@@ -5,8 +5,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/lane_search.h"
-#include "map/route_builder.h"
+#include "map/route_search.h"
 #include "map/route_source.h"
 
 namespace cdiff::map {

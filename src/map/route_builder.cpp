@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "map/route_builder.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/lane_search.h"
+#include "map/route_search.h"
 
 namespace cdiff::map {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/metrics/infraction_options.h"
 
 namespace cdiff::metrics {
 

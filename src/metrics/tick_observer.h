@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "e2e_cdiff/map/route_progress.h"
+#include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/measures/contact_fault.h"
 

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "ros/session_files.h"
 
 int main(int argc, char** argv) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/csv.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/page_parts.h"

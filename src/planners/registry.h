@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "e2e_cdiff/planning/planner.h"
 
 namespace cdiff::planners {
 

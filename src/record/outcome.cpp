@@ -3,7 +3,7 @@
 #include <cctype>
 #include <utility>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/verdict.h"
 

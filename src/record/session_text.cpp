@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "cbv/candidate_gates.h"
-#include "cbv/held_cbv.h"
+#include "cbv/candidates.h"
+#include "cbv/cbv_selector.h"
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"

@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "core/option_fields.h"
+#include "e2e_cdiff/core/angle.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "rendering/road_scene.h"
-#include "rendering/signal_heads.h"
-#include "rendering/vehicle_body.h"
+#include "rendering/scene_objects.h"
 
 namespace cdiff::rendering {
 namespace {
@@ -36,6 +38,32 @@ traffic::CameraImage midGrey(const CameraOptions& options, std::uint64_t tick) {
 }
 
 }  // namespace
+
+void CameraOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.integer({"width", "px", "Width of the image."}, width, 1, 4096);
+  visitor.integer({"height", "px", "Height of the image."}, height, 1, 4096);
+  visitor.number({"field_of_view", "deg", "Horizontal field of view."}, field_of_view, 10.0, 170.0);
+  visitor.number({"mount_forward", "m", "Mounting point ahead of the box's centre."}, mount_forward,
+                 -20.0, 20.0);
+  visitor.number({"mount_height", "m", "Mounting point above the road."}, mount_height, 0.2, 10.0);
+  visitor.number({"pitch", "deg", "Downward tilt."}, pitch, -45.0, 45.0);
+  visitor.number({"far_distance", "m", "Farthest ground and vehicles that are drawn."},
+                 far_distance, 5.0, 1000.0);
+  visitor.integer({"supersampling", "", "Samples per pixel and axis."}, supersampling, 1, 8);
+  visitor.flag({"blind", "", "Whether every pixel is mid-grey, to see what an image is worth."},
+               blind);
+}
+
+void CameraOptions::validate() const { core::requireRanges(*this, "camera"); }
+
+Intrinsics intrinsicsOf(const CameraOptions& options) {
+  Intrinsics intrinsics;
+  const double width = static_cast<double>(options.width);
+  intrinsics.focal_length = 0.5 * width / std::tan(options.field_of_view * core::kPi / 360.0);
+  intrinsics.center_x = 0.5 * (width - 1.0);
+  intrinsics.center_y = 0.5 * (static_cast<double>(options.height) - 1.0);
+  return intrinsics;
+}
 
 struct FrontCamera::Scene {
   Scene(const CameraOptions& camera, const map::RoadNetwork& network)

@@ -8,7 +8,6 @@
 
 #include "e2e_cdiff/map/road_network.h"
 #include "e2e_cdiff/rendering/camera_options.h"
-#include "e2e_cdiff/traffic/camera_image.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::rendering {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "rendering/lane_surface.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "rendering/road_scene.h"
 
 namespace cdiff::rendering {
 namespace {

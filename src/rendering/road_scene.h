@@ -7,11 +7,42 @@
 #include <utility>
 #include <vector>
 
+#include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "rendering/canvas.h"
-#include "rendering/spatial_grid.h"
 
 namespace cdiff::rendering {
+
+/// A ball that holds a thing.
+struct Bound {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
+/// The ball around the middle of the points' box.
+Bound boundOf(const Eigen::Vector3d* points, int count);
+
+/// Finds things near the view: things sorted into square cells by their center.
+class SpatialGrid {
+ public:
+  SpatialGrid() = default;
+  explicit SpatialGrid(std::vector<Bound> bounds);
+
+  /// Indices of the things that may be seen, cell by cell, in the order of the cells and indices.
+  void visible(const View& view, std::vector<int>& found) const;
+
+ private:
+  void sortIntoCells();
+  void boundCells();
+  std::size_t cellOf(const Eigen::Vector3d& point) const;
+  std::vector<Bound> bounds_;
+  std::vector<int> items_;               ///< by cell
+  std::vector<std::size_t> cell_begin_;  ///< of each cell in items_, and the end
+  std::vector<Bound> cell_bounds_;
+  Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
+  int columns_ = 0;
+  int rows_ = 0;
+};
 
 // Triangles of a simple polygon by cutting ears off, in the plane; heights are kept.
 
@@ -64,5 +95,41 @@ void drawMarking(const Marking& marking, double rank, const View& view, Canvas& 
 /// A painted line between two points, `width` wide [m].
 Marking markingBetween(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, double width,
                        Color color);
+
+// Borders of a lane: points beside its centerline that fit together at bends.
+
+/// A cross-section of a lane.
+struct CrossSection {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();  ///< where 1 m to the left lies, at bends longer
+  double arc_length = 0.0;                         ///< [m]
+
+  /// The point `lateral` meters to the left.
+  Eigen::Vector3d at(double lateral) const {
+    return {center.x() + lateral * left.x(), center.y() + lateral * left.y(), center.z()};
+  }
+};
+
+/// Cross-sections from arc length `begin` to `end`: both, every point of the line between them, and
+/// more so that neighbors are at most `spacing` apart.
+std::vector<CrossSection> crossSections(const geometry::Polyline& line, double begin, double end,
+                                        double spacing);
+
+// The markings of a network's lanes: solid white lines at the road's edges, dashed white ones
+// between lanes of one direction, solid yellow ones beside lanes of the other direction.
+
+/// What a piece of a lane's outer border is: the road's edge, the centerline to the lanes of the
+/// other direction, or nothing (it lies on another lane).
+enum class Border { kEdge, kCenter, kNone };
+
+/// `point` lies on the border, `heading` is the lane's there.
+Border borderAt(const map::RoadNetwork& network, const map::Lane& lane,
+                const Eigen::Vector3d& point, double heading);
+
+std::vector<Marking> laneMarkings(const map::RoadNetwork& network);
+
+/// What stands beside roads that lie higher than their surroundings: grass slopes down to the
+/// lowest road near, or the side of a bridge's deck where a lower road is in the way.
+std::vector<Surface> roadSides(const map::RoadNetwork& network);
 
 }  // namespace cdiff::rendering

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "rendering/signal_heads.h"
-
 #include <algorithm>
+
+#include "rendering/scene_objects.h"
 
 namespace cdiff::rendering {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "record/session_text.h"
 #include "ros/bags/replay.h"

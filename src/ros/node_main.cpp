@@ -9,7 +9,6 @@
 #include <memory>
 #include <thread>
 
-#include "core/exit_code.h"
 #include "core/program.h"
 #include "plugins/plugin_loader.h"
 #include "ros/camera_ros.h"

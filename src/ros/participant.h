@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "e2e_cdiff/Heartbeat.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TickAck.h"

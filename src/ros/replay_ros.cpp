@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/bags/replay.h"

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/traffic_simulator_ros.h"
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/lockstep/launched_nodes.h"

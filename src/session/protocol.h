@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/map/route_progress.h"
-#include "e2e_cdiff/metrics/infraction_options.h"
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::session {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "simulation/sumo_conversion.h"
+#include "simulation/sumo_link.h"
 
 namespace cdiff::simulation {
 

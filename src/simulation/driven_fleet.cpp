@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "simulation/sumo_conversion.h"
+#include "simulation/sumo_link.h"
 
 namespace cdiff::simulation {
 

@@ -11,12 +11,11 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/driven_fleet.h"
-#include "simulation/right_of_way.h"
-#include "simulation/sumo_input.h"
+#include "simulation/sumo_link.h"
 #include "simulation/traffic_observer.h"
+#include "simulation/traffic_simulator.h"
 
 namespace cdiff::simulation {
-
 namespace {
 
 // Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest
@@ -25,6 +24,24 @@ constexpr int kUsualSpeedMode = 31;
 constexpr int kDisregardRightOfWay = 23;
 
 }  // namespace
+
+const SimulatedVehicle* findVehicle(const std::vector<SimulatedVehicle>& vehicles,
+                                    const std::string& id) {
+  const auto found = std::lower_bound(
+      vehicles.begin(), vehicles.end(), id,
+      [](const SimulatedVehicle& vehicle, const std::string& key) { return vehicle.id < key; });
+  return found != vehicles.end() && found->id == id ? &*found : nullptr;
+}
+
+traffic::Vehicle asBackground(const SimulatedVehicle& simulated) {
+  traffic::Vehicle vehicle;
+  vehicle.id = simulated.id;
+  vehicle.state = simulated.state;
+  vehicle.dimensions = simulated.dimensions;
+  vehicle.acceleration = simulated.acceleration;
+  vehicle.lane_id = simulated.lane_id;
+  return vehicle;
+}
 
 void SumoOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"binary", "", "Program of SUMO to start."}, binary, {});

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/geometry/pose.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "suite/network_kinds.h"
 
 namespace cdiff::suite {

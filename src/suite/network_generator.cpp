@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/angle.h"
-#include "map/import/netconvert.h"
+#include "map/import/network_import.h"
 #include "suite/network_kinds.h"
 
 namespace cdiff::suite {

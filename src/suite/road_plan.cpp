@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/text.h"
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::suite {
 namespace {

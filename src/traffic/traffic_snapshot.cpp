@@ -3,9 +3,16 @@
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::traffic {
 namespace {
+
+bool within(double value, double low, double high) {
+  return std::isfinite(value) && value >= low && value <= high;
+}
 
 template <class Predicate>
 const Vehicle* findVehicle(const std::vector<Vehicle>& vehicles, Predicate predicate) {
@@ -14,6 +21,26 @@ const Vehicle* findVehicle(const std::vector<Vehicle>& vehicles, Predicate predi
 }
 
 }  // namespace
+
+bool ControlAction::valid() const {
+  return within(throttle, 0.0, 1.0) && within(steer, -1.0, 1.0) && within(brake, 0.0, 1.0);
+}
+
+bool operator==(const ControlAction& left, const ControlAction& right) {
+  return left.throttle == right.throttle && left.steer == right.steer && left.brake == right.brake;
+}
+
+const char* toText(VehicleRole role) {
+  switch (role) {
+    case VehicleRole::kEgo:
+      return "ego";
+    case VehicleRole::kCbv:
+      return "cbv";
+    case VehicleRole::kBackground:
+      break;
+  }
+  return "background";
+}
 
 const char* toText(SessionStatus status) {
   constexpr const char* kTexts[] = {"running",   "completed", "blocked",     "deviated",

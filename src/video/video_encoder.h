@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/guarded_process.h"
+#include "core/process.h"
 
 namespace cdiff::video {
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 

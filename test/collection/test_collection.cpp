@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "collection/collection_loop.h"
-#include "collection/collection_request.h"
-#include "collection/perturbed_planner.h"
+#include "collection/collection_options.h"
 #include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/network_text.h"

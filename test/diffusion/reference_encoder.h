@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diffusion/model.h"
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::diffusion {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/geometry/oriented_box.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::geometry {
 namespace {

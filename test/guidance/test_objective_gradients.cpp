@@ -4,10 +4,9 @@
 
 #include <cmath>
 
-#include "guidance/drivable_area_objective.h"
+#include "guidance/driving_objectives.h"
 #include "guidance/guidance_world.h"
 #include "guidance/objective_registry.h"
-#include "guidance/route_objective.h"
 
 namespace cdiff::guidance {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "planners/course.h"
 #include "planners/pdm_lite/forecasts.h"
-#include "planning/motion_forecast.h"
+#include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planning {
 namespace {

@@ -6,12 +6,12 @@
 #include <set>
 
 #include "collection/collection_loop.h"
-#include "collection/collection_request.h"
+#include "collection/collection_options.h"
 #include "core/file.h"
 #include "diffusion/route_tokens.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "ros/bags/dataset_from_bag.h"
 #include "ros/bags/session_bag_writer.h"
 #include "std_msgs/String.h"

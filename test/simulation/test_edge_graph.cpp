@@ -5,8 +5,8 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "simulation/crossing_world.h"
-#include "simulation/lane_follower.h"
-#include "simulation/sumo_conversion.h"
+#include "simulation/edge_graph.h"
+#include "simulation/sumo_link.h"
 
 namespace cdiff {
 namespace {

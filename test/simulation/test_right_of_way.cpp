@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "simulation/right_of_way.h"
+#include "simulation/traffic_observer.h"
 #include "support/network_text.h"
 
 namespace cdiff::simulation {

@@ -2,12 +2,55 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/guidance/guidance_scene.h"
+#include "e2e_cdiff/map/drivable_area.h"
+#include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::guidance {
+
+/// Another vehicle over the horizon.
+struct OtherMotion {
+  traffic::VehicleState now;
+  traffic::VehicleDimensions dimensions;
+  std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
+};
+
+/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
+/// frame, SI units).
+struct GuidanceScene {
+  traffic::VehicleState
+      state;  ///< state of the planned vehicle, which is the body frame of rollouts
+  traffic::VehicleDimensions dimensions;
+  double target_speed = 8.0;                         ///< v* after the lane's limit [m/s]
+  const map::DrivableArea* drivable_area = nullptr;  ///< never null
+  const map::Route* route = nullptr;                 ///< null: no route
+  double route_arc_length = 0.0;                     ///< arc length of the vehicle on its route [m]
+  /// The vehicle that collision objectives are about (the ego, for a CBV); null: none
+  /// or seek.
+  const OtherMotion* other = nullptr;
+  std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level
+};
+
+/// Map-frame position of a rollout row.
+inline Eigen::Vector2d positionOnMap(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                                     Eigen::Index row) {
+  return scene.state.pose().toMap(
+      {rollout(row, traffic::kRolloutX), rollout(row, traffic::kRolloutY)});
+}
+
+/// Adds a gradient with respect to the map-frame position to a rollout row's x and y.
+inline void addPositionGradient(const GuidanceScene& scene, const Eigen::Vector2d& on_map,
+                                Eigen::Index row, traffic::Rollout& gradient) {
+  const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
+  gradient(row, traffic::kRolloutX) += forward.dot(on_map);
+  gradient(row, traffic::kRolloutY) += geometry::leftNormal(forward).dot(on_map);
+}
 
 /// A guidance objective J(tau^0): what sampling minimizes (paper III-D), with its analytic gradient
 /// with respect to states and actions in metric units.
@@ -25,6 +68,13 @@ class Objective {
   virtual double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
                           traffic::Rollout& gradient) const = 0;
   virtual std::unique_ptr<Objective> clone() const = 0;
+};
+
+/// What is known of a guidance objective before one is made.
+struct ObjectiveDescriptor {
+  std::string name;  ///< in guidance profiles, snake_case
+  std::string help;  ///< one sentence: what a plan does to lower it
+  std::function<std::unique_ptr<Objective>()> make;
 };
 
 }  // namespace cdiff::guidance

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::map {
 

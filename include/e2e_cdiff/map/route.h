@@ -73,4 +73,29 @@ class Route {
 /// without a route to the next.
 Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
 
+/// How far a vehicle has come along a route.
+/// Farthest arc length reached by moving along the route (each update looks into kRouteWindow).
+class RouteProgress {
+ public:
+  /// `route` must outlive the object. 100 % when at least `completion_percent` of the length is
+  /// behind and the position is within `completion_distance` [m] of the end.
+  explicit RouteProgress(const Route& route, double completion_percent = 99.0,
+                         double completion_distance = 10.0);
+  void update(const Eigen::Vector2d& position);
+  /// Farthest arc length so far [m].
+  double arcLength() const { return arc_length_; }
+  /// Route completion, 0 to 100.
+  double percent() const;
+  /// Distance of the last position to the route near the progress made [m].
+  double deviation() const { return deviation_; }
+
+ private:
+  const Route* route_;
+  double completion_percent_;
+  double completion_distance_;
+  double arc_length_ = 0.0;
+  double deviation_ = 0.0;
+  double distance_to_end_ = 0.0;
+};
+
 }  // namespace cdiff::map

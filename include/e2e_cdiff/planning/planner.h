@@ -3,14 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "e2e_cdiff/guidance/guidance_report.h"
+#include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/dynamics/bicycle_model.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::planning {
@@ -75,5 +81,118 @@ class Planner {
   /// Whether its tasks must come with images.
   virtual bool needsImages() const { return false; }
 };
+
+/// Name of the ego's planner where a node of the user's own drives it.
+inline constexpr const char* kExternalPlanner = "external";
+
+/// Options of one planner, whatever their type. In a scenario file they are the group of the
+/// planner's name.
+class PlannerOptions {
+ public:
+  virtual ~PlannerOptions() = default;
+  virtual void describe(core::OptionsVisitor& visitor) = 0;
+  /// Throws InputError for values that contradict each other.
+  virtual void validate() const = 0;
+  virtual std::unique_ptr<PlannerOptions> clone() const = 0;
+};
+
+/// Options held in a struct with `describe` and `validate`.
+template <class Options>
+class PlannerOptionsOf final : public PlannerOptions {
+ public:
+  void describe(core::OptionsVisitor& visitor) override { values.describe(visitor); }
+  void validate() const override { values.validate(); }
+  std::unique_ptr<PlannerOptions> clone() const override {
+    return std::make_unique<PlannerOptionsOf>(*this);
+  }
+  Options values;
+};
+
+/// The options of all planners of a scenario. Copies are deep.
+class PlannerOptionsTable {
+ public:
+  /// A planner's name with a sentence about it, and its options.
+  struct Entry {
+    std::string name;
+    std::string help;
+    std::unique_ptr<PlannerOptions> options;
+  };
+
+  PlannerOptionsTable() = default;
+  explicit PlannerOptionsTable(std::vector<Entry> entries) : entries_(std::move(entries)) {}
+  PlannerOptionsTable(const PlannerOptionsTable& other);
+  PlannerOptionsTable(PlannerOptionsTable&&) noexcept = default;
+  PlannerOptionsTable& operator=(const PlannerOptionsTable& other);
+  PlannerOptionsTable& operator=(PlannerOptionsTable&&) noexcept = default;
+
+  /// The options of type `Options`; several planners may use those of one. Throws std::logic_error
+  /// when no planner has options of this type.
+  template <class Options>
+  Options& of() {
+    for (Entry& entry : entries_) {
+      if (auto* found = dynamic_cast<PlannerOptionsOf<Options>*>(entry.options.get()))
+        return found->values;
+    }
+    throw std::logic_error("no planner is registered with these options");
+  }
+  template <class Options>
+  const Options& of() const {
+    return const_cast<PlannerOptionsTable*>(this)->of<Options>();
+  }
+  /// Visits one group per planner, under its name.
+  void describe(core::OptionsVisitor& visitor);
+  void validate() const;
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// What a planner is made of. References outlive the planner, as those of the context do.
+struct PlannerParts {
+  PlanningContext context;
+  const PlannerOptionsTable& options;
+  const dynamics::BicycleModelOptions& vehicle;
+  const rendering::CameraOptions& camera;     ///< that the vehicle's images come from
+  const guidance::GuidanceOptions& guidance;  ///< of planners that are guided
+  std::string guidance_group = "guidance.";   ///< before its keys in errors
+};
+
+/// The network behind a planner, for the record of a session.
+struct NetworkFacts {
+  std::string model;         ///< shipped name, or folder of its weight files
+  std::string conditioning;  ///< what it is given, in the planner's own words
+  std::string sampling;      ///< how a decision comes from it, likewise
+  std::map<std::string, std::string> instruction_sets;  ///< by key in session.yaml
+};
+
+/// What is known of a planner before one is made: name, roles, needs, options and constructor.
+/// Scenario files, the node graph, reports, tables and error texts read descriptors only.
+/// Everything about a planner but the planner itself.
+struct PlannerDescriptor {
+  std::string name;   ///< in scenario files, snake_case
+  std::string title;  ///< in tables, as its authors write it
+  std::string help;   ///< one sentence
+  bool drives_ego = true;
+  bool drives_cbv = true;
+  std::vector<std::string> cameras;  ///< cameras on its vehicles: none, or "front"
+  bool guided = false;               ///< follows guidance objectives
+  /// Program that runs it for the CBVs in the node graph.
+  std::string cbv_node = "cbv_planner_node";
+  std::function<std::unique_ptr<PlannerOptions>()> options;
+  /// Throws InputError naming the key of an option that it cannot work with.
+  std::function<std::unique_ptr<Planner>(const PlannerParts&)> make;
+  /// Empty where the planner has no network.
+  std::function<NetworkFacts(const PlannerOptionsTable&, const guidance::GuidanceOptions&)> network;
+  /// SHA-256 over the weight files of the network; throws InputError when one cannot be read.
+  std::function<std::string(const PlannerOptionsTable&)> weights_sha256;
+
+  bool sees() const { return !cameras.empty(); }
+};
+
+/// The usual `options` of a descriptor.
+template <class Options>
+std::unique_ptr<PlannerOptions> makePlannerOptions() {
+  return std::make_unique<PlannerOptionsOf<Options>>();
+}
 
 }  // namespace cdiff::planning

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "e2e_cdiff/guidance/objective_descriptor.h"
+#include "e2e_cdiff/guidance/objective.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "e2e_cdiff/planning/planner.h"
 
 namespace cdiff::plugins {
 

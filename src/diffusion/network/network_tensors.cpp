@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Names and shapes of every tensor of the networks, as docs/network.md names them.
 #include "diffusion/network/architecture.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::diffusion {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "diffusion/network/state_head.h"
 
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "inference/unet_layers.h"
 
 namespace cdiff::diffusion {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::diffusion {
 

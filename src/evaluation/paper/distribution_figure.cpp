@@ -3,7 +3,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/csv.h"
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
 #include "metrics/measures/shapiro_wilk.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/csv.h"
 #include "core/text.h"
 #include "planners/registry.h"
 #include "session/method.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/traffic/camera_image.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "learning/samples/dataset.h"
 
 namespace cdiff::learning {

@@ -4,9 +4,46 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cdiff::map {
+
+/// Drops the vehicle classes that SUMO 1.15 does not know from the permissions of a network text;
+/// all other bytes stay.
+struct PermissionRewrite {
+  std::string text;
+  std::vector<std::string>
+      removed;  ///< classes found, in a fixed order; empty when the text is unchanged
+  std::size_t attributes = 0;  ///< attributes that were changed
+};
+
+/// An `allow` that becomes empty turns into disallow="all" (an empty one would allow everything); a
+/// `disallow` that becomes empty goes away.
+PermissionRewrite dropUnknownClasses(std::string_view text);
+
+// Runs netconvert, which ends with us and within its time limit.
+
+/// Name of the environment variable that replaces the limit below [s].
+inline constexpr const char* kNetconvertLimitVariable = "E2E_CDIFF_NETCONVERT_LIMIT";
+/// Wall time that netconvert may take [s].
+inline constexpr double kNetconvertLimit = 120.0;
+
+/// Runs netconvert with these arguments; SUMO_HOME is core::sumoHome(). `subject` names in errors
+/// what is converted ("network 'a.xodr'"). Throws InputError that quotes netconvert, or says that
+/// it took longer than the limit or which signal ended it, and Interrupted when a stop is requested
+/// meanwhile (core/program.h).
+void runNetconvert(const std::vector<std::string>& arguments, const std::string& subject);
+
+// Converts OpenDRIVE and OpenStreetMap files into SUMO network text with SUMO's netconvert and the
+// package's type maps. The text holds no date and no paths.
+
+/// Throws InputError and Interrupted as runNetconvert does.
+std::string convertOpenDrive(const std::filesystem::path& source);
+
+/// Roads for cars, simplified: points that only shape an edge are no junctions, junctions and
+/// lights near each other are one. Throws as above.
+std::string convertOpenStreetMap(const std::filesystem::path& source);
 
 /// Makes any given network usable by SUMO 1.15: drops vehicle classes that it does not know,
 /// converts OpenDRIVE and OpenStreetMap through netconvert, and caches the result by the hash of

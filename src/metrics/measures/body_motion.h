@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/metrics/metric_tick.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

@@ -6,8 +6,7 @@
 #include <set>
 #include <string>
 
-#include "e2e_cdiff/metrics/measure.h"
-#include "e2e_cdiff/metrics/metric_tick.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

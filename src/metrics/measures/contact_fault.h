@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "e2e_cdiff/map/road_network.h"
-#include "e2e_cdiff/metrics/metric_tick.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

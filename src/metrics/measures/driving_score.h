@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "e2e_cdiff/map/road_network.h"
-#include "e2e_cdiff/metrics/infraction_options.h"
+#include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "e2e_cdiff/geometry/oriented_box.h"
+#include "e2e_cdiff/geometry/shapes.h"
 
 namespace cdiff::metrics {
 

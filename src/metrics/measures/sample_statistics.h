@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "e2e_cdiff/metrics/measure.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

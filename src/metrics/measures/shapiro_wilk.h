@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/metrics/measure.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

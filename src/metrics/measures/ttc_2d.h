@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "e2e_cdiff/geometry/oriented_box.h"
-#include "e2e_cdiff/metrics/metric_tick.h"
+#include "e2e_cdiff/geometry/shapes.h"
+#include "e2e_cdiff/metrics/metric.h"
 
 namespace cdiff::metrics {
 

@@ -8,7 +8,6 @@
 #include "diffusion/route_tokens.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
-#include "planning/motion_forecast.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {

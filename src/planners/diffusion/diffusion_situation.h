@@ -7,7 +7,6 @@
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "guidance/total_objective.h"
 #include "planners/diffusion/diffusion_planner.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diffusion/sampler.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "guidance/total_objective.h"
 
 namespace cdiff::planners {

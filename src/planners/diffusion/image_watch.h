@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::planners {

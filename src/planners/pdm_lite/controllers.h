@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "e2e_cdiff/geometry/pose.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 
 namespace cdiff::planners {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "planners/pdm_lite/controllers.h"
-#include "planning/motion_forecast.h"
+#include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
 namespace {

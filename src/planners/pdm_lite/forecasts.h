@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "e2e_cdiff/geometry/oriented_box.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/controllers.h"
 #include "planning/route_follower.h"

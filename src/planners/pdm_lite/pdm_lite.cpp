@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "dynamics/action_rollout.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/route_rules.h"
-#include "planning/motion_forecast.h"
+#include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
 namespace {

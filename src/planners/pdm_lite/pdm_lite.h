@@ -19,8 +19,8 @@ namespace cdiff::planners {
 /// the vehicle meets that of another; then PID steering and pedals.
 ///
 /// Where it differs from the published program:
-///  - Cars of SUMO are forecast along their lanes (motion_forecast.h); lights that are switched off
-///    do not stop it; the speed limit is anticipated (route_rules.h).
+///  - Cars of SUMO are forecast along their lanes (surrounding_vehicles.h); lights that are
+///    switched off do not stop it; the speed limit is anticipated (route_rules.h).
 ///  - In the last 5 m of the route it brakes evenly so as to stand 1 m beyond the end; slower than
 ///    1 m/s it creeps to the end first.
 ///  - "Standing for 170 ticks -> full throttle" is kept as 8.5 s, whatever the decision period.

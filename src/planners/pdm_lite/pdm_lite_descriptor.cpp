@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/pdm_lite.h"
 
 namespace cdiff::planners {

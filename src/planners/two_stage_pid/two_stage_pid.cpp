@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "e2e_cdiff/planning/planner.h"
 #include "planners/diffusion/diffusion_descriptor.h"
 
 namespace cdiff::planners {

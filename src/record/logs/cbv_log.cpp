@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cbv/held_cbv.h"
+#include "cbv/cbv_selector.h"
 #include "record/logs/front_view_log.h"
 
 namespace cdiff::record {

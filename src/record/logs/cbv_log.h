@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "e2e_cdiff/cbv/cbv_selection.h"
-#include "e2e_cdiff/geometry/polyline.h"
+#include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "session/session_observer.h"
 

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::record {
 namespace {

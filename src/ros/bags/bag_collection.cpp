@@ -6,7 +6,7 @@
 #include <set>
 
 #include "collection/collection_loop.h"
-#include "collection/collection_request.h"
+#include "collection/collection_options.h"
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/driving_sample.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "collection/collection_request.h"
+#include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
 
 namespace cdiff::ros {

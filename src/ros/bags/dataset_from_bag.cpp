@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collection/session_samples.h"
+#include "collection/training_samples.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/exit_code.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "page/result_writer.h"

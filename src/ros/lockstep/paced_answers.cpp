@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/DecidedVehicle.h"
-#include "e2e_cdiff/traffic/rollout.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/topics.h"
 

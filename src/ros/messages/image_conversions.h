@@ -6,7 +6,7 @@
 #include <string>
 
 #include "e2e_cdiff/rendering/camera_options.h"
-#include "e2e_cdiff/traffic/camera_image.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"
 

@@ -6,7 +6,7 @@
 
 #include "planners/course.h"
 #include "planners/diffusion/diffusion_planner.h"
-#include "planning/motion_forecast.h"
+#include "planning/surrounding_vehicles.h"
 #include "rendering/front_camera.h"
 
 namespace cdiff::planners {

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/map/route_progress.h"
+#include "e2e_cdiff/map/route.h"
 #include "map/lane_graph.h"
 #include "planners/course.h"
 #include "support/real_data.h"

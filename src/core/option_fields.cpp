@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "core/option_fields.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/options.h"
+
+namespace cdiff::core::detail {
+namespace {
+
+/// Collects the full path of every leaf and group.
+class PathVisitor : public OptionsVisitor {
+ public:
+  void number(const FieldInfo& info, double&, double, double) override { add(info); }
+  void integer(const FieldInfo& info, std::int64_t&, std::int64_t, std::int64_t) override {
+    add(info);
+  }
+  void flag(const FieldInfo& info, bool&) override { add(info); }
+  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override {
+    add(info);
+  }
+  void list(const FieldInfo& info, std::vector<std::string>&) override { add(info); }
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>&) override { add(info); }
+  bool enter(const FieldInfo& info) override {
+    add(info);
+    prefixes_.push_back(prefix() + info.key + ".");
+    return true;
+  }
+  void leave() override { prefixes_.pop_back(); }
+
+  const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+  std::string prefix() const { return prefixes_.empty() ? "" : prefixes_.back(); }
+  void add(const FieldInfo& info) { paths_.push_back(prefix() + info.key); }
+  std::vector<std::string> prefixes_;
+  std::vector<std::string> paths_;
+};
+
+std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+std::string yamlQuoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
+/// Writes the fields as indented YAML.
+class DumpVisitor : public OptionsVisitor {
+ public:
+  explicit DumpVisitor(bool with_comments) : with_comments_(with_comments) {}
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    line(info, formatNumber(value), rangeText(minimum, maximum, info.unit));
+  }
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    line(info, std::to_string(value), rangeText(minimum, maximum, info.unit));
+  }
+  void flag(const FieldInfo& info, bool& value) override {
+    line(info, value ? "true" : "false", "true | false");
+  }
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    line(info, yamlQuoted(value), joinText(choices, " | "));
+  }
+  void list(const FieldInfo& info, std::vector<std::string>& value) override {
+    std::vector<std::string> items;
+    for (const std::string& item : value) items.push_back(yamlQuoted(item));
+    line(info, "[" + joinText(items, ", ") + "]", "");
+  }
+  void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) override {
+    std::vector<std::string> items;
+    for (const Eigen::Vector3d& item : value) {
+      items.push_back("[" + formatNumber(item.x()) + ", " + formatNumber(item.y()) + ", " +
+                      formatNumber(item.z()) + "]");
+    }
+    line(info, "[" + joinText(items, ", ") + "]", info.unit);
+  }
+  bool enter(const FieldInfo& info) override {
+    comment(info, "");
+    text_ += indent_ + info.key + ":\n";
+    indent_ += "  ";
+    return true;
+  }
+  void leave() override { indent_.resize(indent_.size() - 2); }
+
+  const std::string& written() const { return text_; }
+
+ private:
+  void comment(const FieldInfo& info, const std::string& range) {
+    if (!with_comments_) return;
+    text_ += indent_ + "# " + info.text + (range.empty() ? "" : " " + range) + "\n";
+  }
+  void line(const FieldInfo& info, const std::string& value, const std::string& range) {
+    comment(info, range);
+    text_ += indent_ + info.key + ": " + value + "\n";
+  }
+
+  bool with_comments_;
+  std::string indent_;
+  std::string text_;
+};
+
+class RangeVisitor : public OptionsVisitor {
+ public:
+  explicit RangeVisitor(const std::string& subject) : subject_(subject) {}
+
+  void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
+    if (value >= minimum && value <= maximum) return;
+    fail(info, formatNumber(value), "a number in " + rangeText(minimum, maximum, info.unit));
+  }
+  void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
+               std::int64_t maximum) override {
+    if (value >= minimum && value <= maximum) return;
+    fail(info, std::to_string(value),
+         "a whole number in " + rangeText(minimum, maximum, info.unit));
+  }
+  void text(const FieldInfo& info, std::string& value,
+            const std::vector<std::string>& choices) override {
+    const bool known = std::find(choices.begin(), choices.end(), value) != choices.end();
+    if (!known && !choices.empty())
+      fail(info, "'" + value + "'", "one of {" + joinText(choices, ", ") + "}");
+  }
+  void flag(const FieldInfo&, bool&) override {}
+  void list(const FieldInfo&, std::vector<std::string>&) override {}
+  void points(const FieldInfo&, std::vector<Eigen::Vector3d>&) override {}
+  bool enter(const FieldInfo& info) override {
+    groups_.emplace_back(info.key);
+    return true;
+  }
+  void leave() override { groups_.pop_back(); }
+
+ private:
+  [[noreturn]] void fail(const FieldInfo& info, const std::string& value,
+                         const std::string& expected) const {
+    std::vector<std::string> path = groups_;
+    path.emplace_back(info.key);
+    throw InputError(subject_ + " option '" + joinText(path, ".") + "' is " + value +
+                     "; expected " + expected);
+  }
+
+  const std::string& subject_;
+  std::vector<std::string> groups_;
+};
+
+}  // namespace
+
+std::string resolvePath(const std::string& key, const std::string& source, void* options,
+                        Describe describe) {
+  PathVisitor visitor;
+  describe(options, visitor);
+  const std::vector<std::string>& paths = visitor.paths();
+  if (std::find(paths.begin(), paths.end(), key) != paths.end()) return key;
+  std::vector<std::string> matches;
+  for (const std::string& path : paths) {
+    if (lastPart(path) == key) matches.push_back(path);
+  }
+  if (matches.size() == 1) return matches.front();
+  if (matches.size() > 1) {
+    throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
+                     joinText(matches, ", ") + "}");
+  }
+  throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
+                   nearestName(key, paths) + "'");
+}
+
+std::string rangeText(double low, double high, const char* unit) {
+  const auto plain = [](double value) {
+    constexpr double kMostDigits = 1e15;
+    const bool whole = value == std::floor(value) && std::abs(value) < kMostDigits;
+    return whole ? formatFixed(value, 0) : formatNumber(value);
+  };
+  const std::string range = "[" + plain(low) + ", " + plain(high) + "]";
+  return unit[0] == '\0' ? range : range + " " + unit;
+}
+
+std::string dump(void* options, Describe describe, bool with_comments) {
+  DumpVisitor visitor(with_comments);
+  describe(options, visitor);
+  return visitor.written();
+}
+
+void requireRanges(void* options, Describe describe, const std::string& subject) {
+  RangeVisitor visitor(subject);
+  describe(options, visitor);
+}
+
+}  // namespace cdiff::core::detail
