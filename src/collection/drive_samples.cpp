@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "collection/sample_kinds.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/pdm_lite_options.h"

@@ -8,7 +8,7 @@
 
 #include "collection/offset_samples.h"
 #include "collection/sample_kinds.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "core/text.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "learning/samples/sample_order.h"
 #include "page/assets.h"
 #include "page/page_parts.h"

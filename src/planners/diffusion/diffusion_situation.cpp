@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 #include "planning/motion_forecast.h"
