@@ -6,7 +6,7 @@
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/build_info.h"
+#include "record/session_yaml.h"
 
 namespace cdiff::cli {
 namespace {

@@ -80,4 +80,45 @@ std::size_t lateAnswers(const std::map<std::string, LateCounts>& counts);
 /// "342 of 802 answers came late or never and were replaced; ..." ; empty when none did.
 std::string latenessText(const std::map<std::string, LateCounts>& counts);
 
+/// One objective at one decision of one vehicle.
+struct GuidanceSample {
+  double time = 0.0;  ///< [s]
+  std::string vehicle_id;
+  guidance::ObjectiveReport report;
+};
+
+/// One objective over the session.
+struct GuidanceSeries {
+  std::string objective;
+  std::vector<GuidanceSample> samples;
+};
+
+/// Over the decisions in which the objective was active.
+struct ObjectiveSummary {
+  std::optional<double> weight;  ///< weight at the last decision
+  // Means; values that are not finite are left out.
+  std::optional<double> value;
+  std::optional<double> gradient_norm;
+  std::optional<double> capped_share;
+  std::int64_t dropped = 0;  ///< denoising steps, over all decisions
+  std::size_t n = 0;         ///< decisions
+};
+
+/// What guidance did to the plans of CBVs: every objective's report at every decision.
+class GuidanceLog {
+ public:
+  void observe(const session::TickRecord& record);
+  /// In the order in which objectives appeared first.
+  const std::vector<GuidanceSeries>& series() const { return series_; }
+  /// Share of guided steps in which the trust region acted, over decisions with guidance.
+  SampleSummary trustRegion() const { return summaryOf(trust_region_shares_); }
+
+ private:
+  GuidanceSeries& seriesOf(const std::string& objective);
+  std::vector<GuidanceSeries> series_;
+  std::vector<double> trust_region_shares_;
+};
+
+ObjectiveSummary summaryOf(const GuidanceSeries& series);
+
 }  // namespace cdiff::record
