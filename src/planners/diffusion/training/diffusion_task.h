@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "learning/task.h"
-#include "learning/task_registry.h"
 #include "planners/diffusion/training/diffusion_stages.h"
 #include "planners/diffusion/training/training_settings.h"
 
