@@ -6,7 +6,7 @@
 
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/controllers.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planning/route_follower.h"
 

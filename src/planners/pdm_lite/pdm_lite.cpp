@@ -9,7 +9,6 @@
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/traffic/rollout.h"
-#include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/route_rules.h"
 #include "planning/motion_forecast.h"

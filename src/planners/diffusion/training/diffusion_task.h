@@ -8,7 +8,6 @@
 
 #include "learning/task.h"
 #include "planners/diffusion/training/diffusion_stages.h"
-#include "planners/diffusion/training/training_settings.h"
 
 namespace cdiff::planners {
 

@@ -6,8 +6,17 @@
 #include "diffusion/normalizer.h"
 #include "learning/samples/driving_sample.h"
 #include "learning/training_options.h"
+#include "planners/diffusion/training/diffusion_stages.h"
 
 namespace cdiff::planners {
+
+// Features of all samples by the present encoder, kept in files so that an interrupted run goes
+// on.
+
+/// Reads or computes them; kFeatureFile in the output folder. Throws core::Interrupted after
+/// saving what there is.
+FeatureCache computeFeatures(const TrainingState& state);
+inline constexpr const char* kFeatureFile = "features.cache";
 
 // The normalizer of a data set.
 
