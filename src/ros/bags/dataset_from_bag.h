@@ -2,9 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <atomic>
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "collection/collection_request.h"
+#include "collection/dataset_statistics.h"
 #include "collection/drive_samples.h"
 #include "collection/session_samples.h"
 
@@ -29,5 +33,24 @@ std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path&
 std::vector<learning::DrivingSample> samplesFromDrivingBag(
     const std::filesystem::path& bag, const collection::DriveOptions& drive_options,
     const collection::DatasetOptions& options, collection::DatasetStatistics& statistics);
+
+// Collecting data through bags: a session is driven and recorded, or bags of others are taken, and
+// each bag becomes a shard of samples in the data set's folder.
+
+/// Drives the session and writes its bag, and, where it has images, its shard and statistics. A
+/// session without samples leaves no shard, and is driven again when it is asked for again. Throws
+/// core::Interrupted after `stop`, SimulatorError for a session that ends with an error.
+void collectSession(const collection::CollectRequest& request, const std::atomic<bool>& stop);
+
+/// Bags of drives that someone else recorded.
+struct BagRequest {
+  std::vector<std::string> bags;
+  std::string topics;             ///< YAML file: collection::DriveOptions
+  std::filesystem::path results;  ///< folder of the data set
+};
+
+/// Writes shards/NAME.shard for each bag and returns what is in each, by NAME. Throws InputError,
+/// also for two bags of one name; shards written before stay.
+collection::StatisticsByName collectBags(const BagRequest& request);
 
 }  // namespace cdiff::ros

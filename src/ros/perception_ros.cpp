@@ -1,13 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "ros/camera_ros.h"
+#include "ros/perception_ros.h"
 
+#include "ros/messages/channel_conversions.h"
 #include "ros/messages/conversions.h"
-#include "ros/messages/image_conversions.h"
 #include "ros/messages/message_checks.h"
 #include "ros/session_graph.h"
 
 namespace cdiff::ros {
+
+void CbvIdentificationRos::startSession(const msgs::SessionInfo& info) {
+  options_ = optionsFromMsg(info).cbv;
+  network_.emplace(map::RoadNetwork::fromText(info.network_text, info.network_source));
+  graph_.emplace(*network_);
+  selections_ = advertise<msgs::CbvSelection>(ChannelId::kSelection);
+  listen<nav_msgs::Path>(ChannelId::kEgoRoute,
+                         [this](const nav_msgs::PathConstPtr& path) { takeRoute(*path); });
+}
+
+void CbvIdentificationRos::takeRoute(const nav_msgs::Path& path) {
+  if (selector_ || path.poses.empty())
+    return;  // an empty path means "no route"; the session's route never changes
+  ego_route_ = map::matchRoute(*network_, fromMsg(path));
+  selector_ = std::make_unique<cbv::CbvSelector>(options_, graph().max_cbv, *graph_, ego_route_);
+}
+
+std::string CbvIdentificationRos::waitingFor() const {
+  return selector_ ? "" : "no ego route has come yet";
+}
+
+bool CbvIdentificationRos::handle(const Snapshot& message, bool) {
+  const traffic::TrafficSnapshot snapshot = fromMsg(*message);
+  if (snapshot.decision_tick) {
+    selections_.publish(boost::make_shared<const msgs::CbvSelection>(
+        toMsg(selector_->update(snapshot), snapshot.time, *network_)));
+  } else {
+    selector_->observe(snapshot);
+  }
+  return true;
+}
+
 namespace {
 
 constexpr std::uint32_t kQueueSize = 1000;

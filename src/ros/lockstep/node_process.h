@@ -4,12 +4,43 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
+#include "ros/callback_queue.h"
+#include "ros/ros.h"
+
 namespace cdiff::ros {
+
+/// SIGINT, SIGTERM and SIGHUP without a handler: they are blocked from here on, in every thread
+/// made later, and asked for when it suits. So a session can end in order, whatever it is doing.
+class StopSignal {
+ public:
+  /// Make it before any other thread exists, hence before ros::init.
+  StopSignal();
+  /// Whether one of them has arrived, now or before.
+  bool raised();
+
+ private:
+  bool raised_ = false;
+};
+
+// Wall-clock helpers of the traffic simulator's single thread.
+
+/// [s] of wall time between looks at signals and limits.
+constexpr double kSpinPeriod = 0.05;
+
+inline double secondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Handles what has arrived; waits at most `seconds` for it.
+inline void spin(double seconds) {
+  ::ros::getGlobalCallbackQueue()->callAvailable(::ros::WallDuration(seconds));
+}
 
 // The other nodes of a session as processes: those that the same roslaunch has started on this
 // machine, and the command line it was given. Read from /proc; where a node was started otherwise

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "ros/lockstep/launched_nodes.h"
+#include "ros/lockstep/node_process.h"
 
+#include <pthread.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,10 +15,34 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::ros {
+namespace {
+
+sigset_t stopSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : core::stopSignals()) sigaddset(&signals, signal);
+  return signals;
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  const sigset_t signals = stopSignals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+bool StopSignal::raised() {
+  const sigset_t signals = stopSignals();
+  const timespec at_once{0, 0};
+  if (sigtimedwait(&signals, nullptr, &at_once) > 0) raised_ = true;
+  return raised_;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
