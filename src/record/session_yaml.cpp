@@ -77,9 +77,6 @@ std::string instructionSet() {
 #endif
 }
 
-}  // namespace cdiff::record
-
-namespace cdiff::record {
 namespace {
 
 std::string quoted(const std::string& text) {
