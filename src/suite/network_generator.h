@@ -153,7 +153,7 @@ struct NetworkSpec {
 
 RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws);
 
-// The kinds of networks, a file each, and the roads that lead to a junction.
+// The kinds of networks, and the roads that lead to a junction.
 
 /// Width of every lane [m], as networks/netconvert.netccfg has it.
 inline constexpr double kLaneWidth = 3.5;
