@@ -15,7 +15,7 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/bags/bag_collection.h"
+#include "ros/bags/dataset_from_bag.h"
 #include "suite/suite.h"
 
 namespace cdiff::cli {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "core/program.h"
 
@@ -24,5 +25,9 @@ void addSuiteCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.
 void addReplayCommand(CLI::App& program, int& exit_code);
 void addCollectCommand(CLI::App& program, int& exit_code);
+
+/// Writes the page of a training, `training.html`, from the curves.csv and the model card of its
+/// output folder, and returns where. Throws InputError when the folder holds no training.
+std::filesystem::path writeTrainingPage(const std::filesystem::path& folder);
 
 }  // namespace cdiff::cli

@@ -47,8 +47,6 @@ void Progress::observe(const session::TickRecord& record) {
   std::cerr.flush();
 }
 
-using Clock = std::chrono::steady_clock;
-
 BatchProgress::BatchProgress(std::size_t total)
     : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/training_page.h"
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison.h"
 #include "evaluation/matrix.h"
+#include "page/training_report.h"
 
 namespace cdiff::cli {
 namespace {
@@ -98,6 +98,23 @@ int report(const ReportArguments& arguments) {
 }
 
 }  // namespace
+
+fs::path writeTrainingPage(const fs::path& folder) {
+  const fs::path curves = folder / "curves.csv";
+  if (!core::isFile(curves)) {
+    throw InputError("'" + folder.string() +
+                     "' is no output folder of `cdiff train`: it has no curves.csv");
+  }
+  const fs::path card = folder / "model_card.md";
+  const auto stages =
+      page::readTrainingCurves(core::readFile(curves, "training curves"), curves.string());
+  const fs::path page = folder / "training.html";
+  const std::string title = fs::weakly_canonical(folder).filename().string();
+  core::writeFileAtomically(
+      page, page::trainingReport(title, stages,
+                                 fs::exists(card) ? core::readFile(card, "model card") : ""));
+  return page;
+}
 
 void addReportCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();

@@ -1,17 +1,217 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <atomic>
+#include <chrono>
 #include <filesystem>
+#include <functional>
+#include <iostream>
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/run_session.h"
+#include "cli/progress.h"
+#include "core/program.h"
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "page/result_writer.h"
+#include "record/result_folder.h"
+#include "record/session_text.h"
+#include "session/closed_loop.h"
 #include "session/session_request.h"
+#include "video/session_video.h"
+#ifdef E2E_CDIFF_WITH_ROS
+#include "ros/bags/session_bag_writer.h"
+#endif
 
 namespace cdiff::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+// One session in this process: closed loop, result folder, progress, and what a signal or a lost
+// simulator does to them.
+
+/// Where the results go, and how much is printed.
+struct RunOutput {
+  fs::path folder;
+  bool quiet = false;      ///< no progress line, no table
+  bool record = false;     ///< also write session.bag; InputError where built without ROS
+  bool overwrite = false;  ///< what an earlier session left in the folder is removed
+};
+
+bool isJudged(int exit_code) {
+  return exit_code == ExitCode::kPassed || exit_code == ExitCode::kVerdictFailed;
+}
+
+/// The record of a session that never began.
+void recordFailedStart(page::ResultWriter& writer, const std::string& text) {
+  traffic::TrafficSnapshot snapshot;
+  snapshot.status = traffic::SessionStatus::kError;
+  snapshot.faults.push_back({0, "simulator", text});
+  session::TickRecord record;
+  record.snapshot = &snapshot;
+  writer.observe(record);
+}
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// session.bag of a session that is to be recorded; without ROS there are no bags. One that cannot
+/// be written is removed, and the session goes on.
+class BagRecording : public session::SessionObserver {
+ public:
+  BagRecording(const session::SessionSetup& setup, const RunOutput& output,
+               session::ClosedLoop& loop) {
+    if (!output.record) return;
+#ifdef E2E_CDIFF_WITH_ROS
+    const ros::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
+    attempt([&] {
+      bag_ = std::make_unique<ros::SessionBagWriter>(setup, output.folder / "session.bag", origin);
+    });
+    loop.addObserver(*this);
+#else
+    (void)setup, (void)loop;
+    throw core::InputError("--record needs a build with ROS (E2E_CDIFF_ROS=ON)");
+#endif
+  }
+#ifdef E2E_CDIFF_WITH_ROS
+  void observe(const session::TickRecord& record) override {
+    if (bag_) attempt([&] { bag_->observe(record); });
+  }
+#else
+  void observe(const session::TickRecord&) override {}
+#endif
+  /// Why the bag that was asked for is not there; empty when it is.
+  const std::string& finish() {
+#ifdef E2E_CDIFF_WITH_ROS
+    if (bag_) attempt([&] { bag_->finish(); });
+#endif
+    return error_;
+  }
+  /// Removes what was recorded.
+  void discard() {
+#ifdef E2E_CDIFF_WITH_ROS
+    if (bag_) bag_->discard();
+    bag_.reset();
+#endif
+  }
+
+ private:
+#ifdef E2E_CDIFF_WITH_ROS
+  void attempt(const std::function<void()>& writing) {
+    try {
+      writing();
+    } catch (const std::exception& error) {
+      std::cerr << "cdiff: " << error.what() << "; the other results are not affected\n";
+      error_ = error.what();
+      bag_.reset();
+    }
+  }
+  std::unique_ptr<ros::SessionBagWriter> bag_;
+#endif
+  std::string error_;
+};
+
+/// session.mp4 of a session that asks for it.
+class VideoRecord {
+ public:
+  VideoRecord(const session::SessionSetup& setup, const fs::path& folder,
+              session::ClosedLoop& loop) {
+    if (!setup.options().video) return;
+    video_ = std::make_unique<video::SessionVideo>(setup, folder);
+    loop.addObserver(*video_);
+    reportError();
+  }
+  /// Removes the part of it that was written.
+  void discard() { video_.reset(); }
+  /// `exit_code` of the session, or that of an error at run time when its video is missing.
+  int finish(const page::ResultWriter& writer, int exit_code) {
+    if (!video_) return exit_code;
+    video_->finish(writer.result());
+    reportError();
+    return reported_ && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
+  }
+
+ private:
+  void reportError() {
+    if (reported_ || video_->error().empty()) return;
+    std::cerr << "cdiff: " << video_->error() << "; the other results are not affected\n";
+    reported_ = true;
+  }
+  std::unique_ptr<video::SessionVideo> video_;
+  bool reported_ = false;
+};
+
+/// The session's table, and what it was asked to record.
+void printTable(const page::ResultWriter& writer, const RunOutput& output) {
+  if (output.quiet) return;
+  std::cout << writer.table() << record::fileRow("bag", output.folder / "session.bag")
+            << record::fileRow("video", output.folder / video::kVideoFile) << std::flush;
+}
+
+void finishResult(page::ResultWriter& writer, double wall_seconds) {
+  try {
+    writer.finish(wall_seconds);
+  } catch (const core::InputError& error) {
+    throw core::Error(error.what());  // no fault of the input: the folder could be written before
+  }
+  if (!writer.failure().empty()) std::cerr << "cdiff: " << writer.failure() << "\n";
+}
+
+/// Runs the session and records it; an exit code.
+int drive(const session::SessionSetup& setup, const RunOutput& output, session::ClosedLoop& loop,
+          const std::atomic<bool>& stop, Clock::time_point begin) {
+  const session::ScenarioOptions& options = setup.options();
+  page::ResultWriter writer(setup, {"cdiff run", loop.world().simulatorVersion(), true},
+                            output.folder);
+  Progress progress(session::longestTime(options.protocol, setup.egoRoute()));
+  loop.addObserver(writer);
+  if (!output.quiet) loop.addObserver(progress);
+  BagRecording bag(setup, output, loop);
+  VideoRecord video(setup, output.folder, loop);
+  try {
+    loop.run(stop);
+  } catch (const std::exception&) {
+    if (writer.failure().empty()) throw;
+    bag.discard();
+    video.discard();
+  }
+  const std::string& bag_error = bag.finish();
+  if (!bag_error.empty()) writer.recordFault({0, "recorder", bag_error});
+  finishResult(writer, secondsSince(begin));
+  const int exit_code = video.finish(writer, writer.exitCode());
+  printTable(writer, output);
+  return !bag_error.empty() && isJudged(exit_code) ? ExitCode::kRunTimeError : exit_code;
+}
+
+/// Runs to the end and answers the exit code. SIGINT, SIGTERM and SIGHUP end the session as
+/// interrupted. Throws InputError for a scenario that cannot be set up or that SUMO refuses, and
+/// for a folder that is in use or holds an earlier result (nothing in it is touched then); a
+/// simulator that cannot start or is lost gives a result folder with status error.
+int runSession(const session::ScenarioOptions& options, const RunOutput& output) {
+  const std::atomic<bool>& stop = core::catchStopSignals();
+  record::requireFreeFolder(output.folder, output.overwrite);
+  const session::SessionSetup setup(options);
+  const Clock::time_point begin = Clock::now();
+  const auto claim = [&] {
+    return record::ResultFolder(output.folder, "cdiff run", output.overwrite);
+  };
+  std::unique_ptr<session::ClosedLoop> loop;
+  try {
+    loop = std::make_unique<session::ClosedLoop>(setup);
+  } catch (const core::SimulatorError& error) {
+    const record::ResultFolder folder = claim();
+    page::ResultWriter writer(setup, {"cdiff run", "unknown", true}, output.folder);
+    recordFailedStart(writer, error.what());
+    std::cerr << "cdiff: " << error.what() << "\n";
+    writer.finish(secondsSince(begin));
+    printTable(writer, output);
+    return writer.exitCode();
+  }
+  const record::ResultFolder folder = claim();
+  return drive(setup, output, *loop, stop, begin);
+}
 
 struct RunArguments {
   session::SessionRequest request;

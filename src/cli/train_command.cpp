@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/training_page.h"
 #include "core/process.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "collection/training_samples.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/controllers.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planning/route_follower.h"
 

@@ -6,7 +6,7 @@
 
 #include "collection/dataset_statistics.h"
 #include "collection/training_samples.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"

@@ -2,9 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "diffusion/network/architecture.h"
+#include "diffusion/normalizer.h"
+#include "dynamics/action_rollout.h"
 
 namespace cdiff::diffusion {
 
@@ -34,6 +37,46 @@ class Denoiser {
   /// action_gradient [B, T, 3] = (d states / d actions)^T state_gradient [B, T, 4], at the last
   /// predictStates.
   virtual void pullBackStates(const float* state_gradient, float* action_gradient) = 0;
+};
+
+/// States from actions: the learned state head (paper) or the exact rollout of the vehicle
+/// dynamics, with the vector-Jacobian product of each. Normalized, float32, [B, T, .] row-major.
+class StateBranch {
+ public:
+  virtual ~StateBranch() = default;
+  /// states [B, T, 4] of actions [B, T, 3] at diffusion step k.
+  virtual void predict(const float* actions, int k, float* states) = 0;
+  /// action_gradient [B, T, 3] = (d states / d actions)^T state_gradient [B, T, 4], at the last
+  /// predict.
+  virtual void pullBack(const float* state_gradient, float* action_gradient) = 0;
+};
+
+/// The denoiser's state head.
+class LearnedStateBranch : public StateBranch {
+ public:
+  explicit LearnedStateBranch(Denoiser& denoiser) : denoiser_(denoiser) {}
+  void predict(const float* actions, int k, float* states) override;
+  void pullBack(const float* state_gradient, float* action_gradient) override;
+
+ private:
+  Denoiser& denoiser_;
+};
+
+/// States of the actions as they are executed (dynamics::makeExecutable) by ActionRollout through
+/// the normalizer; `speeds` [m/s] of the batch. The gradient is that of the rollout without the
+/// choice of a pedal (straight-through): also the pedal that does not act yet can be moved.
+class ExactStateBranch : public StateBranch {
+ public:
+  ExactStateBranch(const dynamics::BicycleModelOptions& vehicle, const Normalizer& normalizer,
+                   std::vector<double> speeds);
+  void predict(const float* actions, int k, float* states) override;
+  void pullBack(const float* state_gradient, float* action_gradient) override;
+
+ private:
+  dynamics::ActionRollout rollout_;
+  const Normalizer& normalizer_;
+  std::vector<double> speeds_;
+  std::vector<traffic::Rollout> last_;
 };
 
 }  // namespace cdiff::diffusion

@@ -9,7 +9,6 @@
 #include "diffusion/denoiser.h"
 #include "diffusion/noise_schedule.h"
 #include "diffusion/normalizer.h"
-#include "diffusion/state_branch.h"
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/core/random.h"
 

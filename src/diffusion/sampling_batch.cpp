@@ -85,8 +85,6 @@ const std::vector<float>& SamplingBatch::noisyGradient(Denoiser& denoiser, State
 
 namespace {
 
-using traffic::kActionColumns;
-
 /// Descent of one sample, in u.
 struct Descent {
   std::vector<float> center;  ///< x_hat

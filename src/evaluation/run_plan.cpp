@@ -17,7 +17,6 @@
 #include "map/import/network_import.h"
 #include "planners/registry.h"
 #include "session/closed_loop.h"
-#include "session/method.h"
 #include "session/session_request.h"
 
 namespace cdiff::evaluation {

@@ -12,8 +12,7 @@
 
 #include <immintrin.h>
 
-#include "inference/convolution_kernel.h"
-#include "inference/normalization_kernel.h"
+#include "inference/kernel_templates.h"
 
 namespace cdiff::inference {
 namespace {

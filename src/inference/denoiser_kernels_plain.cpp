@@ -2,8 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels for any CPU, on the compiler's generic vectors; a multiplication and an addition
 /// take the place of the fused ones.
-#include "inference/convolution_kernel.h"
-#include "inference/normalization_kernel.h"
+#include "inference/kernel_templates.h"
 
 namespace cdiff::inference {
 namespace {

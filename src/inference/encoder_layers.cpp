@@ -139,7 +139,6 @@ void EncoderNorm::applyBlock(float* map, const float* residual, const float* sca
 
 namespace {
 
-using Tag = dnnl::memory::format_tag;
 constexpr auto kFloat = dnnl::memory::data_type::f32;
 
 std::int64_t outputSide(std::int64_t side, std::int64_t kernel, const ConvolutionOptions& options) {

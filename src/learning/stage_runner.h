@@ -9,7 +9,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/curve_log.h"
-#include "learning/optimizer.h"
+#include "learning/parameters.h"
 #include "learning/task.h"
 #include "learning/training_folder.h"
 #include "learning/training_options.h"

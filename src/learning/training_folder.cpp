@@ -8,7 +8,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/samples/field_bytes.h"
+#include "learning/samples/field.h"
 
 namespace cdiff::learning {
 namespace {
@@ -80,8 +80,6 @@ Checkpoint readCheckpoint(const fs::path& path) {
 
 namespace {
 
-namespace fs = std::filesystem;
-using core::InputError;
 using Names = std::vector<std::string>;
 
 /// What every task leaves, beside its own files.

@@ -10,7 +10,7 @@
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 
 namespace cdiff::page {
 namespace {

@@ -11,7 +11,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "page/page_parts.h"
 #include "page/pictures/top_view.h"
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 
 namespace cdiff::page {
 namespace {

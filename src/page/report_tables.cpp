@@ -8,8 +8,8 @@
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "page/page_parts.h"
-#include "record/build_info.h"
 #include "record/session_text.h"
+#include "record/session_yaml.h"
 #include "record/summary.h"
 
 namespace cdiff::page {

@@ -12,10 +12,10 @@
 #include "page/html_report.h"
 #include "record/junit.h"
 #include "record/logs/plan_log.h"
+#include "record/result_folder.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"
 #include "record/summary.h"
-#include "record/trace_file.h"
 
 namespace cdiff::page {
 namespace {

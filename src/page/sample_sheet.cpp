@@ -5,12 +5,12 @@
 #include <map>
 
 #include "core/text.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "learning/samples/sample_order.h"
 #include "page/assets.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 
 namespace cdiff::page {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include "learning/task_registry.h"
+#include "learning/task.h"
 
 namespace cdiff::planners {
 

@@ -2,13 +2,154 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/result_folder.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
+#include <string_view>
 #include <utility>
 
+#include "core/text.h"
 #include "core/file.h"
+#include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::record {
+namespace {
+
+constexpr std::size_t kBufferSize = 1 << 16;  // [bytes]
+
+[[noreturn]] void failWriting(const std::filesystem::path& path) {
+  throw core::InputError("cannot write '" + path.string() + "': " + core::writeErrorText(errno) +
+                         "; check that the folder exists, is writable and has room");
+}
+
+void writeAll(int descriptor, std::string_view content, const std::filesystem::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) failWriting(path);
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void appendNumber(std::string& row, double value) {
+  row += ',';
+  row += core::formatNumber(value);
+}
+
+}  // namespace
+
+TraceWriter::TraceWriter(std::filesystem::path file) : file_(std::move(file)) {
+  temporary_ = file_.string() + ".tmp." + std::to_string(::getpid());
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) failWriting(file_);
+  buffer_.reserve(2 * kBufferSize);
+  buffer_ = kTraceHeader;
+}
+
+TraceWriter::~TraceWriter() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
+  const std::string tick = std::to_string(snapshot.tick);
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) writeRow(tick, vehicle);
+  if (buffer_.size() >= kBufferSize) flush();
+}
+
+std::string TraceWriter::finish() {
+  flush();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) failWriting(file_);
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0 || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary_.c_str());
+    errno = reason;
+    failWriting(file_);
+  }
+  return hash_.finish();
+}
+
+void TraceWriter::writeRow(const std::string& tick, const traffic::Vehicle& vehicle) {
+  buffer_ += tick;
+  buffer_ += ',';
+  buffer_ += core::csvCell(vehicle.id);
+  buffer_ += ',';
+  buffer_ += traffic::toText(vehicle.role);
+  appendNumber(buffer_, vehicle.state.position.x());
+  appendNumber(buffer_, vehicle.state.position.y());
+  appendNumber(buffer_, vehicle.state.heading);
+  appendNumber(buffer_, vehicle.state.speed);
+  if (vehicle.applied_action) {
+    appendNumber(buffer_, vehicle.applied_action->throttle);
+    appendNumber(buffer_, vehicle.applied_action->steer);
+    appendNumber(buffer_, vehicle.applied_action->brake);
+  } else {
+    buffer_ += ",,,";
+  }
+  buffer_ += '\n';
+}
+
+void TraceWriter::flush() {
+  hash_.update(buffer_);
+  writeAll(descriptor_, buffer_, file_);
+  buffer_.clear();
+}
+
+namespace {
+
+using traffic::VehicleRole;
+
+std::optional<VehicleRole> roleOf(const std::string& text) {
+  for (const VehicleRole role : {VehicleRole::kEgo, VehicleRole::kCbv, VehicleRole::kBackground}) {
+    if (text == traffic::toText(role)) return role;
+  }
+  return std::nullopt;
+}
+
+std::optional<TraceRow> traceRowOf(std::string_view line) {
+  const std::vector<std::string> cells = core::csvCells(line);
+  if (cells.size() != 10) return std::nullopt;
+  const auto tick = core::parseNumber(cells[0]);
+  const auto role = roleOf(cells[2]);
+  const auto x = core::parseNumber(cells[3]);
+  const auto y = core::parseNumber(cells[4]);
+  const auto heading = core::parseNumber(cells[5]);
+  const auto speed = core::parseNumber(cells[6]);
+  if (!tick || *tick < 0.0 || !role || !x || !y || !heading || !speed) return std::nullopt;
+  return TraceRow{static_cast<std::uint64_t>(*tick), cells[1], *role, {*x, *y}, *heading, *speed};
+}
+
+}  // namespace
+
+std::vector<TraceRow> readTrace(const std::filesystem::path& file) {
+  const std::string text = core::readFile(file, "trace");
+  const std::string_view header = kTraceHeader;
+  if (text.compare(0, header.size(), header) != 0) {
+    throw core::InputError("'" + file.string() + "' is no trace; its first line must be " +
+                           std::string(header.substr(0, header.size() - 1)));
+  }
+  std::vector<TraceRow> rows;
+  std::size_t number = 2;
+  for (std::size_t begin = header.size(); begin < text.size(); ++number) {
+    const std::size_t end = text.find('\n', begin);
+    const auto row = end == std::string::npos
+                         ? std::nullopt
+                         : traceRowOf(std::string_view(text).substr(begin, end - begin));
+    if (!row) {
+      throw core::InputError(file.string() + ":" + std::to_string(number) +
+                             ": no row of a trace (tick, id, role, finite numbers, line end)");
+    }
+    rows.push_back(*row);
+    begin = end + 1;
+  }
+  return rows;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -2,12 +2,65 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "core/file.h"
 #include "core/output_folder.h"
+#include "e2e_cdiff/traffic/traffic_snapshot.h"
+#include "e2e_cdiff/traffic/vehicle.h"
 
 namespace cdiff::record {
+
+/// First line of the trace.
+inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";
+
+/// Writes trace.csv: a row per tick and vehicle (map frame, SI units, shortest decimals that read
+/// back to the same number), streamed to a temporary file that gets its name when it is whole.
+class TraceWriter {
+ public:
+  /// Opens the temporary file beside `file`. Throws InputError naming the path.
+  explicit TraceWriter(std::filesystem::path file);
+  /// Removes the temporary file when `finish` was not called.
+  ~TraceWriter();
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  /// Appends the rows of one tick in the snapshot's order. Command cells of vehicles that SUMO
+  /// drives stay empty.
+  void write(const traffic::TrafficSnapshot& snapshot);
+  /// Gives the file its name and answers its SHA-256. Call once.
+  std::string finish();
+
+ private:
+  void writeRow(const std::string& tick, const traffic::Vehicle& vehicle);
+  void flush();
+
+  std::filesystem::path file_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  std::string buffer_;
+  core::Sha256 hash_;
+};
+
+// Reads trace.csv back (map frame, SI units).
+
+/// One vehicle at one tick.
+struct TraceRow {
+  std::uint64_t tick = 0;
+  std::string id;
+  traffic::VehicleRole role = traffic::VehicleRole::kBackground;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< center of the box [m]
+  double heading = 0.0;                                ///< [rad]
+  double speed = 0.0;                                  ///< [m/s]
+};
+
+/// All rows in the file's order: by tick, the ego first, then CBVs. Throws InputError naming file
+/// and line for anything that is no trace.
+std::vector<TraceRow> readTrace(const std::filesystem::path& file);
 
 /// Throws InputError when another process writes into the folder, or when it holds anything of a
 /// session or a batch, naming it, unless earlier sessions are to be overwritten; a batch never is.

@@ -9,11 +9,8 @@
 #include "metrics/session_metrics.h"
 #include "record/logs/cbv_log.h"
 #include "record/logs/driving_log.h"
-#include "record/logs/front_view_log.h"
-#include "record/logs/guidance_log.h"
-#include "record/logs/latency_log.h"
 #include "record/logs/plan_log.h"
-#include "record/logs/timeline.h"
+#include "record/logs/planner_logs.h"
 #include "record/verdict.h"
 #include "session/session_setup.h"
 

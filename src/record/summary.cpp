@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "record/summary_measures.h"
 
 namespace cdiff::record {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "record/summary_measures.h"
-
 #include <cmath>
 
 #include "core/text.h"

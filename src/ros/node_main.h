@@ -8,16 +8,23 @@ namespace cdiff::ros {
 // and errors as one line and an exit code (as `cdiff`: 2 run time, 3 bad input). Free of ROS's
 // headers, which would take most of the time of compiling each node.
 
+/// Owns a session's world and clock.
 int runTrafficSimulatorNode(int argc, char** argv);
+/// Finds the critical background vehicles of a session.
 int runCbvIdentificationNode(int argc, char** argv);
+/// Renders what the driven vehicles see.
 int runCameraNode(int argc, char** argv);
+/// Drives the ego.
 int runEgoPlannerNode(int argc, char** argv);
+/// Drives all CBVs.
 int runCbvPlannerNode(int argc, char** argv);
 /// cbv_planner_node under the name that it has where the CBVs' planner sees.
 int runDiffusionPlannerNode(int argc, char** argv);
+/// Measures a session and writes its result folder.
 int runMetricsNode(int argc, char** argv);
+/// Records a session as a bag.
 int runRecorderNode(int argc, char** argv);
-/// A recorded session under the traffic simulator's name, to which the other nodes listen.
+/// Replays a recorded session under the traffic simulator's name, to which the other nodes listen.
 int runReplayNode(int argc, char** argv);
 
 /// Whether the ROS master answers within two seconds.

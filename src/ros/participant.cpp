@@ -8,7 +8,7 @@
 
 #include "core/text.h"
 #include "ros/callback_queue.h"
-#include "ros/lockstep/launched_nodes.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/messages/conversions.h"
 #include "ros/session_graph.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/logs/latency_log.h"
+#include "record/logs/planner_logs.h"
 #include "ros/lockstep/tick_answers.h"
 #include "ros/messages/markers.h"
 #include "ros/messages/message_checks.h"

@@ -12,13 +12,12 @@
 
 #include "record/result_folder.h"
 #include "ros/bags/recorded_session.h"
-#include "ros/lockstep/heartbeat.h"
 #include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/lockstep/participant_book.h"
-#include "ros/lockstep/stop_signal.h"
 #include "ros/messages/display.h"
-#include "ros/parameters.h"
 #include "ros/ros.h"
+#include "ros/session_files.h"
 
 namespace cdiff::ros {
 

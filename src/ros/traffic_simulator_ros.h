@@ -14,15 +14,13 @@
 #include <vector>
 
 #include "ros/lockstep/decision_book.h"
-#include "ros/lockstep/heartbeat.h"
 #include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/lockstep/paced_answers.h"
 #include "ros/lockstep/participant_book.h"
-#include "ros/lockstep/stop_signal.h"
 #include "ros/lockstep/tick_answers.h"
 #include "ros/messages/display.h"
 #include "ros/messages/topics.h"
-#include "ros/parameters.h"
 #include "ros/ros.h"
 #include "ros/session_files.h"
 #include "session/world.h"

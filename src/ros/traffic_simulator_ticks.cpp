@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/text.h"
-#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/lockstep/tick_record.h"
 #include "ros/messages/conversions.h"
 #include "ros/traffic_simulator_ros.h"

@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "ros/lockstep/launched_nodes.h"
-#include "ros/lockstep/stop_signal.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/messages/conversions.h"
 #include "ros/node_main.h"
 #include "ros/traffic_simulator_ros.h"

@@ -151,8 +151,6 @@ std::vector<Vehicle> DrivenVehicles::snapshot(
 
 namespace {
 
-using traffic::Vehicle;
-
 bool touch(const Vehicle& ours, const Vehicle& other) {
   const double reach = 0.5 * (ours.dimensions.length + ours.dimensions.width +
                               other.dimensions.length + other.dimensions.width);

@@ -6,9 +6,29 @@
 #include <string>
 #include <vector>
 
+#include "planners/registry.h"
 #include "session/scenario_options.h"
 
 namespace cdiff::session {
+
+/// How planners that sample and are guided work unless a scenario says otherwise: a preset below
+/// all single keys. Methods are YAML files of it in config/methods: `paper` is the published
+/// method, `default` what the package recommends.
+struct MethodOptions {
+  std::string naturalistic_profile;     ///< guidance profile of CBVs in mode naturalistic
+  std::string safety_critical_profile;  ///< and in mode safety_critical
+  std::string ego_profile;              ///< of an ego whose planner can be guided
+  planning::PlannerOptionsTable planner_options = planners::defaultOptions();
+
+  void describe(core::OptionsVisitor& visitor);
+  const std::string& profileOf(const std::string& mode) const;
+};
+
+/// Throws InputError naming the nearest shipped method for an unknown name.
+MethodOptions loadMethod(const std::string& name);
+
+/// Names of the shipped methods, sorted.
+std::vector<std::string> shippedMethods();
 
 // Samples of one quantity from a file, in the file's unit: one number a line, or the JSON that
 // `cdiff metric shapiro_wilk` reads.

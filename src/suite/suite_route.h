@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "map/lane_graph.h"
-#include "suite/draws.h"
-#include "suite/road_plan.h"
+#include "suite/network_generator.h"
 
 namespace cdiff::suite {
 

@@ -2,13 +2,149 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "video/session_video.h"
 
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
-#include "video/video_encoder.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "video/video_frame.h"
 
 namespace cdiff::video {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "ffmpeg";
+constexpr timeval kLongestPause{30, 0};  // for which the program may read nothing [s]
+constexpr double kLongestEnd = 60.0;     // [s]
+
+std::vector<std::string> commandLine(const VideoFormat& format, const fs::path& file) {
+  const std::string size = std::to_string(format.width) + "x" + std::to_string(format.height);
+  return {"-hide_banner", "-nostdin", "-loglevel", "error", "-y",
+          // What comes in.
+          "-f", "rawvideo", "-pixel_format", "bgr24", "-video_size", size, "-framerate",
+          std::to_string(format.rate), "-i", "pipe:0",
+          // What goes out; one thread and no dates, so that equal frames give equal files.
+          "-an", "-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset",
+          "veryfast", "-crf", "22", "-pix_fmt", "yuv420p", "-colorspace", "bt709",
+          "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-threads", "1",
+          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4",
+          file.string()};
+}
+
+fs::path findEncoder() {
+  try {
+    return core::findProgram(kProgram, kProgram);
+  } catch (const core::InputError&) {
+    throw core::InputError(
+        "a video needs the program 'ffmpeg', which is not in PATH; install the Debian package "
+        "ffmpeg, or ask for no video");
+  }
+}
+
+/// The end of what was printed, in one line.
+std::string lastWords(const core::ProcessOutput& output) {
+  std::string text = output.end(600);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+VideoEncoder::VideoEncoder(fs::path file, const VideoFormat& format)
+    : file_(std::move(file)), temporary_(file_.string() + ".tmp." + std::to_string(::getpid())) {
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  try {
+    start(format);
+  } catch (...) {
+    stop();
+    throw;
+  }
+}
+
+VideoEncoder::~VideoEncoder() { stop(); }
+
+void VideoEncoder::start(const VideoFormat& format) {
+  const fs::path program = findEncoder();
+  int ends[2] = {-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw core::SimulatorError("video '" + file_.string() + "': " + std::strerror(errno));
+  }
+  input_ = ends[0];
+  ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
+  try {
+    process_ = std::make_unique<core::GuardedProcess>(
+        program, commandLine(format, temporary_),
+        core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
+        core::ProcessStreams{{}, ends[1], messages_.descriptor()});
+  } catch (...) {
+    ::close(ends[1]);
+    throw;
+  }
+  ::close(ends[1]);
+}
+
+void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
+  std::size_t sent = 0;
+  while (sent < frame.size()) {
+    const ssize_t count = ::send(input_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+    if (count > 0) {
+      sent += static_cast<std::size_t>(count);
+    } else if (errno != EINTR) {
+      fail(errno == EAGAIN ? "it took nothing for 30 s" : "it ended before the session");
+    }
+  }
+}
+
+void VideoEncoder::finish() {
+  closeInput();
+  const int code = wait();
+  std::error_code error;
+  if (code != 0) fail("exit code " + std::to_string(code));
+  // It exits with 0 when the disk filled up at the very end.
+  if (!lastWords(messages_).empty()) fail("it complained");
+  const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!on_disk) fail(std::strerror(errno));
+  fs::rename(temporary_, file_, error);
+  if (error) fail(error.message());
+}
+
+void VideoEncoder::closeInput() {
+  if (input_ >= 0) ::close(input_);
+  input_ = -1;
+}
+
+int VideoEncoder::wait() {
+  if (!process_->waitForEnd(kLongestEnd)) process_->kill();
+  return process_->exitCode();
+}
+
+void VideoEncoder::stop() {
+  closeInput();
+  process_.reset();
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void VideoEncoder::fail(const std::string& text) {
+  closeInput();
+  if (process_) wait();
+  const std::string words = lastWords(messages_);
+  stop();
+  throw core::SimulatorError("video '" + file_.string() + "' was not written: ffmpeg: " + text +
+                             (words.empty() ? "" : ": " + words));
+}
 
 /// Frame and encoder.
 class SessionVideo::Studio {

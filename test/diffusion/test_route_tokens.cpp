@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 
 namespace cdiff::diffusion {
 namespace {

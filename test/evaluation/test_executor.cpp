@@ -10,7 +10,7 @@
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
-#include "planners/diffusion/diffusion_options.h"
+#include "planners/diffusion/diffusion_planner.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {

@@ -4,7 +4,7 @@
 
 #include "learning/batches.h"
 #include "learning/parameters.h"
-#include "learning/samples/shard.h"
+#include "learning/samples/dataset.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::learning {

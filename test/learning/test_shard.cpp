@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "learning/samples/field_bytes.h"
+#include "learning/samples/field.h"
 #include "learning/small_samples.h"
 
 namespace cdiff::learning {

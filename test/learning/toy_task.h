@@ -8,10 +8,9 @@
 #include <optional>
 
 #include "learning/batches.h"
+#include "learning/samples/dataset.h"
 #include "learning/samples/sample_order.h"
-#include "learning/samples/shard.h"
 #include "learning/task.h"
-#include "learning/task_registry.h"
 
 namespace cdiff::test {
 

@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "page/html_report.h"
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 #include "record/seen_session.h"
 
 namespace cdiff::page {

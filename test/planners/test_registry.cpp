@@ -8,7 +8,7 @@
 #include "planners/course.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/registry.h"
-#include "planners/two_stage_pid/trajectory_tracker.h"
+#include "planners/two_stage_pid/two_stage_pid.h"
 
 namespace cdiff::planners {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {

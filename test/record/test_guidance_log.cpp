@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "record/logs/guidance_log.h"
+#include "record/logs/planner_logs.h"
 
 namespace cdiff::record {
 namespace {

@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/logs/front_view_log.h"
+#include "record/logs/cbv_log.h"
 
 namespace cdiff::record {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "record/logs/latency_log.h"
+#include "record/logs/planner_logs.h"
 
 namespace cdiff::record {
 namespace {

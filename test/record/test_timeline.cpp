@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "record/logs/timeline.h"
+#include "record/logs/driving_log.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "record/result_folder.h"
 #include "record/sample_session.h"
-#include "record/trace_file.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::record {

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/trace_file.h"
+#include "record/result_folder.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::record {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "planners/diffusion/diffusion_options.h"
+#include "planners/diffusion/diffusion_planner.h"
 #include "ros/session_graph.h"
 #include "support/random_model.h"
 

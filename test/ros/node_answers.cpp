@@ -11,7 +11,7 @@
 #include "metrics/metric_registry.h"
 #include "rendering/front_camera.h"
 #include "ros/fake_simulator.h"
-#include "ros/messages/image_conversions.h"
+#include "ros/messages/channel_conversions.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 

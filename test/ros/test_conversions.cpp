@@ -9,7 +9,7 @@
 #include "e2e_cdiff/core/options.h"
 #include "metrics/metric_registry.h"
 #include "ros/messages/conversions.h"
-#include "ros/messages/metric_reporter.h"
+#include "ros/messages/display.h"
 #include "ros/sample_messages.h"
 #include "support/network_text.h"
 

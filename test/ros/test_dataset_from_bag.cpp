@@ -8,7 +8,7 @@
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
 #include "core/file.h"
-#include "diffusion/route_tokens.h"
+#include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/geometry/shapes.h"

@@ -5,8 +5,8 @@
 #include "boost/make_shared.hpp"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/lockstep/image_inbox.h"
+#include "ros/messages/channel_conversions.h"
 #include "ros/messages/conversions.h"
-#include "ros/messages/image_conversions.h"
 #include "ros/planner_ros.h"
 #include "ros/sample_messages.h"
 

@@ -5,8 +5,8 @@
 #include <csignal>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/lockstep/stop_signal.h"
-#include "ros/parameters.h"
+#include "ros/lockstep/node_process.h"
+#include "ros/session_files.h"
 
 namespace cdiff::ros {
 namespace {

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "ros/launched_session.h"
-#include "ros/lockstep/heartbeat.h"
 #include "ros/lockstep/message_gate.h"
 #include "ros/lockstep/participant_book.h"
 #include "ros/messages/topics.h"

@@ -7,8 +7,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "planners/diffusion/diffusion_options.h"
-#include "session/method.h"
+#include "planners/diffusion/diffusion_planner.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 

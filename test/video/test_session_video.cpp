@@ -13,7 +13,6 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "record/verdict_cases.h"
 #include "video/session_video.h"
-#include "video/video_encoder.h"
 #include "video/video_ink.h"
 
 namespace cdiff::video {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/geometry/shapes.h"
 #include "inference/safetensors.h"
 
 namespace cdiff::diffusion {
@@ -46,5 +47,16 @@ bool operator==(const Architecture& left, const Architecture& right);
 std::vector<inference::TensorShape> denoiserTensors(const Architecture& architecture);
 /// Every tensor of the image encoder in a fixed order.
 std::vector<inference::TensorShape> encoderTensors(const Architecture& architecture);
+
+// Route tokens: points of the route ahead, every `route_spacing` meters from the vehicle's place
+// on it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20
+// m; beyond its end the route goes straight on.
+
+/// What a token of 1 stands for [m].
+inline constexpr double kRouteTokenScale = 20.0;
+
+/// [route_points, 2] row-major.
+std::vector<float> routeTokens(const Architecture& architecture, const geometry::Polyline& path,
+                               double arc_length, const geometry::Pose2d& pose);
 
 }  // namespace cdiff::diffusion

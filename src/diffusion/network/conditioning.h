@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diffusion/denoiser.h"
-#include "diffusion/network/unet.h"
+#include "diffusion/network/heads.h"
 #include "inference/convolution.h"
 
 namespace cdiff::diffusion {

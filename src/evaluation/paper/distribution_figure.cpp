@@ -8,7 +8,7 @@
 #include "metrics/measures/shapiro_wilk.h"
 #include "page/pictures/charts.h"
 #include "record/logs/driving_log.h"
-#include "record/trace_file.h"
+#include "record/result_folder.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -12,7 +12,7 @@
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "record/trace_file.h"
+#include "record/result_folder.h"
 
 namespace cdiff::evaluation {
 namespace {

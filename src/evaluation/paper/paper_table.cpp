@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "planners/registry.h"
-#include "session/method.h"
+#include "session/session_request.h"
 
 namespace cdiff::evaluation {
 

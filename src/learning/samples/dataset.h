@@ -2,13 +2,93 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "learning/samples/shard.h"
+#include "learning/samples/field.h"
 
 namespace cdiff::learning {
+
+constexpr std::uint32_t kShardVersion = 2;
+
+/// The JSON header of a shard: {"fields" (SampleSchema), "samples", "facts"} in version 2. Version
+/// 1 knew the samples of one planner only: {"schema" (DrivingSchema), "samples", "facts"}; its
+/// samples are stored as version 2 stores the fields of a DrivingSample.
+struct ShardHeader {
+  SampleSchema schema;
+  std::size_t samples = 0;
+  std::map<std::string, std::string> facts;  ///< where the data come from
+};
+
+/// In the present version.
+std::string headerText(const ShardHeader& header);
+/// Throws InputError naming `source` for another version and for a header that is malformed.
+ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
+                            const std::string& source);
+
+// Shards: files `*.shard` of samples. Little endian: 8 bytes "CDIFFSHD", u32 version, u32 length
+// and text of the header (learning/samples/dataset.h), the samples, and 64 hexadecimal digits:
+// SHA-256 of all before. A sample is its fields in the order of the schema: the values as they
+// are; before them the u32 number of rows where each sample has its own; a text, and a packed
+// field's zlib stream, behind its u32 length.
+
+/// Names of fields.
+using FieldNames = std::set<std::string>;
+
+/// Collects samples in memory, packed fields compressed, and writes them as one file.
+class ShardWriter {
+ public:
+  explicit ShardWriter(SampleSchema schema) { header_.schema = std::move(schema); }
+
+  /// Throws InputError when the sample does not fit the schema.
+  void append(const Sample& sample);
+  std::size_t size() const { return header_.samples; }
+  const SampleSchema& schema() const { return header_.schema; }
+
+  /// Writes what was appended to `path` (".shard") and forgets it: the file is whole or absent
+  /// (temporary file, flush, rename). `facts` say where the data come from. Throws InputError
+  /// naming the path, also when the disk is full.
+  void write(const std::filesystem::path& path,
+             const std::map<std::string, std::string>& facts = {});
+
+ private:
+  ShardHeader header_;
+  std::string body_;
+};
+
+/// A whole shard in memory; packed fields stay so until asked for.
+class ShardReader {
+ public:
+  /// Throws InputError that names the file and what is wrong: no such file, truncated, foreign
+  /// magic, other version, checksum, header, a sample that does not fit the schema.
+  explicit ShardReader(const std::filesystem::path& path);
+
+  const SampleSchema& schema() const { return header_.schema; }
+  const std::map<std::string, std::string>& facts() const { return header_.facts; }
+  std::size_t size() const { return places_.size(); }
+  /// A sample without the fields `left_out`; throws InputError when a packed field does not unpack
+  /// to its size.
+  Sample sample(std::size_t index, const FieldNames& left_out = {}) const;
+  /// SHA-256 of the file's content.
+  const std::string& sha256() const { return sha256_; }
+
+ private:
+  void findSamples(std::size_t begin);
+
+  std::string name_;  ///< before errors
+  ShardHeader header_;
+  std::string content_;  ///< of the file, without the checksum
+  std::string sha256_;
+  std::vector<std::size_t> places_;  ///< where each sample starts in `content_`
+};
+
+/// Every `*.shard` below `folder`, sorted by path. Throws InputError when there is none.
+std::vector<std::filesystem::path> findShards(const std::filesystem::path& folder);
 
 /// The field of every sample that says of which session it is: a u64, such as core::hashText of the
 /// session's name.

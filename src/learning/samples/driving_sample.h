@@ -29,7 +29,7 @@ struct DrivingSample {
   traffic::CameraImage image;  ///< rgb8; its tick is not stored apart from `tick`
   double speed = 0.0;          ///< own speed at planning time [m/s]
   traffic::Rollout rollout;    ///< [T, 7] metric, body frame at planning time; stored as float32
-  std::vector<float> route;    ///< [route_points, 2] tokens (diffusion/route_tokens.h)
+  std::vector<float> route;    ///< [route_points, 2] tokens (diffusion/network/architecture.h)
   std::uint64_t session = 0;   ///< core::hashText of the session's name; splits are by session
   std::string vehicle;         ///< id
   std::uint64_t tick = 0;      ///< planning time

@@ -11,13 +11,34 @@
 #include "diffusion/model.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"
+#include "diffusion/sampler.h"
+#include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/planning/planner.h"
-#include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/image_watch.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
+
+/// Options of the planner `diffusion` (paper III): model, what it sees, sampler, state branch.
+struct DiffusionOptions {
+  std::string model = "default";  ///< shipped model or folder of the weight files
+  /// image_route | image (the paper's) | by_guidance
+  std::string conditioning = "by_guidance";
+  std::string state_branch = "learned";  ///< learned | exact
+  std::int64_t candidates = 1;           ///< samples per vehicle
+  double hysteresis = 0.1;               ///< a new mode must be better by this share of the score
+  double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
+  diffusion::SamplerOptions sampler;
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Every value that `describe` admits is fine here; the model has its say when it is read.
+  void validate() const {}
+  /// What `conditioning` comes to under a guidance: by_guidance is image where collision_seeking
+  /// has a weight (an attacker that knows its route stops in its lane before the ego
+  /// instead of driving at it), image_route elsewhere and where the sampler's mode is unguided.
+  std::string conditioningUnder(const guidance::GuidanceOptions& guidance) const;
+};
 
 /// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
 /// future states and throttle, steer and brake out, of which the first action drives. All vehicles
@@ -87,5 +108,12 @@ class DiffusionPlanner : public planning::Planner {
   std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
   std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
 };
+
+// The diffusion planner in the table of planners, and for planners that plan with it.
+
+planning::PlannerDescriptor diffusionDescriptor();
+
+/// Throws InputError if the camera has not the size of the model's images.
+std::unique_ptr<DiffusionPlanner> makeDiffusionPlanner(const planning::PlannerParts& parts);
 
 }  // namespace cdiff::planners

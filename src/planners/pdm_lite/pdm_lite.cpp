@@ -9,7 +9,6 @@
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "planners/pdm_lite/controllers.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/route_rules.h"
 #include "planning/surrounding_vehicles.h"

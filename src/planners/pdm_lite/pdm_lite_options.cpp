@@ -4,6 +4,8 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/planning/planner.h"
+#include "planners/pdm_lite/pdm_lite.h"
 
 namespace cdiff::planners {
 namespace {
@@ -46,6 +48,19 @@ void PdmLiteOptions::validate() const {
   requirePositive("forecast_horizon", forecast_horizon);
   requirePositive("detection_radius", detection_radius);
   requirePositive("lateral_window", static_cast<double>(lateral_window));
+}
+
+planning::PlannerDescriptor pdmLiteDescriptor() {
+  planning::PlannerDescriptor descriptor;
+  descriptor.name = "pdm_lite";
+  descriptor.title = "PDM-Lite";
+  descriptor.help = "rules on the true positions of all vehicles, with IDM and forecast boxes.";
+  descriptor.options = planning::makePlannerOptions<PdmLiteOptions>;
+  descriptor.make = [](const planning::PlannerParts& parts) {
+    return std::make_unique<PdmLite>(parts.options.of<PdmLiteOptions>(), parts.vehicle,
+                                     parts.context);
+  };
+  return descriptor;
 }
 
 }  // namespace cdiff::planners

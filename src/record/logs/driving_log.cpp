@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "metrics/measures/ttc_2d.h"
+
 namespace cdiff::record {
 
 Histogram::Histogram(double low, double width, std::size_t bins)
@@ -30,6 +32,128 @@ void DrivingLog::observe(const traffic::TrafficSnapshot& snapshot) {
     role.speed.add(vehicle.state.speed);
     role.acceleration.add(vehicle.acceleration);
   }
+}
+
+namespace {
+
+constexpr double kFramePeriod = 0.2;  // [s]
+
+/// Gap between the boxes of the ego and a CBV on its level [m]; nullopt without ego or on another
+/// level.
+std::optional<double> gapToEgo(const traffic::Vehicle* ego, const traffic::Vehicle& vehicle) {
+  if (ego == nullptr || traffic::onDifferentLevels(*ego, vehicle)) return std::nullopt;
+  return geometry::distance(ego->box(), vehicle.box());
+}
+
+metrics::MovingBox movingBox(const traffic::Vehicle& vehicle) {
+  return {vehicle.box(), vehicle.state.velocity()};
+}
+
+/// 2D-TTC [s] as the metrics define it: of the ego with anyone, of a CBV with the ego.
+std::optional<double> timeToCollision(const traffic::TrafficSnapshot& snapshot,
+                                      const traffic::Vehicle* ego,
+                                      const traffic::Vehicle& vehicle) {
+  if (ego == nullptr) return std::nullopt;
+  if (&vehicle == ego) return metrics::interactionOf(*ego, snapshot, {}).ttc_2d;
+  if (traffic::onDifferentLevels(*ego, vehicle)) return std::nullopt;
+  return metrics::timeToCollision2d(movingBox(*ego), movingBox(vehicle));
+}
+
+TimelinePose poseOf(const traffic::Vehicle& vehicle) {
+  TimelinePose pose;
+  pose.x = vehicle.state.position.x();
+  pose.y = vehicle.state.position.y();
+  pose.heading = static_cast<float>(vehicle.state.heading);
+  pose.speed = static_cast<float>(vehicle.state.speed);
+  pose.role = vehicle.role;
+  if (vehicle.applied_action) {
+    pose.driven = true;
+    pose.throttle = static_cast<float>(vehicle.applied_action->throttle);
+    pose.steer = static_cast<float>(vehicle.applied_action->steer);
+    pose.brake = static_cast<float>(vehicle.applied_action->brake);
+  }
+  return pose;
+}
+
+/// What a pose of ego or CBV says beyond that of a background vehicle.
+void addEncounter(TimelinePose& pose, const traffic::TrafficSnapshot& snapshot,
+                  const traffic::Vehicle* ego, const traffic::Vehicle& vehicle) {
+  pose.time_to_collision =
+      static_cast<float>(timeToCollision(snapshot, ego, vehicle).value_or(-1.0));
+  if (vehicle.role != traffic::VehicleRole::kCbv) return;
+  pose.slot = vehicle.cbv_slot;
+  pose.gap = static_cast<float>(gapToEgo(ego, vehicle).value_or(-1.0));
+}
+
+}  // namespace
+
+Timeline::Timeline(double simulation_step)
+    : ticks_per_frame_(
+          static_cast<std::uint64_t>(std::max(1.0, std::round(kFramePeriod / simulation_step)))) {}
+
+void Timeline::observe(const traffic::TrafficSnapshot& snapshot) {
+  duration_ = snapshot.time;
+  const bool last = snapshot.status != traffic::SessionStatus::kRunning;
+  if (last || snapshot.tick % ticks_per_frame_ == 0) addFrame(snapshot);
+  addContacts(snapshot);
+  updateGap(snapshot);
+}
+
+void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
+  TimelineFrame frame;
+  frame.time = snapshot.time;
+  frame.poses.reserve(snapshot.vehicles.size());
+  const traffic::Vehicle* ego = snapshot.ego();
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    TimelinePose& pose = frame.poses.emplace_back(poseOf(vehicle));
+    pose.vehicle = indexOf(vehicle);
+    const bool background = vehicle.role == traffic::VehicleRole::kBackground;
+    if (!background) addEncounter(pose, snapshot, ego, vehicle);
+  }
+  frames_.push_back(std::move(frame));
+}
+
+void Timeline::addContacts(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Contact& contact : snapshot.contacts) {
+    const traffic::Vehicle* first = snapshot.find(contact.first);
+    const traffic::Vehicle* second = snapshot.find(contact.second);
+    TimelineContact entry{snapshot.time, contact.first, contact.second, std::nullopt};
+    if (first != nullptr && second != nullptr) {
+      entry.position = 0.5 * (first->state.position + second->state.position);
+    }
+    contacts_.push_back(entry);
+  }
+}
+
+std::optional<std::string> Timeline::lastContactOf(const std::string& id, double begin,
+                                                   double end) const {
+  constexpr double kRounding = 1e-6;  // [s]
+  for (auto contact = contacts_.rbegin(); contact != contacts_.rend(); ++contact) {
+    if (contact->time < begin - kRounding || contact->time > end + kRounding) continue;
+    if (contact->first == id) return contact->second;
+    if (contact->second == id) return contact->first;
+  }
+  return std::nullopt;
+}
+
+void Timeline::updateGap(const traffic::TrafficSnapshot& snapshot) {
+  const traffic::Vehicle* ego = snapshot.ego();
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
+    if (vehicle.role != traffic::VehicleRole::kCbv) continue;
+    const std::optional<double> gap = gapToEgo(ego, vehicle);
+    if (!gap || (smallest_gap_ && smallest_gap_->distance <= *gap)) continue;
+    smallest_gap_ = SmallestGap{snapshot.time, *gap, vehicle.id};
+  }
+}
+
+std::uint32_t Timeline::indexOf(const traffic::Vehicle& vehicle) {
+  const auto index = static_cast<std::uint32_t>(vehicles_.size());
+  const auto [entry, added] = index_by_id_.emplace(vehicle.id, index);
+  if (added) {
+    vehicles_.push_back({vehicle.id, vehicle.dimensions.length, vehicle.dimensions.width});
+  }
+  return entry->second;
 }
 
 }  // namespace cdiff::record

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
@@ -53,6 +56,85 @@ class DrivingLog {
  private:
   Role cbv_;
   Role background_;
+};
+
+/// A vehicle that was seen at any time.
+struct TimelineVehicle {
+  std::string id;
+  double length = 0.0;  ///< [m]
+  double width = 0.0;   ///< [m]
+};
+
+/// One vehicle in one frame.
+struct TimelinePose {
+  double x = 0.0;        ///< [m]
+  double y = 0.0;        ///< [m]
+  float heading = 0.0F;  ///< [rad]
+  float speed = 0.0F;    ///< [m/s]
+  float throttle = 0.0F;
+  float steer = 0.0F;
+  float brake = 0.0F;
+  bool driven = false;        ///< whether the three commands are there
+  std::uint32_t vehicle = 0;  ///< index in Timeline::vehicles()
+  traffic::VehicleRole role = traffic::VehicleRole::kBackground;
+  int slot = -1;      ///< slot of a CBV
+  float gap = -1.0F;  ///< gap from a CBV to the ego's box [m]; negative: not defined
+  /// 2D-TTC [s] of a CBV and the ego; of the ego and any vehicle; negative: not defined.
+  float time_to_collision = -1.0F;
+};
+
+/// Poses of all vehicles at one time.
+struct TimelineFrame {
+  double time = 0.0;  ///< [s]
+  std::vector<TimelinePose> poses;
+};
+
+/// A contact of two vehicles, with its place in the map frame [m].
+struct TimelineContact {
+  double time = 0.0;  ///< [s]
+  std::string first;
+  std::string second;
+  std::optional<Eigen::Vector2d>
+      position;  ///< midway between the two; absent when one was not in the snapshot
+};
+
+/// The smallest gap between the boxes of the ego and a CBV.
+struct SmallestGap {
+  double time = 0.0;      ///< [s]
+  double distance = 0.0;  ///< [m]
+  std::string vehicle_id;
+};
+
+/// The session thinned to what pictures need: poses of all vehicles every 0.2 s (map frame) with
+/// times to collision, contacts, and the smallest gap between ego and CBVs over all ticks.
+class Timeline {
+ public:
+  explicit Timeline(double simulation_step);
+  void observe(const traffic::TrafficSnapshot& snapshot);
+
+  /// In order of appearance.
+  const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }
+  const std::vector<TimelineFrame>& frames() const { return frames_; }
+  const std::vector<TimelineContact>& contacts() const { return contacts_; }
+  const std::optional<SmallestGap>& smallestGap() const { return smallest_gap_; }
+  /// Id of the vehicle that another one touched last in [begin, end] [s]; nullopt when none.
+  std::optional<std::string> lastContactOf(const std::string& id, double begin, double end) const;
+  /// Time of the last snapshot [s].
+  double duration() const { return duration_; }
+
+ private:
+  void addFrame(const traffic::TrafficSnapshot& snapshot);
+  void addContacts(const traffic::TrafficSnapshot& snapshot);
+  void updateGap(const traffic::TrafficSnapshot& snapshot);
+  std::uint32_t indexOf(const traffic::Vehicle& vehicle);
+
+  std::uint64_t ticks_per_frame_;
+  double duration_ = 0.0;
+  std::vector<TimelineVehicle> vehicles_;
+  std::unordered_map<std::string, std::uint32_t> index_by_id_;
+  std::vector<TimelineFrame> frames_;
+  std::vector<TimelineContact> contacts_;
+  std::optional<SmallestGap> smallest_gap_;
 };
 
 }  // namespace cdiff::record

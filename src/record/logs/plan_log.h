@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "record/logs/latency_log.h"
+#include "record/logs/planner_logs.h"
 #include "session/session_observer.h"
 
 namespace cdiff::record {

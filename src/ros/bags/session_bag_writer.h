@@ -12,7 +12,7 @@
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "nav_msgs/Path.h"
 #include "ros/lockstep/tick_answers.h"
-#include "ros/messages/metric_reporter.h"
+#include "ros/messages/display.h"
 #include "rosbag/bag.h"
 #include "session/scenario_options.h"
 #include "session/session_observer.h"

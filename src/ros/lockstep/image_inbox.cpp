@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "ros/messages/channel_conversions.h"
 #include "ros/messages/conversions.h"
-#include "ros/messages/image_conversions.h"
 #include "ros/messages/topics.h"
 #include "session/closed_loop.h"
 

@@ -2,14 +2,48 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "ros/lockstep/tick_answers.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/display.h"
-#include "ros/messages/image_conversions.h"
+#include "sensor_msgs/CameraInfo.h"
+#include "sensor_msgs/Image.h"
 
 namespace cdiff::ros {
+
+// Between traffic::CameraImage and sensor_msgs/Image (rgb8, rows from the top left), byte by byte.
+//
+// sensor_msgs/Image has no tick field, and roscpp overwrites header.seq when it publishes: the
+// tick of an image is header.stamp / simulation step, and the stamp must be that tick's own to the
+// nanosecond.
+
+/// "<vehicle>/camera_optical": x right, y down, z forward.
+std::string opticalFrame(const std::string& vehicle_id);
+
+/// `time`: simulated time of the image's tick [s].
+sensor_msgs::Image toMsg(const traffic::CameraImage& image, double time,
+                         const std::string& vehicle_id);
+
+/// What the images of one topic are like.
+struct ExpectedImage {
+  std::string topic;
+  std::string vehicle_id;
+  std::int64_t width = 0;        ///< [px]
+  std::int64_t height = 0;       ///< [px]
+  double simulation_step = 0.0;  ///< [s]
+};
+
+/// Throws InputError naming topic and value for another encoding, size, frame or a stamp that is no
+/// tick's. Rows may be padded.
+traffic::CameraImage fromMsg(const sensor_msgs::Image& message, const ExpectedImage& expected);
+
+/// Pinhole without distortion (plumb_bob, five zeros) with the image's stamp and frame.
+sensor_msgs::CameraInfo toCameraInfoMsg(const rendering::CameraOptions& options,
+                                        const std_msgs::Header& header);
 
 // Conversions of the rows of the table of channels: from the values of a tick to its messages and
 // back, and to messages that say the same for tools.

@@ -2,13 +2,128 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <typeindex>
+#include <utility>
 #include <vector>
 
-#include "ros/messages/message_type.h"
+#include "ros/bags/bag_reader.h"
+#include "ros/lockstep/message_gate.h"
+#include "ros/message_traits.h"
+#include "ros/messages/conversions.h"
 #include "ros/session_graph.h"
+#include "rosbag/bag.h"
 
 namespace cdiff::ros {
+
+/// A message of some type; the channel that it came on says of which.
+using AnyMessage = boost::shared_ptr<const void>;
+/// Takes a message and returns why it cannot be used; empty when it can.
+using TakeMessage = std::function<std::string(const AnyMessage&)>;
+
+/// The types of messages as values, so that a table can name them: how a message of a type is
+/// published, taken, written to a bag and read from one. Every such message is kept as AnyMessage.
+struct MessageType {
+  std::type_index type;
+  std::string name;    ///< "e2e_cdiff/Rollout"
+  std::string md5sum;  ///< MD5 sum of the definition
+  /// Throws InputError when the bytes are no such message.
+  AnyMessage (*decode)(const BagMessage& message);
+  void (*write)(rosbag::Bag& bag, const std::string& topic, const ::ros::Time& stamp,
+                const AnyMessage& message);
+  ::ros::Publisher (*advertise)(Connections& connections, ::ros::NodeHandle& node,
+                                const std::string& topic, const std::vector<std::string>& nodes,
+                                bool latched);
+  void (*publish)(const ::ros::Publisher& publisher, const AnyMessage& message);
+  ::ros::Subscriber (*subscribe)(MessageGate& gate, ::ros::NodeHandle& node,
+                                 const std::string& topic,
+                                 const std::vector<std::string>& publishers,
+                                 const TakeMessage& take);
+  /// Tick that the message is of; its stamp where it has no tick or the tick 0, and nullopt where
+  /// that is zero, too.
+  std::optional<std::uint64_t> (*tick)(const AnyMessage& message, double simulation_step);
+  /// Slot that the message names; nullopt where it names none.
+  std::optional<int> (*slot)(const AnyMessage& message);
+};
+
+/// A message as what it is; the caller knows its type.
+template <class Message>
+boost::shared_ptr<const Message> messageAs(const AnyMessage& message) {
+  return boost::static_pointer_cast<const Message>(message);
+}
+
+template <class Message>
+boost::shared_ptr<const Message> shared(Message message) {
+  return boost::make_shared<const Message>(std::move(message));
+}
+
+namespace detail {
+
+/// Whether a message type has a field `tick`.
+template <class Message, class = void>
+struct HasTick : std::false_type {};
+template <class Message>
+struct HasTick<Message, std::void_t<decltype(std::declval<Message>().tick)>> : std::true_type {};
+/// Whether a message type has a field `slot`.
+template <class Message, class = void>
+struct HasSlot : std::false_type {};
+template <class Message>
+struct HasSlot<Message, std::void_t<decltype(std::declval<Message>().slot)>> : std::true_type {};
+/// Whether a message type has a field `header`.
+template <class Message, class = void>
+struct HasHeader : std::false_type {};
+template <class Message>
+struct HasHeader<Message, std::void_t<decltype(std::declval<Message>().header)>> : std::true_type {
+};
+
+template <class Message>
+std::optional<std::uint64_t> tickOf(const AnyMessage& any, double simulation_step) {
+  const Message& message = *static_cast<const Message*>(any.get());
+  if constexpr (HasTick<Message>::value) {
+    if (message.tick != 0) return message.tick;
+  }
+  if constexpr (HasHeader<Message>::value) {
+    if (!message.header.stamp.isZero()) return nearestTick(message.header.stamp, simulation_step);
+  }
+  return std::nullopt;
+}
+
+template <class Message>
+std::optional<int> slotOf(const AnyMessage& any) {
+  if constexpr (HasSlot<Message>::value) return static_cast<const Message*>(any.get())->slot;
+  return std::nullopt;
+}
+
+}  // namespace detail
+
+template <class Message>
+const MessageType& messageType() {
+  static const MessageType type = {
+      typeid(Message),
+      ::ros::message_traits::DataType<Message>::value(),
+      ::ros::message_traits::MD5Sum<Message>::value(),
+      [](const BagMessage& message) -> AnyMessage { return decode<Message>(message); },
+      [](rosbag::Bag& bag, const std::string& topic, const ::ros::Time& stamp,
+         const AnyMessage& message) { bag.write(topic, stamp, messageAs<Message>(message)); },
+      [](Connections& connections, ::ros::NodeHandle& node, const std::string& topic,
+         const std::vector<std::string>& nodes,
+         bool latched) { return connections.advertise<Message>(node, topic, nodes, latched); },
+      [](const ::ros::Publisher& publisher, const AnyMessage& message) {
+        publisher.publish(messageAs<Message>(message));
+      },
+      [](MessageGate& gate, ::ros::NodeHandle& node, const std::string& topic,
+         const std::vector<std::string>& publishers, const TakeMessage& take) {
+        return gate.subscribe<Message>(node, topic, publishers,
+                                       [take](const auto& message) { return take(message); });
+      },
+      &detail::tickOf<Message>,
+      &detail::slotOf<Message>};
+  return type;
+}
 
 // The table of channels: one row per topic of a session, from which publishers, listeners, the
 // recorder, the bag reader, the replay, the book-keeping of the lockstep and docs/ros_api.md

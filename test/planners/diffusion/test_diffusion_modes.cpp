@@ -10,7 +10,6 @@
 
 #include "dynamics/action_rollout.h"
 #include "planners/diffusion/diffusion_situation.h"
-#include "planners/diffusion/guided_batch.h"
 #include "planners/model_course.h"
 
 namespace cdiff::planners {

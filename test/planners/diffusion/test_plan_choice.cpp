@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "planners/diffusion/guided_batch.h"
+#include "planners/diffusion/diffusion_situation.h"
 
 namespace cdiff::planners {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/controllers.h"
+#include "planners/pdm_lite/forecasts.h"
 
 namespace cdiff::planners {
 namespace {

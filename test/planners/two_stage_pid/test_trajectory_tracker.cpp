@@ -7,7 +7,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "planners/two_stage_pid/trajectory_tracker.h"
+#include "planners/two_stage_pid/two_stage_pid.h"
 
 namespace cdiff::planners {
 namespace {

@@ -3,13 +3,87 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "diffusion/noise_schedule.h"
+#include "diffusion/normalizer.h"
 #include "learning/curve_log.h"
+#include "learning/samples/driving_sample.h"
+#include "learning/samples/sample_order.h"
 #include "learning/task.h"
-#include "planners/diffusion/training/diffusion_batches.h"
+#include "planners/diffusion/training/networks.h"
 
 namespace cdiff::planners {
+
+// Batches of the diffusion stages: which samples come at which step, how each is changed, and the
+// noise of the diffusion loss. All of it is a function of (seed, stage, step), so that a resumed
+// run goes on as if it had never stopped.
+
+/// Features of every sample, each of one variant: as it is, or, where the stage mirrors, in half of
+/// the cases mirrored (one variant takes half the time, and the other samples show the other side).
+struct FeatureCache {
+  at::Tensor features;  ///< [samples, image_features]
+};
+/// Which samples those are.
+bool mirroredInCache(std::size_t index);
+
+/// Tensors of one batch of samples: images or features, context, normalized rollouts, auxiliary
+/// targets, diffusion steps and noise.
+struct TrainingBatch {
+  std::vector<std::size_t> samples;
+  at::Tensor images;           ///< [B, 3, H, W] scaled; undefined on cached features
+  ContextBatch context;        ///< without features where there are images
+  at::Tensor rollouts;         ///< [B, T, 7] normalized
+  at::Tensor auxiliary;        ///< [B, A], 0 where not known
+  at::Tensor auxiliary_known;  ///< [B, A], 0 or 1
+  at::Tensor k;                ///< [B] int64 in 1..K
+  at::Tensor noise;            ///< [B, T, 7]
+};
+
+/// How a stage changes its samples.
+struct BatchOptions {
+  std::string stage;
+  std::int64_t batch = 32;
+  double image_scale = 1.0;
+  double route_drop = 0.2;
+  double balance = 0.5;
+  double yielding_share = 1.0;
+  bool mirror = true;
+  bool change_light = true;
+  std::int64_t diffusion_steps = 100;
+  std::uint64_t seed = 1;
+};
+
+/// Makes batches of tensors on a device from stored samples; every draw depends on the seed and the
+/// step alone.
+class BatchMaker {
+ public:
+  BatchMaker(const learning::DrivingDataset& dataset, const diffusion::Normalizer& normalizer,
+             const BatchOptions& options, const at::Device& device);
+
+  /// Training batch of a step, with images, or with features where a cache is given.
+  TrainingBatch training(std::int64_t step, const FeatureCache* cache = nullptr);
+  /// These samples as they are, with route; images only if asked.
+  TrainingBatch plain(const std::vector<std::size_t>& samples, bool with_images) const;
+  /// Indices of a step.
+  std::vector<std::size_t> order(std::int64_t step) { return order_.at(step); }
+
+ private:
+  learning::DrivingSample changedSample(std::size_t index, const core::RandomKey& key,
+                                        bool mirrored, bool with_image) const;
+  bool isMirrored(std::size_t index, const core::RandomKey& key, bool cached) const;
+  void addNoise(std::int64_t step, TrainingBatch& batch) const;
+  TrainingBatch pack(const std::vector<learning::DrivingSample>& samples,
+                     const std::vector<float>& has_route) const;
+
+  const learning::DrivingDataset& dataset_;
+  diffusion::Normalizer normalizer_;
+  BatchOptions options_;
+  at::Device device_;
+  learning::SampleOrder order_;
+  core::RandomStream change_;
+  core::RandomStream noise_;
+};
 
 /// The loss of a clean prediction on a batch (the state head gets detached actions), normalized:
 ///  - `weighted`: mean of w_t (a - a_hat)^2 + mean of (s - s_hat)^2, w_t = 1 + 4 exp(-t / 4), for

@@ -8,8 +8,7 @@
 
 #include "core/text.h"
 #include "diffusion/model.h"
-#include "planners/diffusion/training/feature_cache.h"
-#include "planners/diffusion/training/stored_normalizer.h"
+#include "planners/diffusion/training/prepared_data.h"
 
 namespace cdiff::planners {
 namespace {

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "learning/task.h"
-#include "learning/task_registry.h"
 #include "planners/diffusion/training/diffusion_stages.h"
-#include "planners/diffusion/training/training_settings.h"
 
 namespace cdiff::planners {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "learning/small_samples.h"
-#include "planners/diffusion/training/stored_normalizer.h"
+#include "planners/diffusion/training/prepared_data.h"
 
 namespace cdiff::planners {
 namespace {

@@ -7,7 +7,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/small_samples.h"
 #include "learning/training_folder.h"
-#include "planners/diffusion/training/stored_normalizer.h"
+#include "planners/diffusion/training/prepared_data.h"
 
 namespace cdiff::planners {
 namespace {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "diffusion/denoiser.h"
+
+#include <utility>
+
+#include "dynamics/action_rollout.h"
+
+namespace cdiff::diffusion {
+namespace {
+
+using traffic::kActionColumns;
+using traffic::kRolloutColumns;
+using traffic::kStateColumns;
+
+/// Cell (row, column) of sample `sample` in a [B, T, columns] block.
+std::size_t cell(std::size_t sample, Eigen::Index horizon, Eigen::Index row, int column,
+                 int columns) {
+  return (sample * static_cast<std::size_t>(horizon) + static_cast<std::size_t>(row)) *
+             static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
+}  // namespace
+
+void LearnedStateBranch::predict(const float* actions, int k, float* states) {
+  denoiser_.predictStates(actions, k, states);
+}
+
+void LearnedStateBranch::pullBack(const float* state_gradient, float* action_gradient) {
+  denoiser_.pullBackStates(state_gradient, action_gradient);
+}
+
+ExactStateBranch::ExactStateBranch(const dynamics::BicycleModelOptions& vehicle,
+                                   const Normalizer& normalizer, std::vector<double> speeds)
+    : rollout_(vehicle), normalizer_(normalizer), speeds_(std::move(speeds)) {
+  last_.assign(speeds_.size(), traffic::Rollout::Zero(normalizer.mean.rows(), kRolloutColumns));
+}
+
+void ExactStateBranch::predict(const float* actions, int, float* states) {
+  const Eigen::Index horizon = normalizer_.mean.rows();
+  for (std::size_t b = 0; b < speeds_.size(); ++b) {
+    traffic::Rollout& rollout = last_[b];
+    for (Eigen::Index t = 0; t < horizon; ++t) {
+      for (int c = 0; c < kActionColumns; ++c) {
+        const int column = kStateColumns + c;
+        rollout(t, column) = static_cast<double>(actions[cell(b, horizon, t, c, kActionColumns)]) *
+                                 normalizer_.scale(t, column) +
+                             normalizer_.mean(t, column);
+      }
+    }
+    rollout_.rollOut(speeds_[b], rollout);
+    traffic::Rollout executed = rollout;
+    dynamics::makeExecutable(executed);
+    rollout_.rollOut(speeds_[b], executed);
+    for (Eigen::Index t = 0; t < horizon; ++t) {
+      for (int c = 0; c < kStateColumns; ++c) {
+        states[cell(b, horizon, t, c, kStateColumns)] =
+            static_cast<float>((executed(t, c) - normalizer_.mean(t, c)) / normalizer_.scale(t, c));
+      }
+    }
+  }
+}
+
+void ExactStateBranch::pullBack(const float* state_gradient, float* action_gradient) {
+  const Eigen::Index horizon = normalizer_.mean.rows();
+  for (std::size_t b = 0; b < speeds_.size(); ++b) {
+    traffic::Rollout gradient = traffic::Rollout::Zero(horizon, kRolloutColumns);
+    for (Eigen::Index t = 0; t < horizon; ++t) {
+      for (int c = 0; c < kStateColumns; ++c) {
+        gradient(t, c) =
+            static_cast<double>(state_gradient[cell(b, horizon, t, c, kStateColumns)]) /
+            normalizer_.scale(t, c);
+      }
+    }
+    rollout_.pullBack(speeds_[b], last_[b], gradient);
+    for (Eigen::Index t = 0; t < horizon; ++t) {
+      for (int c = 0; c < kActionColumns; ++c) {
+        const int column = kStateColumns + c;
+        action_gradient[cell(b, horizon, t, c, kActionColumns)] =
+            static_cast<float>(gradient(t, column) * normalizer_.scale(t, column));
+      }
+    }
+  }
+}
+
+}  // namespace cdiff::diffusion

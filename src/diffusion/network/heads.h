@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diffusion/denoiser.h"
+#include "diffusion/network/architecture.h"
+#include "inference/unet_layers.h"
+
+namespace cdiff::diffusion {
+
+/// What a residual block takes of the conditioning.
+struct Injection {
+  std::string name;  ///< name of the linear layer
+  inference::ChannelLayout layout;
+  std::int64_t first = 0;  ///< its first channel in a row of injections
+};
+
+/// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its pull-back
+/// (docs/network.md).
+class UNet {
+ public:
+  UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+       const inference::Tensors& tensors);
+
+  /// In the order of their channels.
+  const std::vector<Injection>& injections() const { return parts_.injections; }
+  void resize(std::int64_t samples);
+  /// `injection`: a row of injections for each sample.
+  void forward(const float* noisy, const inference::Activation& injection, float* actions);
+  void pullBack(const float* action_gradient, float* noisy_gradient);
+
+ private:
+  friend class UNetBuilder;
+  struct Parts {
+    std::vector<std::unique_ptr<inference::Signal>> signals;
+    std::vector<std::unique_ptr<inference::Layer>> layers;  ///< in the order of the forward pass
+    std::vector<Injection> injections;
+    const inference::Signal* noisy = nullptr;
+    const inference::Signal* actions = nullptr;
+  };
+
+  std::int64_t horizon_;
+  std::int64_t samples_ = 0;
+  Parts parts_;
+};
+
+/// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
+/// pull-back to the actions. The first layer's time columns are tabulated at load, its speed column
+/// is added once per set of contexts.
+class StateHead {
+ public:
+  /// `time_embeddings`: [K + 1, time_width].
+  StateHead(const inference::DenoiserKernels& kernels, const Architecture& architecture,
+            const inference::Tensors& tensors, const inference::Activation& time_embeddings);
+
+  void setContexts(const std::vector<Context>& contexts);
+  void forward(const float* actions, int k, float* states);
+  void pullBack(const float* state_gradient, float* action_gradient);
+
+ private:
+  /// A hidden layer: value before Mish, after it, and Mish'; the gradient overwrites none of them.
+  struct Hidden {
+    inference::Activation input;
+    inference::Activation value;
+    inference::Activation slope;
+    inference::Activation gradient;
+
+    Hidden() = default;
+    Hidden(std::int64_t width, std::int64_t rows);
+  };
+  void mish(Hidden& hidden) const;
+
+  const inference::DenoiserKernels* kernels_;
+  std::int64_t action_values_;  ///< T x 3
+  std::int64_t state_values_;   ///< T x 4
+  std::int64_t width_;
+  inference::Convolution actions_, actions_reversed_;
+  inference::Convolution speed_;
+  inference::Convolution middle_, middle_reversed_;
+  inference::Convolution out_, out_reversed_;
+  inference::Activation time_part_;   ///< [K + 1, width], with the bias
+  inference::Activation speed_part_;  ///< [B, width]
+  inference::Activation action_rows_, state_rows_;
+  Hidden hidden_[2];
+};
+
+}  // namespace cdiff::diffusion

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "learning/task.h"
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::learning {
+
+using core::InputError;
+
+void TaskRegistry::add(const TaskDescriptor& descriptor) {
+  const std::string who = "training task '" + descriptor.name + "'";
+  if (descriptor.name.empty() || descriptor.make == nullptr) {
+    throw InputError(who + " is registered without " + (descriptor.name.empty() ? "name" : "make") +
+                     "; its descriptor in planners/NAME/training must give one");
+  }
+  const std::vector<std::string> known = names();
+  if (std::find(known.begin(), known.end(), descriptor.name) != known.end()) {
+    throw InputError(who +
+                     " is registered twice; one of the two planners must give its "
+                     "descriptor another name");
+  }
+  tasks_.push_back(descriptor);
+}
+
+std::vector<std::string> TaskRegistry::names() const {
+  std::vector<std::string> names;
+  for (const TaskDescriptor& task : tasks_) names.push_back(task.name);
+  return names;
+}
+
+const TaskDescriptor& TaskRegistry::descriptor(const std::string& name) const {
+  if (tasks_.empty()) {
+    throw InputError(
+        "no training task is registered; the program that trains must add the descriptors of "
+        "planners/NAME/training");
+  }
+  if (name.empty()) return tasks_.front();
+  for (const TaskDescriptor& task : tasks_) {
+    if (task.name == name) return task;
+  }
+  throw InputError("unknown training task '" + name + "'; the nearest known task is '" +
+                   core::nearestName(name, names()) + "'");
+}
+
+Training TaskRegistry::training(const std::string& name) const {
+  const TaskDescriptor& task = descriptor(name);
+  Training training;
+  training.options.task = task.name;
+  training.task = task.make();
+  training.tasks = names();
+  return training;
+}
+
+}  // namespace cdiff::learning

@@ -1,6 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Copyright (c) 2026 The e2e_cdiff authors
-/// Records a session as a bag.
-#include "ros/node_main.h"
-
-int main(int argc, char** argv) { return cdiff::ros::runRecorderNode(argc, argv); }

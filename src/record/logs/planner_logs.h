@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session_observer.h"
+
+namespace cdiff::record {
+
+/// Mean, 95th percentile (nearest rank) and maximum of a sample; values that are not finite are
+/// left out.
+struct SampleSummary {
+  std::optional<double> mean;  ///< absent when n = 0, and so on
+  std::optional<double> percentile_95;
+  std::optional<double> maximum;
+  std::size_t n = 0;
+};
+
+SampleSummary summaryOf(const std::vector<double>& values);
+
+/// Latencies [ms] of a planner over its decisions.
+struct LatencySummary {
+  double median = 0.0;         ///< [ms]
+  double percentile_95 = 0.0;  ///< [ms]
+  double maximum = 0.0;        ///< [ms]
+  std::size_t n = 0;           ///< decisions
+};
+
+/// The smallest sample that at least `percent` of all are not above (nearest rank). `sorted`
+/// ascends and is not empty.
+double nearestRank(const std::vector<double>& sorted, double percent);
+
+/// Wall time that each planner took per decision [ms]: median, 95th percentile (nearest rank) and
+/// maximum.
+class LatencyLog {
+ public:
+  void observe(const std::vector<session::PlannerLatency>& latencies);
+  /// By planner name.
+  std::map<std::string, LatencySummary> summaries() const;
+
+ private:
+  std::map<std::string, std::vector<double>> samples_;
+};
+
+/// How often a planner's answers came late in a paced session, what drove instead, and how late
+/// they came [s].
+struct LateCounts {
+  std::size_t asked = 0;          ///< answers that were due
+  std::size_t late = 0;           ///< answers that came after their tick
+  std::size_t missing = 0;        ///< answers that never came
+  std::size_t by_plan = 0;        ///< late or missing: the last plan's next action drove instead
+  std::size_t by_full_brake = 0;  ///< late or missing: full braking instead
+  std::size_t not_driven = 0;     ///< late or missing: the vehicle was not taken over yet
+  double median = 0.0;            ///< lateness of those that came late, wall time [s]
+  double percentile_95 = 0.0;     ///< [s]
+  double maximum = 0.0;           ///< [s]
+};
+
+/// Answers that came late, by planner: how many, how late, and what drove instead. Of sessions that
+/// go on without an answer that is late (real_time_factor > 0).
+class LateLog {
+ public:
+  void observe(const std::vector<session::AnswerTiming>& timings);
+  /// By planner ("cbv_identification" for the selection); empty for sessions that wait for every
+  /// answer.
+  std::map<std::string, LateCounts> counts() const;
+
+ private:
+  std::map<std::string, LateCounts> counts_;
+  std::map<std::string, std::vector<double>> lateness_;  ///< [s]
+};
+
+/// Answers of all planners that came late or never.
+std::size_t lateAnswers(const std::map<std::string, LateCounts>& counts);
+/// "342 of 802 answers came late or never and were replaced; ..." ; empty when none did.
+std::string latenessText(const std::map<std::string, LateCounts>& counts);
+
+/// One objective at one decision of one vehicle.
+struct GuidanceSample {
+  double time = 0.0;  ///< [s]
+  std::string vehicle_id;
+  guidance::ObjectiveReport report;
+};
+
+/// One objective over the session.
+struct GuidanceSeries {
+  std::string objective;
+  std::vector<GuidanceSample> samples;
+};
+
+/// Over the decisions in which the objective was active.
+struct ObjectiveSummary {
+  std::optional<double> weight;  ///< weight at the last decision
+  // Means; values that are not finite are left out.
+  std::optional<double> value;
+  std::optional<double> gradient_norm;
+  std::optional<double> capped_share;
+  std::int64_t dropped = 0;  ///< denoising steps, over all decisions
+  std::size_t n = 0;         ///< decisions
+};
+
+/// What guidance did to the plans of CBVs: every objective's report at every decision.
+class GuidanceLog {
+ public:
+  void observe(const session::TickRecord& record);
+  /// In the order in which objectives appeared first.
+  const std::vector<GuidanceSeries>& series() const { return series_; }
+  /// Share of guided steps in which the trust region acted, over decisions with guidance.
+  SampleSummary trustRegion() const { return summaryOf(trust_region_shares_); }
+
+ private:
+  GuidanceSeries& seriesOf(const std::string& objective);
+  std::vector<GuidanceSeries> series_;
+  std::vector<double> trust_region_shares_;
+};
+
+ObjectiveSummary summaryOf(const GuidanceSeries& series);
+
+}  // namespace cdiff::record

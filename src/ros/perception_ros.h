@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "cbv/cbv_selector.h"
+#include "e2e_cdiff/CbvSelection.h"
+#include "image_transport/image_transport.h"
+#include "nav_msgs/Path.h"
+#include "rendering/front_camera.h"
+#include "ros/participant.h"
+#include "session/session_setup.h"
+
+namespace cdiff::ros {
+
+/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick
+/// out.
+class CbvIdentificationRos : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
+  std::string waitingFor() const override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
+
+ private:
+  void takeRoute(const nav_msgs::Path& path);
+  cbv::CbvOptions options_;
+  std::optional<map::RoadNetwork> network_;
+  std::optional<map::LaneGraph> graph_;
+  map::Route ego_route_;
+  std::unique_ptr<cbv::CbvSelector> selector_;
+  ::ros::Publisher selections_;
+};
+
+/// The front cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and
+/// its intrinsics of each occupied slot and of the ego out, of those whose planner sees or that the
+/// session shows.
+class CameraRos : public Participant {
+ public:
+  explicit CameraRos(StopSignal& stop) : Participant(stop), transport_(node()) {}
+
+ protected:
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  bool ready(const ::e2e_cdiff::TrafficSnapshot& snapshot) const override {
+    return !graph().imagesOfCbvs() || selections_.count(snapshot.tick) > 0;
+  }
+  bool leavesOut() const override { return graph().paced; }
+  int conclude(Ending) override { return core::ExitCode::kPassed; }
+
+ private:
+  struct Output {
+    image_transport::Publisher images;
+    ::ros::Publisher infos;
+  };
+  void open(int slot);
+  void show(int slot, const traffic::TrafficSnapshot& snapshot, const std::string& vehicle_id);
+
+  image_transport::ImageTransport transport_;
+  std::unique_ptr<session::SessionSetup> setup_;
+  std::unique_ptr<rendering::FrontCamera> camera_;
+  std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
+  std::map<int, Output> outputs_;                                            ///< by slot
+};
+
+}  // namespace cdiff::ros
