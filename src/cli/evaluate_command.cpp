@@ -17,6 +17,7 @@
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
+#include "evaluation/sealed_opening.h"
 
 namespace cdiff::cli {
 namespace {
@@ -31,6 +32,8 @@ struct EvaluateArguments {
   std::string bench2drive;
   std::string networks;
   std::string results;
+  std::string suite;
+  std::string open_sealed;
   std::vector<std::string> routes;
   std::vector<std::string> seeds;
   std::vector<std::string> set;
@@ -60,9 +63,16 @@ MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
   return matrix;
 }
 
+/// The name of a shipped suite, or the absolute path of a folder.
+std::string suiteOf(const std::string& name) {
+  return core::isFile(fs::path(name) / "suite.yaml") ? fs::absolute(name).string() : name;
+}
+
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {
   MatrixOptions matrix = baseMatrix(arguments);
   if (!arguments.seeds.empty()) matrix.seeds = arguments.seeds;
+  if (!arguments.suite.empty()) matrix.suite = suiteOf(arguments.suite);
+  if (!arguments.open_sealed.empty()) matrix.open_sealed = arguments.open_sealed;
   matrix.set.insert(matrix.set.end(), arguments.set.begin(), arguments.set.end());
   return matrix;
 }
@@ -152,6 +162,7 @@ int evaluate(const EvaluateArguments& arguments) {
   const core::FolderLock lock(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(results, matrix, arguments.overwrite);
+  std::cerr << evaluation::recordOpening(matrix, results);
   const auto records = execute(plan, matrix, results, arguments);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
@@ -175,6 +186,9 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
                       "Instead of a matrix: every Bench2Drive route of this file whose town's "
                       "network is at hand");
   command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files");
+  command->add_option("--suite", arguments->suite, "Route suite instead of the matrix's");
+  command->add_option("--open-sealed", arguments->open_sealed,
+                      "Why a sealed suite is opened; goes to opened.log");
   command
       ->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")
       ->required();

@@ -42,6 +42,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"scenarios", "", "Shipped scenarios or scenario files."}, scenarios);
   visitor.text({"suite", "", "Shipped route suite or folder of one; each route a scenario."}, suite,
                {});
+  visitor.text({"open_sealed", "", "Why a sealed suite is opened (docs/sealed_suites.md)."},
+               open_sealed, {});
   visitor.group({"bench2drive", "", "Bench2Drive routes, each a scenario of its own."},
                 bench2drive);
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
@@ -86,6 +88,7 @@ std::string identityOf(const MatrixOptions& matrix) {
   MatrixOptions same = matrix;
   same.timeout = defaults.timeout;
   same.retries = defaults.retries;
+  same.open_sealed = defaults.open_sealed;
   return core::dumpOptions(same);
 }
 
