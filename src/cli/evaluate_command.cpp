@@ -14,6 +14,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
+#include "evaluation/bench2drive_selection.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
@@ -44,22 +45,31 @@ struct EvaluateArguments {
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 
-/// The matrix file, or the one that the Bench2Drive arguments stand for.
-MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
-  const bool routes = !arguments.bench2drive.empty();
-  if (routes == !arguments.matrix.empty()) {
-    throw InputError(
-        "give either a matrix (file or shipped name), or --bench2drive FILE --networks DIR");
-  }
-  if (!routes) return evaluation::loadMatrix(arguments.matrix);
+/// The Bench2Drive routes of the arguments.
+evaluation::Bench2DriveOptions routesOf(const EvaluateArguments& arguments) {
   if (arguments.networks.empty()) {
     throw InputError("--bench2drive " + arguments.bench2drive +
                      " needs --networks DIR (a folder with TOWN.net.xml files)");
   }
+  return {fs::absolute(arguments.bench2drive).string(), fs::absolute(arguments.networks).string(),
+          arguments.routes};
+}
+
+/// The matrix file; with Bench2Drive arguments on their routes instead of its own scenarios.
+/// Without a matrix these routes with everything as scenarios have it.
+MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
+  if (arguments.matrix.empty() && arguments.bench2drive.empty()) {
+    throw InputError(
+        "give a matrix (file or shipped name), --bench2drive FILE --networks DIR, or both: the "
+        "matrix on these routes");
+  }
   MatrixOptions matrix;
   matrix.name = "bench2drive";
-  matrix.bench2drive = {fs::absolute(arguments.bench2drive).string(),
-                        fs::absolute(arguments.networks).string(), arguments.routes};
+  if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
+  if (arguments.bench2drive.empty()) return matrix;
+  matrix.bench2drive = routesOf(arguments);
+  matrix.scenarios.clear();
+  matrix.suite.clear();
   return matrix;
 }
 
@@ -157,18 +167,21 @@ int evaluate(const EvaluateArguments& arguments) {
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
   core::temporaryFolder();  // without one each run would fail
+  std::string repeated;
+  if (!matrix.bench2drive.file.empty())
+    repeated = evaluation::repeatedText(evaluation::selectBench2Drive(matrix.bench2drive));
   const auto plan = evaluation::planRuns(
       matrix, arguments.matrix.empty() ? "evaluate --bench2drive" : arguments.matrix);
   const core::FolderLock lock(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(results, matrix, arguments.overwrite);
-  std::cerr << evaluation::recordOpening(matrix, results);
+  std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   const auto records = execute(plan, matrix, results, arguments);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records);
   if (arguments.matrix.empty()) {
-    text = routeTable(records, arguments.bench2drive, results);
+    text = routeTable(records, arguments.bench2drive, results) + repeated;
     core::writeFileAtomically(results / "table.md", text);
   }
   std::cout << text;
@@ -183,8 +196,8 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
       program.add_subcommand("evaluate", "Run a matrix of sessions in parallel and sum it up");
   command->add_option("matrix", arguments->matrix, "Matrix file or shipped evaluation");
   command->add_option("--bench2drive", arguments->bench2drive,
-                      "Instead of a matrix: every Bench2Drive route of this file whose town's "
-                      "network is at hand");
+                      "Every Bench2Drive route of this file whose town's network is at hand: as a "
+                      "matrix of its own, or instead of the matrix's scenarios");
   command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files");
   command->add_option("--suite", arguments->suite, "Route suite instead of the matrix's");
   command->add_option("--open-sealed", arguments->open_sealed,
@@ -192,7 +205,9 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
   command
       ->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")
       ->required();
-  command->add_option("--routes", arguments->routes, "Only these Bench2Drive route ids")
+  command
+      ->add_option("--routes", arguments->routes,
+                   "Only these Bench2Drive route ids; dev10: the paper's")
       ->delimiter(',');
   command->add_option("--seeds", arguments->seeds, "Root seeds instead of the matrix's")
       ->delimiter(',');

@@ -18,7 +18,7 @@ namespace cdiff::evaluation {
 struct Bench2DriveOptions {
   std::string file;
   std::string networks;             ///< folder with TOWN.net.xml files
-  std::vector<std::string> routes;  ///< ids; empty: all whose town's network is there
+  std::vector<std::string> routes;  ///< ids, or dev10; empty: all in the towns at hand
 
   void describe(core::OptionsVisitor& visitor);
 };
