@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/batch_files.h"
 
-#include <nlohmann/json.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/csv.h"

@@ -88,7 +88,7 @@ TEST(SealedScenario, IsFoundByItsFolder) {
   EXPECT_EQ(sealedSuiteOf(file)->filename(), "sealed_b");
   EXPECT_THROW(requireNotSealed(file), core::InputError);
   EXPECT_FALSE(sealedSuiteOf("crossing_left_turn"));
-  const Suite open = loadSuite("test");
+  const Suite open = loadSuite("development");
   EXPECT_NO_THROW(requireNotSealed(open.scenarioFile(open.routes.front()).string()));
 }
 
