@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/road_network.h"
+#include "e2e_cdiff/map/road_network.h"
 #include "session/session_setup.h"
 #include "suite/seal.h"
 #include "suite/suite.h"
