@@ -179,7 +179,7 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto records = execute(plan, matrix, results, arguments);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
-  std::string text = evaluation::batchMarkdown(matrix.name, records);
+  std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
   if (arguments.matrix.empty()) {
     text = routeTable(records, arguments.bench2drive, results) + repeated;
     core::writeFileAtomically(results / "table.md", text);
