@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/bags/dataset_from_bag.h"
+#include "suite/seal.h"
 #include "suite/suite.h"
 
 namespace cdiff::cli {
@@ -71,6 +72,7 @@ std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
            {"collection.minimum_density=" + density, "collection.maximum_density=" + density}});
     }
   }
+  for (const CollectScenario& scenario : scenarios) suite::requireNotSealed(scenario.name);
   if (!scenarios.empty()) return scenarios;
   for (const std::string& name : session::shippedScenarios()) scenarios.push_back({name, {}});
   return scenarios;

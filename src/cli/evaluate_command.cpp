@@ -14,9 +14,11 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
+#include "evaluation/bench2drive_selection.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
+#include "evaluation/sealed_opening.h"
 
 namespace cdiff::cli {
 namespace {
@@ -28,10 +30,11 @@ using evaluation::RunRecord;
 
 struct EvaluateArguments {
   std::string matrix;
-  std::string suite;
   std::string bench2drive;
   std::string networks;
   std::string results;
+  std::string suite;
+  std::string open_sealed;
   std::vector<std::string> routes;
   std::vector<std::string> seeds;
   std::vector<std::string> set;
@@ -42,36 +45,47 @@ struct EvaluateArguments {
 
 constexpr const char* kMatrixFile = "matrix.yaml";
 
-void requireRoutes(const EvaluateArguments& arguments) {
-  if (arguments.matrix.empty() && arguments.bench2drive.empty() && arguments.suite.empty()) {
+/// The Bench2Drive routes of the arguments.
+evaluation::Bench2DriveOptions routesOf(const EvaluateArguments& arguments) {
+  if (arguments.networks.empty()) {
+    throw InputError("--bench2drive " + arguments.bench2drive +
+                     " needs --networks DIR (a folder with TOWN.net.xml files)");
+  }
+  return {fs::absolute(arguments.bench2drive).string(), fs::absolute(arguments.networks).string(),
+          arguments.routes};
+}
+
+/// The name of a shipped suite, or the absolute path of a folder.
+std::string suiteOf(const std::string& name) {
+  return core::isFile(fs::path(name) / "suite.yaml") ? fs::absolute(name).string() : name;
+}
+
+/// The matrix on its own routes or on those of the arguments; without a matrix these routes with
+/// everything as scenarios have it.
+MatrixOptions baseMatrix(const EvaluateArguments& arguments) {
+  const bool suite = !arguments.suite.empty();
+  const bool bench2drive = !arguments.bench2drive.empty();
+  if (arguments.matrix.empty() && !suite && !bench2drive) {
     throw InputError(
         "give a matrix (file or shipped name), or routes: --suite NAME, or --bench2drive FILE "
         "--networks DIR, or a matrix and the routes to run it on instead of its own");
   }
-  if (!arguments.suite.empty() && !arguments.bench2drive.empty())
+  if (suite && bench2drive)
     throw InputError("give either --suite or --bench2drive: a batch has routes of one kind");
-  if (!arguments.bench2drive.empty() && arguments.networks.empty()) {
-    throw InputError("--bench2drive " + arguments.bench2drive +
-                     " needs --networks DIR (a folder with TOWN.net.xml files)");
-  }
+  MatrixOptions matrix;
+  matrix.name = suite ? fs::path(arguments.suite).filename().string() : "bench2drive";
+  if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
+  if (!suite && !bench2drive) return matrix;
+  matrix.scenarios.clear();
+  matrix.suite = suite ? suiteOf(arguments.suite) : "";
+  matrix.bench2drive = bench2drive ? routesOf(arguments) : evaluation::Bench2DriveOptions();
+  return matrix;
 }
 
-/// The matrix with the routes that were asked for instead of its own.
 MatrixOptions matrixOf(const EvaluateArguments& arguments) {
-  requireRoutes(arguments);
-  MatrixOptions matrix;
-  matrix.name = arguments.suite.empty() ? "bench2drive" : arguments.suite;
-  if (!arguments.matrix.empty()) matrix = evaluation::loadMatrix(arguments.matrix);
-  if (!arguments.suite.empty() || !arguments.bench2drive.empty()) {
-    matrix.scenarios.clear();
-    matrix.bench2drive = {};
-    matrix.suite = arguments.suite;
-  }
-  if (!arguments.bench2drive.empty()) {
-    matrix.bench2drive = {fs::absolute(arguments.bench2drive).string(),
-                          fs::absolute(arguments.networks).string(), arguments.routes};
-  }
+  MatrixOptions matrix = baseMatrix(arguments);
   if (!arguments.seeds.empty()) matrix.seeds = arguments.seeds;
+  if (!arguments.open_sealed.empty()) matrix.open_sealed = arguments.open_sealed;
   matrix.set.insert(matrix.set.end(), arguments.set.begin(), arguments.set.end());
   return matrix;
 }
@@ -156,17 +170,21 @@ int evaluate(const EvaluateArguments& arguments) {
   const fs::path results = fs::absolute(arguments.results);
   requireFolder(results, arguments);
   core::temporaryFolder();  // without one each run would fail
+  std::string repeated;
+  if (!matrix.bench2drive.file.empty())
+    repeated = evaluation::repeatedText(evaluation::selectBench2Drive(matrix.bench2drive));
   const auto plan =
       evaluation::planRuns(matrix, arguments.matrix.empty() ? "evaluate" : arguments.matrix);
   const core::FolderLock lock(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(results, matrix, arguments.overwrite);
+  std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   const auto records = execute(plan, matrix, results, arguments);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
-  std::string text = evaluation::batchMarkdown(matrix.name, records);
+  std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
   if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
-    text = routeTable(records, arguments.bench2drive, results);
+    text = routeTable(records, arguments.bench2drive, results) + repeated;
     core::writeFileAtomically(results / "table.md", text);
   }
   std::cout << text;
@@ -187,10 +205,14 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
                       "Routes instead of the matrix's, or without one: a shipped route suite, or "
                       "the folder of one");
   command->add_option("--networks", arguments->networks, "Folder with TOWN.net.xml files");
+  command->add_option("--open-sealed", arguments->open_sealed,
+                      "Why a sealed suite is opened; goes to opened.log");
   command
       ->add_option("--results", arguments->results, "Result folder; one folder a run below runs/")
       ->required();
-  command->add_option("--routes", arguments->routes, "Only these Bench2Drive route ids")
+  command
+      ->add_option("--routes", arguments->routes,
+                   "Only these Bench2Drive route ids; dev10: the paper's")
       ->delimiter(',');
   command->add_option("--seeds", arguments->seeds, "Root seeds instead of the matrix's")
       ->delimiter(',');

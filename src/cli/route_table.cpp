@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "evaluation/bench2drive_selection.h"
 #include "evaluation/executor.h"
 #include "map/route_source.h"
 
@@ -103,19 +104,23 @@ struct Totals {
   int completed = 0;
   int driven = 0;
   int at_junction = 0;
+  int without_cbv = 0;
+  std::size_t runs = 0;
 
   void add(const Row& row) {
     errors += row.status == "error";
     completed += row.status == "completed";
     driven += row.longest >= kDriven;
     at_junction += row.longest_at_junction >= kDriven;
+    without_cbv += row.status != "error" && row.count == "0";
+    ++runs;
   }
-  std::string text(std::size_t runs) const {
-    return std::to_string(runs) + " routes: " + std::to_string(errors) + " errors, " +
+  std::string text(const std::string& what) const {
+    return std::to_string(runs) + " " + what + ": " + std::to_string(errors) + " errors, " +
            std::to_string(completed) + " completed; one CBV driven for at least " +
            std::to_string(kDriven) + " decisions on " + std::to_string(driven) +
            ", with a conflict point at or beyond a junction on " + std::to_string(at_junction) +
-           "\n";
+           "; without any CBV " + std::to_string(without_cbv) + "\n";
   }
 };
 
@@ -133,16 +138,21 @@ std::string routeTable(const std::vector<RunRecord>& records, const std::string&
       "conflict at or beyond a junction | off-road % | CBVs passed % | CBV route % | first "
       "conflict point (x, y) | most frequent rejections |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  const std::vector<std::string>& dev10 = evaluation::dev10Routes();
   Totals totals;
+  Totals paper;  // of dev10 alone
   for (const RunRecord& record : records) {
     Row row = readRow(record, results);
     if (!record.complete()) row.status = record.status;
     const std::string& route = record.factors.at("scenario");
     const std::string seed = seeds.size() > 1 ? " (seed " + record.factors.at("seed") + ")" : "";
     totals.add(row);
+    if (std::find(dev10.begin(), dev10.end(), route) != dev10.end()) paper.add(row);
     text += tableLine(route + seed, towns[route], row);
   }
-  return text + "\n" + totals.text(records.size());
+  text += "\n" + totals.text("routes");
+  if (paper.runs > 0) text += "of these " + paper.text("of the paper's dev10");
+  return text;
 }
 
 }  // namespace cdiff::cli

@@ -42,7 +42,7 @@ void addSuiteCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<SuiteArguments>();
   CLI::App* command =
       program.add_subcommand("suite", "Generate a suite of ego routes with their networks");
-  command->add_option("kind", arguments->kind, "Which suite: train or test")
+  command->add_option("kind", arguments->kind, "Which suite: train or development")
       ->required()
       ->check(CLI::IsMember(suite::suiteKinds()));
   command->add_option("--results", arguments->results, "Folder of the suite, new or empty")

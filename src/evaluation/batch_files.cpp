@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/batch_files.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -148,6 +149,30 @@ std::string cellsTable(const std::vector<Cell>& cells) {
   return text;
 }
 
+/// Runs in which no CBV was driven say nothing about CBVs: how many, and scenarios that have no
+/// other run.
+std::string withoutCbvText(const std::vector<RunRecord>& records) {
+  std::map<std::string, bool> driven;  // by scenario: in any run
+  std::size_t complete = 0;
+  std::size_t without = 0;
+  for (const RunRecord& record : records) {
+    const auto count = record.measures.find(metrics::known::kCbvCount.name);
+    if (!record.complete() || count == record.measures.end()) continue;
+    ++complete;
+    without += count->second == 0.0;
+    bool& any = driven[record.factors.at("scenario")];
+    any = any || count->second > 0.0;
+  }
+  std::vector<std::string> never;
+  for (const auto& [scenario, any] : driven) {
+    if (!any) never.push_back(core::markdownText(scenario));
+  }
+  return "Without a CBV: " + std::to_string(without) + " of " + std::to_string(complete) +
+         " complete runs; no run with one on " + std::to_string(never.size()) + " of " +
+         std::to_string(driven.size()) + " scenarios" +
+         (never.empty() ? "" : " (" + core::joinText(never, ", ") + ")") + ".\n";
+}
+
 }  // namespace
 
 std::string runsCsv(const std::vector<RunRecord>& records) {
@@ -210,7 +235,7 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
          std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +
          " passed. Mean \xC2\xB1 standard deviation over seeds (number of "
          "seeds that have the measure).\n\n" +
-         cellsTable(cellsOf(records));
+         cellsTable(cellsOf(records)) + "\n" + withoutCbvText(records);
 }
 
 void writeBatchFiles(const std::filesystem::path& results, const std::string& name,

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/route_source.h"
+#include "evaluation/bench2drive_selection.h"
 #include "suite/suite.h"
 
 namespace cdiff::evaluation {
@@ -33,7 +33,8 @@ void resolveAgainst(const fs::path& folder, std::string& name) {
 void Bench2DriveOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"file", "", "Bench2Drive route file; empty: none."}, file, {});
   visitor.text({"networks", "", "Folder with TOWN.net.xml files."}, networks, {});
-  visitor.list({"routes", "", "Route ids; empty: all whose town's network is there."}, routes);
+  visitor.list({"routes", "", "Route ids, or dev10; empty: all whose town's network is there."},
+               routes);
 }
 
 void MatrixOptions::describe(core::OptionsVisitor& visitor) {
@@ -42,6 +43,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"scenarios", "", "Shipped scenarios or scenario files."}, scenarios);
   visitor.text({"suite", "", "Shipped route suite or folder of one; each route a scenario."}, suite,
                {});
+  visitor.text({"open_sealed", "", "Why a sealed suite is opened (docs/sealed_suites.md)."},
+               open_sealed, {});
   visitor.group({"bench2drive", "", "Bench2Drive routes, each a scenario of its own."},
                 bench2drive);
   visitor.list({"ego_planners", "", "Planners of the ego; empty: the scenario's."}, ego_planners);
@@ -87,6 +90,7 @@ std::string identityOf(const MatrixOptions& matrix) {
   MatrixOptions same = matrix;
   same.timeout = defaults.timeout;
   same.retries = defaults.retries;
+  same.open_sealed = defaults.open_sealed;
   return core::dumpOptions(same);
 }
 
@@ -94,27 +98,12 @@ namespace {
 
 std::vector<ScenarioLevel> bench2DriveLevels(const Bench2DriveOptions& options) {
   std::vector<ScenarioLevel> levels;
-  std::vector<std::string> missing = options.routes;
-  for (const map::Bench2DriveEntry& entry : map::listBench2DriveRoutes(options.file)) {
-    const auto& wanted = options.routes;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), entry.id) == wanted.end())
-      continue;
-    const fs::path network = fs::path(options.networks) / (entry.town + ".net.xml");
-    if (!core::isFile(network)) continue;
-    missing.erase(std::remove(missing.begin(), missing.end(), entry.id), missing.end());
+  for (const auto& [id, network] : selectBench2Drive(options).routes) {
     session::SessionRequest request;
     request.bench2drive = options.file;
-    request.route = entry.id;
-    request.network = network.string();
-    levels.push_back({entry.id, request});
-  }
-  if (!missing.empty()) {
-    throw InputError("routes " + core::joinText(missing, ", ") + " are not in '" + options.file +
-                     "', or the network of their town is not in '" + options.networks + "'");
-  }
-  if (levels.empty()) {
-    throw InputError("no route of '" + options.file +
-                     "' lies in a town whose TOWN.net.xml is in '" + options.networks + "'");
+    request.route = id;
+    request.network = network;
+    levels.push_back({id, request});
   }
   return levels;
 }

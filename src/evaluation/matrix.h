@@ -18,7 +18,7 @@ namespace cdiff::evaluation {
 struct Bench2DriveOptions {
   std::string file;
   std::string networks;             ///< folder with TOWN.net.xml files
-  std::vector<std::string> routes;  ///< ids; empty: all whose town's network is there
+  std::vector<std::string> routes;  ///< ids, or dev10; empty: all in the towns at hand
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -29,6 +29,7 @@ struct MatrixOptions {
   std::string name = "evaluation";
   std::vector<std::string> scenarios;  ///< shipped names or files
   std::string suite;                   ///< name or folder of a route suite; each route a scenario
+  std::string open_sealed;             ///< why a sealed suite is opened; empty: none may be
   Bench2DriveOptions bench2drive;
   std::vector<std::string> ego_planners;
   std::vector<std::string> cbv_planners;
@@ -56,8 +57,8 @@ MatrixOptions loadMatrix(const std::string& name_or_file);
 /// Names of the shipped matrices, sorted.
 std::vector<std::string> shippedMatrices();
 
-/// The matrix as text without what may change between a batch and its resumption (time-out and
-/// retries): equal texts plan the same runs.
+/// The matrix as text without what may change between a batch and its resumption (time-out,
+/// retries, why a sealed suite is opened): equal texts plan the same runs.
 std::string identityOf(const MatrixOptions& matrix);
 
 // The levels of a matrix's factors, checked. `source` names the matrix in errors; all throw

@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
+#include "evaluation/sealed_opening.h"
 #include "map/import/network_import.h"
 #include "planners/registry.h"
 #include "session/closed_loop.h"
@@ -268,6 +269,7 @@ const std::vector<std::string>& factorNames() {
 }
 
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source) {
+  requireOpeningReason(matrix, source);
   return RunPlanner(matrix, source).plan();
 }
 

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <pugixml.hpp>
-#include <set>
 
-#include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/bench2drive_file.h"
 #include "map/route_search.h"
 
 namespace cdiff::map {
@@ -139,66 +137,7 @@ Route bench2DriveRoute(const LaneGraph& graph, const RouteOptions& options) {
   }
 }
 
-/// A Bench2Drive route file: <routes> with <route id town> and its <waypoints>.
-class RouteFile {
- public:
-  explicit RouteFile(const std::string& file) : file_(file) {
-    const std::string text = core::readFile(file, "route file");
-    const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size());
-    if (!result) {
-      fail(std::string("not XML: ") + result.description() + " at offset " +
-           std::to_string(result.offset));
-    }
-    if (!document_.child("routes"))
-      fail("no <routes> element; a Bench2Drive route file was expected");
-  }
-
-  pugi::xml_node route(const std::string& id) const {
-    for (const pugi::xml_node& route : document_.child("routes").children("route")) {
-      if (id == route.attribute("id").value()) return route;
-    }
-    failUnknown(id);
-  }
-
-  std::vector<Bench2DriveEntry> entries() const {
-    std::vector<Bench2DriveEntry> entries;
-    for (const pugi::xml_node& route : document_.child("routes").children("route")) {
-      entries.push_back({route.attribute("id").value(), route.attribute("town").value()});
-    }
-    return entries;
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw core::InputError("route file '" + file_ + "': " + what);
-  }
-
- private:
-  [[noreturn]] void failUnknown(const std::string& id) const {
-    std::vector<std::string> ids;
-    std::set<std::string> towns;
-    for (const pugi::xml_node& route : document_.child("routes").children("route")) {
-      ids.emplace_back(route.attribute("id").value());
-      towns.insert(route.attribute("town").value());
-    }
-    if (ids.empty()) fail("it holds no <route>");
-    fail("no route '" + id + "'; the nearest ids are " + nearestIds(id, ids) + " (" +
-         std::to_string(ids.size()) + " routes in " + std::to_string(towns.size()) + " towns)");
-  }
-
-  static std::string nearestIds(const std::string& id, std::vector<std::string> ids) {
-    std::vector<std::string> nearest;
-    while (nearest.size() < 3 && !ids.empty()) {
-      nearest.push_back(core::nearestName(id, ids));
-      ids.erase(std::find(ids.begin(), ids.end(), nearest.back()));
-    }
-    return core::joinText(nearest, ", ");
-  }
-
-  std::string file_;
-  pugi::xml_document document_;
-};
-
-double coordinate(const RouteFile& file, const std::string& id, std::size_t index,
+double coordinate(const Bench2DriveFile& file, const std::string& id, std::size_t index,
                   const pugi::xml_node& position, const char* name) {
   const char* text = position.attribute(name).value();
   const std::optional<double> value = core::parseNumber(text);
@@ -254,7 +193,7 @@ Route makeRoute(const LaneGraph& graph, const RouteOptions& options) {
 
 std::vector<Eigen::Vector3d> readBench2DriveRoute(const std::string& file, const std::string& id,
                                                   const RoadNetwork& network) {
-  const RouteFile routes(file);
+  const Bench2DriveFile routes(file);
   const pugi::xml_node route = routes.route(id);
   const Eigen::Vector2d& offset = network.netOffset();
   std::vector<Eigen::Vector3d> points;
@@ -272,14 +211,14 @@ std::vector<Eigen::Vector3d> readBench2DriveRoute(const std::string& file, const
 }
 
 std::string bench2DriveTown(const std::string& file, const std::string& id) {
-  const RouteFile routes(file);
+  const Bench2DriveFile routes(file);
   const std::string town = routes.route(id).attribute("town").value();
   if (town.empty()) routes.fail("route '" + id + "' names no town");
   return town;
 }
 
 std::vector<Bench2DriveEntry> listBench2DriveRoutes(const std::string& file) {
-  return RouteFile(file).entries();
+  return Bench2DriveFile(file).entries();
 }
 
 }  // namespace cdiff::map

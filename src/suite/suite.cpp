@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "suite/seal.h"
 
 namespace cdiff::suite {
 namespace {
@@ -78,6 +79,8 @@ class EntryReader {
     throw InputError("suite '" + file_.string() + "', line " +
                      std::to_string(node_.Mark().line + 1) + ": " + what);
   }
+
+  bool has(const char* key) const { return node_[key].IsDefined(); }
 
   YAML::Node child(const char* key) {
     known_.emplace_back(key);
@@ -164,6 +167,7 @@ fs::path Suite::scenarioFile(const SuiteRoute& route) const {
 Suite loadSuite(const std::string& name_or_folder) {
   Suite suite;
   suite.folder = findSuite(name_or_folder);
+  if (hasSeal(suite.folder)) requireIntactSeal(suite.folder);
   const fs::path file = suite.folder / kManifest;
   EntryReader reader(file, parse(file));
   int version = 0;
@@ -171,6 +175,10 @@ Suite loadSuite(const std::string& name_or_folder) {
   if (version != 1) reader.fail("key 'schema_version': expected 1");
   reader.read("name", suite.name, "a text");
   reader.read("seed", suite.seed, "a whole number");
+  if (reader.has("sealed")) reader.read("sealed", suite.sealed, "true or false");
+  if (suite.sealed != hasSeal(suite.folder))
+    reader.fail(std::string("key 'sealed' and the file ") + kSealFile +
+                " go together; one of them is missing: restore the folder from the repository");
   readRoutes(file, reader, suite);
   reader.finish();
   return suite;

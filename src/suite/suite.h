@@ -15,6 +15,7 @@ namespace cdiff::suite {
 struct Suite {
   std::string name;
   std::int64_t seed = 1;  ///< it was generated from
+  bool sealed = false;    ///< nothing is chosen on it; see seal.h
   std::vector<SuiteRoute> routes;
   std::filesystem::path folder;
 
@@ -23,8 +24,8 @@ struct Suite {
 };
 
 /// Reads a suite by its folder, or by the name of one in config/suites. Throws InputError that
-/// names the nearest shipped suite, the manifest's line and key, or the route whose network or
-/// scenario file is missing.
+/// names the nearest shipped suite, the manifest's line and key, the route whose network or
+/// scenario file is missing, or the file of a sealed suite that differs from its seal.
 Suite loadSuite(const std::string& name_or_folder);
 
 /// Scenario files of its routes, in their order.

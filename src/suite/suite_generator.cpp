@@ -43,34 +43,34 @@ std::vector<NetworkSpec> trainingNetworks() {
   return specs;
 }
 
-std::vector<NetworkSpec> testNetworks() {
+std::vector<NetworkSpec> developmentNetworks() {
   const auto crossing = NetworkKind::kCrossing;
-  return {{"test_crossing", crossing, 4, 1, "priority", false},
-          {"test_t_junction", crossing, 3, 1, "priority", true},
-          {"test_signals", crossing, 4, 2, "traffic_light", false},
-          {"test_right_before_left", crossing, 4, 1, "right_before_left", false},
-          {"test_district", NetworkKind::kDistrict, 0, 1, "", false},
-          {"test_roundabout", NetworkKind::kRoundabout, 4, 1, "", false},
-          {"test_merge", NetworkKind::kMerge, 0, 2, "", false}};
+  return {{"development_crossing", crossing, 4, 1, "priority", false},
+          {"development_t_junction", crossing, 3, 1, "priority", true},
+          {"development_signals", crossing, 4, 2, "traffic_light", false},
+          {"development_right_before_left", crossing, 4, 1, "right_before_left", false},
+          {"development_district", NetworkKind::kDistrict, 0, 1, "", false},
+          {"development_roundabout", NetworkKind::kRoundabout, 4, 1, "", false},
+          {"development_merge", NetworkKind::kMerge, 0, 2, "", false}};
 }
 
-std::vector<RouteWish> testRoutes() {
-  return {{"left", "medium", "test_crossing"},
-          {"left", "medium", "test_t_junction"},
-          {"left", "medium", "test_signals"},
-          {"right", "high", "test_t_junction"},
-          {"right", "medium", "test_right_before_left"},
-          {"right", "low", "test_district"},
-          {"straight", "medium", "test_crossing"},
-          {"straight", "medium", "test_signals"},
-          {"roundabout", "low", "test_roundabout"},
-          {"merge", "high", "test_merge"}};
+std::vector<RouteWish> developmentRoutes() {
+  return {{"left", "medium", "development_crossing"},
+          {"left", "medium", "development_t_junction"},
+          {"left", "medium", "development_signals"},
+          {"right", "high", "development_t_junction"},
+          {"right", "medium", "development_right_before_left"},
+          {"right", "low", "development_district"},
+          {"straight", "medium", "development_crossing"},
+          {"straight", "medium", "development_signals"},
+          {"roundabout", "low", "development_roundabout"},
+          {"merge", "high", "development_merge"}};
 }
 
 }  // namespace
 
 const std::vector<std::string>& suiteKinds() {
-  static const std::vector<std::string> kinds = {"test", "train"};
+  static const std::vector<std::string> kinds = {"development", "train"};
   return kinds;
 }
 
@@ -80,16 +80,16 @@ std::map<std::string, int> routeCounts(const std::string& kind) {
   if (kind == "train")
     return {{"left", 66}, {"right", 66}, {"straight", 44}, {"roundabout", 22}, {"merge", 22}};
   std::map<std::string, int> counts;
-  for (const RouteWish& wish : testRoutes()) ++counts[wish.manoeuvre];
+  for (const RouteWish& wish : developmentRoutes()) ++counts[wish.manoeuvre];
   return counts;
 }
 
 std::vector<NetworkSpec> networkSpecs(const std::string& kind) {
-  return kind == "train" ? trainingNetworks() : testNetworks();
+  return kind == "train" ? trainingNetworks() : developmentNetworks();
 }
 
 std::vector<RouteWish> routeWishes(const std::string& kind) {
-  if (kind != "train") return testRoutes();
+  if (kind != "train") return developmentRoutes();
   std::vector<RouteWish> wishes;
   for (const auto& [manoeuvre, count] : routeCounts(kind)) {
     for (int i = 0; i < count; ++i)
@@ -111,10 +111,15 @@ struct BuiltNetwork {
   map::RoadNetwork network;
 };
 
+/// Name of a suite's stream of draws. The development suite was drawn under its earlier name.
+std::string streamOf(const std::string& kind) {
+  return kind == "development" ? "suite test" : "suite " + kind;
+}
+
 class Generator {
  public:
   Generator(const std::string& kind, std::int64_t seed, const fs::path& folder)
-      : kind_(kind), random_(static_cast<std::uint64_t>(seed), "suite " + kind), folder_(folder) {
+      : kind_(kind), random_(static_cast<std::uint64_t>(seed), streamOf(kind)), folder_(folder) {
     suite_.name = kind;
     suite_.seed = seed;
     suite_.folder = folder;

@@ -24,16 +24,16 @@ struct RouteWish {
 std::vector<NetworkSpec> networkSpecs(const std::string& kind);
 std::vector<RouteWish> routeWishes(const std::string& kind);
 
-// Whole suites from a seed: 220 training routes on 38 networks, 10 test routes on 7 others. The
-// draws of the two come from streams of their own, so no network of one is in the other.
+// Whole suites from a seed: 220 training routes on 38 networks, 10 development routes on 7 others.
+// The draws of the two come from streams of their own, so no network of one is in the other.
 
-/// "test", "train".
+/// "development", "train".
 const std::vector<std::string>& suiteKinds();
 
 /// Routes of each maneuver in a suite of this kind.
 std::map<std::string, int> routeCounts(const std::string& kind);
 
-/// Seed of a suite when none is asked for; that of the shipped test suite.
+/// Seed of a suite when none is asked for; that of the shipped development suite.
 std::int64_t defaultSeed(const std::string& kind);
 
 /// Writes the suite; same kind, seed and SUMO version: same bytes. The folder appears when all of

@@ -158,7 +158,7 @@ std::string scenarioText(const SuiteRoute& route) {
          "\n  end_offset: " + core::formatNumber(route.end_offset) +
          "\n  start_speed: 6\ndemand: generated\ntraffic:\n  density: " +
          std::to_string(vehiclesAt(route.density)) +
-         "\n  radius: 120\n  warm_up: 30\nprotocol:\n  preset: rift_dev10\n  time_limit: 60\n"
+         "\n  radius: 120\n  warm_up: 30\nprotocol:\n  preset: rift_dev10\n"
          "verdict:\n  minimum_route_completion: 90\n  statuses: [completed, timed_out, collided]\n"
          "  maximum_contacts_at_fault: 0\n  contact_without_fault: by_mode\n"
          "seed: " +

@@ -82,7 +82,7 @@ TEST_F(Messages, ALoopOfSymbolicLinksIsNamed) {
       {"import", path("loop")},
       {"report", "--training", path("loop")},
       {"metric", "ttc_2d", path("loop")},
-      {"suite", "test", "--results", path("loop")}};
+      {"suite", "development", "--results", path("loop")}};
   for (const std::vector<std::string>& command : commands) {
     EXPECT_EQ(cdiff(command), 3) << command.front();
     expectOutput("'" + path("loop"));

@@ -86,6 +86,16 @@ TEST_F(BatchFiles, JunitReportsErrorsFailuresAndWhatWasNotRun) {
   expectIn("<skipped message=\"not_run\" />", xml);
 }
 
+/// Four runs are complete (s twice, u, v); s has a CBV in one of its two, u in none, v does not
+/// say.
+TEST_F(BatchFiles, MarkdownCountsRunsAndScenariosWithoutACbv) {
+  records_[0].measures["cbv_count"] = 0.0;
+  records_[1].measures["cbv_count"] = 2.0;
+  records_[4].measures["cbv_count"] = 0.0;
+  expectIn("Without a CBV: 2 of 3 complete runs; no run with one on 1 of 2 scenarios (u).\n",
+           batchMarkdown("night", records_));
+}
+
 TEST_F(BatchFiles, MarkdownShowsTheFactorsThatVary) {
   const std::string text = batchMarkdown("night", records_);
   expectIn(

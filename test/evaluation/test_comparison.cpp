@@ -80,7 +80,7 @@ std::vector<RunRecord> drivenRuns(const std::string& matrix, const std::string& 
 
 TEST(Comparison, AFactorThatFollowsTheComparedOneDoesNotPair) {
   // 10 scenarios x 3 seeds in 2 modes, each mode with the guidance profile of its name: 30 pairs.
-  const auto records = drivenRuns("test_routes", "safety_critical", -8.0);
+  const auto records = drivenRuns("development", "safety_critical", -8.0);
   const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0].pairs, 30U);

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedMatrix, testing::ValuesIn(shippedMatrices()
 TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("smoke"), "smoke").size(), 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("guidance_effect"), "").size(), 10U * 3U * 7U);
-  EXPECT_EQ(planRuns(loadMatrix("test_routes"), "").size(), 10U * 3U * 2U);
+  EXPECT_EQ(planRuns(loadMatrix("development"), "").size(), 10U * 3U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("ten_scenarios"), "").size(), 10U * 3U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("conditioning_effect"), "").size(), 10U * 3U * 9U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("image_effect"), "").size(), 10U * 3U * 4U);

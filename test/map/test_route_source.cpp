@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/bench2drive_file.h"
 #include "map/route_source.h"
 #include "support/network_text.h"
 #include "support/real_data.h"
@@ -145,7 +146,7 @@ TEST(RouteOptions, LoadsEveryKey) {
   EXPECT_EQ(options.edges, Names{"e"});
 }
 
-class Bench2DriveFile : public ::testing::Test {
+class RouteFile : public ::testing::Test {
  protected:
   void SetUp() override {
     file_ = std::filesystem::temp_directory_path() /
@@ -163,7 +164,7 @@ class Bench2DriveFile : public ::testing::Test {
   std::filesystem::path file_;
 };
 
-TEST_F(Bench2DriveFile, FlipsYAndAddsTheOffset) {
+TEST_F(RouteFile, FlipsYAndAddsTheOffset) {
   std::string text = street().text();
   text.insert(text.find("<edge"), "<location netOffset=\"3.5,0.25\"/>");
   const RoadNetwork network = RoadNetwork::fromText(text, "street");
@@ -177,7 +178,7 @@ TEST_F(Bench2DriveFile, FlipsYAndAddsTheOffset) {
   EXPECT_NEAR(makeRoute(LaneGraph(network), options).length(), 30.0, 1e-6);
 }
 
-TEST_F(Bench2DriveFile, NamesWhatIsWrong) {
+TEST_F(RouteFile, NamesWhatIsWrong) {
   const RoadNetwork network = street().network();
   const std::string file = file_.string();
   EXPECT_ERROR(readBench2DriveRoute(file, "102", network),
@@ -188,6 +189,29 @@ TEST_F(Bench2DriveFile, NamesWhatIsWrong) {
   options.bench2drive_file = file;
   options.bench2drive_id = "900";
   EXPECT_ERROR(makeRoute(LaneGraph(network), options), "is for Town01; on this network: point 0");
+}
+
+/// 103 and 99 are where 101 is: the lowest of the three ids is kept. 104 lies in another town, 105
+/// has one other number.
+TEST_F(RouteFile, FindsRoutesThatRepeatAnotherOne) {
+  const auto route = [](const char* id, const char* town, const char* x) {
+    return std::string("<route id=\"") + id + "\" town=\"" + town + "\"><waypoints><position x=\"" +
+           x + "\" y=\"1\" z=\"0\"/></waypoints></route>";
+  };
+  core::writeFileAtomically(file_, "<routes>" + route("101", "Town01", "10") +
+                                       route("103", "Town01", "10") + route("99", "Town01", "10") +
+                                       route("104", "Town02", "10") +
+                                       route("105", "Town01", "10.5") + "</routes>");
+  const std::map<std::string, std::string> expected = {{"101", "99"}, {"103", "99"}};
+  EXPECT_EQ(Bench2DriveFile(file_.string()).repeatedRoutes(), expected);
+}
+
+TEST(Bench2Drive, NamesTheRepeatedRoutesOfTheRealFile) {
+  const auto file = test::realData("bench2drive/bench2drive220.xml");
+  CDIFF_SKIP_WITHOUT(file);
+  const auto repeated = Bench2DriveFile(file.string()).repeatedRoutes();
+  for (const char* id : {"25896", "26435", "26456"}) EXPECT_EQ(repeated.at(id), "25854");
+  EXPECT_EQ(repeated.at("26406"), "24785");
 }
 
 TEST(Bench2Drive, CountsTheRoutesOfTheRealFile) {

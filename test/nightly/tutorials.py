@@ -31,12 +31,13 @@ LEFT_OUT = [
     (r"git clone|scripts/(demo|test|setup)|cmake --install", "sets up what is there already"),
     (r"\.\.\.", "is abridged"),
     (r"results/guidance_effect", "compares a matrix of 210 runs"),
+    (r"results/(towns|dev10)", "runs a matrix of 90 runs and more"),
     (r"--bags monday\.bag", "needs a bag of the reader's own"),
 ]
 SMALLER = [
     (r" rviz:=true", ""),
     (r"\[(--\w+)\]", r"\1"),
-    (r"evaluate test_routes", "evaluate test_routes --seeds 1 --set protocol.time_limit=4 --set verdict.judge=false"),
+    (r"evaluate development", "evaluate development --seeds 1 --set protocol.time_limit=4 --set verdict.judge=false"),
     (r"collect --suite (\S+)", r"collect --scenarios $(ls \1/scenarios/*.yaml | head -12)"),
     (r"(collect .*?)( --duration \d+)?$", r"\1 --duration 6"),
     (r"--time-limit \d+", "--time-limit 40"),

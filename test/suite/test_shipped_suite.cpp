@@ -20,21 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<SuiteRoute> testRoutes() { return loadSuite("test").routes; }
+std::vector<SuiteRoute> developmentRoutes() { return loadSuite("development").routes; }
 
 session::ScenarioOptions scenarioOf(const SuiteRoute& route, const std::vector<std::string>& set) {
   session::SessionRequest request;
-  request.scenario = loadSuite("test").scenarioFile(route).string();
+  request.scenario = loadSuite("development").scenarioFile(route).string();
   request.cbv_planner = "pdm_lite";
   request.set = set;
   return session::resolveRequest(request);
 }
 
-TEST(ShippedTestSuite, HasTheTenRoutesOnSevenNetworks) {
+TEST(DevelopmentSuite, HasTheTenRoutesOnSevenNetworks) {
   std::map<std::string, int> counts;
   std::set<std::string> networks;
   std::set<std::string> densities;
-  for (const SuiteRoute& route : testRoutes()) {
+  for (const SuiteRoute& route : developmentRoutes()) {
     ++counts[route.manoeuvre];
     networks.insert(route.network);
     densities.insert(route.density);
@@ -48,11 +48,11 @@ TEST(ShippedTestSuite, HasTheTenRoutesOnSevenNetworks) {
 
 /// Fixed: the sources and routes are those that the command makes (the networks' bytes depend on
 /// SUMO's version too).
-TEST(ShippedTestSuite, IsWhatTheCommandMakes) {
+TEST(DevelopmentSuite, IsWhatTheCommandMakes) {
   const test::TemporaryFolder folder;
-  const Suite shipped = loadSuite("test");
-  const Suite made = generateSuite("test", shipped.seed, folder.path() / "test");
-  EXPECT_EQ(shipped.seed, defaultSeed("test"));
+  const Suite shipped = loadSuite("development");
+  const Suite made = generateSuite("development", shipped.seed, folder.path() / "made");
+  EXPECT_EQ(shipped.seed, defaultSeed("development"));
   EXPECT_EQ(manifestText(made), core::readFile(shipped.folder / "suite.yaml", "suite"));
   for (const auto& entry : fs::recursive_directory_iterator(made.folder)) {
     const fs::path path = fs::relative(entry.path(), made.folder);
@@ -62,15 +62,18 @@ TEST(ShippedTestSuite, IsWhatTheCommandMakes) {
   }
 }
 
-class TestRoute : public testing::TestWithParam<SuiteRoute> {};
+class DevelopmentRoute : public testing::TestWithParam<SuiteRoute> {};
 
-TEST_P(TestRoute, CarriesTheStandardRules) {
-  EXPECT_EQ(core::dumpOptions(scenarioOf(GetParam(), {}).verdict),
+TEST_P(DevelopmentRoute, CarriesTheStandardRules) {
+  const session::ScenarioOptions options = scenarioOf(GetParam(), {});
+  EXPECT_EQ(core::dumpOptions(options.verdict),
             core::dumpOptions(session::VerdictOptions::standard()));
+  EXPECT_EQ(core::dumpOptions(options.protocol),
+            core::dumpOptions(session::ProtocolOptions{}));  // rift_dev10, 40 s
 }
 
 /// From the route's own points, independent of what the manifest says.
-TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
+TEST_P(DevelopmentRoute, TurnsAsItsManoeuvreSays) {
   const SuiteRoute& planned = GetParam();
   const session::SessionSetup setup(scenarioOf(planned, {}));
   const map::Route& route = setup.egoRoute();
@@ -99,7 +102,7 @@ TEST_P(TestRoute, TurnsAsItsManoeuvreSays) {
 }
 
 /// Alone on the road PDM-Lite drives all of it, on the road.
-TEST_P(TestRoute, IsDrivenWholeByPdmLiteAlone) {
+TEST_P(DevelopmentRoute, IsDrivenWholeByPdmLiteAlone) {
   const session::SessionSetup setup(scenarioOf(GetParam(), {"demand=none"}));
   struct OffRoad : session::SessionObserver {
     explicit OffRoad(const session::SessionSetup& setup)
@@ -124,7 +127,7 @@ TEST_P(TestRoute, IsDrivenWholeByPdmLiteAlone) {
   EXPECT_EQ(off_road.outside, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TestRoute, testing::ValuesIn(testRoutes()),
+INSTANTIATE_TEST_SUITE_P(All, DevelopmentRoute, testing::ValuesIn(developmentRoutes()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

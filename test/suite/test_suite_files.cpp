@@ -59,9 +59,9 @@ TEST_F(SuiteFiles, ReadsWhatTheManifestSays) {
 }
 
 TEST_F(SuiteFiles, NamesTheNearestShippedSuite) {
-  const std::string error = errorOf("tset");
-  expectPart(error, "suite 'tset' is neither");
-  expectPart(error, "nearest shipped one is 'test'");
+  const std::string error = errorOf("develpment");
+  expectPart(error, "suite 'develpment' is neither");
+  expectPart(error, "nearest shipped one is 'development'");
   expectPart(error, "cdiff suite train --results DIR");
 }
 
