@@ -80,8 +80,6 @@ Checkpoint readCheckpoint(const fs::path& path) {
 
 namespace {
 
-namespace fs = std::filesystem;
-using core::InputError;
 using Names = std::vector<std::string>;
 
 /// What every task leaves, beside its own files.

@@ -96,7 +96,6 @@ std::vector<double> readSamples(const std::filesystem::path& file) {
 namespace {
 
 namespace fs = std::filesystem;
-using core::InputError;
 
 /// A scenario made of a Bench2Drive route alone, with generated demand and the standard rules.
 ScenarioOptions bench2DriveScenario(const SessionRequest& request, const ScenarioOptions& base) {

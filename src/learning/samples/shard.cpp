@@ -50,7 +50,6 @@ ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
 namespace {
 
 namespace fs = std::filesystem;
-using core::InputError;
 
 constexpr std::string_view kShardMagic = "CDIFFSHD";
 

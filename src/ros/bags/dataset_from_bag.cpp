@@ -126,8 +126,6 @@ collection::DrivenSession readSessionBag(const std::filesystem::path& file) {
   }
 }
 
-using core::InputError;
-
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
                                                     const collection::DatasetOptions& options,
                                                     collection::DatasetStatistics& statistics) {

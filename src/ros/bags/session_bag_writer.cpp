@@ -99,8 +99,6 @@ void BagFile::finish() {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string bagTopic(const std::string& topic) { return "/" + topic; }
 
 double latencyOf(const session::TickRecord& record, const std::string& planner) {
