@@ -34,6 +34,7 @@ class SessionMeasures {
   std::string protocol;  ///< preset whose rules the score and the infractions follow
   std::vector<EgoContact> ego_contacts;                   ///< in order of time
   std::map<std::string, std::vector<MetricEntry>> lists;  ///< by JSON pointer in summary.json
+  std::vector<traffic::Fault> faults;  ///< of metrics that threw; their measures have no value
 
  private:
   std::map<std::string, Measure> measures_;  ///< by the measure's name
@@ -59,7 +60,8 @@ class SessionMetrics {
                  const map::Route& ego_route);
   ~SessionMetrics();
 
-  /// One tick in order; `selection` at decision ticks, else nullptr.
+  /// One tick in order; `selection` at decision ticks, else nullptr. A metric that throws is left
+  /// out from then on; `measures` says so.
   TickMeasures observe(const traffic::TrafficSnapshot& snapshot,
                        const cbv::CbvSelection* selection);
   /// The measures so far.
