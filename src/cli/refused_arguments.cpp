@@ -37,7 +37,7 @@ std::string refusalText(const CLI::App& program, const std::string& name,
   }
   std::string text = error.what();
   const std::vector<std::string> left = command->remaining();
-  if (error.get_name() == "ExtrasError" && !left.empty()) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !left.empty()) {
     const std::string option = left.front().substr(0, left.front().find('='));
     text = "'" + words + "' takes no argument '" + core::shortened(left.front()) + "'" +
            core::didYouMean(option, optionNames(*command));
