@@ -80,6 +80,11 @@ TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
   EXPECT_LT(session_.endAfter(20.0), 12.0) << session_.log();
   expectError("traffic_simulator_node");
   EXPECT_GT(recordedTicks(), 0U);
+  expectTable("error", "ERROR");
+  EXPECT_EQ(timesInLog("\n  bag                     " +
+                       (session_.results() / "session.bag").string() + "\n"),
+            1U)
+      << session_.log();
 }
 
 // The limit is 2 s; before, only the silence of 10 s or 30 s told.
