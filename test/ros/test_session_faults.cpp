@@ -143,6 +143,26 @@ TEST_F(SessionFaults, StoppedNodeIsBlamedOnceAndEnded) {
   expectError("cbv_identification_node");
 }
 
+// No vehicle is near enough to become a CBV, so nothing waits for the camera and the planner of
+// CBVs. For 2.5 s at twice real time, 5 s of simulated time, they read nothing; then the selections
+// of these 5 s reach them before the snapshots do.
+TEST_F(SessionFaults, NodesThatNoVehicleNeedsMayLagBehind) {
+  const std::vector<std::string> idle = {"camera_node", "diffusion_planner_node"};
+  session_.launch(
+      "scenario:=crossing_straight cbv_planner:=diffusion set:=\"at_most=2 cbv.minimum_distance=0 "
+      "cbv.search_radius=1\"");
+  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  for (const std::string& node : idle) ASSERT_TRUE(session_.signal(node, SIGSTOP));
+  pause(2500);
+  for (const std::string& node : idle) ASSERT_TRUE(session_.signal(node, SIGCONT));
+  EXPECT_LT(session_.endAfter(60.0), 60.0) << session_.log();
+  EXPECT_EQ(session_.exitCode(), "0\n") << session_.log();
+  const nlohmann::json summary = session_.summary();
+  EXPECT_EQ(summary["status"], "completed");
+  EXPECT_EQ(summary["cbv"]["count"], 0);
+  EXPECT_EQ(summary["faults"].size(), 0U) << summary["faults"];
+}
+
 TEST_F(SessionFaults, ScriptStoppedInItsFirstSecondGives130AndAResult) {
   session_.start("BUILD=" E2E_CDIFF_BUILD " exec " E2E_CDIFF_SCRIPTS
                  "/session scenario:=crossing_straight results:=" +
