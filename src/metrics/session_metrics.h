@@ -17,7 +17,8 @@ namespace cdiff::metrics {
 /// reason; and the lists and contacts that belong to them.
 class SessionMeasures {
  public:
-  /// The measure of a measure; one without value, "not computed", where no metric reported it.
+  /// The measure with that definition; one without value, "not computed", where no metric reported
+  /// it.
   Measure at(const MeasureDefinition& definition) const;
   /// Likewise by name. Throws core::InputError for a name that no metric has.
   Measure at(const std::string& name) const;
@@ -50,9 +51,8 @@ struct TickMeasures {
   std::size_t cbv_off_road = 0;  ///< CBVs now off the drivable area
 };
 
-/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in
-/// one process.
-/// All registered metrics of one session.
+/// All registered metrics of one session. They measure from its snapshots and selections alone:
+/// the same online, from a bag, and in one process.
 class SessionMetrics {
  public:
   /// References must outlive the object.
