@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <algorithm>
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/refused_arguments.h"
 #include "core/process.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -69,10 +69,11 @@ void addCommands(CLI::App& program, int& exit_code) {
 /// CLI11 only says that some command is required.
 void requireKnownCommand(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
-  std::vector<std::string> known;
-  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
   const std::string given = argv[1];
-  if (std::find(known.begin(), known.end(), given) != known.end()) return;
+  for (const CLI::App* command : program.get_subcommands({})) {
+    if (command->get_name() == given) return;
+  }
+  const std::vector<std::string> known = cdiff::cli::shownCommands(program);
   throw cdiff::core::InputError("unknown command '" + cdiff::core::shortened(given) + "'" +
                                 cdiff::core::didYouMean(given, known) +
                                 "; known: " + cdiff::core::joinText(known, ", "));
@@ -100,8 +101,9 @@ int main(int argc, char** argv) {
     loadPluginsFor(argc, argv);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? cdiff::cli::ExitCode::kPassed
-                                    : cdiff::cli::ExitCode::kBadInput;
+    if (error.get_exit_code() == 0) return program.exit(error);
+    std::cerr << "cdiff: " << cdiff::cli::refusalText(program, "cdiff", error) << "\n";
+    return cdiff::cli::ExitCode::kBadInput;
   } catch (const std::exception& error) {
     const cdiff::core::Failure failure = cdiff::core::failureOf(error);
     std::cerr << "cdiff: " << failure.text << "\n";

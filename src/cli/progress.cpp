@@ -12,9 +12,8 @@
 namespace cdiff::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double secondsBetween(Clock::time_point begin, Clock::time_point end) {
+double secondsBetween(std::chrono::steady_clock::time_point begin,
+                      std::chrono::steady_clock::time_point end) {
   return std::chrono::duration<double>(end - begin).count();
 }
 
@@ -23,13 +22,13 @@ double secondsBetween(Clock::time_point begin, Clock::time_point end) {
 Progress::Progress(double time_limit)
     : time_limit_(time_limit),
       terminal_(::isatty(STDERR_FILENO) == 1),
-      begin_(Clock::now()),
+      begin_(std::chrono::steady_clock::now()),
       last_(begin_) {}
 
 void Progress::observe(const session::TickRecord& record) {
   const traffic::TrafficSnapshot& snapshot = *record.snapshot;
   const bool ended = snapshot.status != traffic::SessionStatus::kRunning;
-  const Clock::time_point now = Clock::now();
+  const std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now();
   const double interval = terminal_ ? 0.2 : 10.0;
   if (!ended && secondsBetween(last_, now) < interval) return;
   last_ = now;
@@ -48,7 +47,9 @@ void Progress::observe(const session::TickRecord& record) {
 }
 
 BatchProgress::BatchProgress(std::size_t total)
-    : total_(total), terminal_(::isatty(STDERR_FILENO) == 1), begin_(Clock::now()) {}
+    : total_(total),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      begin_(std::chrono::steady_clock::now()) {}
 
 void BatchProgress::repeated(const std::string& cause, const std::vector<std::string>& ids) const {
   constexpr std::size_t kShown = 5;
@@ -67,7 +68,8 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
   }
   failed_ += record.failed();
   simulated_ += record.simulated_seconds;
-  const double wall = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   const double per_run = wall / static_cast<double>(done_ - resumed_);
   const double left = per_run * static_cast<double>(total_ - done_);
   std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string>
 
+#include "cli/refused_arguments.h"
 #include "core/program.h"
 #include "learning/trainer.h"
 #include "learning/training_options.h"
@@ -37,7 +38,9 @@ int trainAsAsked(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? ExitCode::kPassed : ExitCode::kBadInput;
+    if (error.get_exit_code() == 0) return program.exit(error);
+    std::cerr << kCommand << ": " << cdiff::cli::refusalText(program, kCommand, error) << "\n";
+    return ExitCode::kBadInput;
   }
   cdiff::learning::train(training, cdiff::core::catchStopSignals(), std::cout);
   return ExitCode::kPassed;

@@ -69,11 +69,10 @@ struct DriveOptions {
   void validate() const;
 };
 
-/// A drive of one vehicle with a front camera that someone else recorded, in memory (SI units, a
-/// fixed frame of its own).
-/// By stamp [s].
+/// A drive of one vehicle with a front camera that someone else recorded, in memory: images,
+/// states, controls and paths by their stamps [s] (SI units, a fixed frame of its own).
 struct RecordedDrive {
-  std::map<double, traffic::CameraImage> images;  ///< of the architecture's size, by time [s]
+  std::map<double, traffic::CameraImage> images;  ///< of the architecture's size
   std::map<double, traffic::VehicleState> states;
   std::map<double, traffic::ControlAction> controls;
   std::map<double, geometry::Polyline> paths;

@@ -49,16 +49,14 @@ class Asset {
   std::size_t size_;
 };
 
-/// HTML, SVG and XML that cannot be broken by the texts in them: elements are written by `element`,
-/// everything else is text and is escaped.
-///
-/// A piece of a page: elements and text. Only the functions below make elements; text that becomes
-/// Markup is made plain (`plainText`) and & < > " ' in it are escaped, so no text can end the
-/// element or the attribute that it is in, or begin another.
+/// A piece of HTML, SVG or XML that the texts in it cannot break. Only the functions below make
+/// elements; text that becomes Markup is made plain (`plainText`) and & < > " ' in it are escaped,
+/// so no text can end the element or the attribute that it is in, or open another.
 class Markup {
  public:
   Markup() = default;
-  Markup(const char* text);         // NOLINT(google-explicit-constructor): the way of all text
+  Markup(const char* text);  // NOLINT(google-explicit-constructor): any text may stand where markup
+                             // is expected
   Markup(const std::string& text);  // NOLINT(google-explicit-constructor)
 
   Markup& operator+=(const Markup& other);

@@ -26,8 +26,6 @@ namespace cdiff::core {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
 /// For a writer that was killed a moment ago to be gone.
 constexpr std::chrono::seconds kPatience{1};
 constexpr std::chrono::milliseconds kPeriod{20};
@@ -147,9 +145,9 @@ void FolderLock::removeMade() const {
 }
 
 void FolderLock::takeLock() {
-  const Clock::time_point begin = Clock::now();
+  const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   while (!tryLock()) {
-    if (Clock::now() - begin > kPatience) {
+    if (std::chrono::steady_clock::now() - begin > kPatience) {
       const InputError error = heldBy(folder_, descriptor_);
       ::close(descriptor_);
       throw error;

@@ -173,4 +173,23 @@ std::vector<std::string> csvCells(std::string_view row) {
   return cells;
 }
 
+std::vector<CsvRow> csvRows(std::string_view text) {
+  std::vector<CsvRow> rows;
+  std::size_t line = 1;
+  std::size_t first = 1;  // line of the row
+  std::size_t begin = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (text[i] != '\n') continue;
+    ++line;
+    if (quoted) continue;
+    rows.push_back({text.substr(begin, i - begin), first, true});
+    begin = i + 1;
+    first = line;
+  }
+  if (begin < text.size()) rows.push_back({text.substr(begin), first, false});
+  return rows;
+}
+
 }  // namespace cdiff::core

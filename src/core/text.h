@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,5 +67,15 @@ std::string csvRow(const std::vector<std::string>& cells);
 
 /// Cells of a row without its line end, empty ones included.
 std::vector<std::string> csvCells(std::string_view row);
+
+/// A row in the text of a file.
+struct CsvRow {
+  std::string_view text;  ///< without its line end; line ends in quoted cells are part of it
+  std::size_t line = 1;   ///< in which it starts
+  bool ended = false;     ///< whether a line end closes it: one that is cut off has none
+};
+
+/// All rows of a text that outlives them; no row follows the last line end.
+std::vector<CsvRow> csvRows(std::string_view text);
 
 }  // namespace cdiff::core

@@ -107,7 +107,7 @@ Markup runTable(const std::vector<BatchRun>& runs) {
   return table.html();
 }
 
-Markup cellOf(const TableCell& cell) {
+Markup shownCell(const TableCell& cell) {
   const std::string rift = riftText(cell);
   const std::string paper = paperText(cell.paper);
   Markup html = cellText(cell);
@@ -124,7 +124,7 @@ Markup paperTable(const Table& table) {
   page::HtmlTable rows(head);
   for (std::size_t i = 0; i < table.cells.size(); ++i) {
     std::vector<Markup> cells = {definition.rows[i].name};
-    for (const TableCell& cell : table.cells[i]) cells.push_back(cellOf(cell));
+    for (const TableCell& cell : table.cells[i]) cells.push_back(shownCell(cell));
     rows.row(cells);
   }
   Markup html = rows.html();

@@ -24,6 +24,7 @@ namespace cdiff::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
+using core::InputError;
 
 /// Adds a loaded library that is ours to a map from file name to path.
 int noteLibrary(dl_phdr_info* info, std::size_t, void* data) {
@@ -93,9 +94,6 @@ std::string changedInputs(const InputHashes& before, const InputHashes& now) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
-using core::InputError;
 
 /// The names are checked as those of any scenario.
 void checkEgoPlanner(const std::string& name) {

@@ -39,7 +39,7 @@ Statistics meanOverSeeds(const ValuesBySeed& values) {
   return statisticsOf(means);
 }
 
-Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records) {
+Cell cellOfGroup(const Factors& factors, const std::vector<const RunRecord*>& records) {
   Cell cell;
   cell.factors = factors;
   std::map<std::string, ValuesBySeed> values;
@@ -69,7 +69,7 @@ std::vector<Cell> cellsOf(const std::vector<RunRecord>& records) {
     group.push_back(&record);
   }
   std::vector<Cell> cells;
-  for (const Factors& factors : order) cells.push_back(cellOf(factors, groups.at(factors)));
+  for (const Factors& factors : order) cells.push_back(cellOfGroup(factors, groups.at(factors)));
   return cells;
 }
 

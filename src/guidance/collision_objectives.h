@@ -14,7 +14,7 @@ double softplus(double x);
 
 /// J_safe = sum_t softplus((d_safe - d_t) / kappa) + lambda exp(-d_t^2 / (2 sigma^2)), d_t =
 /// sqrt(|p_other - p|^2 + 0.1^2) between box centers at row t [m] (paper III-D1, "Collision
-/// Guidance"): what collision avoidance minimizes and collision seeking maximises.
+/// Guidance"): what collision avoidance minimizes and collision seeking maximizes.
 /// d_safe = half diagonal of one box + half diagonal of the other + buffer: boxes whose centers are
 /// that far apart cannot touch, whatever their headings. The pull of softplus reaches a few kappa
 /// beyond d_safe and that of the bump a few sigma, so both are meters.

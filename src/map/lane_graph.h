@@ -35,9 +35,9 @@ TurnRounds turnRounds(const RoadNetwork& network);
 /// How many there are and the lanes of the first few, for people; empty when there is none.
 std::string turnRoundText(const RoadNetwork& network);
 
-/// Shortest lane-connected routes: along lanes, through junctions, and (with a small penalty) to
-/// neighboring lanes.
-/// Routes of the graph use no connection that turns round, but for those allowed.
+/// The lanes of a network as a graph, searched for shortest routes: along lanes, through junctions,
+/// and (with a small penalty) to neighboring lanes. Connections that turn round are used only where
+/// they are allowed.
 class LaneGraph {
  public:
   /// Keeps a reference: the network must outlive the graph.

@@ -9,9 +9,8 @@
 
 namespace cdiff::map {
 
-/// Uniform grid over the segments of lane centerlines (map frame [m]); answers which lanes pass
-/// near a point.
-/// Lanes that do not allow cars are left out.
+/// Uniform grid over the segments of the centerlines of all lanes that allow cars (map frame [m]);
+/// answers which lanes pass near a point.
 struct RoadNetwork::SpatialIndex {
   /// What is asked for.
   struct Query {

@@ -57,6 +57,33 @@ class Report final : public MetricSink {
   SessionMeasures& measures_;
 };
 
+/// What a metric threw in one of its functions, or nothing.
+template <class Call>
+std::optional<traffic::Fault> faultOf(const MetricDescriptor& metric, const char* function,
+                                      std::uint64_t tick, const Call& call) {
+  const auto fault = [&](const std::string& text) {
+    return traffic::Fault{tick, "metric:" + metric.name,
+                          std::string(function) + "() of metric '" + metric.name + "' of " +
+                              metric.source + " threw: " + text + "; its measures are left out"};
+  };
+  try {
+    call();
+    return std::nullopt;
+  } catch (const std::exception& error) {
+    return fault(error.what());
+  } catch (...) {
+    return fault("an exception of an unknown type");
+  }
+}
+
+/// The measures of a metric that threw have its fault as their reason.
+void leaveOut(const MetricDescriptor& metric, const traffic::Fault& fault,
+              SessionMeasures& measures) {
+  for (const MeasureDefinition& definition : metric.measures)
+    measures.set(definition, {std::nullopt, 0, "", fault.text});
+  measures.faults.push_back(fault);
+}
+
 }  // namespace
 
 class SessionMetrics::Metrics {
@@ -65,8 +92,8 @@ class SessionMetrics::Metrics {
           const map::Route& ego_route)
       : options_(options), context_{drivable_area, ego_route, options_}, ticks_(context_) {
     for (const MetricDescriptor& descriptor : metricDescriptors()) {
-      metrics_.emplace_back(&descriptor, descriptor.make(context_));
-      if (metrics_.back().second) continue;
+      metrics_.push_back({&descriptor, descriptor.make(context_), std::nullopt});
+      if (metrics_.back().metric) continue;
       throw core::InputError("metric '" + descriptor.name + "' of " + descriptor.source +
                              ": its constructor gives none; its author must mend it");
     }
@@ -75,7 +102,12 @@ class SessionMetrics::Metrics {
   TickMeasures observe(const traffic::TrafficSnapshot& snapshot,
                        const cbv::CbvSelection* selection) {
     const MetricTick tick = ticks_.observe(snapshot, selection);
-    for (const auto& [descriptor, metric] : metrics_) metric->observe(tick);
+    for (Running& running : metrics_) {
+      if (running.fault) continue;
+      running.fault = faultOf(*running.descriptor, "observe", snapshot.tick,
+                              [&] { running.metric->observe(tick); });
+    }
+    last_tick_ = snapshot.tick;
     ego_contacts_.insert(ego_contacts_.end(), tick.ego_contacts.begin(), tick.ego_contacts.end());
     return liveMeasures(tick);
   }
@@ -84,14 +116,27 @@ class SessionMetrics::Metrics {
     SessionMeasures result;
     result.protocol = options_.protocol;
     result.ego_contacts = ego_contacts_;
-    for (const auto& [descriptor, metric] : metrics_) {
-      Report report(*descriptor, result);
-      metric->report(report);
+    for (const Running& running : metrics_) {
+      const MetricDescriptor& descriptor = *running.descriptor;
+      std::optional<traffic::Fault> fault = running.fault;
+      if (!fault) {
+        fault = faultOf(descriptor, "report", last_tick_, [&] {
+          Report report(descriptor, result);
+          running.metric->report(report);
+        });
+      }
+      if (fault) leaveOut(descriptor, *fault, result);
     }
     return result;
   }
 
  private:
+  struct Running {
+    const MetricDescriptor* descriptor;
+    std::unique_ptr<Metric> metric;
+    std::optional<traffic::Fault> fault;  ///< why it is left out
+  };
+
   static TickMeasures liveMeasures(const MetricTick& tick) {
     TickMeasures live;
     live.ttc_2d = tick.interaction.ttc_2d;
@@ -107,8 +152,9 @@ class SessionMetrics::Metrics {
   SessionMetricsOptions options_;
   MetricContext context_;
   TickObserver ticks_;
-  std::vector<std::pair<const MetricDescriptor*, std::unique_ptr<Metric>>> metrics_;
+  std::vector<Running> metrics_;
   std::vector<EgoContact> ego_contacts_;
+  std::uint64_t last_tick_ = 0;
 };
 
 SessionMetrics::SessionMetrics(const SessionMetricsOptions& options,

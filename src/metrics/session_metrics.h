@@ -17,7 +17,8 @@ namespace cdiff::metrics {
 /// reason; and the lists and contacts that belong to them.
 class SessionMeasures {
  public:
-  /// The measure of a measure; one without value, "not computed", where no metric reported it.
+  /// The measure with that definition; one without value, "not computed", where no metric reported
+  /// it.
   Measure at(const MeasureDefinition& definition) const;
   /// Likewise by name. Throws core::InputError for a name that no metric has.
   Measure at(const std::string& name) const;
@@ -34,6 +35,7 @@ class SessionMeasures {
   std::string protocol;  ///< preset whose rules the score and the infractions follow
   std::vector<EgoContact> ego_contacts;                   ///< in order of time
   std::map<std::string, std::vector<MetricEntry>> lists;  ///< by JSON pointer in summary.json
+  std::vector<traffic::Fault> faults;  ///< of metrics that threw; their measures have no value
 
  private:
   std::map<std::string, Measure> measures_;  ///< by the measure's name
@@ -49,9 +51,8 @@ struct TickMeasures {
   std::size_t cbv_off_road = 0;  ///< CBVs now off the drivable area
 };
 
-/// Measures a session from its snapshots and selections alone: the same online, from a bag, and in
-/// one process.
-/// All registered metrics of one session.
+/// All registered metrics of one session. They measure from its snapshots and selections alone:
+/// the same online, from a bag, and in one process.
 class SessionMetrics {
  public:
   /// References must outlive the object.
@@ -59,7 +60,8 @@ class SessionMetrics {
                  const map::Route& ego_route);
   ~SessionMetrics();
 
-  /// One tick in order; `selection` at decision ticks, else nullptr.
+  /// One tick in order; `selection` at decision ticks, else nullptr. A metric that throws is left
+  /// out from then on; `measures` says so.
   TickMeasures observe(const traffic::TrafficSnapshot& snapshot,
                        const cbv::CbvSelection* selection);
   /// The measures so far.

@@ -148,6 +148,8 @@ class ResultWriter::Record {
                                 "the record ends while the session was still running"});
     }
     result_.measures = metrics_.measures();
+    const std::vector<traffic::Fault>& faults = result_.measures.faults;
+    result_.faults.insert(result_.faults.begin(), faults.begin(), faults.end());
     result_.latencies = latencies_.summaries();
     result_.late = late_.counts();
     decide();

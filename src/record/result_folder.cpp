@@ -134,18 +134,14 @@ std::vector<TraceRow> readTrace(const std::filesystem::path& file) {
                            std::string(header.substr(0, header.size() - 1)));
   }
   std::vector<TraceRow> rows;
-  std::size_t number = 2;
-  for (std::size_t begin = header.size(); begin < text.size(); ++number) {
-    const std::size_t end = text.find('\n', begin);
-    const auto row = end == std::string::npos
-                         ? std::nullopt
-                         : traceRowOf(std::string_view(text).substr(begin, end - begin));
+  for (const core::CsvRow& read : core::csvRows(text)) {
+    if (read.line == 1) continue;  // the header
+    const auto row = read.ended ? traceRowOf(read.text) : std::nullopt;
     if (!row) {
-      throw core::InputError(file.string() + ":" + std::to_string(number) +
+      throw core::InputError(file.string() + ":" + std::to_string(read.line) +
                              ": no row of a trace (tick, id, role, finite numbers, line end)");
     }
     rows.push_back(*row);
-    begin = end + 1;
   }
   return rows;
 }

@@ -26,8 +26,7 @@ struct RunFacts {
 };
 
 /// Everything that the result folder says about one session, in one value: its files are functions
-/// of it.
-/// References must outlive the value.
+/// of it. What the references name must outlive the value.
 struct SessionResult {
   const session::SessionSetup& setup;
   const Timeline& timeline;

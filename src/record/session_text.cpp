@@ -2,11 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/session_text.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "cbv/candidates.h"
 #include "cbv/cbv_selector.h"
+#include "core/markup.h"
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"
@@ -154,6 +156,22 @@ std::string latencyRows(const std::map<std::string, LatencySummary>& latencies) 
   return text;
 }
 
+/// How many faults there were and the first few, each in one line.
+std::string faultRows(const std::vector<traffic::Fault>& faults) {
+  constexpr std::size_t kShown = 3;
+  constexpr std::size_t kLetters = 300;
+  if (faults.empty()) return "";
+  std::string text = row("faults", std::to_string(faults.size()));
+  for (std::size_t i = 0; i < std::min(kShown, faults.size()); ++i) {
+    std::string line = core::cutText(faults[i].source + ": " + faults[i].text, kLetters);
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    text += row("", "- " + line);
+  }
+  if (faults.size() > kShown)
+    text += row("", "- " + std::to_string(faults.size() - kShown) + " more in summary.json");
+  return text;
+}
+
 }  // namespace
 
 std::string measureText(const metrics::Measure& measure, int decimals) {
@@ -170,7 +188,7 @@ std::string sessionTable(const SessionResult& result, const std::filesystem::pat
       headRows(result) + measureRows(result.measures) + latencyRows(result.latencies);
   const std::string late = latenessText(result.late);
   if (!late.empty()) text += row("late answers", late);
-  if (!result.faults.empty()) text += row("faults", std::to_string(result.faults.size()));
+  text += faultRows(result.faults);
   text += row("verdict", capitalsOf(result.verdict.outcome));
   for (const std::string& reason : result.verdict.reasons) text += row("", "- " + reason);
   return text + row("report", (folder / "report.html").string()) + row("results", folder.string());

@@ -72,6 +72,20 @@ int RecorderRos::conclude(Ending ending) {
 
 namespace {
 
+/// The row of the bag, which the recorder completes at the same time: it waits for it a little.
+std::string bagRow(const SessionGraph& graph, const std::filesystem::path& results) {
+  constexpr double kPatience = 2.0;  // [s] of wall time
+  const std::filesystem::path bag = results / "session.bag";
+  const ::ros::WallTime begin = ::ros::WallTime::now();
+  std::string row = record::fileRow("bag", bag);
+  while (row.empty() && graph.has(kRecorderNode) &&
+         (::ros::WallTime::now() - begin).toSec() < kPatience) {
+    ::ros::WallDuration(0.02).sleep();
+    row = record::fileRow("bag", bag);
+  }
+  return row;
+}
+
 /// The end of a session whose last snapshot never came.
 traffic::TrafficSnapshot unpublishedEnd(const traffic::TrafficSnapshot& last, double step,
                                         Ending ending, double timeout) {
@@ -167,8 +181,8 @@ int MetricsRos::conclude(Ending ending) {
   }
   writer_->finish(wallSeconds());
   const int exit_code = finishVideo(writer_->exitCode());
-  std::cout << writer_->table() << record::fileRow("video", results_ / video::kVideoFile)
-            << std::flush;
+  std::cout << writer_->table() << bagRow(graph(), results_)
+            << record::fileRow("video", results_ / video::kVideoFile) << std::flush;
   writeExitCode(results_, exit_code);
   return exit_code;
 }

@@ -6,8 +6,7 @@
 #include <filesystem>
 
 #include "core/file.h"
-#include "core/text.h"
-#include "e2e_cdiff/core/exceptions.h"
+#include "session/preset_file.h"
 
 namespace cdiff::session {
 namespace {
@@ -62,15 +61,8 @@ void ProtocolOptions::describe(core::OptionsVisitor& visitor) {
 }
 
 ProtocolOptions loadProtocol(const std::string& preset) {
-  const std::vector<std::string> known = shippedProtocols();
-  if (std::find(known.begin(), known.end(), preset) == known.end()) {
-    throw core::InputError("protocol preset '" + preset + "' is not known; the nearest one is '" +
-                           core::nearestName(preset, known) +
-                           "' (all: " + core::joinText(known, ", ") + ")");
-  }
-  const fs::path file = protocolFolder() / (preset + ".yaml");
-  ProtocolOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "protocol preset")}, options);
+  auto options = loadPreset<ProtocolOptions>(protocolFolder(), preset,
+                                             "protocol preset '" + preset + "' is not known");
   options.preset = preset;
   return options;
 }

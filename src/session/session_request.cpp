@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "session/preset_file.h"
 
 namespace cdiff::session {
 namespace {
@@ -34,26 +35,11 @@ const std::string& MethodOptions::profileOf(const std::string& mode) const {
 }
 
 MethodOptions loadMethod(const std::string& name) {
-  const std::vector<std::string> known = shippedMethods();
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw core::InputError(
-        "key 'method' is '" + name + "', an unknown method; the nearest one is '" +
-        core::nearestName(name, known) + "' (all: " + core::joinText(known, ", ") + ")");
-  }
-  const fs::path file = methodFolder() / (name + ".yaml");
-  MethodOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "method")}, options);
-  return options;
+  return loadPreset<MethodOptions>(methodFolder(), name,
+                                   "key 'method' is '" + name + "', an unknown method");
 }
 
-std::vector<std::string> shippedMethods() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(methodFolder())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shippedMethods() { return core::shippedNames(methodFolder()); }
 
 namespace {
 

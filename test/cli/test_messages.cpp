@@ -38,6 +38,18 @@ TEST_F(Messages, AnUnknownCommandIsNamed) {
   expectOutput("validate");
   EXPECT_EQ(cdiff({"drive"}), 3);
   expectOutput("unknown command 'drive'; known: run, ");
+  EXPECT_EQ(output().find("collect_session"), std::string::npos) << output();  // for collect alone
+}
+
+TEST_F(Messages, AnUnknownOptionIsNamedWithTheNearest) {
+  EXPECT_EQ(cdiff({"run", "roundabout_cross", "--sed", "3"}), 3);
+  expectOutput(
+      "cdiff: 'cdiff run' takes no argument '--sed'; did you mean '--seed'? (see cdiff run "
+      "--help)");
+  EXPECT_EQ(cdiff({"run", "roundabout_cross", "more"}), 3);
+  expectOutput("cdiff: 'cdiff run' takes no argument 'more' (see cdiff run --help)");
+  EXPECT_EQ(cdiff({"metric"}), 3);
+  expectOutput("cdiff: metric is required (see cdiff metric --help)");
 }
 
 TEST_F(Messages, TheVersionNamesWhatResultsDependOn) {

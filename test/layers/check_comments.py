@@ -5,7 +5,9 @@
 import re
 import sys
 from pathlib import Path
-from xml.sax.saxutils import escape, quoteattr
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
 
 # clang-format keeps what stands in a namespace at column 0, so a type at namespace level is one that starts a line. A declaration without
 # a body ("class Foo;") names a type that is described where it is defined; an explicit specialization is described by its template.
@@ -57,34 +59,17 @@ def check_itself():
     assert undocumented_types("enum class Kind : int { kA };\n") == [(1, "Kind")]
 
 
-def write_junit(path, results):
-    failed = sum(1 for faults in results.values() if faults)
-    cases = []
-    for name, faults in results.items():
-        body = f"<failure message={quoteattr(faults[0])}>{escape(chr(10).join(faults))}</failure>" if faults else ""
-        cases.append(f'  <testcase name={quoteattr(name)} classname="comments">{body}</testcase>')
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuite name="comments" tests="{len(results)}" failures="{failed}" errors="0">\n'
-                    + "\n".join(cases) + "\n</testsuite>\n", encoding="utf-8")
-
-
 def main():
     check_itself()
     root = Path(sys.argv[1])
     headers = sorted(path for folder in ("include", "src") for path in (root / folder).rglob("*.h"))
     if not headers:
         sys.exit(f"no headers below {root}")
-    results = {}
-    for header in headers:
-        name = header.relative_to(root).as_posix()
-        results[name] = faults_of(header.read_text(encoding="utf-8"))
-        for fault in results[name]:
-            print(f"{name}: {fault}")
+    found = [f"{header.relative_to(root).as_posix()}: {fault}" for header in headers for fault in faults_of(header.read_text(encoding="utf-8"))]
+    print("\n".join([*found, f"{len(headers)} headers, {len(found)} faults"]))
     if len(sys.argv) > 2:
-        write_junit(Path(sys.argv[2]), results)
-    failed = sum(1 for faults in results.values() if faults)
-    print(f"{len(results)} headers, {failed} with faults")
-    sys.exit(1 if failed else 0)
+        junit.write_findings(sys.argv[2], "comments", [("headers", found)])
+    sys.exit(1 if found else 0)
 
 
 if __name__ == "__main__":

@@ -10,10 +10,11 @@ import re
 import sys
 import tempfile
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import check_layers  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
 
 TOPS = ["src", "include", "test", "docs", "scripts", "config", "benchmark", "cmake", "examples", "launch", "msg"]
 PATH = re.compile(r"(?<![\w./-])(?:" + "|".join(TOPS) + r")/[\w./{},*-]*")
@@ -155,10 +156,7 @@ def main():
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
     for _, found in results:
         print("\n".join(found), end="\n" if found else "")
-    body = "".join(f"<testcase classname='docs' name={quoteattr(name)}>"
-                   + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>" for name, found in results)
-    result.parent.mkdir(parents=True, exist_ok=True)
-    result.write_text(f"<testsuite name='docs'>{body}</testsuite>\n")
+    junit.write_findings(result, "docs", results)
     return 1 if any(found for _, found in results) else 0
 
 

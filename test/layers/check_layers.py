@@ -9,7 +9,9 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
 
 # Headers that only some layers may read: pattern -> layers that may.
 RESTRICTED = {
@@ -73,21 +75,15 @@ def main():
     source = str(Path(source).resolve())
     records = list(records_of_ninja(build) if (Path(build) / "build.ninja").exists() else records_of_make(build))
     checked = [(record, headers) for record, headers in records if layer_of(record)]
-    cases = []
+    cases = {}  # by layer
     for record, headers in checked:
         found = sorted(set(violations(layer_of(record), headers, source, build)))
-        for line in found:
-            print(f"{record}: {line}")
-        cases.append((record, found))
+        cases.setdefault(layer_of(record), []).extend(f"{record}: {line}" for line in found)
+    print("".join(f"{line}\n" for found in cases.values() for line in found), end="")
     if not cases:
         print("no dependency record was found; build first")
-    body = "".join(
-        f"<testcase classname='layers' name={quoteattr(record)}>"
-        + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>"
-        for record, found in cases)
-    Path(result).parent.mkdir(parents=True, exist_ok=True)
-    Path(result).write_text(f"<testsuite name='layers'>{body}</testsuite>\n")
-    return 1 if not cases or any(found for _, found in cases) else 0
+    junit.write_findings(result, "layers", cases.items())
+    return 1 if not cases or any(cases.values()) else 0
 
 
 if __name__ == "__main__":

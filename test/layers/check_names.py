@@ -8,7 +8,9 @@ Each section of SECTIONS names a table, how names are read from it and which fil
 import re
 import sys
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import junit  # noqa: E402
 
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 INCLUDE = re.compile(r"^[ \t]*#[ \t]*include.*$", re.MULTILINE)
@@ -111,10 +113,7 @@ def main():
     cases = [("self_test", self_test())] + [(name, list(violations(source, section))) for name, section in SECTIONS.items()]
     for _, found in cases:
         print("\n".join(found), end="\n" if found else "")
-    body = "".join(f"<testcase classname='names' name={quoteattr(name)}>"
-                   + "".join(f"<failure message={quoteattr(line)}/>" for line in found) + "</testcase>" for name, found in cases)
-    result.parent.mkdir(parents=True, exist_ok=True)
-    result.write_text(f"<testsuite name='names'>{body}</testsuite>\n")
+    junit.write_findings(result, "names", cases)
     return 1 if any(found for _, found in cases) else 0
 
 

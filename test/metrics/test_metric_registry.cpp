@@ -4,6 +4,7 @@
 
 #include <regex>
 #include <set>
+#include <stdexcept>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
@@ -103,6 +104,59 @@ TEST(MetricRegistry, MeasuresWhatAPluginRegisters) {
   EXPECT_EQ(metrics.measures().at("test_ticks").unit, "count");
 }
 
+/// Throws at its third tick, or when it reports.
+class Thrower final : public Metric {
+ public:
+  explicit Thrower(bool in_report) : in_report_(in_report) {}
+  void observe(const MetricTick&) override {
+    if (!in_report_ && ++ticks_ == 3) throw std::runtime_error("no third tick was expected");
+  }
+  void report(MetricSink&) const override {
+    if (in_report_) throw 7;
+  }
+
+ private:
+  bool in_report_;
+  int ticks_ = 0;
+};
+
+constexpr MeasureDefinition kThrown = {
+    "test_thrown", "", "Thrown", "m", Direction::kNeither, Subject::kEgo, "Has no value.", "", 0,
+};
+
+TEST(MetricRegistry, LeavesOutAMetricThatThrowsAndNamesItsPlugin) {
+  static bool in_report = false;
+  registerMetric({"test_thrown",
+                  "Throws.",
+                  {kThrown},
+                  [](const MetricContext&) { return std::make_unique<Thrower>(in_report); },
+                  "thrower_plugin.so"});
+  const test::StraightRoad road;
+  for (const bool now : {false, true}) {
+    in_report = now;
+    SessionMetrics metrics({}, road.drivable_area, road.route);
+    // 1 m a tick of 0.05 s: the ego is at 4 m after five of them.
+    for (std::uint64_t tick = 0; tick < 5; ++tick)
+      metrics.observe(test::snapshot(tick, {test::ego(static_cast<double>(tick), 0, 20)}), nullptr);
+    const SessionMeasures measures = metrics.measures();
+    EXPECT_NEAR(*measures.at("ego_completion_percent").value, 4.0, 1e-9);  // of 100 m
+    ASSERT_EQ(measures.faults.size(), 1U);
+    const traffic::Fault& fault = measures.faults.front();
+    EXPECT_EQ(fault.tick, in_report ? 4U : 2U);
+    EXPECT_EQ(fault.source, "metric:test_thrown");
+    EXPECT_EQ(fault.text.rfind(in_report ? "report() of metric 'test_thrown' of thrower_plugin.so "
+                                           "threw: an exception of an unknown type"
+                                         : "observe() of metric 'test_thrown' of thrower_plugin.so "
+                                           "threw: no third tick was expected",
+                               0),
+              0U)
+        << fault.text;
+    EXPECT_FALSE(measures.at(kThrown).value);
+    EXPECT_EQ(measures.at(kThrown).reason, fault.text);
+    in_report = false;
+  }
+}
+
 TEST(MetricRegistry, NamesBothSourcesOfANameThatIsTaken) {
   registerOnce();
   const std::string same = refusalOf(ticksMetric("other_plugin.so"));
@@ -159,15 +213,15 @@ TEST(MetricRegistryWithAMistake, NamesAMetricThatReportsWhatIsNotIts) {
                   [](const MetricContext&) { return std::make_unique<Ticks>(other); },
                   "mistake.so"});
   const test::StraightRoad road;
-  const SessionMetrics metrics({}, road.drivable_area, road.route);
-  try {
-    metrics.measures();
-    FAIL();
-  } catch (const core::Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "metric 'test_mistake' of mistake.so reports 'ego_collisions', which is not among "
-                 "its measures");
-  }
+  const SessionMeasures measures = SessionMetrics({}, road.drivable_area, road.route).measures();
+  ASSERT_EQ(measures.faults.size(), 1U);
+  EXPECT_NE(measures.faults.front().text.find(
+                "metric 'test_mistake' of mistake.so reports 'ego_collisions', which is not among "
+                "its measures"),
+            std::string::npos)
+      << measures.faults.front().text;
+  EXPECT_EQ(measures.at(kOwn).reason, measures.faults.front().text);
+  EXPECT_EQ(measures.at(other).value, 0.0);  // of the metric that has it
 }
 
 }  // namespace

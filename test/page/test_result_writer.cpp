@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <set>
+#include <stdexcept>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -430,6 +431,65 @@ TEST(ResultWriter, RefusesAFolderThatIsAFile) {
   const test::SampleSetup sample;
   EXPECT_THROW(ResultWriter(sample.setup, test::sampleFacts(), scratch.path() / "file" / "results"),
                core::InputError);
+}
+
+constexpr metrics::MeasureDefinition kBroken = {
+    "broken_measure",
+    "",
+    "Broken measure",
+    "m",
+    metrics::Direction::kNeither,
+    metrics::Subject::kEgo,
+    "Has no value.",
+    "",
+    0,
+};
+
+/// Metric of a plug-in that throws at its tenth tick.
+class BrokenMetric final : public metrics::Metric {
+ public:
+  void observe(const metrics::MetricTick&) override {
+    if (++ticks_ == 10) throw std::runtime_error("division by zero");
+  }
+  void report(metrics::MetricSink&) const override {}
+
+ private:
+  int ticks_ = 0;
+};
+
+// Last: the registration stays for the program's life.
+TEST(ResultWriter, KeepsAllElseWhereAMetricOfAPluginThrows) {
+  const test::TemporaryFolder scratch;
+  EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
+  const Json before = summaryOf(scratch);
+  const std::string trace = textOf(scratch, "trace.csv");
+  metrics::registerMetric(
+      {"broken",
+       "Throws.",
+       {kBroken},
+       [](const metrics::MetricContext&) { return std::make_unique<BrokenMetric>(); },
+       "broken_plugin.so"});
+  const test::TemporaryFolder with_plugin;
+  const test::SampleSetup sample(test::sampleOptions());
+  ResultWriter writer(sample.setup, test::sampleFacts(), with_plugin.path());
+  test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut);
+  writer.finish(2.0);
+  EXPECT_EQ(writer.exitCode(), 0);
+  EXPECT_EQ(textOf(with_plugin, "trace.csv"), trace);
+  Json summary = summaryOf(with_plugin);
+  ASSERT_EQ(summary["faults"].size(), 1U);
+  EXPECT_EQ(summary["faults"][0]["tick"], 9);
+  EXPECT_EQ(summary["faults"][0]["source"], "metric:broken");
+  const std::string text = summary["faults"][0]["text"];
+  EXPECT_EQ(
+      text.rfind("observe() of metric 'broken' of broken_plugin.so threw: division by zero", 0), 0U)
+      << text;
+  EXPECT_NE(writer.table().find("- metric:broken: " + text + "\n"), std::string::npos)
+      << writer.table();
+  for (const char* part : {"ego", "cbv"}) EXPECT_EQ(summary[part], before[part]);
+  EXPECT_TRUE(summary["metrics"]["broken_measure"]["value"].is_null());
+  for (const auto& item : before["metrics"].items())
+    EXPECT_EQ(summary["metrics"][item.key()], item.value()) << item.key();
 }
 
 }  // namespace

@@ -14,17 +14,17 @@ namespace cdiff::record {
 namespace {
 
 /// A CBV at x = 10 t that plans x + 8 h, seen from tick 0 to `last`; one decision at tick 0.
-PlanLog logUntil(std::uint64_t last) {
+PlanLog logUntil(std::uint64_t last, const std::string& id = "a") {
   PlanLog log(0.05);
   for (std::uint64_t tick = 0; tick <= last; ++tick) {
     traffic::TrafficSnapshot snapshot;
     snapshot.tick = tick;
     snapshot.time = 0.05 * static_cast<double>(tick);
-    snapshot.vehicles = {test::sampleVehicle("a", traffic::VehicleRole::kCbv,
+    snapshot.vehicles = {test::sampleVehicle(id, traffic::VehicleRole::kCbv,
                                              {10.0 * snapshot.time, 0.0}, 0.0, 10.0)};
     std::vector<planning::PlannedAction> actions(1);
     actions[0].slot = 0;
-    actions[0].vehicle_id = "a";
+    actions[0].vehicle_id = id;
     for (int i = 1; i <= 10; ++i) {
       planning::RolloutPoint point;
       point.state.position = {0.8 * i, 0.0};
@@ -58,6 +58,12 @@ TEST(PlanFile, HoldsPlannedAndDrivenStatesEvery04Seconds) {
   EXPECT_DOUBLE_EQ(rows[2].seconds, 0.8);
   EXPECT_FALSE(rows[2].driven);
   EXPECT_EQ(rows[0].planned.position, rows[0].driven->position);
+}
+
+TEST(PlanFile, ReadsBackIdsWithLineEnds) {
+  const std::vector<PlanRow> rows = written(logUntil(12, "a\n\"b\""));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[2].vehicle_id, "a\n\"b\"");
 }
 
 TEST(PlanFile, IsAHeaderAloneWithoutPlans) { EXPECT_TRUE(written(PlanLog(0.05)).empty()); }

@@ -28,7 +28,7 @@ TEST(TraceFile, ReadsBackWhatTheWriterWrote) {
   const test::TemporaryFolder scratch;
   TraceWriter writer(scratch.path() / "trace.csv");
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(53);
-  snapshot.vehicles[2].id = "a,\"b\"";
+  snapshot.vehicles[2].id = "a,\"b\"\nc";
   writer.write(snapshot);
   writer.finish();
   const std::vector<TraceRow> rows = readTrace(scratch.path() / "trace.csv");
@@ -55,6 +55,10 @@ TEST(TraceFile, NamesTheLineThatIsDamaged) {
     const std::string error = errorOf(head + "0,ego,ego,1,2,0,3,,,\n" + line);
     EXPECT_NE(error.find("trace.csv:3: no row of a trace"), std::string::npos) << line << error;
   }
+  // An id over two lines counts as two; a quote that nothing closes is named where its row starts.
+  const std::string two_lines = head + "0,\"a\nb\",ego,1,2,0,3,,,\n";
+  EXPECT_NE(errorOf(two_lines + "x\n").find("trace.csv:4: "), std::string::npos);
+  EXPECT_NE(errorOf(two_lines + "0,\"a,ego,1,2,0,3,,,\n").find("trace.csv:4: "), std::string::npos);
 }
 
 }  // namespace

@@ -79,6 +79,11 @@ TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
   EXPECT_LT(session_.endAfter(20.0), 12.0) << session_.log();
   expectError("traffic_simulator_node");
   EXPECT_GT(recordedTicks(), 0U);
+  expectTable("error", "ERROR");
+  EXPECT_EQ(timesInLog("\n  bag                     " +
+                       (session_.results() / "session.bag").string() + "\n"),
+            1U)
+      << session_.log();
 }
 
 // The limit is 2 s; before, only the silence of 10 s or 30 s told.
@@ -135,6 +140,26 @@ TEST_F(SessionFaults, StoppedNodeIsBlamedOnceAndEnded) {
   ASSERT_TRUE(session_.signal("cbv_identification_node", SIGSTOP));
   EXPECT_LT(session_.endAfter(40.0), 11.0) << session_.log();
   expectError("cbv_identification_node");
+}
+
+// No vehicle is near enough to become a CBV, so nothing waits for the camera and the planner of
+// CBVs. For 2.5 s at twice real time, 5 s of simulated time, they read nothing; then the selections
+// of these 5 s reach them before the snapshots do.
+TEST_F(SessionFaults, NodesThatNoVehicleNeedsMayLagBehind) {
+  const std::vector<std::string> idle = {"camera_node", "diffusion_planner_node"};
+  session_.launch(
+      "scenario:=crossing_straight cbv_planner:=diffusion set:=\"at_most=2 cbv.minimum_distance=0 "
+      "cbv.search_radius=1\"");
+  ASSERT_TRUE(session_.hasTicks()) << session_.log();
+  for (const std::string& node : idle) ASSERT_TRUE(session_.signal(node, SIGSTOP));
+  pause(2500);
+  for (const std::string& node : idle) ASSERT_TRUE(session_.signal(node, SIGCONT));
+  EXPECT_LT(session_.endAfter(60.0), 60.0) << session_.log();
+  EXPECT_EQ(session_.exitCode(), "0\n") << session_.log();
+  const nlohmann::json summary = session_.summary();
+  EXPECT_EQ(summary["status"], "completed");
+  EXPECT_EQ(summary["cbv"]["count"], 0);
+  EXPECT_EQ(summary["faults"].size(), 0U) << summary["faults"];
 }
 
 TEST_F(SessionFaults, ScriptStoppedInItsFirstSecondGives130AndAResult) {

@@ -14,6 +14,11 @@ def write(path, suite, cases):
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
+def write_findings(path, suite, cases):
+    """Writes `cases`, a list of (name, texts of what is wrong)."""
+    write(path, suite, [(name, 0.0, "\n".join(found) or None) for name, found in cases])
+
+
 def write_unittest(path, suite, result, names):
     """Writes the outcome of `unittest` for the tests `names`."""
     problems = {test.id(): text for test, text in result.failures + result.errors}

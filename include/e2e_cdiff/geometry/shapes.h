@@ -24,9 +24,8 @@ inline double cross(const Eigen::Vector2d& first, const Eigen::Vector2d& second)
   return first.x() * second.y() - first.y() * second.x();
 }
 
-/// Poses in the plane of the map frame (x east, y north [m]; heading counter-clockwise from +x
-/// [rad]).
-/// Position and heading in the plane.
+/// Position and heading in the plane of the map frame (x east, y north [m]; heading
+/// counter-clockwise from +x [rad]).
 struct Pose2d {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
   double heading = 0.0;                                ///< [rad]

@@ -73,8 +73,8 @@ class Route {
 /// without a route to the next.
 Route matchRoute(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points);
 
-/// How far a vehicle has come along a route.
-/// Farthest arc length reached by moving along the route (each update looks into kRouteWindow).
+/// How far a vehicle has come along a route: the farthest arc length [m] that it has reached by
+/// moving along the route. Each update searches kRouteWindow around the progress so far.
 class RouteProgress {
  public:
   /// `route` must outlive the object. 100 % when at least `completion_percent` of the length is

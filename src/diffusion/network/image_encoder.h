@@ -10,10 +10,9 @@
 
 namespace cdiff::diffusion {
 
-/// One per thread; reuses its buffers.
 /// The image encoder: ResNet-34 with group normalization and a projection, rgb8 image -> features
 /// (architecture.image_features). Float32, one image at a time, so that an image's features do not
-/// depend on its neighbors.
+/// depend on its neighbors. It reuses its buffers: one object per thread.
 class ImageEncoder {
  public:
   explicit ImageEncoder(const Model& model);

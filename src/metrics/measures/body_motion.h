@@ -23,9 +23,7 @@ BodyAcceleration bodyAcceleration(const traffic::Vehicle& vehicle);
 /// 4.89 and |jerk| < 8.37. Without a jerk the accelerations decide.
 bool isUncomfortable(const BodyAcceleration& acceleration, const std::optional<double>& jerk);
 
-/// Acceleration [m/s^2] and jerk [m/s^3] of CBVs from decision to decision, and nuPlan's limits of
-/// comfort.
-/// How one CBV moves at a decision.
+/// How the body of one CBV moves at a decision: acceleration [m/s^2] and jerk [m/s^3].
 struct BodyMotion {
   BodyAcceleration acceleration;
   std::optional<double> jerk;  ///< change of the magnitude since the last decision / period; absent

@@ -24,8 +24,9 @@ struct ContactParty {
   Eigen::Vector2d velocityAt(const Eigen::Vector2d& point, double share, double step) const;
 };
 
-/// Whether the ego is at fault in a contact: who strikes whom, from the motion of the two boxes
-/// over the tick in which they meet (map frame, SI units; docs/protocols.md).
+/// Whether the ego is at fault in a contact, with the facts that decide it: who strikes whom, from
+/// the motion of the two boxes over the tick in which they meet (map frame, SI units;
+/// docs/protocols.md).
 ///
 /// The poses are interpolated between the tick before and the first tick with overlap, and the
 /// instant of first touch is found by bisection. There, the contact normal n (from the ego to the
@@ -41,7 +42,6 @@ struct ContactParty {
 /// fault; head-on, the one that is on no lane of its direction is at fault, where the other is on
 /// one; side by side in the same direction, n is taken perpendicular to the lane, so that the one
 /// that moves sideways is at fault and not the one whose corner is touched.
-/// The decision with what it stands on.
 struct ContactFault {
   bool ego_at_fault = false;
   std::string reason;      ///< a short sentence without subject "contact"

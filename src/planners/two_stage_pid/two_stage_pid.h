@@ -15,7 +15,7 @@
 
 namespace cdiff::planners {
 
-/// Defaults as published for Pluto and RIFT.
+/// Gains and limits of TrajectoryTracker; defaults as published for Pluto and RIFT.
 struct TrajectoryTrackerOptions {
   double turn_kp = 1.25;
   double turn_ki = 0.75;
@@ -52,10 +52,10 @@ class WindowedPid {
   std::deque<double> errors_;  ///< newest last, of fixed length
 };
 
-/// Two PIDs that follow planned places (body frame of the vehicle, m, one per 0.1 s): the published
-/// execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e before). One
-/// call per decision; the gains are per call, so they depend on the decision period (published: 0.1
-/// s).
+/// Makes one vehicle follow planned places (its body frame, m, one per 0.1 s) with two PIDs: the
+/// published execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e
+/// before). One call per decision; the gains are per call, so they depend on the decision period
+/// (published: 0.1 s).
 ///
 /// The plan is thinned to one place a second (two a second if it is shorter than 2 s).
 ///  - Desired speed: mean length of the segments between these places, from the vehicle on, per
@@ -65,7 +65,6 @@ class WindowedPid {
 ///  - Turn error: bearing of the place whose distance is nearest to the look-ahead
 ///    clamp(0.5 v + 2.5, 5, 8) m, in units of 90 degrees; none while it stands (below 0.01
 ///    m/s) or brakes.
-/// Tracker of one vehicle.
 class TrajectoryTracker {
  public:
   explicit TrajectoryTracker(const TrajectoryTrackerOptions& options = {});

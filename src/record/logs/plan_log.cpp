@@ -187,7 +187,7 @@ std::optional<Waypoint> wayPointOf(const std::vector<std::string>& cells, std::s
   return Waypoint{{values[0], values[1]}, values[2], values[3]};
 }
 
-std::optional<PlanRow> rowOf(const std::string& line) {
+std::optional<PlanRow> rowOf(std::string_view line) {
   const std::vector<std::string> cells = core::csvCells(line);
   if (cells.size() != 11) return std::nullopt;
   const auto tick = core::parseNumber(cells[1]);
@@ -218,16 +218,18 @@ std::string plansCsv(const PlanLog& plans) {
 }
 
 std::vector<PlanRow> readPlans(const std::filesystem::path& file) {
-  const auto lines = core::splitText(core::readFile(file, "plans"), '\n');
-  if (lines.empty() || lines.front() + "\n" != kHeader) {
+  const std::string text = core::readFile(file, "plans");
+  const std::vector<core::CsvRow> lines = core::csvRows(text);
+  if (text.rfind(kHeader, 0) != 0) {
     throw core::InputError("'" + file.string() + "' holds no plans; its first line must be " +
                            std::string(kHeader, std::char_traits<char>::length(kHeader) - 1));
   }
   std::vector<PlanRow> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const auto row = rowOf(lines[i]);
+    const auto row = rowOf(lines[i].text);
     if (!row) {
-      throw core::InputError(file.string() + ":" + std::to_string(i + 1) + ": no row of plans");
+      throw core::InputError(file.string() + ":" + std::to_string(lines[i].line) +
+                             ": no row of plans");
     }
     rows.push_back(*row);
   }
