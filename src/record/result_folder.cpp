@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
-#include "core/text.h"
 #include "core/file.h"
 #include "core/program.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::record {
