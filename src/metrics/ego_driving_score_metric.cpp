@@ -144,6 +144,18 @@ constexpr MeasureDefinition kYieldsFailed = {
     "",
 };
 
+constexpr MeasureDefinition kScoreUnderAttack = {
+    "ego_driving_score_under_attack",
+    "/ego/driving_score_under_attack",
+    "Driving score under attack",
+    "",
+    Direction::kHigherIsBetter,
+    Subject::kEgo,
+    "Driving score of a session in mode safety_critical; absent in mode naturalistic, so that the "
+    "mean over a batch is that of its attacks.",
+    "",
+};
+
 Measure counted(std::size_t count, std::size_t n) {
   return {static_cast<double>(count), n, {}, {}};
 }
@@ -153,6 +165,7 @@ class DrivingScore final : public Metric {
  public:
   explicit DrivingScore(const MetricContext& context)
       : options_(context.options.infractions),
+        attack_(context.options.mode == "safety_critical"),
         collisions_(options_),
         minimum_speed_(
             context.ego_route.length(),
@@ -176,8 +189,10 @@ class DrivingScore final : public Metric {
   void report(MetricSink& sink) const override {
     const Infractions found = infractions();
     const ScoreRules rules = options_.scoreRules();
-    sink.set(known::kDrivingScore,
-             numberMeasure(ticks_ == 0 ? 0.0 : drivingScore(completion_percent_, found, rules)));
+    const Measure score =
+        numberMeasure(ticks_ == 0 ? 0.0 : drivingScore(completion_percent_, found, rules));
+    sink.set(known::kDrivingScore, score);
+    sink.set(kScoreUnderAttack, attack_ ? score : absentMeasure("the mode is not safety_critical"));
     sink.set(known::kPenalty, ticks_ == 0
                                   ? absentMeasure(kNoEgo)
                                   : Measure{infractionPenalty(found, rules), ticks_, {}, {}});
@@ -251,6 +266,7 @@ class DrivingScore final : public Metric {
   }
 
   InfractionOptions options_;
+  bool attack_;
   CollisionCounter collisions_;
   MinimumSpeed minimum_speed_;
   std::optional<OutsideLanes> outside_;
@@ -265,9 +281,9 @@ class DrivingScore final : public Metric {
 MetricDescriptor egoDrivingScoreMetric() {
   return {"ego_driving_score",
           "Driving score, penalty and infractions of the ego by the rules of the protocol.",
-          {known::kDrivingScore, known::kPenalty, kSpeedMissed, kSpeedPercent, known::kOutsideLanes,
-           kPedestrians, known::kRedLights, kTimeouts, kStaticCollisions, known::kStopSigns,
-           kVehicleCollisions, kYieldsFailed},
+          {known::kDrivingScore, kScoreUnderAttack, known::kPenalty, kSpeedMissed, kSpeedPercent,
+           known::kOutsideLanes, kPedestrians, known::kRedLights, kTimeouts, kStaticCollisions,
+           known::kStopSigns, kVehicleCollisions, kYieldsFailed},
           [](const MetricContext& context) { return std::make_unique<DrivingScore>(context); }};
 }
 

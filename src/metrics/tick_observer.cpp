@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "metrics/measures/ttc_2d.h"
 
@@ -37,7 +38,8 @@ std::optional<double> distanceToEgo(const Vehicle& vehicle, const Vehicle* ego) 
 TickObserver::TickObserver(const MetricContext& context)
     : options_(context.options),
       drivable_area_(context.drivable_area),
-      ego_contacts_(options_.network, options_.infractions.collision_minimum_speed) {
+      ego_contacts_(options_.network, options_.infractions.collision_minimum_speed),
+      avoidance_(context.ego_route) {
   if (context.ego_route.empty()) return;
   progress_.emplace(context.ego_route, options_.completion_percent, options_.completion_distance);
 }
@@ -62,13 +64,13 @@ bool TickObserver::offRoad(const Vehicle& vehicle) const {
 }
 
 /// All corners are looked for on the level of the vehicle.
-bool TickObserver::cornerOffRoad(const Vehicle& vehicle) const {
+std::optional<double> TickObserver::edgeDistance(const Vehicle& vehicle) const {
   const auto& state = vehicle.state;
-  if (!state.position.allFinite() || !std::isfinite(state.heading)) return false;
-  const auto corners = vehicle.box().corners();
-  return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
-    return drivable_area_.signedDistance(corner, state.elevation) < 0.0;
-  });
+  if (!state.position.allFinite() || !std::isfinite(state.heading)) return std::nullopt;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& corner : vehicle.box().corners())
+    least = std::min(least, drivable_area_.signedDistance(corner, state.elevation));
+  return least;
 }
 
 double TickObserver::wantedSpeed(const Vehicle& vehicle) const {
@@ -93,28 +95,41 @@ void TickObserver::addEgo(const Vehicle& ego, MetricTick& tick) {
       ego, tick.snapshot, {options_.ttc_radius, options_.ttc_limit, tick.snapshot.decision_tick});
 }
 
-void TickObserver::addContacts(MetricTick& tick) {
-  for (const traffic::Contact& contact : tick.snapshot.contacts) {
-    ContactSighting sighting;
-    if (contact.first == ego_id_ || contact.second == ego_id_)
-      sighting.ego_partner = contact.first == ego_id_ ? contact.second : contact.first;
-    for (const std::string* id : {&contact.first, &contact.second}) {
-      if (isCbv(tick.snapshot, *id)) sighting.cbvs.push_back(*id);
-    }
-    tick.contacts.push_back(std::move(sighting));
+ContactSighting TickObserver::sightingOf(const traffic::Contact& contact,
+                                         const MetricTick& tick) const {
+  ContactSighting sighting;
+  if (contact.first == ego_id_ || contact.second == ego_id_)
+    sighting.ego_partner = contact.first == ego_id_ ? contact.second : contact.first;
+  for (const std::string* id : {&contact.first, &contact.second}) {
+    if (isCbv(tick.snapshot, *id)) sighting.cbvs.push_back(*id);
   }
+  const bool ego = !sighting.ego_partner.empty();
+  if (!ego && sighting.cbvs.empty()) return sighting;
+  const std::string& judged = ego ? ego_id_ : sighting.cbvs.front();
+  sighting.striker = ego_contacts_.strikerOf(
+      tick.snapshot, judged, judged == contact.first ? contact.second : contact.first);
+  return sighting;
+}
+
+void TickObserver::addContacts(MetricTick& tick) {
+  for (const traffic::Contact& contact : tick.snapshot.contacts)
+    tick.contacts.push_back(sightingOf(contact, tick));
   const auto known = static_cast<std::ptrdiff_t>(ego_contacts_.contacts().size());
   ego_contacts_.observe(tick.snapshot);
   tick.ego_contacts.assign(ego_contacts_.contacts().begin() + known,
                            ego_contacts_.contacts().end());
+  avoidance_.observe(tick.snapshot, tick.ego_arc_length);
+  for (EgoContact& contact : tick.ego_contacts)
+    contact.avoidable = avoidance_.avoidable(contact.partner);
 }
 
 void TickObserver::addCbvs(MetricTick& tick) {
   std::map<std::string, Eigen::Vector2d> positions;
   for (const Vehicle& vehicle : tick.snapshot.vehicles) {
     if (vehicle.role != VehicleRole::kCbv) continue;
+    const std::optional<double> edge = edgeDistance(vehicle);
     tick.cbvs.push_back({&vehicle, offRoad(vehicle), wantedSpeed(vehicle),
-                         distanceToEgo(vehicle, tick.ego), cornerOffRoad(vehicle), 0.0});
+                         distanceToEgo(vehicle, tick.ego), edge.value_or(0.0) < 0.0, 0.0, edge});
     if (!tick.cbvs.back().placed()) continue;
     const auto last = last_positions_.find(vehicle.id);
     if (last != last_positions_.end())

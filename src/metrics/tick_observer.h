@@ -8,6 +8,7 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/measures/contact_avoidance.h"
 #include "metrics/measures/contact_fault.h"
 
 namespace cdiff::metrics {
@@ -24,17 +25,19 @@ class TickObserver {
 
  private:
   bool offRoad(const traffic::Vehicle& vehicle) const;
-  bool cornerOffRoad(const traffic::Vehicle& vehicle) const;
+  std::optional<double> edgeDistance(const traffic::Vehicle& vehicle) const;
   double wantedSpeed(const traffic::Vehicle& vehicle) const;
   bool isCbv(const traffic::TrafficSnapshot& snapshot, const std::string& id) const;
   void addEgo(const traffic::Vehicle& ego, MetricTick& tick);
   void addContacts(MetricTick& tick);
+  ContactSighting sightingOf(const traffic::Contact& contact, const MetricTick& tick) const;
   void addCbvs(MetricTick& tick);
 
   const SessionMetricsOptions& options_;
   const map::DrivableArea& drivable_area_;
   std::optional<map::RouteProgress> progress_;
   EgoContacts ego_contacts_;
+  ContactAvoidance avoidance_;
   std::string ego_id_;                                     ///< empty before the first tick
   std::map<std::string, Eigen::Vector2d> last_positions_;  ///< of the CBVs of the last tick
 };

@@ -103,7 +103,8 @@ Markup egoTiles(const record::SessionResult& result) {
               "of 100, by " + measures.protocol) +
          tile("Ego collisions", std::to_string(measures.count(known::kEgoCollisions)), "",
               std::to_string(measures.count(known::kContactsAtFault)) + " its fault, " +
-                  std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs");
+                  std::to_string(measures.count(known::kCbvEgoCollisions)) + " with CBVs, " +
+                  std::to_string(measures.count(known::kEgoAvoidable)) + " avoidable");
 }
 
 Markup cbvTiles(const metrics::SessionMeasures& measures) {

@@ -163,8 +163,8 @@ Markup rejectionTable(const record::CbvLog& cbv) {
 Markup contactTable(const record::SessionResult& result) {
   const auto& all = result.timeline.contacts();
   if (all.empty()) return pageNote("No vehicles touched.");
-  HtmlTable table(
-      {"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]", "#Other [m/s]"});
+  HtmlTable table({"#Time [s]", "Vehicle", "Vehicle", "Ego at fault", "Why", "#Ego [m/s]",
+                   "#Other [m/s]", "Avoidable by braking"});
   auto own = result.measures.ego_contacts.begin();  // in the order of `all`
   for (const record::TimelineContact& contact : all) {
     std::vector<Markup> cells = {fixed(contact.time, 2), contact.first, contact.second};
@@ -172,11 +172,12 @@ Markup contactTable(const record::SessionResult& result) {
                      (contact.first == own->partner || contact.second == own->partner) &&
                      contact.time == own->seconds;
     if (ego) {
-      cells.insert(cells.end(), {own->ego_at_fault ? "yes" : "no", own->reason,
-                                 fixed(own->ego_speed, 1), fixed(own->partner_speed, 1)});
+      cells.insert(cells.end(),
+                   {own->ego_at_fault ? "yes" : "no", own->reason, fixed(own->ego_speed, 1),
+                    fixed(own->partner_speed, 1), own->avoidable ? "yes" : "no"});
       ++own;
     } else {
-      cells.insert(cells.end(), {"–", "", "", ""});
+      cells.insert(cells.end(), {"–", "", "", "", ""});
     }
     table.row(cells);
   }

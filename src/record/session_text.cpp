@@ -135,11 +135,18 @@ std::string measureRows(const metrics::SessionMeasures& measures) {
          row("driving score", fixed(known::kDrivingScore) + " by " + measures.protocol +
                                   ", penalty " + measureText(measures.at(known::kPenalty), 3)) +
          row("ego collisions", count(known::kEgoCollisions)) +
+         row("  who struck whom", "ego struck CBVs " + count(known::kEgoStruckCbvs) +
+                                      ", CBVs struck ego " + count(known::kEgoStruckByCbvs) +
+                                      "; ego standing " + count(known::kEgoStruckStanding) +
+                                      ", avoidable " + count(known::kEgoAvoidable) + "; in " +
+                                      fixed(known::kEgoDistance) + " m") +
          row("CBVs",
              count(known::kCbvCount) + " over " + count(known::kCbvDecisions) + " decisions") +
          row("CBV collisions", count(known::kCbvCollisions) + " (" +
                                    count(known::kCbvEgoCollisions) + " with the ego)") +
          row("CBV off-road rate", text(known::kCbvOffRoad)) +
+         row("CBV wrong-way driving", text(known::kCbvWrongWay)) +
+         row("CBVs standing", count(known::kCbvStanding) + " on a free road for more than 3 s") +
          row("collisions per km", text(known::kCollisionsPerKm)) +
          row("2D-TTC mean", text(known::kTtcMean)) +
          row("2D-TTC minimum", text(known::kTtcMinimum));

@@ -23,7 +23,8 @@ Json contactList(const std::vector<metrics::EgoContact>& contacts) {
                     {"ego_side", contact.ego_side},
                     {"other_side", contact.partner_side},
                     {"x", contact.x},
-                    {"y", contact.y}});
+                    {"y", contact.y},
+                    {"avoidable", contact.avoidable}});
   }
   return list;
 }

@@ -75,6 +75,7 @@ metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   options.completion_percent = options_.protocol.completion_percent;
   options.completion_distance = options_.protocol.completion_distance;
   options.protocol = options_.protocol.preset;
+  options.mode = options_.mode;
   options.infractions = options_.protocol.infractions;
   options.target_speed = options_.target_speed;
   options.network = &network_;

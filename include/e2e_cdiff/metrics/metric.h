@@ -57,16 +57,20 @@ struct Interaction {
   std::optional<double> rift_ttc;          ///< by RIFT's ray cast; at decision ticks [s]
   std::optional<double> rift_act;          ///< by RIFT's ACT; at decision ticks [s]
   std::optional<double> nearest_distance;  ///< between boxes, at any distance [m]
+  const traffic::Vehicle* ttc_2d_partner =
+      nullptr;  ///< whose time `ttc_2d` is; the first of equals
 };
 
 /// A CBV of the tick.
 struct CbvSighting {
   const traffic::Vehicle* vehicle = nullptr;
-  bool off_road = false;                    ///< whether its center is off the drivable area
-  std::optional<double> wanted_speed = {};  ///< target speed capped by the lane's limit [m/s]
-  std::optional<double> ego_distance = {};  ///< distance between the centers of ego and CBV [m]
-  bool corner_off_road = false;             ///< whether any corner of its box is off the road
-  double chord = 0.0;                       ///< driven since the last tick, where it was CBV [m]
+  bool off_road = false;                     ///< whether its center is off the drivable area
+  std::optional<double> wanted_speed = {};   ///< target speed capped by the lane's limit [m/s]
+  std::optional<double> ego_distance = {};   ///< distance between the centers of ego and CBV [m]
+  bool corner_off_road = false;              ///< whether any corner of its box is off the road
+  double chord = 0.0;                        ///< driven since the last tick, where it was CBV [m]
+  std::optional<double> edge_distance = {};  ///< smallest signed distance of its corners to the
+                                             ///< edge of the drivable area, positive inside [m]
 
   /// Whether its position is finite.
   bool placed() const { return vehicle->state.position.allFinite(); }
@@ -76,6 +80,7 @@ struct CbvSighting {
 struct ContactSighting {
   std::string ego_partner;        ///< id of the other vehicle; empty in a contact without the ego
   std::vector<std::string> cbvs;  ///< ids of the CBVs in it
+  std::string striker;  ///< id of the vehicle at fault; empty: not judged (docs/protocols.md)
 };
 
 /// A contact of the ego and who is at fault (docs/protocols.md).
@@ -89,8 +94,9 @@ struct EgoContact {
   double partner_speed = 0.0;  ///< [m/s]
   std::string ego_side;        ///< "front", "rear", "left side", "right side"; empty: not known
   std::string partner_side;
-  double x = 0.0;  ///< place of the contact, map frame [m]
-  double y = 0.0;  ///< [m]
+  double x = 0.0;          ///< place of the contact, map frame [m]
+  double y = 0.0;          ///< [m]
+  bool avoidable = false;  ///< whether the ego could have avoided it by braking (docs/metrics.md)
 };
 
 /// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them

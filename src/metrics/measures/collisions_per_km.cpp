@@ -6,17 +6,13 @@
 
 namespace cdiff::metrics {
 
+Measure countPerKilometre(std::size_t count, double distance, std::size_t n, const char* reason) {
+  if (!(distance > 0.0)) return {std::nullopt, n, {}, reason};
+  return {1000.0 * static_cast<double>(count) / distance, n, {}, {}};
+}
+
 Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles) {
-  Measure measure;
-  measure.n = vehicles;
-  if (vehicles == 0) {
-    measure.reason = kNoCbv;
-  } else if (!(distance > 0.0)) {
-    measure.reason = "no CBV moved";
-  } else {
-    measure.value = 1000.0 * static_cast<double>(collisions) / distance;
-  }
-  return measure;
+  return countPerKilometre(collisions, distance, vehicles, vehicles == 0 ? kNoCbv : "no CBV moved");
 }
 
 }  // namespace cdiff::metrics

@@ -117,6 +117,11 @@ void judgeStrike(const Closing& closing, ContactFault& fault) {
                   speedText(closing.other) + " (other)";
 }
 
+bool isPlaced(const traffic::Vehicle* vehicle) {
+  return vehicle != nullptr && vehicle->state.position.allFinite() &&
+         std::isfinite(vehicle->state.heading);
+}
+
 /// Both were there at the tick before, and the ego moves.
 void judgeMoving(const ContactParty& ego, const ContactParty& other, double step, double touch,
                  ContactFault& fault) {
@@ -188,6 +193,16 @@ void EgoContacts::observe(const traffic::TrafficSnapshot& snapshot) {
   time_before_ = snapshot.time;
 }
 
+std::string EgoContacts::strikerOf(const traffic::TrafficSnapshot& snapshot,
+                                   const std::string& judged, const std::string& other) const {
+  const traffic::Vehicle* first = snapshot.find(judged);
+  const traffic::Vehicle* second = snapshot.find(other);
+  if (!isPlaced(first) || !isPlaced(second)) return {};
+  const double step = snapshot.time - time_before_;
+  const ContactFault fault = judgeContact(partyOf(*first), partyOf(*second), step, standing_speed_);
+  return fault.ego_at_fault ? judged : other;
+}
+
 ContactParty EgoContacts::partyOf(const traffic::Vehicle& vehicle) const {
   ContactParty party;
   party.now = vehicle.state;
@@ -216,10 +231,7 @@ void EgoContacts::add(const traffic::TrafficSnapshot& snapshot, const traffic::V
   contact.partner = partner;
   contact.ego_speed = ego.state.speed;
   const traffic::Vehicle* other = snapshot.find(partner);
-  const bool placed = other != nullptr && other->state.position.allFinite() &&
-                      ego.state.position.allFinite() && std::isfinite(other->state.heading) &&
-                      std::isfinite(ego.state.heading);
-  if (!placed) {
+  if (!isPlaced(other) || !isPlaced(&ego)) {
     contact.reason = "the record of that tick lacks a position of the two";
     contacts_.push_back(contact);
     return;

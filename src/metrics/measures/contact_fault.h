@@ -63,6 +63,10 @@ class EgoContacts {
 
   void observe(const traffic::TrafficSnapshot& snapshot);
   const std::vector<EgoContact>& contacts() const { return contacts_; }
+  /// Id of the vehicle at fault in a contact of this snapshot, by the same rule with `judged` in
+  /// the ego's place; empty where a position is missing. Call before observe().
+  std::string strikerOf(const traffic::TrafficSnapshot& snapshot, const std::string& judged,
+                        const std::string& other) const;
 
  private:
   ContactParty partyOf(const traffic::Vehicle& vehicle) const;

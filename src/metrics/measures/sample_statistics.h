@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "e2e_cdiff/metrics/metric.h"
 
@@ -35,6 +36,10 @@ class SampleStatistics {
   double squares_ = 0.0;  ///< sum of squared differences to the mean
   double minimum_ = 0.0;
 };
+
+/// The value below which a share in [0, 1] of the samples lies, linear between order statistics
+/// (NumPy's default, type 7 of Hyndman and Fan 1996); absent without samples.
+std::optional<double> quantileOf(std::vector<double> samples, double share);
 
 /// Share of ticks of equal length at which something held [%]: 100 x ticks where it did / ticks.
 class TickShare {

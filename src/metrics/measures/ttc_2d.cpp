@@ -206,6 +206,8 @@ void keepTimes(Interaction& interaction, const MovingBox& ego, const Vehicle& ot
   };
   const MovingBox box = movingBox(other);
   const auto time = within(timeToCollision2d(ego, box));
+  if (time && (!interaction.ttc_2d || *time < *interaction.ttc_2d))
+    interaction.ttc_2d_partner = &other;
   keepSmaller(interaction.ttc_2d, time);
   if (other.role == traffic::VehicleRole::kCbv) keepSmaller(interaction.ttc_2d_cbv, time);
   if (!options.variants) return;
