@@ -24,6 +24,7 @@ extern const MeasureDefinition kCollisionsPerKm;
 extern const MeasureDefinition kContactsAtFault;
 extern const MeasureDefinition kDrivingScore;
 extern const MeasureDefinition kEgoCollisions;
+extern const MeasureDefinition kEgoDistance;
 extern const MeasureDefinition kOutsideLanes;
 extern const MeasureDefinition kPenalty;
 extern const MeasureDefinition kRedLights;
