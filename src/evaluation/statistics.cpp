@@ -5,6 +5,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace cdiff::evaluation {
 
@@ -27,6 +29,8 @@ Statistics statisticsOf(const std::vector<double>& samples) {
 
 namespace {
 
+using Records = std::vector<const RunRecord*>;
+
 /// Values of one measure in a cell, by seed.
 using ValuesBySeed = std::map<std::string, std::vector<double>>;
 
@@ -39,7 +43,23 @@ Statistics meanOverSeeds(const ValuesBySeed& values) {
   return statisticsOf(means);
 }
 
-Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records) {
+/// Means over seeds, and their intervals.
+void addMeasure(const std::string& name, const ValuesBySeed& values, const Records& complete,
+                RouteBootstrap& bootstrap, Cell& cell) {
+  const Statistics statistics = meanOverSeeds(values);
+  cell.measures[name] = statistics;
+  const metrics::PoolingRule rule = poolingOfMeasure(name);
+  const bool count = rule.kind == metrics::Pooling::kCount || rule.kind == metrics::Pooling::kRate;
+  if (count || std::isfinite(rule.most)) {
+    const auto interval = pooledEstimate(complete, name, bootstrap, "seed").interval;
+    if (interval) cell.intervals[name] = *interval;
+  } else if (statistics.half_width) {
+    cell.intervals[name] = {*statistics.mean - *statistics.half_width,
+                            *statistics.mean + *statistics.half_width};
+  }
+}
+
+Cell cellOf(const Factors& factors, const Records& records, RouteBootstrap& bootstrap) {
   Cell cell;
   cell.factors = factors;
   std::map<std::string, ValuesBySeed> values;
@@ -51,26 +71,65 @@ Cell cellOf(const Factors& factors, const std::vector<const RunRecord*>& records
       values[name][record->factors.at("seed")].push_back(value);
     }
   }
-  for (const auto& [name, by_seed] : values) cell.measures[name] = meanOverSeeds(by_seed);
+  for (const auto& [name, by_seed] : values) addMeasure(name, by_seed, records, bootstrap, cell);
   return cell;
+}
+
+System systemOf(const Factors& factors, const Records& records, RouteBootstrap& bootstrap) {
+  System system;
+  system.factors = factors;
+  Records complete;
+  std::set<std::string> routes;
+  std::set<std::string> seeds;
+  for (const RunRecord* record : records) {
+    ++system.runs;
+    system.failed += record->failed();
+    system.missing += !record->failed() && !record->complete();
+    if (!record->complete()) continue;
+    complete.push_back(record);
+    routes.insert(record->factors.at("scenario"));
+    seeds.insert(record->factors.at("seed"));
+  }
+  system.routes = routes.size();
+  system.seeds = seeds.size();
+  for (const std::string& name : measureNames()) {
+    PooledEstimate estimate = pooledEstimate(complete, name, bootstrap);
+    if (estimate.runs > 0) system.measures[name] = std::move(estimate);
+  }
+  return system;
+}
+
+/// Records that agree in all factors but `pooled`, in the order in which they first appear.
+std::vector<std::pair<Factors, Records>> groupsOf(const std::vector<RunRecord>& records,
+                                                  const std::vector<std::string>& pooled) {
+  std::vector<std::pair<Factors, Records>> groups;
+  std::map<Factors, std::size_t> places;
+  for (const RunRecord& record : records) {
+    Factors factors = record.factors;
+    for (const std::string& factor : pooled) factors.erase(factor);
+    const auto [place, added] = places.emplace(factors, groups.size());
+    if (added) groups.emplace_back(factors, Records());
+    groups[place->second].second.push_back(&record);
+  }
+  return groups;
 }
 
 }  // namespace
 
 std::vector<Cell> cellsOf(const std::vector<RunRecord>& records) {
-  std::vector<Factors> order;
-  std::map<Factors, std::vector<const RunRecord*>> groups;
-  for (const RunRecord& record : records) {
-    Factors factors = record.factors;
-    factors.erase("seed");
-    factors.erase("repetition");
-    auto& group = groups[factors];
-    if (group.empty()) order.push_back(factors);
-    group.push_back(&record);
-  }
+  RouteBootstrap bootstrap;
   std::vector<Cell> cells;
-  for (const Factors& factors : order) cells.push_back(cellOf(factors, groups.at(factors)));
+  for (const auto& [factors, group] : groupsOf(records, {"seed", "repetition"}))
+    cells.push_back(cellOf(factors, group, bootstrap));
   return cells;
+}
+
+std::vector<System> systemsOf(const std::vector<RunRecord>& records) {
+  RouteBootstrap bootstrap;
+  std::vector<System> systems;
+  for (const auto& [factors, group] : groupsOf(records, {"scenario", "seed", "repetition"}))
+    systems.push_back(systemOf(factors, group, bootstrap));
+  return systems;
 }
 
 }  // namespace cdiff::evaluation

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
@@ -32,9 +33,27 @@ struct Cell {
   /// By measure. Repetitions of a seed are averaged first: n counts the seeds that have the
   /// measure.
   std::map<std::string, Statistics> measures;
+  /// 95 % intervals by measure: exact Poisson of counts and rates, bootstrap over seeds within the
+  /// bounds of bounded measures, Student's t over seeds of all others.
+  std::map<std::string, Interval> intervals;
 };
 
 /// In the order in which they first appear.
 std::vector<Cell> cellsOf(const std::vector<RunRecord>& records);
+
+/// The runs of a batch that differ in scenario, seed and repetition alone, and their measures over
+/// routes.
+struct System {
+  Factors factors;  ///< without scenario, seed and repetition
+  std::size_t runs = 0;
+  std::size_t failed = 0;                          ///< broke
+  std::size_t missing = 0;                         ///< not run or interrupted
+  std::size_t routes = 0;                          ///< of complete runs
+  std::size_t seeds = 0;                           ///< of complete runs
+  std::map<std::string, PooledEstimate> measures;  ///< those that a complete run has
+};
+
+/// In the order in which they first appear.
+std::vector<System> systemsOf(const std::vector<RunRecord>& records);
 
 }  // namespace cdiff::evaluation
