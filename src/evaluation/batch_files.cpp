@@ -24,10 +24,9 @@ using record::Outcome;
 Json statisticsJson(const Cell& cell, const std::string& name) {
   const auto measure = cell.measures.find(name);
   const Statistics statistics = measure == cell.measures.end() ? Statistics() : measure->second;
-  const auto found = cell.intervals.find(name);
   Json interval = nullptr;
-  if (found != cell.intervals.end())
-    interval = Json::array({found->second.low, found->second.high});
+  if (statistics.interval)
+    interval = Json::array({statistics.interval->low, statistics.interval->high});
   return {{"mean", record::number(statistics.mean)},
           {"standard_deviation", record::number(statistics.standard_deviation)},
           {"interval_95", interval},

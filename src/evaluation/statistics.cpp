@@ -23,7 +23,8 @@ Statistics statisticsOf(const std::vector<double>& samples) {
   const double deviation = std::sqrt(squares / (n - 1.0));
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975);
   result.standard_deviation = deviation;
-  result.half_width = t * deviation / std::sqrt(n);
+  const double half_width = t * deviation / std::sqrt(n);
+  result.interval = {mean - half_width, mean + half_width};
   return result;
 }
 
@@ -43,20 +44,15 @@ Statistics meanOverSeeds(const ValuesBySeed& values) {
   return statisticsOf(means);
 }
 
-/// Means over seeds, and their intervals.
-void addMeasure(const std::string& name, const ValuesBySeed& values, const Records& complete,
-                RouteBootstrap& bootstrap, Cell& cell) {
-  const Statistics statistics = meanOverSeeds(values);
-  cell.measures[name] = statistics;
+/// Mean over seeds, and its interval.
+Statistics cellStatistics(const std::string& name, const ValuesBySeed& values,
+                          const Records& records, RouteBootstrap& bootstrap) {
+  Statistics statistics = meanOverSeeds(values);
   const metrics::PoolingRule rule = poolingOfMeasure(name);
   const bool count = rule.kind == metrics::Pooling::kCount || rule.kind == metrics::Pooling::kRate;
-  if (count || std::isfinite(rule.most)) {
-    const auto interval = pooledEstimate(complete, name, bootstrap, "seed").interval;
-    if (interval) cell.intervals[name] = *interval;
-  } else if (statistics.half_width) {
-    cell.intervals[name] = {*statistics.mean - *statistics.half_width,
-                            *statistics.mean + *statistics.half_width};
-  }
+  if (count || std::isfinite(rule.most))
+    statistics.interval = pooledEstimate(records, name, bootstrap, "seed").interval;
+  return statistics;
 }
 
 Cell cellOf(const Factors& factors, const Records& records, RouteBootstrap& bootstrap) {
@@ -71,7 +67,8 @@ Cell cellOf(const Factors& factors, const Records& records, RouteBootstrap& boot
       values[name][record->factors.at("seed")].push_back(value);
     }
   }
-  for (const auto& [name, by_seed] : values) addMeasure(name, by_seed, records, bootstrap, cell);
+  for (const auto& [name, by_seed] : values)
+    cell.measures[name] = cellStatistics(name, by_seed, records, bootstrap);
   return cell;
 }
 

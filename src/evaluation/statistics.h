@@ -13,13 +13,13 @@
 
 namespace cdiff::evaluation {
 
-/// Mean, standard deviation (n - 1) and half width of the 95 % interval of the mean: t_{0.975, n-1}
-/// s / sqrt(n).
+/// Mean, standard deviation (n - 1) and 95 % interval of the mean: of independent samples mean +-
+/// t_{0.975, n-1} s / sqrt(n).
 struct Statistics {
   std::size_t n = 0;
   std::optional<double> mean;                ///< absent without samples
   std::optional<double> standard_deviation;  ///< absent below two samples
-  std::optional<double> half_width;          ///< absent below two samples
+  std::optional<Interval> interval;          ///< absent below two samples
 };
 
 Statistics statisticsOf(const std::vector<double>& samples);
@@ -31,11 +31,9 @@ struct Cell {
   std::size_t failed = 0;   ///< broke
   std::size_t missing = 0;  ///< not run or interrupted
   /// By measure. Repetitions of a seed are averaged first: n counts the seeds that have the
-  /// measure.
+  /// measure. Intervals are exact Poisson of counts and rates (per km), by the bootstrap over seeds
+  /// of bounded measures, Student's over seeds of all others.
   std::map<std::string, Statistics> measures;
-  /// 95 % intervals by measure: exact Poisson of counts and rates, bootstrap over seeds within the
-  /// bounds of bounded measures, Student's t over seeds of all others.
-  std::map<std::string, Interval> intervals;
 };
 
 /// In the order in which they first appear.

@@ -42,10 +42,12 @@ class RouteBootstrap {
   /// Of pooledValue(b) - pooledValue(a); each replicate takes the same routes on both sides.
   std::optional<Interval> differenceInterval(const RouteSums& a, const RouteSums& b);
 
- private:
-  /// Indices of the routes of one replicate, and what they give.
+  /// What the drawn routes give, by their indices from `first` on, as many as there are routes.
   using Replicate = std::function<std::optional<double>(const std::uint32_t* first)>;
+  /// Of any other figure.
   std::optional<Interval> interval(std::size_t routes, const Replicate& replicate);
+
+ private:
   const std::vector<std::uint32_t>& draws(std::size_t routes);
 
   std::map<std::size_t, std::vector<std::uint32_t>> draws_;  ///< by number of routes
