@@ -257,31 +257,6 @@ Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::str
   return comparison;
 }
 
-void adjustForNumber(std::vector<Comparison>& comparisons) {
-  std::vector<double> p;
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) p.push_back(measure.p);
-  }
-  auto adjusted = holmAdjusted(p);
-  auto next = adjusted.begin();
-  for (Comparison& comparison : comparisons) {
-    for (MeasureComparison& measure : comparison.measures) measure.p_holm = *next++;
-  }
-}
-
-Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
-  constexpr double kLargest = 0.05;
-  Multiplicity result;
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) {
-      ++result.differences;
-      result.apart += measure.p <= kLargest;
-      result.apart_by_holm += measure.p_holm <= kLargest;
-    }
-  }
-  return result;
-}
-
 std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& factor,
                                       const std::string& baseline,
                                       const std::vector<std::string>& names) {
