@@ -42,11 +42,11 @@ std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
     throw InputError("--compare needs two result folders, or one with --factor and --baseline");
   }
   if (levels) {
-    return evaluation::compareLevels(evaluation::readRecords(folders[0]), arguments.factor,
+    return evaluation::compareLevels(evaluation::readRunSet(folders[0]), arguments.factor,
                                      arguments.baseline, arguments.measures);
   }
-  const evaluation::RunSet a{folders[0], evaluation::readRecords(folders[0])};
-  const evaluation::RunSet b{folders[1], evaluation::readRecords(folders[1])};
+  const evaluation::RunSet a = evaluation::readRunSet(folders[0]);
+  const evaluation::RunSet b = evaluation::readRunSet(folders[1]);
   return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.measures)};
 }
 
@@ -88,8 +88,9 @@ int report(const ReportArguments& arguments) {
     return ExitCode::kPassed;
   }
   if (!arguments.tables.empty()) return makeTables(arguments.tables);
-  const std::vector<evaluation::Comparison> comparisons = compare(arguments);
+  std::vector<evaluation::Comparison> comparisons = compare(arguments);
   requirePairs(comparisons, arguments);
+  evaluation::adjustForNumber(comparisons);
   std::cout << evaluation::comparisonMarkdown(comparisons);
   const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
                                              : fs::path(arguments.csv);

@@ -9,8 +9,10 @@
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/text.h"
+#include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
 #include "record/junit.h"
+#include "record/summary.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -18,16 +20,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 using record::Outcome;
 
-Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-Json statisticsJson(const Statistics& statistics) {
+/// A measure of a cell by its name; absent ones are null.
+Json statisticsJson(const Cell& cell, const std::string& name) {
+  const auto measure = cell.measures.find(name);
+  const Statistics statistics = measure == cell.measures.end() ? Statistics() : measure->second;
   Json interval = nullptr;
-  if (statistics.half_width) {
-    interval = Json::array(
-        {*statistics.mean - *statistics.half_width, *statistics.mean + *statistics.half_width});
-  }
-  return {{"mean", number(statistics.mean)},
-          {"standard_deviation", number(statistics.standard_deviation)},
+  if (statistics.interval)
+    interval = Json::array({statistics.interval->low, statistics.interval->high});
+  return {{"mean", record::number(statistics.mean)},
+          {"standard_deviation", record::number(statistics.standard_deviation)},
           {"interval_95", interval},
           {"n", statistics.n}};
 }
@@ -38,11 +39,7 @@ Json cellJson(const Cell& cell) {
     if (cell.factors.count(factor) != 0) factors[factor] = cell.factors.at(factor);
   }
   Json measures = Json::object();
-  for (const std::string& name : measureNames()) {
-    const auto measure = cell.measures.find(name);
-    measures[name] =
-        statisticsJson(measure == cell.measures.end() ? Statistics() : measure->second);
-  }
+  for (const std::string& name : measureNames()) measures[name] = statisticsJson(cell, name);
   return {{"factors", factors},
           {"runs", cell.runs},
           {"failed", cell.failed},
@@ -212,6 +209,7 @@ std::string batchSummaryJson(const std::string& name, const std::vector<RunRecor
                   {"verdict_struck", counts.struck},
                   {"verdict_failed", counts.verdict_failed},
                   {"verdict_not_judged", counts.not_judged},
+                  {"systems", systemsJson(systemsOf(records))},
                   {"cells", Json::array()}};
   for (const Cell& cell : cellsOf(records)) summary["cells"].push_back(cellJson(cell));
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -233,8 +231,9 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
          " not run or interrupted, " + std::to_string(counts.verdict_failed) +
          " ended with a failed verdict, " + std::to_string(counts.struck) + " were struck, " +
          std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +
-         " passed. Mean \xC2\xB1 standard deviation over seeds (number of "
-         "seeds that have the measure).\n\n" +
+         " passed.\n\n" + systemsMarkdown(systemsOf(records)) +
+         "\n## Routes\n\nMean \xC2\xB1 standard deviation over seeds (number of seeds that have "
+         "the measure).\n\n" +
          cellsTable(cellsOf(records)) + "\n" + withoutCbvText(records);
 }
 

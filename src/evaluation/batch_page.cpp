@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "evaluation/assets.h"
 #include "evaluation/batch_report.h"
+#include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
 #include "page/assets.h"
 #include "page/page_parts.h"
@@ -137,7 +138,11 @@ Markup paperTable(const Table& table) {
 
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
                       const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  Markup html = headerOf(name, runs) + page::pageSection("Runs", runTable(runs));
+  std::vector<RunRecord> records;
+  for (const BatchRun& run : runs) records.push_back(run.record);
+  Markup html = headerOf(name, runs) +
+                page::pageSection("Systems", systemsHtml(systemsOf(records))) +
+                page::pageSection("Runs", runTable(runs));
   for (const Table& table : tables)
     html += page::pageSection(table.definition.title, paperTable(table));
   for (const Figure& figure : figures) {

@@ -50,8 +50,10 @@ std::string markdownCell(const TableCell& cell) {
 
 std::string tablesMarkdown(const std::vector<Table>& tables) {
   std::string text =
-      "# Tables of the paper\n\nOurs: mean ± standard deviation [95 % interval] over seeds (seeds, "
-      "runs that have the measure). RIFT: the same by RIFT's definition. paper: as printed there. "
+      "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds [95 % interval, "
+      "bootstrap "
+      "by routes; of events per km exact Poisson] (routes, seeds, runs that have the measure). "
+      "RIFT: the same by RIFT's definition. paper: as printed there. "
       "In parentheses alone: why a cell is empty.\n";
   for (const Table& table : tables) {
     const TableDefinition& definition = table.definition;

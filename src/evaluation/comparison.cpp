@@ -3,8 +3,9 @@
 #include "evaluation/comparison.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <numeric>
+#include <utility>
 
 #include "core/markup.h"
 #include "core/text.h"
@@ -14,7 +15,8 @@ namespace cdiff::evaluation {
 namespace {
 
 using core::InputError;
-using Groups = std::map<Factors, std::vector<const RunRecord*>>;
+using Runs = std::vector<const RunRecord*>;
+using Groups = std::map<Factors, Runs>;
 
 /// Factors that say which runs belong together, whatever is compared.
 const std::set<std::string> kAlwaysPairs = {"scenario", "seed", "repetition"};
@@ -45,32 +47,114 @@ Groups grouped(const std::vector<RunRecord>& records, const std::set<std::string
 }
 
 /// Mean of a measure over the runs that have it.
-std::optional<double> meanOf(const std::vector<const RunRecord*>& records,
-                             const std::string& measure) {
-  std::vector<double> values;
+std::optional<double> meanOf(const Runs& records, const std::string& measure) {
+  RouteSum values;
   for (const RunRecord* record : records) {
     const auto value = record->measures.find(measure);
-    if (value != record->measures.end()) values.push_back(value->second);
+    if (value == record->measures.end()) continue;
+    values.sum += value->second;
+    values.weight += 1.0;
   }
-  return statisticsOf(values).mean;
+  return pooledValue({values});
 }
 
-MeasureComparison compareMeasure(const std::string& measure, const Groups& a, const Groups& b) {
-  std::vector<double> values_a;
-  std::vector<double> values_b;
-  std::vector<double> differences;
-  for (const auto& [key, records] : a) {
-    const auto partner = b.find(key);
-    if (partner == b.end()) continue;
-    const auto value_a = meanOf(records, measure);
-    const auto value_b = meanOf(partner->second, measure);
-    if (!value_a || !value_b) continue;
-    values_a.push_back(*value_a);
-    values_b.push_back(*value_b);
-    differences.push_back(*value_b - *value_a);
+/// Runs of both sides that agree in all that pairs, and have a measure.
+class PairedSums {
+ public:
+  PairedSums(const std::string& measure, const metrics::PoolingRule& rule, bool per_km)
+      : measure_(measure),
+        mean_of_pairs_(rule.weight == metrics::SessionWeight::kOne),
+        a_(measure, rule, per_km),
+        b_(measure, rule, per_km) {}
+
+  void add(const Runs& a, const Runs& b, const std::string& cluster) {
+    const auto mean_a = meanOf(a, measure_);
+    const auto mean_b = meanOf(b, measure_);
+    if (!mean_a || !mean_b) return;
+    ++pairs_;
+    addSide(a, *mean_a, cluster, a_);
+    addSide(b, *mean_b, cluster, b_);
   }
-  return {measure, statisticsOf(values_a).mean.value_or(0.0),
-          statisticsOf(values_b).mean.value_or(0.0), statisticsOf(differences)};
+  std::size_t pairs() const { return pairs_; }
+  const ClusterSums& a() const { return a_; }
+  const ClusterSums& b() const { return b_; }
+  /// The sums of both sides by the same clusters.
+  std::pair<RouteSums, RouteSums> aligned() const {
+    std::map<std::string, std::pair<RouteSum, RouteSum>> both;
+    for (const auto& [cluster, sum] : a_.byCluster()) both[cluster].first = sum;
+    for (const auto& [cluster, sum] : b_.byCluster()) both[cluster].second = sum;
+    std::pair<RouteSums, RouteSums> sums;
+    for (const auto& [cluster, pair] : both) {
+      sums.first.push_back(pair.first);
+      sums.second.push_back(pair.second);
+    }
+    return sums;
+  }
+
+ private:
+  void addSide(const Runs& runs, double mean, const std::string& cluster, ClusterSums& sums) const {
+    if (mean_of_pairs_) {
+      sums.addValue(mean, cluster);
+      return;
+    }
+    for (const RunRecord* run : runs) sums.add(*run, cluster);
+  }
+
+  std::string measure_;
+  bool mean_of_pairs_;
+  std::size_t pairs_ = 0;
+  ClusterSums a_;
+  ClusterSums b_;
+};
+
+void addDifference(const PairedSums& sums, const metrics::PoolingRule& rule,
+                   RouteBootstrap& bootstrap, MeasureComparison& compared) {
+  if (!compared.a.value || !compared.b.value) return;
+  compared.difference = *compared.b.value - *compared.a.value;
+  const auto [a, b] = sums.aligned();
+  compared.interval = bootstrap.differenceInterval(a, b);
+  compared.interval_kind = compared.interval ? IntervalKind::kRoutes : IntervalKind::kNone;
+  const double range = rule.most - rule.least;
+  if (!compared.interval && std::isfinite(range) && a.size() > 1) {
+    compared.interval = unseenInterval(*compared.difference, -range, range, a.size());
+    compared.interval_kind = IntervalKind::kUnseen;
+  }
+  compared.p = compared.p_exchange = exchangeTest(a, b);
+}
+
+void addRates(MeasureComparison& compared) {
+  const PooledEstimate& a = compared.a;
+  const PooledEstimate& b = compared.b;
+  if (!a.counts() || a.exposure <= 0.0 || b.exposure <= 0.0) return;
+  compared.rates = compareRates(a.events, a.exposure, b.events, b.exposure);
+  const bool spread = a.over_dispersed || b.over_dispersed;
+  compared.p = spread ? std::max(compared.rates->p, compared.p_exchange) : compared.rates->p;
+}
+
+/// Both sides' runs of each pair, in order.
+struct RunPair {
+  Runs a;
+  Runs b;
+};
+
+/// The comparison, or no pairs where no pair has the measure.
+MeasureComparison compareMeasure(const std::string& measure, const std::vector<RunPair>& pairs,
+                                 const std::string& cluster, RouteBootstrap& bootstrap) {
+  const metrics::PoolingRule rule = poolingOfMeasure(measure);
+  const bool per_km = std::all_of(pairs.begin(), pairs.end(), [&](const RunPair& pair) {
+    return knowDistances(pair.a, rule, measure) && knowDistances(pair.b, rule, measure);
+  });
+  PairedSums sums(measure, rule, per_km);
+  for (const RunPair& pair : pairs) sums.add(pair.a, pair.b, pair.a.front()->factors.at(cluster));
+  MeasureComparison compared;
+  compared.measure = measure;
+  compared.pairs = sums.pairs();
+  if (compared.pairs == 0) return compared;
+  compared.a = sums.a().estimate(bootstrap);
+  compared.b = sums.b().estimate(bootstrap);
+  addDifference(sums, rule, bootstrap, compared);
+  addRates(compared);
+  return compared;
 }
 
 std::string nearest(const std::string& name, const std::vector<std::string>& known) {
@@ -78,54 +162,40 @@ std::string nearest(const std::string& name, const std::vector<std::string>& kno
          "' (all: " + core::joinText(known, ", ") + ")";
 }
 
-std::string intervalText(const Statistics& difference) {
-  if (!difference.half_width) return "-";
-  return "[" + core::formatFixed(*difference.mean - *difference.half_width, 3) + ", " +
-         core::formatFixed(*difference.mean + *difference.half_width, 3) + "]";
-}
-
-std::string levelText(const std::string& level) {
-  return level.empty() ? "(none)" : core::markdownText(level);
-}
-
-/// "; guidance_profile follows (A naturalistic, B safety_critical)".
-std::string followersText(const Comparison& comparison) {
-  std::string text;
-  for (const auto& [factor, levels] : comparison.followers) {
-    text += "; " + factor + " follows (A " + levelText(levels.first) + ", B " +
-            levelText(levels.second) + ")";
-  }
-  return text;
-}
-
-std::string tableOf(const Comparison& comparison) {
-  std::string text =
-      "## A = " + core::markdownText(comparison.a) + ", B = " + core::markdownText(comparison.b) +
-      "\n\n" + std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
-      " runs of A and " + std::to_string(comparison.runs_b) + " of B; paired by " +
-      core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
-      followersText(comparison) +
-      ".\n\n| measure | pairs | mean A | mean B | B - A | 95 % interval |\n"
-      "|---|---|---|---|---|---|\n";
-  for (const MeasureComparison& measure : comparison.measures) {
-    text += "| " + core::markdownText(measure.measure) + " | " +
-            std::to_string(measure.difference.n) + " | " + core::formatFixed(measure.mean_a, 3) +
-            " | " + core::formatFixed(measure.mean_b, 3) + " | " +
-            core::formatFixed(*measure.difference.mean, 3) + " | " +
-            intervalText(measure.difference) + " |\n";
-  }
-  return text;
-}
-
-std::map<std::string, RunSet> setsByLevel(const std::vector<RunRecord>& records,
-                                          const std::string& factor) {
+std::map<std::string, RunSet> setsByLevel(const RunSet& runs, const std::string& factor) {
   std::map<std::string, RunSet> sets;
-  for (const RunRecord& record : records) {
+  for (const RunRecord& record : runs.records) {
     RunSet& set = sets[record.factors.at(factor)];
     set.name = factor + " " + record.factors.at(factor);
     set.records.push_back(record);
+    set.conditions = runs.conditions;
   }
   return sets;
+}
+
+/// What is drawn: routes where they pair, else seeds, else repetitions.
+std::string clusterOf(const std::set<std::string>& paired_by) {
+  for (const char* factor : {"scenario", "seed"}) {
+    if (paired_by.count(factor) != 0) return factor;
+  }
+  return "repetition";
+}
+
+std::vector<RunPair> pairsOf(const Groups& a, const Groups& b) {
+  std::vector<RunPair> pairs;
+  for (const auto& [key, runs] : a) {
+    const auto partner = b.find(key);
+    if (partner != b.end()) pairs.push_back({runs, partner->second});
+  }
+  return pairs;
+}
+
+std::size_t countLevels(const std::vector<RunPair>& pairs, const std::string& factor) {
+  std::set<std::string> levels;
+  for (const RunPair& pair : pairs) {
+    for (const RunRecord* run : pair.a) levels.insert(run->factors.at(factor));
+  }
+  return levels.size();
 }
 
 /// Paired over all factors but `factor` and those that follow it.
@@ -166,31 +236,37 @@ Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& 
 
 Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
                        const std::vector<std::string>& names) {
-  const Groups groups_a = grouped(a.records, paired_by);
-  const Groups groups_b = grouped(b.records, paired_by);
+  requireComparable(a, b);
+  const std::vector<RunPair> pairs =
+      pairsOf(grouped(a.records, paired_by), grouped(b.records, paired_by));
   Comparison comparison;
   comparison.a = a.name;
   comparison.b = b.name;
   comparison.paired_by = paired_by;
   comparison.runs_a = a.records.size();
   comparison.runs_b = b.records.size();
-  for (const auto& [key, records] : groups_a) comparison.pairs += groups_b.count(key);
+  comparison.pairs = pairs.size();
+  comparison.cluster = clusterOf(paired_by);
+  comparison.clusters = countLevels(pairs, comparison.cluster);
+  comparison.seeds = countLevels(pairs, "seed");
+  comparison.conditions = conditionsText(a.conditions, a.records);
+  RouteBootstrap bootstrap;
   for (const std::string& measure : names.empty() ? measureNames() : names) {
-    MeasureComparison compared = compareMeasure(measure, groups_a, groups_b);
-    if (compared.difference.n > 0) comparison.measures.push_back(compared);
+    MeasureComparison compared = compareMeasure(measure, pairs, comparison.cluster, bootstrap);
+    if (compared.pairs > 0) comparison.measures.push_back(std::move(compared));
   }
   return comparison;
 }
 
-std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
-                                      const std::string& factor, const std::string& baseline,
+std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& factor,
+                                      const std::string& baseline,
                                       const std::vector<std::string>& names) {
   const auto& factors = factorNames();
   if (std::find(factors.begin(), factors.end(), factor) == factors.end())
     throw InputError("--factor '" + factor + "' is no factor" + nearest(factor, factors));
-  const std::map<std::string, RunSet> sets = setsByLevel(records, factor);
+  const std::map<std::string, RunSet> sets = setsByLevel(runs, factor);
   if (sets.count(baseline) == 0) {
-    const std::set<std::string> levels = levelsOf(records, factor);
+    const std::set<std::string> levels = levelsOf(runs.records, factor);
     throw InputError("--baseline '" + baseline + "' is no level of " + factor +
                      nearest(baseline, {levels.begin(), levels.end()}));
   }
@@ -208,36 +284,6 @@ void checkMeasureNames(const std::vector<std::string>& names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw InputError("--figure '" + name + "' is no measure" + nearest(name, known));
   }
-}
-
-std::string comparisonMarkdown(const std::vector<Comparison>& comparisons) {
-  std::string text;
-  for (const Comparison& comparison : comparisons)
-    text += (text.empty() ? "" : "\n") + tableOf(comparison);
-  return text;
-}
-
-std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
-  std::string text =
-      "a,b,figure,pairs,mean_a,mean_b,difference,standard_deviation,low_95,high_95\n";
-  const auto field = [](const std::optional<double>& value) {
-    return "," + (value ? core::formatNumber(*value) : std::string());
-  };
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) {
-      const Statistics& difference = measure.difference;
-      text += core::csvCell(comparison.a) + "," + core::csvCell(comparison.b) + "," +
-              core::csvCell(measure.measure) + "," + std::to_string(difference.n) +
-              field(measure.mean_a) + field(measure.mean_b) + field(difference.mean) +
-              field(difference.standard_deviation);
-      const bool interval = difference.half_width.has_value();
-      text += interval ? field(*difference.mean - *difference.half_width) +
-                             field(*difference.mean + *difference.half_width)
-                       : ",,";
-      text += "\n";
-    }
-  }
-  return text;
 }
 
 }  // namespace cdiff::evaluation

@@ -3,29 +3,38 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "evaluation/intervals/pooled_estimate.h"
+#include "evaluation/run_conditions.h"
 #include "evaluation/run_record.h"
-#include "evaluation/statistics.h"
 
 namespace cdiff::evaluation {
 
-/// One measure over its pairs.
+/// One measure over its pairs: both sides, their difference and whether it can be chance.
 struct MeasureComparison {
   std::string measure;
-  double mean_a = 0.0;
-  double mean_b = 0.0;
-  Statistics difference;  ///< statistics of B - A; n is the number of pairs
+  std::size_t pairs = 0;  ///< with the measure on both sides
+  PooledEstimate a;       ///< over the runs of these pairs
+  PooledEstimate b;
+  std::optional<double> difference;  ///< B - A
+  std::optional<Interval> interval;  ///< of the difference; routes are drawn for both at once
+  IntervalKind interval_kind = IntervalKind::kNone;
+  std::optional<RateComparison> rates;  ///< of counts: exact conditional test and ratio B / A
+  double p_exchange = 1.0;              ///< A and B exchanged by routes
+  double p = 1.0;  ///< p_exchange; of counts the exact test's, or the larger where over-dispersed
+  double p_holm = 1.0;  ///< p adjusted for the number of comparisons in the report
 };
 
 /// Factors that change together with the one compared, each with its level in A and in B.
 using Followers = std::map<std::string, std::pair<std::string, std::string>>;
 
 /// Two sets of runs side by side: runs are paired by the factors that the sets share, and each
-/// measure is compared over the pairs (paired t).
+/// measure is compared over the pairs, with routes as what is drawn (docs/evaluation.md).
 struct Comparison {
   std::string a;  ///< names for people
   std::string b;
@@ -34,13 +43,11 @@ struct Comparison {
   std::size_t pairs = 0;            ///< whose runs are both complete
   std::size_t runs_a = 0;           ///< all of them
   std::size_t runs_b = 0;
+  std::string cluster = "scenario";  ///< factor whose levels are drawn
+  std::size_t clusters = 0;          ///< of the pairs
+  std::size_t seeds = 0;
+  std::string conditions;                   ///< protocols and suite, for people
   std::vector<MeasureComparison> measures;  ///< those with at least one pair
-};
-
-/// A set of runs and its name.
-struct RunSet {
-  std::string name;
-  std::vector<RunRecord> records;
 };
 
 /// Scenario, seed, repetition, and every other factor of which both sets have a level in common.
@@ -51,16 +58,27 @@ std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b);
 Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& factor);
 
 /// Measures of `names`, or all when empty. Runs of one side that agree in all of `paired_by` count
-/// as one by their mean.
+/// as one by their mean. Throws InputError as requireComparable does.
 Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::string>& paired_by,
                        const std::vector<std::string>& names);
 
 /// Each level of a factor against its baseline level, paired over all other factors but those that
 /// follow it. Throws InputError for an unknown factor or a baseline that no run has, naming the
-/// nearest.
-std::vector<Comparison> compareLevels(const std::vector<RunRecord>& records,
-                                      const std::string& factor, const std::string& baseline,
+/// nearest, and as requireComparable does.
+std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& factor,
+                                      const std::string& baseline,
                                       const std::vector<std::string>& names);
+
+/// Fills in p_holm over all measures of all of them.
+void adjustForNumber(std::vector<Comparison>& comparisons);
+
+/// How many differences stand in them, how many seem to be there, and how many would by chance.
+struct Multiplicity {
+  std::size_t differences = 0;
+  std::size_t apart = 0;          ///< p <= 0.05
+  std::size_t apart_by_holm = 0;  ///< p_holm <= 0.05
+};
+Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons);
 
 /// Throws InputError naming the nearest measure for a name that is none.
 void checkMeasureNames(const std::vector<std::string>& names);

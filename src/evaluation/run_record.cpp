@@ -82,6 +82,15 @@ std::string lastFault(const json& summary) {
 
 }  // namespace
 
+metrics::PoolingRule batchPooling(const std::string& measure) {
+  static const std::map<std::string, metrics::PoolingRule> rules = {
+      {"cbv_passed_percent", metrics::kMeanToHundred},
+      {"cbv_completion_percent", metrics::kMeanToHundred},
+      {"guidance_trust_region_share", metrics::kMeanToOne}};
+  const auto rule = rules.find(measure);
+  return rule != rules.end() ? rule->second : metrics::kPlainMean;
+}
+
 const std::vector<std::string>& measureNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;

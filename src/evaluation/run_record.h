@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/metrics/metric.h"
 #include "evaluation/run_plan.h"
 #include "record/verdict.h"
 
@@ -20,6 +21,9 @@ using Measures = std::map<std::string, double>;
 
 /// All names in the order of columns.
 const std::vector<std::string>& measureNames();
+
+/// How a batch sums up the measures that no metric defines; a plain mean for an unknown name.
+metrics::PoolingRule batchPooling(const std::string& measure);
 
 /// What a summary says.
 struct SummaryFacts {

@@ -5,6 +5,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace cdiff::evaluation {
 
@@ -21,11 +23,14 @@ Statistics statisticsOf(const std::vector<double>& samples) {
   const double deviation = std::sqrt(squares / (n - 1.0));
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975);
   result.standard_deviation = deviation;
-  result.half_width = t * deviation / std::sqrt(n);
+  const double half_width = t * deviation / std::sqrt(n);
+  result.interval = {mean - half_width, mean + half_width};
   return result;
 }
 
 namespace {
+
+using Records = std::vector<const RunRecord*>;
 
 /// Values of one measure in a cell, by seed.
 using ValuesBySeed = std::map<std::string, std::vector<double>>;
@@ -39,7 +44,18 @@ Statistics meanOverSeeds(const ValuesBySeed& values) {
   return statisticsOf(means);
 }
 
-Cell cellOfGroup(const Factors& factors, const std::vector<const RunRecord*>& records) {
+/// Mean over seeds, and its interval.
+Statistics cellStatistics(const std::string& name, const ValuesBySeed& values,
+                          const Records& records, RouteBootstrap& bootstrap) {
+  Statistics statistics = meanOverSeeds(values);
+  const metrics::PoolingRule rule = poolingOfMeasure(name);
+  const bool count = rule.kind == metrics::Pooling::kCount || rule.kind == metrics::Pooling::kRate;
+  if (count || std::isfinite(rule.most))
+    statistics.interval = pooledEstimate(records, name, bootstrap, "seed").interval;
+  return statistics;
+}
+
+Cell cellOfGroup(const Factors& factors, const Records& records, RouteBootstrap& bootstrap) {
   Cell cell;
   cell.factors = factors;
   std::map<std::string, ValuesBySeed> values;
@@ -51,26 +67,66 @@ Cell cellOfGroup(const Factors& factors, const std::vector<const RunRecord*>& re
       values[name][record->factors.at("seed")].push_back(value);
     }
   }
-  for (const auto& [name, by_seed] : values) cell.measures[name] = meanOverSeeds(by_seed);
+  for (const auto& [name, by_seed] : values)
+    cell.measures[name] = cellStatistics(name, by_seed, records, bootstrap);
   return cell;
+}
+
+System systemOf(const Factors& factors, const Records& records, RouteBootstrap& bootstrap) {
+  System system;
+  system.factors = factors;
+  Records complete;
+  std::set<std::string> routes;
+  std::set<std::string> seeds;
+  for (const RunRecord* record : records) {
+    ++system.runs;
+    system.failed += record->failed();
+    system.missing += !record->failed() && !record->complete();
+    if (!record->complete()) continue;
+    complete.push_back(record);
+    routes.insert(record->factors.at("scenario"));
+    seeds.insert(record->factors.at("seed"));
+  }
+  system.routes = routes.size();
+  system.seeds = seeds.size();
+  for (const std::string& name : measureNames()) {
+    PooledEstimate estimate = pooledEstimate(complete, name, bootstrap);
+    if (estimate.runs > 0) system.measures[name] = std::move(estimate);
+  }
+  return system;
+}
+
+/// Records that agree in all factors but `pooled`, in the order in which they first appear.
+std::vector<std::pair<Factors, Records>> groupsOf(const std::vector<RunRecord>& records,
+                                                  const std::vector<std::string>& pooled) {
+  std::vector<std::pair<Factors, Records>> groups;
+  std::map<Factors, std::size_t> places;
+  for (const RunRecord& record : records) {
+    Factors factors = record.factors;
+    for (const std::string& factor : pooled) factors.erase(factor);
+    const auto [place, added] = places.emplace(factors, groups.size());
+    if (added) groups.emplace_back(factors, Records());
+    groups[place->second].second.push_back(&record);
+  }
+  return groups;
 }
 
 }  // namespace
 
 std::vector<Cell> cellsOf(const std::vector<RunRecord>& records) {
-  std::vector<Factors> order;
-  std::map<Factors, std::vector<const RunRecord*>> groups;
-  for (const RunRecord& record : records) {
-    Factors factors = record.factors;
-    factors.erase("seed");
-    factors.erase("repetition");
-    auto& group = groups[factors];
-    if (group.empty()) order.push_back(factors);
-    group.push_back(&record);
-  }
+  RouteBootstrap bootstrap;
   std::vector<Cell> cells;
-  for (const Factors& factors : order) cells.push_back(cellOfGroup(factors, groups.at(factors)));
+  for (const auto& [factors, group] : groupsOf(records, {"seed", "repetition"}))
+    cells.push_back(cellOfGroup(factors, group, bootstrap));
   return cells;
+}
+
+std::vector<System> systemsOf(const std::vector<RunRecord>& records) {
+  RouteBootstrap bootstrap;
+  std::vector<System> systems;
+  for (const auto& [factors, group] : groupsOf(records, {"scenario", "seed", "repetition"}))
+    systems.push_back(systemOf(factors, group, bootstrap));
+  return systems;
 }
 
 }  // namespace cdiff::evaluation

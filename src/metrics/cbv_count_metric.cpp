@@ -19,6 +19,7 @@ const MeasureDefinition known::kCbvCount = {
     "",
     0,
     true,
+    kPlainMean,
 };
 const MeasureDefinition known::kCbvDecisions = {
     "cbv_decisions",
@@ -30,6 +31,8 @@ const MeasureDefinition known::kCbvDecisions = {
     "Decision ticks at which a vehicle was CBV, summed over CBVs.",
     "",
     0,
+    false,
+    kPlainMean,
 };
 
 namespace {

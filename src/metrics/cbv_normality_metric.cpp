@@ -29,6 +29,7 @@ const MeasureDefinition known::kSpeedShapiroWilk = {
     kResamples,
     3,
     true,
+    kStatisticToOne,
 };
 const MeasureDefinition known::kAccelerationShapiroWilk = {
     "acceleration_shapiro_wilk",
@@ -43,6 +44,7 @@ const MeasureDefinition known::kAccelerationShapiroWilk = {
     "negative, and draws 3000 values from its histogram.",
     3,
     true,
+    kStatisticToOne,
 };
 
 namespace {
@@ -58,6 +60,9 @@ constexpr MeasureDefinition kSpeedP = {
     "(Royston 1995); neighbouring samples of one drive are not independent, so that it is no test "
     "at that level.",
     "RIFT reports W alone.",
+    3,
+    false,
+    kStatisticToOne,
 };
 constexpr MeasureDefinition kAccelerationP = {
     "acceleration_shapiro_wilk_p",
@@ -69,6 +74,9 @@ constexpr MeasureDefinition kAccelerationP = {
     "Probability of a W as small as acceleration_shapiro_wilk for a normal sample of the same "
     "size.",
     "RIFT reports W alone.",
+    3,
+    false,
+    kStatisticToOne,
 };
 
 /// Shapiro-Wilk of the speeds and the signed longitudinal accelerations of CBVs at decisions.

@@ -15,6 +15,9 @@ const MeasureDefinition known::kBlocked = {
     Subject::kEgo,
     "1 when the session ended because the ego stood still for the protocol's blocked time, else 0.",
     "",
+    3,
+    false,
+    kMeanToOne,
 };
 
 namespace {

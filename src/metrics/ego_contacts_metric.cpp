@@ -10,17 +10,6 @@
 
 namespace cdiff::metrics {
 
-const MeasureDefinition known::kEgoDistance = {
-    "ego_distance_m",
-    "/ego/distance_m",
-    "Distance driven by the ego",
-    "m",
-    Direction::kNeither,
-    Subject::kEgo,
-    "Sum of the chords between successive ticks at which the ego was there.",
-    "",
-    1,
-};
 const MeasureDefinition known::kEgoStruckCbvs = {
     "ego_contacts_struck_cbv",
     "/ego/struck_cbvs",
@@ -144,8 +133,6 @@ class EgoContactKinds final : public Metric {
   }
 
   void report(MetricSink& sink) const override {
-    sink.set(known::kEgoDistance,
-             ticks_ == 0 ? absentMeasure(kNoEgo) : Measure{distance_, ticks_, {}, {}});
     sink.set(kContactsPerKm, rate(contacts_));
     set(sink, known::kEgoStruckCbvs, kStruckCbvsPerKm, struck_cbvs_);
     set(sink, known::kEgoStruckByCbvs, kByCbvsPerKm, by_cbvs_);
@@ -201,7 +188,7 @@ class EgoContactKinds final : public Metric {
 MetricDescriptor egoContactsMetric() {
   return {"ego_contacts",
           "Who struck whom in the ego's contacts, with the ego standing, and avoidable by braking.",
-          {known::kEgoDistance, kContactsPerKm, known::kEgoStruckCbvs, kStruckCbvsPerKm,
+          {kContactsPerKm, known::kEgoStruckCbvs, kStruckCbvsPerKm,
            known::kEgoStruckByCbvs, kByCbvsPerKm, kEgoStruckBackground, kEgoStruckBackgroundPerKm,
            kEgoByBackground, kEgoByBackgroundPerKm, known::kEgoStruckStanding, kEgoStandingPerKm,
            known::kEgoAvoidable, kAvoidablePerKm},

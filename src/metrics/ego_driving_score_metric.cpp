@@ -23,6 +23,7 @@ const MeasureDefinition known::kDrivingScore = {
     "",
     3,
     true,
+    kMeanToHundred,
 };
 const MeasureDefinition known::kPenalty = {
     "ego_penalty",
@@ -35,6 +36,9 @@ const MeasureDefinition known::kPenalty = {
     "leaderboard 2.0, Bench2Drive, RIFT) or 1 / (1 + sum of charges) (leaderboard 2.1); n counts "
     "ticks with the ego.",
     "",
+    3,
+    false,
+    kMeanToOne,
 };
 const MeasureDefinition known::kOutsideLanes = {
     "ego_infraction_outside_lanes_percent",
@@ -45,6 +49,9 @@ const MeasureDefinition known::kOutsideLanes = {
     Subject::kEgo,
     "Share of the completed route outside the lanes or on a wrong lane (docs/protocols.md).",
     "",
+    3,
+    false,
+    kMeanToHundred,
 };
 const MeasureDefinition known::kRedLights = {
     "ego_infraction_red_lights",
@@ -55,6 +62,9 @@ const MeasureDefinition known::kRedLights = {
     Subject::kEgo,
     "Stop lines crossed at red; n counts lines with a light crossed (docs/protocols.md).",
     "",
+    3,
+    false,
+    kEvents,
 };
 const MeasureDefinition known::kStopSigns = {
     "ego_infraction_stop_signs",
@@ -66,6 +76,9 @@ const MeasureDefinition known::kStopSigns = {
     "Lines with a stop sign crossed without a stop; n counts lines with a stop sign crossed "
     "(docs/protocols.md).",
     "",
+    3,
+    false,
+    kEvents,
 };
 
 namespace {
@@ -80,6 +93,9 @@ constexpr MeasureDefinition kSpeedMissed = {
     "Stretches of the route on which the ego was slower than the traffic; n counts stretches "
     "(docs/protocols.md).",
     "",
+    3,
+    false,
+    kEvents,
 };
 constexpr MeasureDefinition kSpeedPercent = {
     "ego_infraction_minimum_speed_percent",
@@ -91,6 +107,9 @@ constexpr MeasureDefinition kSpeedPercent = {
     "Mean over stretches of the route of 100 x mean speed of the ego / mean speed of the "
     "background vehicles (docs/protocols.md).",
     "",
+    3,
+    false,
+    kPlainMean,
 };
 constexpr MeasureDefinition kPedestrians = {
     "ego_infraction_pedestrian_collisions",
@@ -101,6 +120,9 @@ constexpr MeasureDefinition kPedestrians = {
     Subject::kEgo,
     "Always absent: these sessions have no pedestrians.",
     "",
+    3,
+    false,
+    kEvents,
 };
 constexpr MeasureDefinition kTimeouts = {
     "ego_infraction_scenario_timeouts",
@@ -111,6 +133,9 @@ constexpr MeasureDefinition kTimeouts = {
     Subject::kEgo,
     "Always absent: these sessions have no scripted scenarios.",
     "",
+    3,
+    false,
+    kEvents,
 };
 constexpr MeasureDefinition kStaticCollisions = {
     "ego_infraction_static_collisions",
@@ -121,6 +146,9 @@ constexpr MeasureDefinition kStaticCollisions = {
     Subject::kEgo,
     "Always absent: these sessions have no static objects to hit.",
     "",
+    3,
+    false,
+    kEvents,
 };
 constexpr MeasureDefinition kVehicleCollisions = {
     "ego_infraction_vehicle_collisions",
@@ -132,6 +160,9 @@ constexpr MeasureDefinition kVehicleCollisions = {
     "Contacts of the ego that the protocol counts as collisions; n counts all contacts "
     "(docs/protocols.md).",
     "",
+    3,
+    false,
+    kEvents,
 };
 constexpr MeasureDefinition kYieldsFailed = {
     "ego_infraction_yields_failed",
@@ -142,6 +173,9 @@ constexpr MeasureDefinition kYieldsFailed = {
     Subject::kEgo,
     "Always absent: these sessions have no emergency vehicles.",
     "",
+    3,
+    false,
+    kEvents,
 };
 
 constexpr MeasureDefinition kScoreUnderAttack = {

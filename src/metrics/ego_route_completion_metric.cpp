@@ -18,6 +18,7 @@ const MeasureDefinition known::kRouteCompletion = {
     "",
     3,
     true,
+    kMeanToHundred,
 };
 
 namespace {

@@ -22,6 +22,9 @@ const MeasureDefinition known::kRiftAccelerationShapiroWilk = {
     Subject::kCbvs,
     "Shapiro-Wilk W of 3000 values drawn from that histogram.",
     "",
+    3,
+    false,
+    kStatisticToOne,
 };
 const MeasureDefinition known::kRiftSpeedShapiroWilk = {
     "rift_compat_speed_shapiro_wilk",
@@ -32,6 +35,9 @@ const MeasureDefinition known::kRiftSpeedShapiroWilk = {
     Subject::kCbvs,
     "Shapiro-Wilk W of 3000 values drawn from RIFT's histogram of speeds.",
     "",
+    3,
+    false,
+    kStatisticToOne,
 };
 const MeasureDefinition known::kRiftSpeedWasserstein = {
     "rift_compat_speed_wasserstein_mps",
@@ -42,6 +48,9 @@ const MeasureDefinition known::kRiftSpeedWasserstein = {
     Subject::kCbvs,
     "sqrt((mean - 8.5)^2 + deviation^2) of RIFT's histogram of speeds.",
     "",
+    3,
+    false,
+    kPlainStatistic,
 };
 
 namespace {

@@ -21,6 +21,9 @@ const MeasureDefinition known::kRiftCollisionsPerKm = {
     Subject::kCbvs,
     "1000 x CBVs that collided / distance over decision ticks in metres.",
     "",
+    3,
+    false,
+    PoolingRule{Pooling::kMean, SessionWeight::kCbvKilometres},
 };
 const MeasureDefinition known::kRiftOffRoad = {
     "rift_compat_off_road_rate_percent",

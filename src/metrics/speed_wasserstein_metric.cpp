@@ -25,6 +25,7 @@ const MeasureDefinition known::kSpeedWasserstein = {
     "deviation^2), from its histogram; 8.5 m/s stands for CARLA's default limit of 30 km/h.",
     3,
     true,
+    kPlainStatistic,
 };
 
 namespace {

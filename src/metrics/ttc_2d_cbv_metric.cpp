@@ -43,6 +43,9 @@ constexpr MeasureDefinition kTtcCbvDefined = {
     "Share of decision ticks with an ego and a CBV at which the "
     "2D time to collision to a CBV is defined.",
     "",
+    3,
+    false,
+    PoolingRule{Pooling::kShare, SessionWeight::kCbvDecisions},
 };
 
 class Ttc2dCbv final : public Metric {

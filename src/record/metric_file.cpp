@@ -15,6 +15,7 @@
 #include "metrics/measures/ttc_2d.h"
 #include "metrics/measures/wasserstein.h"
 #include "metrics/metric_registry.h"
+#include "metrics/pooling.h"
 
 namespace cdiff::record {
 namespace {
@@ -174,8 +175,8 @@ std::string measureList() {
     const std::string unit = *definition.unit ? definition.unit : "without unit";
     list += "### `" + std::string(definition.name) + "`\n\n" + definition.label + "; " + unit +
             "; " + metrics::toText(definition.subject) + "; " +
-            metrics::toText(definition.direction) + "; `" + definition.place + "`\n\n" +
-            definition.definition + "\n\n";
+            metrics::toText(definition.direction) + "; " + metrics::poolingText(definition) +
+            "; `" + definition.place + "`\n\n" + definition.definition + "\n\n";
     if (*definition.rift_compat)
       list += "rift_compat: " + std::string(definition.rift_compat) + "\n\n";
   }

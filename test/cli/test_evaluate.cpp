@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include "cli/evaluate_command.h"
+#include "core/file.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
@@ -46,11 +47,29 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   expectOutput("| ego_completion_percent | 2 |");
   EXPECT_EQ(lines(fs::path(results) / "compare.csv"), 2U);
   ASSERT_EQ(cdiff({"report", "--compare", results, results}), 0);
-  expectOutput("4 pairs of 4 runs of A and 4 of B");
+  expectOutput("4 pairs of 4 runs of A and 4 of B: 1 route x 2 seeds;");
+  expectOutput("Conditions: protocol rift_dev10, time limit 3 s.");
+  expectOutput("Warning: only 2 seeds;");
+  expectOutput("Multiplicity: of ");
   EXPECT_EQ(
       cdiff({"report", "--compare", results, "--factor", "cbv_planner", "--baseline", "pdm_lite"}),
       3);
   expectOutput("no complete runs to pair");
+
+  // The same results as if driven with a longer time limit.
+  const std::string other = folder("other");
+  fs::copy(results, other, fs::copy_options::recursive);
+  for (const auto& entry : fs::directory_iterator(fs::path(other) / "runs")) {
+    std::string text = core::readFile(entry.path() / "scenario.yaml", "scenario");
+    const std::string limit = "\n  time_limit: 3\n";
+    const std::size_t place = text.find(limit);
+    ASSERT_NE(place, std::string::npos);
+    core::writeFileAtomically(entry.path() / "scenario.yaml",
+                              text.replace(place, limit.size(), "\n  time_limit: 4\n"));
+  }
+  EXPECT_EQ(cdiff({"report", "--compare", results, other}), 3);
+  expectOutput("were driven by different protocols: scenario 'arterial_exit'");
+  expectOutput("time_limit 3 in A and 4 in B");
 }
 
 TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {

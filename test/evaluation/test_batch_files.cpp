@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -74,6 +75,30 @@ TEST_F(BatchFiles, SummaryHasACellPerCombination) {
       "\"ego_driving_score\": {\n          \"mean\": 15.0,\n          \"standard_deviation\": "
       "7.0710678",
       summary);
+}
+
+TEST_F(BatchFiles, SummaryHasASystemPerCombinationWithoutRoutes) {
+  // 4 contacts in 2 km on two routes: 2 per km, Garwood 1.0899 to 10.2416 over 2 km.
+  std::vector<RunRecord> records = {recordWith({"s", "1"}, 10), recordWith({"t", "1"}, 30)};
+  for (RunRecord& record : records) {
+    record.measures["cbv_collisions"] = 2.0;
+    record.measures["cbv_distance_m"] = 1000.0;
+  }
+  const auto systems = nlohmann::json::parse(batchSummaryJson("night", records))["systems"];
+  ASSERT_EQ(systems.size(), 1U);
+  EXPECT_EQ(systems[0]["factors"].count("scenario"), 0U);
+  EXPECT_EQ(systems[0]["routes"], 2);
+  const auto& contacts = systems[0]["figures"]["cbv_collisions"];
+  EXPECT_EQ(contacts["events"], 4);
+  EXPECT_DOUBLE_EQ(contacts["km"], 2.0);
+  EXPECT_NEAR(contacts["interval_95"][0], 0.5449, 1e-4);
+  EXPECT_NEAR(contacts["interval_95"][1], 5.1208, 1e-4);
+  EXPECT_EQ(systems[0]["figures"]["ego_driving_score"]["interval_95"],
+            nlohmann::json::array({10.0, 30.0}));
+  const std::string text = batchMarkdown("night", records);
+  expectIn("| all runs | 2 | 0 | 0 | 2 | 1 |", text);
+  expectIn("| 4 / 2.000 km = 2.00 [0.54, 5.12] |", text);
+  expectIn("Warning: only 1 seed;", text);
 }
 
 TEST_F(BatchFiles, JunitReportsErrorsFailuresAndWhatWasNotRun) {

@@ -18,8 +18,9 @@ using test::recordWith;
 using test::recordWithout;
 
 TEST(Comparison, TakesDifferencesWithinPairs) {
-  // Pairs (10, 11), (20, 22), (30, 33): differences 1, 2, 3 have s = 1 and t_{0.975, 2} = 4.302653,
-  // however far apart the scenarios are. Seed 4 has no partner, seed 5 of B broke.
+  // Pairs (10, 11), (20, 22) of s, (30, 33) of t: mean differences 1.5 and 3, of all pairs 2. Two
+  // routes: replicates are s twice, both, t twice, so the interval is 1.5 to 3. Seed 4 has no
+  // partner, seed 5 of B broke.
   const RunSet a{
       "A",
       {recordWith({"s", "1"}, 10), recordWith({"s", "2"}, 20), recordWith({"t", "1"}, 30),
@@ -31,14 +32,110 @@ TEST(Comparison, TakesDifferencesWithinPairs) {
   EXPECT_EQ(comparison.pairs, 3U);
   EXPECT_EQ(comparison.runs_a, 5U);
   EXPECT_EQ(comparison.runs_b, 4U);
+  EXPECT_EQ(comparison.clusters, 2U);
+  EXPECT_EQ(comparison.seeds, 2U);
   ASSERT_EQ(comparison.measures.size(), 1U);
   const MeasureComparison& score = comparison.measures.front();
   EXPECT_EQ(score.measure, "ego_driving_score");
-  EXPECT_DOUBLE_EQ(score.mean_a, 20.0);
-  EXPECT_DOUBLE_EQ(score.mean_b, 22.0);
-  EXPECT_EQ(score.difference.n, 3U);
-  EXPECT_DOUBLE_EQ(*score.difference.mean, 2.0);
-  EXPECT_NEAR(*score.difference.half_width, 4.302653 / std::sqrt(3.0), 1e-6);
+  EXPECT_DOUBLE_EQ(*score.a.value, 20.0);
+  EXPECT_DOUBLE_EQ(*score.b.value, 22.0);
+  EXPECT_EQ(score.pairs, 3U);
+  EXPECT_DOUBLE_EQ(*score.difference, 2.0);
+  EXPECT_DOUBLE_EQ(score.interval->low, 1.5);
+  EXPECT_DOUBLE_EQ(score.interval->high, 3.0);
+  EXPECT_DOUBLE_EQ(score.p, 0.5);  // of 4 ways to exchange A and B, 2 are as large
+}
+
+/// Contacts with the ego on each of 3 routes of 1 km as CBV.
+RunSet contactsOf(const std::string& name, const std::vector<double>& contacts) {
+  RunSet set{name, {}};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    set.records.push_back(recordWithout({"route" + std::to_string(i), "1"}, "completed"));
+    set.records.back().measures = {{"cbv_ego_collisions", contacts[i]}, {"cbv_distance_m", 1000.0}};
+  }
+  return set;
+}
+
+TEST(Comparison, TestsCountsExactly) {
+  // 0 against 2 + 2 + 1 on equal km: p = 2 / 2^5.
+  const RunSet a = contactsOf("A", {0, 0, 0});
+  const RunSet b = contactsOf("B", {2, 2, 1});
+  auto comparisons =
+      std::vector{compareRuns(a, b, sharedFactors(a, b), {"cbv_ego_collisions", "cbv_distance_m"})};
+  adjustForNumber(comparisons);
+  const MeasureComparison& contacts = comparisons[0].measures.front();
+  EXPECT_EQ(contacts.b.events, 5U);
+  EXPECT_DOUBLE_EQ(contacts.b.exposure, 3.0);
+  EXPECT_NEAR(contacts.p, 2.0 / 32.0, 1e-12);
+  EXPECT_NEAR(contacts.p_holm, 4.0 / 32.0, 1e-12);  // of two comparisons
+  const std::string text = comparisonMarkdown(comparisons);
+  EXPECT_NE(text.find("| 0 / 3.000 km = 0.000 [0.000, 1.230] | 5 / 3.000 km = 1.667 [0.541, "
+                      "3.889] |"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("3 pairs of 3 runs of A and 3 of B: 3 routes x 1 seed;"), std::string::npos);
+  EXPECT_NE(text.find("Warning: only 1 seed;"), std::string::npos);
+  EXPECT_NE(text.find("Multiplicity: of 2 differences tested here, 0 have p <= 0.05, where about "
+                      "0.1 would by chance"),
+            std::string::npos)
+      << text;
+}
+
+TEST(Comparison, BelievesOverDispersedCountsLess) {
+  // 12 contacts on one of three routes: exactly 2 / 2^12, but by routes 1.
+  const RunSet a = contactsOf("A", {0, 0, 0});
+  const RunSet b = contactsOf("B", {12, 0, 0});
+  const Comparison comparison = compareRuns(a, b, sharedFactors(a, b), {"cbv_ego_collisions"});
+  const MeasureComparison& contacts = comparison.measures.front();
+  EXPECT_NEAR(contacts.rates->p, 2.0 / 4096.0, 1e-12);
+  EXPECT_DOUBLE_EQ(contacts.p, 1.0);
+}
+
+std::string refusalOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+RunSet drivenBy(const std::string& name, const std::string& suite, const std::string& time_limit) {
+  RunSet set{name, {recordWith({"s", "1"}, 10)}};
+  set.conditions.suite = suite;
+  set.conditions.protocols[set.records[0].id] = {
+      "rift_dev10, time limit " + time_limit + " s",
+      {{"preset", " rift_dev10"}, {"time_limit", " " + time_limit}}};
+  return set;
+}
+
+TEST(Comparison, RefusesOtherProtocols) {
+  const RunSet a = drivenBy("A", "test", "40");
+  EXPECT_EQ(refusalOf([&] { requireComparable(a, drivenBy("B", "test", "40")); }), "");
+  const std::string refusal = refusalOf([&] {
+    compareRuns(a, drivenBy("B", "test", "60"), {"scenario", "seed"}, {});
+  });
+  for (const char* part : {"different protocols", "scenario 's'", "time_limit 40 in A and 60 in B",
+                           "Run one of them again"})
+    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+}
+
+TEST(Comparison, RefusesOtherSuites) {
+  const std::string refusal = refusalOf(
+      [] { requireComparable(drivenBy("A", "test", "40"), drivenBy("B", "sealed_a", "40")); });
+  for (const char* part : {"other routes", "suite 'test' and suite 'sealed_a'", "Run one of them"})
+    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+}
+
+TEST(Comparison, RefusesAScenarioWithAnotherNetwork) {
+  RunSet a = drivenBy("A", "", "40");
+  RunSet b = drivenBy("B", "", "40");
+  a.records[0].inputs = {{"network", "11"}, {"program", "1"}};
+  b.records[0].inputs = {{"network", "11"}, {"program", "2"}};
+  EXPECT_EQ(refusalOf([&] { requireComparable(a, b); }), "");
+  b.records[0].inputs["network"] = "22";
+  EXPECT_NE(refusalOf([&] { requireComparable(a, b); }).find("its network is another file"),
+            std::string::npos);
 }
 
 TEST(Comparison, PairsByWhatBothSetsShare) {
@@ -58,12 +155,12 @@ TEST(Comparison, PairsALevelWithItsBaseline) {
       recordWith({"s", "1", "none"}, 10), recordWith({"s", "2", "none"}, 20),
       recordWith({"s", "1", "speed"}, 13), recordWith({"s", "2", "speed"}, 25),
       recordWith({"s", "2", "area"}, 21)};
-  const auto comparisons = compareLevels(records, "guidance_profile", "none", {});
+  const auto comparisons = compareLevels({"A", records}, "guidance_profile", "none", {});
   ASSERT_EQ(comparisons.size(), 2U);
   EXPECT_EQ(comparisons[0].b, "guidance_profile area");
-  EXPECT_EQ(comparisons[0].measures.front().difference.n, 1U);
-  EXPECT_FALSE(comparisons[0].measures.front().difference.half_width.has_value());
-  EXPECT_DOUBLE_EQ(*comparisons[1].measures.front().difference.mean, 4.0);  // of 3 and 5
+  EXPECT_EQ(comparisons[0].measures.front().pairs, 1U);
+  EXPECT_FALSE(comparisons[0].measures.front().interval.has_value());
+  EXPECT_DOUBLE_EQ(*comparisons[1].measures.front().difference, 4.0);  // of 3 and 5
 }
 
 /// Runs of a matrix as if all had been driven, those of `mode` with a score `gain` above 50.
@@ -81,10 +178,10 @@ std::vector<RunRecord> drivenRuns(const std::string& matrix, const std::string& 
 TEST(Comparison, AFactorThatFollowsTheComparedOneDoesNotPair) {
   // 10 scenarios x 3 seeds in 2 modes, each mode with the guidance profile of its name: 30 pairs.
   const auto records = drivenRuns("development", "safety_critical", -8.0);
-  const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
+  const auto comparisons = compareLevels({"A", records}, "mode", "naturalistic", {});
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0].pairs, 30U);
-  EXPECT_DOUBLE_EQ(*comparisons[0].measures.front().difference.mean, -8.0);
+  EXPECT_DOUBLE_EQ(*comparisons[0].measures.front().difference, -8.0);
   EXPECT_EQ(comparisons[0].paired_by.count("guidance_profile"), 0U);
   EXPECT_NE(comparisonMarkdown(comparisons)
                 .find("; guidance_profile follows (A naturalistic, B safety_critical)."),
@@ -100,13 +197,13 @@ TEST(Comparison, AFactorWithSeveralLevelsPairs) {
       records.back().factors["mode"] = mode;
     }
   }
-  const auto comparisons = compareLevels(records, "mode", "naturalistic", {});
+  const auto comparisons = compareLevels({"A", records}, "mode", "naturalistic", {});
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0].pairs, 2U);
   EXPECT_TRUE(comparisons[0].followers.empty());
   // Scenarios and seeds say which runs belong together, whatever is compared.
   records[2].factors["seed"] = records[3].factors["seed"] = "2";
-  EXPECT_EQ(compareLevels(records, "mode", "naturalistic", {})[0].pairs, 0U);
+  EXPECT_EQ(compareLevels({"A", records}, "mode", "naturalistic", {})[0].pairs, 0U);
 }
 
 TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
@@ -120,11 +217,11 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
     return "";
   };
   EXPECT_NE(textOf([&] {
-              compareLevels(records, "guidance_profil", "none", {});
+              compareLevels({"A", records}, "guidance_profil", "none", {});
             }).find("'guidance_profile'"),
             std::string::npos);
   EXPECT_NE(textOf([&] {
-              compareLevels(records, "guidance_profile", "nine", {});
+              compareLevels({"A", records}, "guidance_profile", "nine", {});
             }).find("the nearest is 'none'"),
             std::string::npos);
   EXPECT_NE(textOf([] { checkMeasureNames({"ego_driving_scores"}); }).find("'ego_driving_score'"),
@@ -132,14 +229,21 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
 }
 
 TEST(Comparison, WritesTables) {
-  const RunSet a{"A", {recordWith({"s", "1"}, 10), recordWith({"s", "2"}, 20)}};
-  const RunSet b{"B, new", {recordWith({"s", "1"}, 12), recordWith({"s", "2"}, 22)}};
-  const std::vector<Comparison> comparisons = {compareRuns(a, b, sharedFactors(a, b), {})};
-  EXPECT_NE(comparisonMarkdown(comparisons)
-                .find("| ego_driving_score | 2 | 15.000 | 17.000 | 2.000 | [2.000, 2.000] |"),
-            std::string::npos);
-  EXPECT_NE(comparisonCsv(comparisons).find("A,\"B, new\",ego_driving_score,2,15,17,2,0,2,2\n"),
-            std::string::npos);
+  // Route s 10 and 12, t 20 and 26: differences 2 and 6.
+  const RunSet a{"A", {recordWith({"s", "1"}, 10), recordWith({"t", "1"}, 20)}};
+  const RunSet b{"B, new", {recordWith({"s", "1"}, 12), recordWith({"t", "1"}, 26)}};
+  std::vector<Comparison> comparisons = {compareRuns(a, b, sharedFactors(a, b), {})};
+  adjustForNumber(comparisons);
+  const std::string markdown = comparisonMarkdown(comparisons);
+  EXPECT_NE(markdown.find("| ego_driving_score | 2 | mean | 15.000 [10.000, 20.000] | 19.000 "
+                          "[12.000, 26.000] | 4.000 [2.000, 6.000] | - | 0.500 | 0.500 |"),
+            std::string::npos)
+      << markdown;
+  const std::string csv = comparisonCsv(comparisons);
+  EXPECT_NE(csv.find("A,\"B, new\",ego_driving_score,mean,2,2,1,15,10,20,bootstrap,,,,,,19,12,26,"
+                     "bootstrap,,,,,,4,2,6,bootstrap,,,,0.5,0.5,0.5\n"),
+            std::string::npos)
+      << csv;
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ TableDefinition rateTable(const std::string& planner) {
 }
 
 TEST(PaperTable, PoolsRatesWithinASeedAndSumsUpOverSeeds) {
-  // Seed 1: (2 x 10 + 6 x 30) / 40 = 5; seed 2: 9. Mean 7, s = sqrt(8), t = 12.706.
+  // Seed 1: (2 x 10 + 6 x 30) / 40 = 5; seed 2: 9. Mean 7, s = sqrt(8).
+  // Routes drawn: a twice 2 and 9, mean 5.5; b twice 6; both 7: interval 5.5 to 7.
   const std::vector<BatchRun> runs = {
       runOf("1", {{"/r", 2.0}, {"/w", 10.0}}, "a"), runOf("1", {{"/r", 6.0}, {"/w", 30.0}}, "b"),
       runOf("2", {{"/r", 9.0}, {"/w", 1.0}, {"/x", 4.0}}, "a"), runOf("2", {}, "b")};
@@ -38,12 +39,29 @@ TEST(PaperTable, PoolsRatesWithinASeedAndSumsUpOverSeeds) {
   EXPECT_EQ(cell.seeds.n, 2U);
   EXPECT_DOUBLE_EQ(*cell.seeds.mean, 7.0);
   EXPECT_NEAR(*cell.seeds.standard_deviation, 2.8284271, 1e-6);
-  EXPECT_NEAR(*cell.seeds.half_width, 12.7062 * 2.0, 1e-3);
+  EXPECT_DOUBLE_EQ(cell.seeds.interval->low, 5.5);
+  EXPECT_DOUBLE_EQ(cell.seeds.interval->high, 7.0);
+  EXPECT_EQ(cell.routes, 2U);
   EXPECT_EQ(cell.runs, 4U);
   EXPECT_EQ(cell.used, 3U);
   EXPECT_DOUBLE_EQ(*cell.rift.mean, 4.0);
   EXPECT_EQ(cell.rift.n, 1U);
   EXPECT_EQ(cell.note, "");
+}
+
+TEST(PaperTable, PrintsEventsPerKilometreBesideTheirKilometres) {
+  // 4 per km on 500 m and 2 per km on 1500 m: 2 + 3 contacts in 2 km; Garwood 1.6235 to 11.6683.
+  TableDefinition table = rateTable("pdm_lite");
+  table.columns = {{"CPK", "1/km", "/cbv/collisions_per_km", "/cbv/distance_m", "", {}}};
+  const TableCell cell =
+      fillTable(table,
+                {runOf("1", {{"/cbv/collisions_per_km", 4.0}, {"/cbv/distance_m", 500.0}}, "a"),
+                 runOf("1", {{"/cbv/collisions_per_km", 2.0}, {"/cbv/distance_m", 1500.0}}, "b")})
+          .cells[0][0];
+  EXPECT_EQ(*cell.events, 5U);
+  EXPECT_DOUBLE_EQ(cell.kilometres, 2.0);
+  EXPECT_DOUBLE_EQ(*cell.seeds.mean, 2.5);
+  EXPECT_EQ(cellText(cell), "5 / 2.000 km = 2.50 [0.81, 5.83] (2 routes, 1 seed, 2 runs)");
 }
 
 TEST(PaperTable, SaysWhyACellIsEmpty) {
@@ -64,9 +82,9 @@ TEST(PaperTable, CsvHoldsThePapersValueBesideOurs) {
       tableCsv(fillTable(rateTable("pdm_lite"), {runOf("1", {{"/r", 2.0}, {"/w", 10.0}})}));
   EXPECT_EQ(csv,
             "row,column,unit,definition,paper_mean,paper_std,mean,std,interval_95_low,"
-            "interval_95_high,seeds,runs,runs_with_figure,runs_failed,note\n"
-            "ours,rate,1/km,clean,5,0.5,2,,,,1,1,1,0,\n"
-            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,1,0,no run has this measure\n");
+            "interval_95_high,seeds,routes,events,km,runs,runs_with_figure,runs_failed,note\n"
+            "ours,rate,1/km,clean,5,0.5,2,,,,1,1,,,1,1,0,\n"
+            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,,,1,1,0,no run has this measure\n");
 }
 
 TEST(PaperTable, NamesTheSubjectInAKey) {

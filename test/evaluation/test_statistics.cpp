@@ -19,7 +19,8 @@ TEST(Statistics, OfThreeSamples) {
   EXPECT_EQ(result.n, 3U);
   EXPECT_DOUBLE_EQ(*result.mean, 2.0);
   EXPECT_DOUBLE_EQ(*result.standard_deviation, 1.0);
-  EXPECT_NEAR(*result.half_width, 4.302653 / std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(result.interval->high, 2.0 + 4.302653 / std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(result.interval->low, 2.0 - 4.302653 / std::sqrt(3.0), 1e-6);
 }
 
 TEST(Statistics, SaysWhatTooFewSamplesCannotShow) {
@@ -27,7 +28,7 @@ TEST(Statistics, SaysWhatTooFewSamplesCannotShow) {
   const Statistics one = statisticsOf({5.0});
   EXPECT_DOUBLE_EQ(*one.mean, 5.0);
   EXPECT_FALSE(one.standard_deviation.has_value());
-  EXPECT_FALSE(one.half_width.has_value());
+  EXPECT_FALSE(one.interval.has_value());
 }
 
 TEST(Cells, AverageRepetitionsBeforeSeeds) {

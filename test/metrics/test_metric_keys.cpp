@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// Strings that mean another thing than the measure of the same name, by file.
 const std::set<std::pair<std::string, std::string>> kOtherMeanings = {
     {"record/summary_measures.cpp", "cbv_distance_m"},   // of a CBV to its conflict point
-    {"record/summary_measures.cpp", "ego_distance_m"}};  // of the ego to it
+    {"record/summary_measures.cpp", "ego_distance_m"}};  // of the ego likewise
 
 /// Texts of sources by path below their folder.
 using Sources = std::map<std::string, std::string>;

@@ -24,7 +24,8 @@ double topOf(const Table& table) {
   for (const auto& row : table.cells) {
     for (const TableCell& cell : row) {
       top = std::max(top, cell.paper.mean.value_or(0.0));
-      top = std::max(top, cell.seeds.mean.value_or(0.0) + cell.seeds.half_width.value_or(0.0));
+      top = std::max(top, cell.seeds.mean.value_or(0.0));
+      if (cell.seeds.interval) top = std::max(top, cell.seeds.interval->high);
     }
   }
   return top;
@@ -39,10 +40,9 @@ Markup bar(const page::ChartAxes& axes, double left, double width, double value,
 }
 
 Markup interval(const page::ChartAxes& axes, double x, const Statistics& statistics) {
-  if (!statistics.half_width) return {};
-  const std::string data = "M" +
-                           svgPlace(axes.x(x), axes.y(*statistics.mean - *statistics.half_width)) +
-                           "V" + shortNumber(axes.y(*statistics.mean + *statistics.half_width));
+  if (!statistics.interval) return {};
+  const std::string data = "M" + svgPlace(axes.x(x), axes.y(statistics.interval->low)) + "V" +
+                           shortNumber(axes.y(statistics.interval->high));
   return core::element("path", {{"class", "error"}, {"d", data}});
 }
 

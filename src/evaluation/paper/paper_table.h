@@ -61,8 +61,9 @@ Factors cbvLevels(const PaperSystem& system, const char* mode = kNaturalistic);
 Factors merged(Factors levels, const Factors& others);
 
 // A table of the paper as data, and its cells as a batch fills them: per seed the mean over runs
-// (weighted where the figure is a rate: the pooled rate), then mean, standard deviation and 95 %
-// interval over seeds.
+// (weighted where the figure is a rate: the pooled rate), then mean and standard deviation over
+// seeds, and the 95 % interval by routes (docs/evaluation.md); events per km are all seeds' events
+// over all their km, with an exact Poisson interval.
 
 /// A figure that the paper prints as mean +- deviation.
 struct PaperFigure {
@@ -108,12 +109,15 @@ struct TableSettings {
 /// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
 struct TableCell {
   PaperFigure paper;
-  Statistics seeds;        ///< over seeds that have the figure
-  Statistics rift;         ///< the same by RIFT's definition; n = 0 where it has none
-  std::size_t runs = 0;    ///< runs at these levels, however they ended
-  std::size_t failed = 0;  ///< those of them that broke, were interrupted or not run
-  std::size_t used = 0;    ///< those of them that have the measure
-  std::string note;        ///< why it is empty: not implemented, not run, ...
+  Statistics seeds;                   ///< over seeds that have the figure
+  Statistics rift;                    ///< the same by RIFT's definition; n = 0 where it has none
+  std::size_t routes = 0;             ///< of the runs that have the measure
+  std::optional<std::size_t> events;  ///< of events per km
+  double kilometres = 0.0;            ///< for these events
+  std::size_t runs = 0;               ///< runs at these levels, however they ended
+  std::size_t failed = 0;             ///< those of them that broke, were interrupted or not run
+  std::size_t used = 0;               ///< those of them that have the measure
+  std::string note;                   ///< why it is empty: not implemented, not run, ...
 };
 
 /// A table of the paper, filled from the runs of a batch.
@@ -131,7 +135,8 @@ std::string tableCsv(const Table& table);
 /// A line per entry of Table::settings.
 std::vector<std::string> settingsLines(const Table& table);
 
-/// "2.79 ± 0.10 [2.54, 3.04] (3 seeds, 30 runs)", or the note in parentheses.
+/// "2.79 ± 0.10 [2.54, 3.04] (10 routes, 3 seeds, 30 runs)", with "7 / 1.520 km = " before events
+/// per km; or the note in parentheses.
 std::string cellText(const TableCell& cell);
 std::string paperText(const PaperFigure& figure);
 /// What RIFT's definition gives, or empty.

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/intervals/pooled_estimate.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "metrics/known_measures.h"
+#include "metrics/metric_registry.h"
+#include "metrics/pooling.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using metrics::Pooling;
+using metrics::PoolingRule;
+using metrics::SessionWeight;
+
+std::optional<double> measureOf(const RunRecord& record, const std::string& name) {
+  const auto found = record.measures.find(name);
+  return found == record.measures.end() ? std::nullopt : std::optional<double>(found->second);
+}
+
+std::optional<double> kilometres(const std::optional<double>& metres) {
+  return metres ? std::optional<double>(*metres / 1000.0) : std::nullopt;
+}
+
+/// What a run weighs; nullopt where its record does not say.
+std::optional<double> weightOf(const RunRecord& record, SessionWeight weight) {
+  namespace known = metrics::known;
+  switch (weight) {
+    case SessionWeight::kEgoKilometres:
+      return kilometres(measureOf(record, known::kEgoDistance.name));
+    case SessionWeight::kCbvKilometres:
+      return kilometres(measureOf(record, known::kCbvDistance.name));
+    case SessionWeight::kCbvDecisions:
+      return measureOf(record, known::kCbvDecisions.name);
+    case SessionWeight::kSeconds:
+      return record.simulated_seconds;
+    case SessionWeight::kByKind:
+    case SessionWeight::kOne:
+      break;
+  }
+  return 1.0;
+}
+
+bool bounded(const PoolingRule& rule) {
+  return std::isfinite(rule.least) && std::isfinite(rule.most);
+}
+
+/// Pearson's chi-square of counts against one rate.
+double chiSquare(const RouteSums& routes, double rate) {
+  double sum = 0.0;
+  for (const RouteSum& route : routes) {
+    const double expected = rate * route.weight;
+    if (expected > 0.0) sum += (route.sum - expected) * (route.sum - expected) / expected;
+  }
+  return sum;
+}
+
+void addDispersion(const RouteSums& routes, PooledEstimate& estimate) {
+  if (routes.size() < 2 || estimate.events == 0) return;
+  const auto freedom = static_cast<double>(routes.size() - 1);
+  const double chi_square = chiSquare(routes, *estimate.value);
+  estimate.dispersion = chi_square / freedom;
+  estimate.over_dispersed =
+      chi_square > boost::math::quantile(boost::math::chi_squared(freedom), 0.95);
+}
+
+void addCount(const RouteSums& routes, RouteBootstrap& bootstrap, PooledEstimate& estimate) {
+  double events = 0.0;
+  for (const RouteSum& route : routes) {
+    events += route.sum;
+    estimate.exposure += route.weight;
+  }
+  estimate.events = static_cast<std::size_t>(std::llround(events));
+  if (!estimate.value) return;
+  const Interval expected = poissonInterval(estimate.events);
+  estimate.interval = {expected.low / estimate.exposure, expected.high / estimate.exposure};
+  estimate.interval_kind = IntervalKind::kPoisson;
+  estimate.clustered = bootstrap.valueInterval(routes);
+  addDispersion(routes, estimate);
+}
+
+void addInterval(const RouteSums& routes, const PoolingRule& rule, RouteBootstrap& bootstrap,
+                 PooledEstimate& estimate) {
+  estimate.interval = bootstrap.valueInterval(routes);
+  estimate.interval_kind = IntervalKind::kRoutes;
+  if (estimate.interval) return;
+  estimate.interval_kind = IntervalKind::kNone;
+  if (!bounded(rule) || routes.size() < 2 || !estimate.value) return;
+  estimate.interval = unseenInterval(*estimate.value, rule.least, rule.most, routes.size());
+  estimate.interval_kind = IntervalKind::kUnseen;
+}
+
+}  // namespace
+
+PoolingRule poolingOfMeasure(const std::string& measure) {
+  const metrics::MeasureDefinition* definition = metrics::findMeasure(measure);
+  return definition != nullptr ? metrics::poolingOf(*definition) : batchPooling(measure);
+}
+
+const char* toText(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kRoutes:
+      return "bootstrap";
+    case IntervalKind::kPoisson:
+      return "poisson";
+    case IntervalKind::kUnseen:
+      return "unseen";
+    case IntervalKind::kNone:
+      break;
+  }
+  return "none";
+}
+
+ClusterSums::ClusterSums(std::string measure, const PoolingRule& rule, bool per_km)
+    : measure_(std::move(measure)), rule_(rule), per_km_(per_km) {}
+
+bool ClusterSums::add(const RunRecord& record, const std::string& cluster) {
+  const auto value = measureOf(record, measure_);
+  const auto weight = per_km_ ? weightOf(record, rule_.weight) : 1.0;
+  if (!value || !weight) return false;
+  const bool count = rule_.kind == Pooling::kCount;
+  if (*weight <= 0.0 && !count) return false;  // events without distance count all the same
+  double sum = *weight * *value;
+  if (count) sum = *value;
+  if (rule_.kind == Pooling::kRate) sum = std::round(sum);
+  RouteSum& route = sums_[cluster];
+  route.sum += sum;
+  route.weight += *weight;
+  ++runs_;
+  return true;
+}
+
+void ClusterSums::addValue(double value, const std::string& cluster) {
+  RouteSum& route = sums_[cluster];
+  route.sum += value;
+  route.weight += 1.0;
+  ++runs_;
+}
+
+RouteSums ClusterSums::sums() const {
+  RouteSums sums;
+  for (const auto& [cluster, sum] : sums_) sums.push_back(sum);
+  return sums;
+}
+
+PooledEstimate ClusterSums::estimate(RouteBootstrap& bootstrap) const {
+  const RouteSums routes = sums();
+  PooledEstimate estimate;
+  estimate.kind = rule_.kind;
+  estimate.per_km = per_km_;
+  estimate.runs = runs_;
+  estimate.routes = routes.size();
+  estimate.value = pooledValue(routes);
+  if (estimate.counts()) {
+    addCount(routes, bootstrap, estimate);
+  } else {
+    addInterval(routes, rule_, bootstrap, estimate);
+  }
+  return estimate;
+}
+
+bool knowDistances(const std::vector<const RunRecord*>& runs, const PoolingRule& rule,
+                   const std::string& measure) {
+  if (rule.kind != Pooling::kCount) return true;
+  return std::all_of(runs.begin(), runs.end(), [&](const RunRecord* run) {
+    return !measureOf(*run, measure) || weightOf(*run, rule.weight);
+  });
+}
+
+PooledEstimate pooledEstimate(const std::vector<const RunRecord*>& runs, const std::string& measure,
+                              RouteBootstrap& bootstrap, const std::string& cluster) {
+  const PoolingRule rule = poolingOfMeasure(measure);
+  ClusterSums sums(measure, rule, knowDistances(runs, rule, measure));
+  std::set<std::string> seeds;
+  for (const RunRecord* run : runs) {
+    if (sums.add(*run, run->factors.at(cluster))) seeds.insert(run->factors.at("seed"));
+  }
+  PooledEstimate estimate = sums.estimate(bootstrap);
+  estimate.seeds = seeds.size();
+  return estimate;
+}
+
+Interval unseenInterval(double value, double least, double most, std::size_t routes) {
+  const double unseen = largestShareUnseen(routes);
+  return {value + unseen * (least - value), value + unseen * (most - value)};
+}
+
+}  // namespace cdiff::evaluation

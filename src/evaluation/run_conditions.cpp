@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/run_conditions.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/executor.h"
+#include "evaluation/matrix.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+RunProtocol protocolOf(const session::ProtocolOptions& options) {
+  RunProtocol protocol;
+  protocol.text = options.preset + ", time limit " + core::formatNumber(options.time_limit) + " s";
+  for (const std::string& line : core::splitText(core::dumpOptions(options), '\n')) {
+    const std::size_t colon = line.find(':');
+    if (colon != std::string::npos) protocol.values[line.substr(0, colon)] = line.substr(colon + 1);
+  }
+  return protocol;
+}
+
+RunProtocol readProtocol(const fs::path& file) {
+  session::ScenarioOptions options;
+  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
+  return protocolOf(options.protocol);
+}
+
+/// What the complete runs of one scenario were driven by.
+struct ScenarioConditions {
+  std::set<std::map<std::string, std::string>> protocols;
+  RunProtocol one;                                      ///< one of them
+  std::map<std::string, std::set<std::string>> inputs;  ///< hashes by name
+};
+
+/// Inputs that are the scenario's; weights and program may be what is compared.
+const std::vector<std::string> kScenarioInputs = {"network", "demand", "route_file",
+                                                  "speed_target"};
+
+std::map<std::string, ScenarioConditions> byScenario(const RunSet& set) {
+  std::map<std::string, ScenarioConditions> scenarios;
+  for (const RunRecord& record : set.records) {
+    if (!record.complete()) continue;
+    ScenarioConditions& scenario = scenarios[record.factors.at("scenario")];
+    for (const std::string& name : kScenarioInputs) {
+      const auto hash = record.inputs.find(name);
+      if (hash != record.inputs.end()) scenario.inputs[name].insert(hash->second);
+    }
+    const auto protocol = set.conditions.protocols.find(record.id);
+    if (protocol == set.conditions.protocols.end()) continue;
+    scenario.protocols.insert(protocol->second.values);
+    scenario.one = protocol->second;
+  }
+  return scenarios;
+}
+
+/// "time_limit 40 in A and 60 in B, ..." of two protocols.
+std::string differenceText(const RunProtocol& a, const RunProtocol& b) {
+  std::vector<std::string> parts;
+  for (const auto& [key, value] : a.values) {
+    const auto other = b.values.find(key);
+    const std::string level = other == b.values.end() ? " (none)" : other->second;
+    if (level != value) parts.push_back(key + value + " in A and" + level + " in B");
+  }
+  return core::joinText(parts, ", ");
+}
+
+std::string bothNames(const RunSet& a, const RunSet& b) {
+  return "A '" + a.name + "' and B '" + b.name + "'";
+}
+
+void requireSameSuite(const RunSet& a, const RunSet& b) {
+  const auto text = [](const std::string& suite) {
+    return suite.empty() ? std::string("no suite") : "suite '" + suite + "'";
+  };
+  if (a.conditions.suite == b.conditions.suite) return;
+  throw InputError(bothNames(a, b) + " drove other routes: " + text(a.conditions.suite) + " and " +
+                   text(b.conditions.suite) +
+                   "; their figures do not compare. Run one of them again on the other's suite "
+                   "(`suite:` of its matrix)");
+}
+
+void requireSameScenario(const std::string& name, const ScenarioConditions& a,
+                         const ScenarioConditions& b, const std::string& sets) {
+  if (a.protocols != b.protocols) {
+    const std::string what = differenceText(a.one, b.one);
+    throw InputError(sets + " were driven by different protocols: scenario '" + name +
+                     "': " + a.one.text + " in A, " + b.one.text + " in B" +
+                     (what.empty() ? "" : " (protocol: " + what + ")") +
+                     "; their figures do not compare. Run one of them again with the other's "
+                     "protocol (`set: [protocol.KEY=VALUE]` of its matrix)");
+  }
+  for (const auto& [input, hashes] : a.inputs) {
+    const auto other = b.inputs.find(input);
+    if (other == b.inputs.end() || other->second == hashes) continue;
+    throw InputError(sets + " have a scenario '" + name + "' each, but its " + input +
+                     " is another file in A than in B (SHA-256 of the records); their figures do "
+                     "not compare. Run one of them again with the other's files");
+  }
+}
+
+}  // namespace
+
+BatchConditions readConditions(const fs::path& results, const std::vector<RunRecord>& records) {
+  BatchConditions conditions;
+  MatrixOptions matrix;
+  const fs::path file = results / "matrix.yaml";
+  core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
+  conditions.suite = fs::path(matrix.suite).filename().string();
+  std::map<std::string, RunProtocol> known;  // many runs have the same scenario text
+  for (const RunRecord& record : records) {
+    if (!record.complete()) continue;
+    RunProtocol& protocol = known[record.scenario_sha256];
+    if (protocol.text.empty())
+      protocol = readProtocol(runFolder(results, record.id) / "scenario.yaml");
+    conditions.protocols[record.id] = protocol;
+  }
+  return conditions;
+}
+
+std::string conditionsText(const BatchConditions& conditions,
+                           const std::vector<RunRecord>& records) {
+  std::set<std::string> protocols;
+  for (const RunRecord& record : records) {
+    const auto protocol = conditions.protocols.find(record.id);
+    if (protocol != conditions.protocols.end()) protocols.insert(protocol->second.text);
+  }
+  std::string text =
+      protocols.empty()
+          ? std::string()
+          : "protocol " + core::joinText({protocols.begin(), protocols.end()}, " and ");
+  if (!conditions.suite.empty()) text += (text.empty() ? "" : "; ") + ("suite " + conditions.suite);
+  return text;
+}
+
+RunSet readRunSet(const fs::path& results) {
+  RunSet set{results.string(), readRecords(results)};
+  set.conditions = readConditions(results, set.records);
+  return set;
+}
+
+void requireComparable(const RunSet& a, const RunSet& b) {
+  requireSameSuite(a, b);
+  const auto scenarios_b = byScenario(b);
+  for (const auto& [name, conditions] : byScenario(a)) {
+    const auto other = scenarios_b.find(name);
+    if (other != scenarios_b.end())
+      requireSameScenario(name, conditions, other->second, bothNames(a, b));
+  }
+}
+
+}  // namespace cdiff::evaluation

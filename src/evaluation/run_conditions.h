@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "evaluation/run_record.h"
+
+namespace cdiff::evaluation {
+
+/// The protocol that a run was driven by.
+struct RunProtocol {
+  std::string text;                           ///< "rift_dev10, time limit 40 s"
+  std::map<std::string, std::string> values;  ///< of all keys of the group `protocol`
+};
+
+/// Under what the runs of a result folder were driven.
+struct BatchConditions {
+  std::string suite;                             ///< name of the route suite; empty: none
+  std::map<std::string, RunProtocol> protocols;  ///< of complete runs, by id
+};
+
+/// From matrix.yaml and each complete run's scenario.yaml. Throws InputError naming a file that is
+/// absent or cannot be read.
+BatchConditions readConditions(const std::filesystem::path& results,
+                               const std::vector<RunRecord>& records);
+
+/// "protocol rift_dev10, time limit 40 s; suite test", several protocols joined by " and ".
+std::string conditionsText(const BatchConditions& conditions,
+                           const std::vector<RunRecord>& records);
+
+/// A set of runs, its name, and under what its runs were driven.
+struct RunSet {
+  std::string name;
+  std::vector<RunRecord> records;
+  BatchConditions conditions = {};
+};
+
+/// All of a result folder. Throws InputError as readRecords and readConditions do.
+RunSet readRunSet(const std::filesystem::path& results);
+
+/// Throws InputError with the reason and what to do where the sets have other suites, or where runs
+/// of one scenario have other protocols, time limits or inputs in A than in B.
+void requireComparable(const RunSet& a, const RunSet& b);
+
+}  // namespace cdiff::evaluation

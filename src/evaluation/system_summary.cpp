@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/system_summary.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/text.h"
+#include "evaluation/intervals/estimate_text.h"
+#include "metrics/known_measures.h"
+#include "metrics/pooling.h"
+#include "page/page_parts.h"
+#include "record/summary.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using core::Markup;
+using Json = nlohmann::ordered_json;
+
+Json intervalJson(const std::optional<Interval>& interval) {
+  return interval ? Json::array({interval->low, interval->high}) : Json(nullptr);
+}
+
+Json estimateJson(const PooledEstimate& estimate) {
+  Json json = {{"kind", metrics::toText(estimate.kind)},
+               {"value", record::number(estimate.value)},
+               {"interval_95", intervalJson(estimate.interval)},
+               {"interval", toText(estimate.interval_kind)},
+               {"runs", estimate.runs},
+               {"routes", estimate.routes},
+               {"seeds", estimate.seeds}};
+  if (!estimate.counts()) return json;
+  json["events"] = estimate.events;
+  json[estimate.per_km ? "km" : "per_runs"] = estimate.exposure;
+  json["dispersion"] = record::number(estimate.dispersion);
+  json["interval_95_by_routes"] = intervalJson(estimate.clustered);
+  return json;
+}
+
+const std::vector<std::string>& shownMeasures() {
+  namespace known = metrics::known;
+  static const std::vector<std::string> names = {
+      known::kRouteCompletion.name, known::kDrivingScore.name,    known::kEgoCollisions.name,
+      known::kContactsAtFault.name, known::kCbvCollisions.name,   known::kCbvEgoCollisions.name,
+      known::kCbvOffRoad.name,      "cbv_passed_percent",         known::kCbvSpeedError.name,
+      known::kTtcMean.name,         known::kSpeedShapiroWilk.name};
+  return names;
+}
+
+/// "cbv_planner diffusion, mode naturalistic": the factors of which the batch has several levels.
+std::string nameOf(const System& system, const std::vector<System>& systems) {
+  std::vector<std::string> parts;
+  for (const auto& [factor, level] : system.factors) {
+    const bool varies = std::any_of(systems.begin(), systems.end(), [&](const System& other) {
+      return other.factors.at(factor) != level;
+    });
+    if (varies) parts.push_back(factor + " " + (level.empty() ? "-" : level));
+  }
+  return parts.empty() ? "all runs" : core::joinText(parts, ", ");
+}
+
+std::vector<std::string> headCells() {
+  std::vector<std::string> head = {"system", "#runs", "#failed", "#not run", "#routes", "#seeds"};
+  head.insert(head.end(), shownMeasures().begin(), shownMeasures().end());
+  head.emplace_back("note");
+  return head;
+}
+
+/// The texts of a row, in the order of the head.
+std::vector<std::string> rowCells(const System& system, const std::vector<System>& systems) {
+  std::vector<std::string> cells = {nameOf(system, systems)};
+  for (const std::size_t count :
+       {system.runs, system.failed, system.missing, system.routes, system.seeds})
+    cells.push_back(std::to_string(count));
+  std::vector<std::string> notes;
+  for (const std::string& name : shownMeasures()) {
+    const auto found = system.measures.find(name);
+    const PooledEstimate estimate =
+        found == system.measures.end() ? PooledEstimate() : found->second;
+    cells.push_back(estimateText(estimate, 2));
+    const std::string note = estimateNote(estimate);
+    if (!note.empty()) notes.push_back(name + ": " + note);
+  }
+  cells.push_back(core::joinText(notes, "; "));
+  return cells;
+}
+
+std::size_t countIntervals(const std::vector<System>& systems) {
+  std::size_t count = 0;
+  for (const System& system : systems) {
+    for (const std::string& name : shownMeasures()) {
+      const auto found = system.measures.find(name);
+      count += found != system.measures.end() && found->second.interval.has_value();
+    }
+  }
+  return count;
+}
+
+/// How to read the table, then a warning where a system has few seeds or routes.
+std::vector<std::string> remarks(const std::vector<System>& systems) {
+  const std::size_t intervals = countIntervals(systems);
+  std::vector<std::string> texts = {
+      "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts are "
+      "events "
+      "/ km = rate with exact Poisson intervals. The table holds " +
+      countText(intervals, "interval") + ": about " +
+      core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
+      " of them are expected to miss. `cdiff report --compare` tests differences and corrects for "
+      "their number."};
+  std::set<std::string> warnings;
+  for (const System& system : systems) {
+    const std::string warning = fewWarning(system.seeds, system.routes, true);
+    if (!warning.empty()) warnings.insert("Warning: " + warning);
+  }
+  texts.insert(texts.end(), warnings.begin(), warnings.end());
+  return texts;
+}
+
+std::string markdownRow(const std::vector<std::string>& cells) {
+  return "| " + core::joinText(cells, " | ") + " |\n";
+}
+
+}  // namespace
+
+Json systemsJson(const std::vector<System>& systems) {
+  Json list = Json::array();
+  for (const System& system : systems) {
+    Json factors = Json::object();
+    for (const std::string& factor : factorNames()) {
+      if (system.factors.count(factor) != 0) factors[factor] = system.factors.at(factor);
+    }
+    Json measures = Json::object();
+    for (const std::string& name : measureNames()) {
+      const auto found = system.measures.find(name);
+      if (found != system.measures.end()) measures[name] = estimateJson(found->second);
+    }
+    list.push_back({{"factors", factors},
+                    {"runs", system.runs},
+                    {"failed", system.failed},
+                    {"not_run", system.missing},
+                    {"routes", system.routes},
+                    {"seeds", system.seeds},
+                    {"figures", measures}});
+  }
+  return list;
+}
+
+std::string systemsMarkdown(const std::vector<System>& systems) {
+  std::string text = "## Systems\n";
+  for (const std::string& remark : remarks(systems)) text += "\n" + remark + "\n";
+  std::vector<std::string> head = headCells();
+  for (std::string& name : head) name.erase(0, name.find_first_not_of('#'));
+  text += "\n" + markdownRow(head) + markdownRow(std::vector<std::string>(head.size(), "---"));
+  for (const System& system : systems) {
+    std::vector<std::string> cells = rowCells(system, systems);
+    cells.front() = core::markdownText(cells.front());
+    text += markdownRow(cells);
+  }
+  return text;
+}
+
+Markup systemsHtml(const std::vector<System>& systems) {
+  Markup html;
+  for (const std::string& remark : remarks(systems)) html += page::pageNote(remark);
+  page::HtmlTable table(headCells());
+  for (const System& system : systems) {
+    const std::vector<std::string> cells = rowCells(system, systems);
+    table.row({cells.begin(), cells.end()});
+  }
+  return html + table.html();
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/markup.h"
+#include "evaluation/statistics.h"
+
+namespace cdiff::evaluation {
+
+// What the systems of a batch did over all routes: each figure with its 95 % interval, counts with
+// their km (docs/evaluation.md).
+
+/// A list with an object per system: factors, runs, routes, seeds and all measures.
+nlohmann::ordered_json systemsJson(const std::vector<System>& systems);
+
+/// The main measures: warnings, a table with a row per system, and a line on multiplicity.
+std::string systemsMarkdown(const std::vector<System>& systems);
+
+/// The same for the page.
+core::Markup systemsHtml(const std::vector<System>& systems);
+
+}  // namespace cdiff::evaluation
