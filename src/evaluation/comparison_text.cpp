@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <cmath>
 
-#include "core/text.h"
 #include "core/markup.h"
+#include "core/text.h"
 #include "evaluation/comparison.h"
 #include "evaluation/intervals/estimate_text.h"
 #include "metrics/pooling.h"

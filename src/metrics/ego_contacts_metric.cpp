@@ -188,9 +188,9 @@ class EgoContactKinds final : public Metric {
 MetricDescriptor egoContactsMetric() {
   return {"ego_contacts",
           "Who struck whom in the ego's contacts, with the ego standing, and avoidable by braking.",
-          {kContactsPerKm, known::kEgoStruckCbvs, kStruckCbvsPerKm,
-           known::kEgoStruckByCbvs, kByCbvsPerKm, kEgoStruckBackground, kEgoStruckBackgroundPerKm,
-           kEgoByBackground, kEgoByBackgroundPerKm, known::kEgoStruckStanding, kEgoStandingPerKm,
+          {kContactsPerKm, known::kEgoStruckCbvs, kStruckCbvsPerKm, known::kEgoStruckByCbvs,
+           kByCbvsPerKm, kEgoStruckBackground, kEgoStruckBackgroundPerKm, kEgoByBackground,
+           kEgoByBackgroundPerKm, known::kEgoStruckStanding, kEgoStandingPerKm,
            known::kEgoAvoidable, kAvoidablePerKm},
           [](const MetricContext& context) {
             return std::make_unique<EgoContactKinds>(

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -73,10 +73,10 @@ struct MeasureDefinition {
   const char* unit;   ///< "s", "%", "m/s" ..., "count" for whole numbers, "" without unit
   Direction direction;
   Subject subject;
-  const char* definition;   ///< sentences, source included
-  const char* rift_compat;  ///< how RIFT's code differs; "" where it does not compute it otherwise
-  int decimals = 3;         ///< in the report's table
-  bool main = false;        ///< whether /diagnostics shows it
+  const char* definition;    ///< sentences, source included
+  const char* rift_compat;   ///< how RIFT's code differs; "" where it does not compute it otherwise
+  int decimals = 3;          ///< in the report's table
+  bool main = false;         ///< whether /diagnostics shows it
   PoolingRule pooling = {};  ///< how batches sum it up
 };
 
