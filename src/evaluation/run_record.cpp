@@ -40,12 +40,16 @@ constexpr double kCloseEncroachment = 3.0;
 void addInteractions(const json& summary, std::size_t selections, Measures& measures) {
   const json::json_pointer place("/cbv/post_encroachments");
   if (selections == 0 || !summary.contains(place)) return;
-  const json& times = summary.at(place);
+  double crossed = 0.0;
   double close = 0.0;
-  for (const json& time : times)
-    close += std::abs(time.at("seconds").get<double>()) <= kCloseEncroachment ? 1.0 : 0.0;
+  for (const json& entry : summary.at(place)) {
+    const json time = entry.value("seconds", json());  // null: one of the two never came
+    if (!time.is_number()) continue;
+    ++crossed;
+    close += std::abs(time.get<double>()) <= kCloseEncroachment ? 1.0 : 0.0;
+  }
   const auto share = [&](double count) { return 100.0 * count / static_cast<double>(selections); };
-  measures["cbv_interactions_percent"] = share(static_cast<double>(times.size()));
+  measures["cbv_interactions_percent"] = share(crossed);
   measures["cbv_close_interactions_percent"] = share(close);
 }
 

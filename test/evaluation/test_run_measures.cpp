@@ -16,7 +16,7 @@ TEST(RunMeasures, OfASummary) {
     "status": "completed", "simulated_seconds": 12.5, "real_time_factor": null,
     "ego": {"route_completion_percent": 80, "collisions": 0},
     "cbv": {"off_road_rate_percent": null,
-      "post_encroachments": [{"seconds": 2.9}, {"seconds": 3.1}], "selections": [
+      "post_encroachments": [{"seconds": 2.9}, {"seconds": 3.1}, {"seconds": null}], "selections": [
       {"conflict_point_passed": true, "route_completion_percent": 50.0},
       {"conflict_point_passed": true, "route_completion_percent": 100.0},
       {"conflict_point_passed": false}]},
