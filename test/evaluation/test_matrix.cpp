@@ -90,6 +90,7 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("conditioning_effect"), "").size(), 10U * 3U * 9U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("image_effect"), "").size(), 10U * 3U * 4U);
   EXPECT_EQ(planRuns(loadMatrix("sampler_effect"), "").size(), 10U * 3U * 3U);
+  EXPECT_EQ(planRuns(loadMatrix("realism_matched"), "").size(), 10U * 4U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 3U * 10U);
 }
 
