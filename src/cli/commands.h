@@ -21,6 +21,7 @@ void addMetricCommand(CLI::App& program, int& exit_code);
 void addTrainCommand(CLI::App& program, int& exit_code);
 void addDoctorCommand(CLI::App& program, int& exit_code);
 void addReportCommand(CLI::App& program, int& exit_code);
+void addRealismCommand(CLI::App& program, int& exit_code);
 void addSuiteCommand(CLI::App& program, int& exit_code);
 /// Where the program is built with ROS.
 void addReplayCommand(CLI::App& program, int& exit_code);

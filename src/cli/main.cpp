@@ -59,6 +59,7 @@ void addCommands(CLI::App& program, int& exit_code) {
   addTrainCommand(program, exit_code);
   addDoctorCommand(program, exit_code);
   addReportCommand(program, exit_code);
+  addRealismCommand(program, exit_code);
   addSuiteCommand(program, exit_code);
 #ifdef E2E_CDIFF_WITH_ROS
   addReplayCommand(program, exit_code);

@@ -31,7 +31,7 @@ class RiftMeasures {
   void countCollision(const std::string& id) {
     const traffic::TrafficSnapshot snapshot = test::snapshot(1, {});
     MetricTick tick{snapshot};
-    tick.contacts.push_back({"", {id}});
+    tick.contacts.push_back({"", {id}, ""});
     rates_.observe(tick);
   }
   Measure at(const std::string& key) {

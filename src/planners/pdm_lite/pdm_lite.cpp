@@ -123,8 +123,35 @@ PdmLite::PdmLite(const PdmLiteOptions& options, const dynamics::BicycleModelOpti
     : options_(options),
       model_(vehicle),
       network_(context.network),
-      decision_period_(context.decision_period) {
+      decision_period_(context.decision_period),
+      drivers_(context.seed, "driver") {
   options_.validate();
+}
+
+PdmLite::Driver PdmLite::driverOf(const planning::PlanningTask& task) const {
+  constexpr double kSlowest = 0.5;
+  constexpr double kFastest = 1.5;
+  Driver driver;
+  if (task.slot < 0) return driver;
+  const core::RandomKey key{core::hashText(task.vehicle->id), 0, 0};
+  if (options_.cbv_speed_spread > 0.0) {
+    const double factor = 1.0 + options_.cbv_speed_spread * drivers_.normal(key, 0);
+    driver.speed_factor = std::clamp(factor, kSlowest, kFastest);
+  }
+  if (options_.cbv_headway_spread > 0.0)
+    driver.headway = options_.cbv_headway_spread * std::abs(drivers_.normal(key, 1));
+  return driver;
+}
+
+planning::PlanningTask PdmLite::styled(const planning::PlanningTask& asked,
+                                       const Driver& driver) const {
+  planning::PlanningTask task = asked;
+  if (task.slot >= 0 && !task.style.even()) {
+    task.style.acceleration = options_.cbv_acceleration;
+    task.style.deceleration = options_.cbv_deceleration;
+  }
+  task.style.time_headway += driver.headway;
+  return task;
 }
 
 std::size_t PdmLite::forecastSteps(double horizon) const {
@@ -139,11 +166,8 @@ std::vector<planning::PlannedAction> PdmLite::plan(
   std::vector<planning::PlannedAction> actions;
   for (const planning::PlanningTask& asked : tasks) {
     requireComplete(asked);
-    planning::PlanningTask task = asked;
-    if (task.slot >= 0 && !task.style.even()) {
-      task.style.acceleration = options_.cbv_acceleration;
-      task.style.deceleration = options_.cbv_deceleration;
-    }
+    const Driver driver = driverOf(asked);
+    const planning::PlanningTask task = styled(asked, driver);
     const traffic::VehicleState& state = task.vehicle->state;
     auto known = memories_.extract(task.vehicle->id);
     if (!known.empty()) kept.insert(std::move(known));
@@ -153,7 +177,8 @@ std::vector<planning::PlannedAction> PdmLite::plan(
     const double s = memory.driver.follower.arcLength();
     const Situation situation{
         task, snapshot, s,
-        initialTargetSpeed(options_, *task.route, s, state.speed, task.target_speed),
+        driver.speed_factor *
+            initialTargetSpeed(options_, *task.route, s, state.speed, task.target_speed),
         nearLaneChange(*task.route, s, state.speed)};
     actions.push_back(planOne(situation, memory, forecasts));
   }

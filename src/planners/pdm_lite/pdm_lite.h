@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
@@ -36,6 +37,10 @@ namespace cdiff::planners {
 ///    that the vehicle dynamics needs, and no rule makes it drive after standing for long; its
 ///    forecast is that of full throttle, which asks for more room. As published, pedals are full or
 ///    none and IDM has a = 24 m/s^2.
+///  - With cbv_speed_spread or cbv_headway_spread each CBV has a driver of its own, drawn from the
+///    stream "driver" by its id: its initial target speed is multiplied by 1 + spread x z (0.5 to
+///    1.5), its time headway longer by spread x |z'|, z and z' standard normal. Both are 0 unless
+///    asked for, which leaves one driver for all.
 class PdmLite : public planning::Planner {
  public:
   PdmLite(const PdmLiteOptions& options, const dynamics::BicycleModelOptions& vehicle,
@@ -58,6 +63,14 @@ class PdmLite : public planning::Planner {
   };
   /// Forecasts of the snapshot's vehicles, made when first asked for.
   using Forecasts = std::vector<std::optional<std::vector<traffic::VehicleState>>>;
+  /// How one CBV's driver differs from the published one.
+  struct Driver {
+    double speed_factor = 1.0;  ///< on the initial target speed
+    double headway = 0.0;       ///< added to the time headway [s]
+  };
+  Driver driverOf(const planning::PlanningTask& task) const;
+  /// The task with the style of its driver.
+  planning::PlanningTask styled(const planning::PlanningTask& asked, const Driver& driver) const;
   /// One task with what several rules need.
   struct Situation {
     const planning::PlanningTask& task;
@@ -97,6 +110,7 @@ class PdmLite : public planning::Planner {
   dynamics::BicycleModel model_;
   const map::RoadNetwork& network_;
   double decision_period_;
+  core::RandomStream drivers_;
   std::map<std::string, Memory> memories_;
 };
 

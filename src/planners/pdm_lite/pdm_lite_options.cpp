@@ -40,6 +40,14 @@ void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
       cbv_acceleration, 0.0, 8.0);
   visitor.number({"cbv_deceleration", "m/s^2", "Comfortable, of CBVs with even pedals."},
                  cbv_deceleration, 0.5, 8.0);
+  visitor.number({"cbv_speed_spread", "",
+                  "Standard deviation of a CBV's factor on its target "
+                  "speed; 0: one driver for all."},
+                 cbv_speed_spread, 0.0, 0.5);
+  visitor.number({"cbv_headway_spread", "s",
+                  "Of the half-normal time that a CBV adds to its time "
+                  "headway; 0: one driver for all."},
+                 cbv_headway_spread, 0.0, 3.0);
 }
 
 void PdmLiteOptions::validate() const {

@@ -19,6 +19,8 @@ struct PdmLiteOptions {
   bool obey_lights = true;           ///< stop for lights that are not green
   double cbv_acceleration = 0.0;     ///< a of CBVs, which are then even; 0: as published [m/s^2]
   double cbv_deceleration = 3.0;     ///< b of even CBVs [m/s^2]
+  double cbv_speed_spread = 0.0;     ///< of CBVs' target speeds, as a share of them; 0: one driver
+  double cbv_headway_spread = 0.0;   ///< of CBVs' time headways; 0: one driver [s]
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;

@@ -149,5 +149,43 @@ TEST(PdmLite, ForgetsVehiclesThatAreNoLongerAsked) {
   EXPECT_EQ(loop.planner().plan(snapshot, tasks).front().action, fresh);
 }
 
+/// Speed after 12 s on a free, straight road; `slot` -1 is the ego.
+double freeSpeed(const PdmLiteOptions& options, std::uint64_t seed, int slot) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::DrivableArea area(network);
+  const map::Route route = routeAlong(network, {"road"});
+  PdmLite planner(options, {}, {network, area, seed});
+  const dynamics::BicycleModel model{dynamics::BicycleModelOptions()};
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {vehicleAt("car", 5.0, 0.0, 0.0, 0.0)};
+  for (int decision = 0; decision < 120; ++decision) {
+    planning::PlanningTask task;
+    task.slot = slot;
+    task.vehicle = &snapshot.vehicles[0];
+    task.route = &route;
+    const auto actions = planner.plan(snapshot, {task});
+    for (int step = 0; step < 2; ++step) {
+      traffic::VehicleState& state = snapshot.vehicles[0].state;
+      state = model.step(state, actions[0].action, 0.05);
+    }
+  }
+  return snapshot.vehicles[0].state.speed;
+}
+
+TEST(PdmLite, GivesCbvsDriversOfTheirOwnWhereAsked) {
+  // The factor is that of the stream "driver": 8 m/s x (1 + .2 z). The pedals swing by up to half a
+  // meter per second around faster targets.
+  PdmLiteOptions spread;
+  spread.cbv_speed_spread = 0.2;
+  const core::RandomKey key{core::hashText("car"), 0, 0};
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const double z = core::RandomStream(seed, "driver").normal(key, 0);
+    EXPECT_NEAR(freeSpeed(spread, seed, 0), 8.0 * (1.0 + 0.2 * z), 0.5) << "z " << z;
+    EXPECT_EQ(freeSpeed(spread, seed, -1), freeSpeed({}, seed, -1));  // the ego keeps its own
+  }
+  EXPECT_NE(freeSpeed(spread, 1, 0), freeSpeed(spread, 2, 0));
+  EXPECT_EQ(freeSpeed({}, 1, 0), freeSpeed({}, 2, 0));
+}
+
 }  // namespace
 }  // namespace cdiff::planners

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "realism/recording.h"
+
+namespace cdiff::realism {
+
+/// realism_pooled: how likely recorded drivers are under the histogram of simulated ones, all steps
+/// of all vehicles pooled. Bins, weights and pseudo-counts are those of the challenge, but this is
+/// not its metric: nothing starts from the same situation, features of the map are left out, and
+/// the weights of the others (0.65 together) are scaled to 1. Both sides are differentiated by the
+/// same filter (smoothedMotion); a step counts while the vehicle moves (> 1 m/s); tracks are cut
+/// into courses of at most 8 s, so that "any collision" means the same on both sides.
+struct PooledOptions {
+  double moving_speed = 1.0;         ///< slower steps do not count [m/s]
+  std::size_t course_steps = 80;     ///< longest course
+  std::size_t shortest_course = 20;  ///< what remains of a track below is dropped
+};
+
+/// Courses of the vehicles of one role (all where it is empty) in recordings. Features of the map
+/// are empty.
+std::vector<Course> pooledCourses(std::vector<Recording> recordings, const std::string& role,
+                                  const PooledOptions& options = {});
+
+/// Likelihood of each feature of the logged courses under the simulated ones. Absent where there
+/// is nothing simulated or logged.
+Likelihoods pooledLikelihoods(const std::vector<Course>& logged,
+                              const std::vector<Course>& simulated);
+
+/// Courses of recorded drivers by site, in two halves (every other recording by its place in the
+/// site).
+struct RecordedSite {
+  std::vector<Course> all;
+  std::vector<Course> halves[2];
+};
+std::map<std::string, RecordedSite> recordedSites(const std::vector<Recording>& recordings,
+                                                  const PooledOptions& options = {});
+
+/// The highest that can be expected: each half of the recordings under the other, the mean of both.
+/// Absent features where a half is empty.
+Likelihoods pooledCeiling(const RecordedSite& site);
+
+/// Steps at which a feature has a value.
+std::size_t countValues(const std::vector<Course>& courses, Feature feature);
+
+/// One row of the comparison: who drove, and the likelihoods at each site.
+struct PooledRow {
+  std::string driver;
+  std::size_t courses = 0;
+  std::size_t steps = 0;                       ///< with a speed
+  std::map<std::string, Likelihoods> at_site;  ///< by site
+};
+
+/// Simulated courses by driver, in the order of rows.
+using PooledDrivers = std::vector<std::pair<std::string, std::vector<Course>>>;
+
+/// The comparison of drivers with recorded traffic.
+struct PooledResult {
+  std::string headline;  ///< site of the table's first part
+  std::map<std::string, RecordedSite> sites;
+  std::vector<PooledRow> rows;  ///< the ceiling is the last
+};
+
+/// `headline`: a site, or empty: the signalised arterial "Lanker" where it is there, else the first
+/// by name. Throws InputError for a site that is not there.
+PooledResult comparePooled(const std::vector<Recording>& log, const PooledDrivers& drivers,
+                           const std::string& headline);
+
+std::string pooledJson(const PooledResult& result);
+std::string pooledMarkdown(const PooledResult& result);
+std::string pooledPage(const PooledResult& result);
+
+}  // namespace cdiff::realism
