@@ -36,7 +36,7 @@ import junit  # noqa: E402
 # Tests of other folders that see what a folder does, in the order in which they run.
 BEYOND = {"metrics": ["record", "session"], "guidance": ["planners", "diffusion"], "diffusion": ["planners"], "cbv": ["session"],
           "dynamics": ["planning", "planners", "diffusion", "session"], "planning": ["planners", "session"], "planners": ["session"],
-          "session": ["collection"], "simulation": ["session"]}
+          "session": ["record"], "simulation": ["session"]}
 FOLDERS = sorted(BEYOND)
 GOAL = 0.95
 SLOWEST = 30.0  # [s] programs that take longer are left out
@@ -127,7 +127,8 @@ class Judge:
     def __init__(self, trial):
         self.trial = trial
         folders = {*FOLDERS, *(name for names in BEYOND.values() for name in names)}
-        self.programs = [program for program in trial.programs().values() if program.folder.split("/")[0] in folders]
+        self.programs = [program for program in trial.programs().values()
+                         if program.folder.split("/")[0] in folders and "training" not in program.folder]
         self.changed = set()  # layers whose library holds a mutant
 
     def failing_without(self):

@@ -67,7 +67,7 @@ class Trial:
         environment = environment_of(self.build, self.root)
         environment.setdefault("E2E_CDIFF_DATA", str(self.source / ".." / "shared" / "data"))
         chosen = ":".join(cases) if cases else "*-" + ":".join(filter(None, [program.left_out, AT_LEISURE]))
-        command = ["nice", program.path, f"--gtest_filter={chosen}", "--gtest_fail_fast"]
+        command = [program.path, f"--gtest_filter={chosen}", "--gtest_fail_fast"]
         program.failures = []
         begin = time.monotonic()
         process = subprocess.Popen(command, env=environment, cwd=self.build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
