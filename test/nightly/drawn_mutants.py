@@ -126,16 +126,20 @@ class Judge:
 
     def __init__(self, trial):
         self.trial = trial
-        folders = {*FOLDERS, *(name for names in BEYOND.values() for name in names)}
-        self.programs = [program for program in trial.programs().values()
-                         if program.folder.split("/")[0] in folders and "training" not in program.folder]
+        self.programs = self._known_programs()
         self.changed = set()  # layers whose library holds a mutant
+
+    def _known_programs(self):
+        folders = {*FOLDERS, *(name for names in BEYOND.values() for name in names)}
+        return [program for program in self.trial.programs().values()
+                if program.folder.split("/")[0] in folders and "training" not in program.folder]
 
     def failing_without(self):
         """What is wrong without a mutant, None if all is well; measures the programs."""
         broken = self.trial.compile([program.name for program in self.programs])
         if broken:
             return broken
+        self.programs = self._known_programs()
         for program in self.programs:
             if not self.trial.passes(program, 300.0):
                 return f"{program.name} fails without a mutant: {program.failures}"

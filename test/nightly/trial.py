@@ -44,17 +44,17 @@ class Trial:
                         "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", *options], check=True, stdout=subprocess.DEVNULL)
 
     def programs(self):
-        """Test programs that run every day, by name."""
-        folders = dict(re.findall(r"^build [^\n|:]*?(test_\w+): CXX_EXECUTABLE_LINKER\S* test/(\S+?)/CMakeFiles/",
-                                  (self.build / "build.ninja").read_text(), re.MULTILINE))
+        """Test programs that run every day, by name. Which of their cases do not is known once they are built."""
+        places = re.findall(r"^build (\S*?(test_\w+)): CXX_EXECUTABLE_LINKER\S* test/(\S+?)/CMakeFiles/",
+                            (self.build / "build.ninja").read_text(), re.MULTILINE)
         shown = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.build, check=True, capture_output=True, text=True).stdout
+        tests = {test["name"]: test for test in json.loads(shown)["tests"]}
         found = {}
-        for test in json.loads(shown)["tests"]:
-            command = test.get("command", [])
+        for path, name, folder in places:
+            test = tests.get(name, {})
             labels = sum((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
-            name = Path(command[0]).name if command else ""
-            if "nightly" not in labels and name == test["name"] and name in folders:
-                found[name] = Program(name, Path(command[0]), folders[name], left_out_of(command[1:]))
+            if test and "nightly" not in labels:
+                found[name] = Program(name, self.build / path, folder, left_out_of(test.get("command", [])))
         return found
 
     def compile(self, names):
