@@ -80,7 +80,7 @@ class Trial:
             return False
         program.seconds = time.monotonic() - begin
         if process.returncode != 0:
-            failed = re.findall(r"^\[  FAILED  \] (\S+?),? \(", output, re.MULTILINE)
+            failed = re.findall(r"^\[  FAILED  \] ([\w/.]+)(?:, where .*)? \(\d+ ms\)$", output, re.MULTILINE)
             program.failures = failed or [f"exit code {process.returncode}"]
         return process.returncode == 0
 
