@@ -124,13 +124,13 @@ class Results:
 class Judge:
     """Builds mutants and runs the tests that may see them, quick ones first."""
 
-    def __init__(self, trial):
-        self.trial = trial
+    def __init__(self, trial, layers):
+        self.trial, self.layers = trial, layers
         self.programs = self._known_programs()
         self.changed = set()  # layers whose library holds a mutant
 
     def _known_programs(self):
-        folders = {*FOLDERS, *(name for names in BEYOND.values() for name in names)}
+        folders = {*self.layers, *(name for layer in self.layers for name in BEYOND[layer])}
         return [program for program in self.trial.programs().values()
                 if program.folder.split("/")[0] in folders and "training" not in program.folder]
 
@@ -217,7 +217,8 @@ def main():
     lock = root.parent.joinpath(root.name + ".lock").open("w")
     fcntl.flock(lock, fcntl.LOCK_EX)
     begin = time.monotonic()
-    judge = Judge(Trial(options.source, options.build, root, [f"-DE2E_CDIFF_MUTATED={';'.join(FOLDERS)}"]))
+    trial = Trial(options.source, options.build, root, [f"-DE2E_CDIFF_MUTATED={';'.join(FOLDERS)}"])
+    judge = Judge(trial, sorted({Path(source.name).parts[0] for source in sources}))
     broken = judge.failing_without()
     print(f"without a mutant: {broken or 'passes'} ({time.monotonic() - begin:.0f} s)", flush=True)
     if not broken:

@@ -83,7 +83,9 @@ TEST(LaneForecast, IsForThoseAtMost2_5MetersAsideAnd60DegreesTurned) {
     const bool on_lane = state.heading == 0.0;
     EXPECT_NEAR(state.heading, on_lane ? 0.0 : heading, 1e-12);
     EXPECT_NEAR(state.elevation, on_lane ? 5.08 : 0.0, 1e-9);
-    if (on_lane) EXPECT_NEAR(state.position.y(), y, 1e-9);
+    if (on_lane) {
+      EXPECT_NEAR(state.position.y(), y, 1e-9);
+    }
     return on_lane;
   };
   EXPECT_TRUE(follows(2.49, 10.0));
