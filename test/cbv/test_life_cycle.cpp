@@ -157,6 +157,19 @@ TEST(LifeCycle, RemovedNearTheEndOfItsRouteIsArrival) {
   }
 }
 
+// Seen from 2 m ahead of "a", the ego's route along y = 0 is at least 28 m away.
+TEST(LifeCycle, ARouteBeyondTheRadiusIsOutOfView) {
+  for (const auto& [radius, seen] : {std::pair{90.0, true}, {27.0, false}}) {
+    CbvOptions options;
+    options.interaction_radius = radius;
+    CrossingWorld world(options, 1);
+    const auto selection =
+        world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+    EXPECT_EQ(selection.assignments.size(), seen ? 1u : 0u);
+    EXPECT_EQ(reasonOf(selection, "a"), seen ? "" : kOutOfView);
+  }
+}
+
 TEST(LifeCycle, VehicleInContactIsNotChosen) {
   CrossingWorld world;
   auto snapshot = crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)});

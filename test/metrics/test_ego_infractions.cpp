@@ -191,6 +191,20 @@ TEST(EgoInfractions, ReportsSpeedsAndCollisionsWithTheirNumbers) {
   EXPECT_EQ(score.at("ego_infraction_vehicle_collisions").n, 2U);
 }
 
+// 80 m on the lane, then 20 m beside it; standing back is no progress.
+TEST(EgoInfractions, TakesTheShareOutsideOfTheProgress) {
+  const test::StraightRoad road;
+  SessionMetricsOptions options;
+  options.network = &road.network;
+  test::MetricUnderTest score("ego_driving_score", options, &road.route);
+  show(score, snapshot(0, {ego(0, 0, 5)}), 0.0);
+  show(score, snapshot(1, {ego(80, 0, 5)}), 80.0);
+  show(score, snapshot(2, {ego(100, -3, 5)}), 100.0);
+  show(score, snapshot(3, {ego(90, -3, 5)}), 90.0);
+  EXPECT_NEAR(*score.at("ego_infraction_outside_lanes_percent").value, 20.0, 1e-12);
+  EXPECT_EQ(score.at("ego_infraction_outside_lanes_percent").n, 4U);
+}
+
 TEST(EgoInfractions, SurvivesValuesThatAreNotFinite) {
   const test::StraightRoad road;
   SessionMetricsOptions options;

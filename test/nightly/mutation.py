@@ -188,8 +188,8 @@ def conditions(source):
 
 
 def arguments(source):
-    """Two arguments the other way round."""
-    pattern = r"\w\((([A-Za-z_][\w.]*(?:\(\))?), ([A-Za-z_][\w.]*(?:\(\))?))\)(?! \{)"
+    """Two arguments the other way round, but of std::min and std::max."""
+    pattern = r"(?<!std::min)(?<!std::max)(?<=\w)\((([A-Za-z_][\w.]*(?:\(\))?), ([A-Za-z_][\w.]*(?:\(\))?))\)(?! \{)"
     for found in re.finditer(pattern, source.code):
         if source.usable(found.start(1)) and source.kinds[found.start()] == "function" and found.group(2) != found.group(3):
             yield source.mutant("arguments", found.start(1), found.end(1), f"{found.group(3)}, {found.group(2)}")
