@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/recorded_traffic.h"
-#include "record/trace_file.h"
+#include "record/result_folder.h"
 
 namespace cdiff::realism {
 namespace {

@@ -137,6 +137,39 @@ TEST(LifeCycle, EndOfTheRouteReleasesForGood) {
   EXPECT_EQ(reasonOf(again, "a"), kAlreadyChosen);
 }
 
+// SUMO removes vehicles where their routes end: within 10 m of its end a CBV has arrived.
+TEST(LifeCycle, RemovedNearTheEndOfItsRouteIsArrival) {
+  for (const auto& [remaining, reason] : {std::pair{9.5, kRouteEnd}, {10.5, kContact}}) {
+    CrossingWorld world({}, 1);
+    const auto first =
+        world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+    ASSERT_EQ(first.assignments.size(), 1u);
+    const map::Route& route = first.assignments[0].conflict_aware_route;
+    const Eigen::Vector2d position = route.path().positionAt(route.length() - remaining);
+    const auto last = driven(test::vehicle("a", {position.x(), position.y(), 0.0, 9.0}), 0);
+    ASSERT_TRUE(
+        world.selector.update(crossingSnapshot(kFirst + 2, 150.0, {last})).released.empty());
+    auto snapshot = crossingSnapshot(kFirst + 4, 150.0, {});
+    snapshot.removed.push_back("a");
+    const auto selection = world.selector.update(snapshot);
+    ASSERT_EQ(selection.released.size(), 1u);
+    EXPECT_EQ(selection.released[0].reason, reason) << remaining;
+  }
+}
+
+// Seen from 2 m ahead of "a", the ego's route along y = 0 is at least 28 m away.
+TEST(LifeCycle, ARouteBeyondTheRadiusIsOutOfView) {
+  for (const auto& [radius, seen] : {std::pair{90.0, true}, {27.0, false}}) {
+    CbvOptions options;
+    options.interaction_radius = radius;
+    CrossingWorld world(options, 1);
+    const auto selection =
+        world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));
+    EXPECT_EQ(selection.assignments.size(), seen ? 1u : 0u);
+    EXPECT_EQ(reasonOf(selection, "a"), seen ? "" : kOutOfView);
+  }
+}
+
 TEST(LifeCycle, VehicleInContactIsNotChosen) {
   CrossingWorld world;
   auto snapshot = crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)});
@@ -165,6 +198,31 @@ TEST(LifeCycle, ReselectTakesABetterCandidateBeyondTheHysteresis) {
   const auto kept = inert.selector.update(crossingSnapshot(kFirst + kPeriod, 70.0, then));
   EXPECT_EQ(kept.assignments.at(0).vehicle_id, "weak");
   EXPECT_EQ(reasonOf(kept, "better"), kOutranked);
+}
+
+// "strong" stands as "better" does below, so only "weak" can be outranked, in either slot.
+TEST(LifeCycle, ReselectReplacesTheWeakest) {
+  const auto weak = fromSouth("weak", -20.0, 2.0);
+  const auto strong = fromNorth("strong", 30.0, 9.0);
+  CbvOptions options = reselecting();
+  options.hysteresis = 0.1;
+  for (const bool weak_first : {true, false}) {
+    CrossingWorld world(options, 2);
+    const auto& one = weak_first ? weak : strong;
+    const auto& other = weak_first ? strong : weak;
+    world.selector.update(crossingSnapshot(kFirst, 70.0, {one}));
+    const auto two =
+        world.selector.update(crossingSnapshot(kFirst + kPeriod, 70.0, {driven(one, 0), other}));
+    ASSERT_EQ(two.assignments.size(), 2u);
+    const auto then = world.selector.update(
+        crossingSnapshot(kFirst + 2 * kPeriod, 70.0,
+                         {driven(one, 0), driven(other, 1), fromNorth("better", 31.0, 9.0)}));
+    ASSERT_EQ(then.released.size(), 1u);
+    EXPECT_EQ(then.released[0].vehicle_id, "weak");
+    EXPECT_EQ(then.released[0].slot, weak_first ? 0 : 1);
+    ASSERT_EQ(then.assignments.size(), 2u);
+    EXPECT_EQ(then.assignments[weak_first ? 0 : 1].vehicle_id, "better");
+  }
 }
 
 TEST(LifeCycle, ReselectReleasesALostConflictAfterItsTimeAndMayChooseAgain) {

@@ -71,5 +71,39 @@ TEST(Normalizer, ValidateNamesTheCell) {
   EXPECT_NE(errorOf(nan, 2).find("mean of row 1, column 0 is nan"), std::string::npos);
 }
 
+std::string errorOf(const std::string& text) {
+  try {
+    Normalizer::fromJson(text, 2, "normalizer");
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Normalizer, IsReadAsItWasWritten) {
+  const std::string text = counting().toJson();
+  const Normalizer read = Normalizer::fromJson(text, 2, "normalizer");
+  EXPECT_EQ(read.mean, counting().mean);
+  EXPECT_EQ(read.scale, counting().scale);
+  const std::string row = "[0,1,2,3,4,5,6]";
+  const std::string rows = "[" + row + "," + row + "]";
+  const auto with = [&](const std::string& mean) {
+    return errorOf("{\"mean\":" + mean + ",\"scale\":" + rows + "}");
+  };
+  EXPECT_EQ(with(rows), "");
+  const std::string rows_expected = "; T = 2 rows were expected";
+  EXPECT_NE(with("[" + row + "]").find("an array of 1" + rows_expected), std::string::npos)
+      << with("[" + row + "]");
+  EXPECT_NE(with("3").find(rows_expected), std::string::npos);
+  EXPECT_NE(with("{\"a\":1,\"b\":2}").find(rows_expected), std::string::npos);
+  EXPECT_NE(with("[" + row + ",[1,2]]").find("row 1: 7 numbers"), std::string::npos);
+  EXPECT_NE(with("[" + row + ",7]").find("row 1: 7 numbers"), std::string::npos);
+  EXPECT_NE(with("[[0,1,2,true,4,5,6]," + row + "]").find("row 0, column 3"), std::string::npos);
+  const std::string object_expected = "an object of mean and scale was expected";
+  for (const std::string wrong : {"[1,2]", "{\"mean\":1}", "{\"mean\":1,\"scales\":2}",
+                                  "{\"means\":1,\"scale\":2}", "{\"mean\":1,\"scale\":2,\"x\":3}"})
+    EXPECT_NE(errorOf(wrong).find(object_expected), std::string::npos) << wrong;
+}
+
 }  // namespace
 }  // namespace cdiff::diffusion

@@ -213,6 +213,27 @@ TEST_F(EgoContactsTest, OfOthersAreLeftOut) {
   EXPECT_TRUE(contacts_.contacts().empty());
 }
 
+// Any of place and heading of the two may be missing, each by itself.
+TEST_F(EgoContactsTest, AreNotJudgedWithoutThePlacesOfBoth) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int missing = 0; missing < 4; ++missing) {
+    traffic::Vehicle ego = test::ego(10, 0, 8);
+    traffic::Vehicle other = test::background("z", 14, 0, 0);
+    if (missing == 0) other.state.position.y() = nan;
+    if (missing == 1) other.state.heading = nan;
+    if (missing == 2) ego.state.position.x() = nan;
+    if (missing == 3) ego.state.heading = nan;
+    traffic::TrafficSnapshot snapshot = test::snapshot(7, {ego, other});
+    snapshot.contacts = {{"ego", "z"}};
+    EgoContacts contacts(&road_.network, kStanding);
+    contacts.observe(snapshot);
+    EXPECT_EQ(contacts.contacts().at(0).reason,
+              "the record of that tick lacks a position of the two")
+        << missing;
+    EXPECT_DOUBLE_EQ(contacts.contacts().at(0).ego_speed, 8.0);
+  }
+}
+
 TEST_F(EgoContactsTest, APartnerWithoutAPlaceIsNotBlamedOnTheEgo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(contactWith(test::background("z", nan, 0, 0), {"ego", "z"}).ego_at_fault);

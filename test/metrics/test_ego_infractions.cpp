@@ -169,6 +169,42 @@ TEST(EgoInfractions, NamesWhatCannotOccurAndWhatIsUnknown) {
   EXPECT_EQ(*score.at("ego_penalty").value, 1.0);
 }
 
+// Two stretches of 50 m: at 3 m/s beside 6 m/s 50 %, at 20 beside 10 m/s 200 %: one of two is
+// missed, 125 % on average. A contact with the same partner 0.05 s later belongs to the first.
+TEST(EgoInfractions, ReportsSpeedsAndCollisionsWithTheirNumbers) {
+  SessionMetricsOptions options;
+  options.infractions.speed_checkpoints = 2;
+  test::MetricUnderTest score("ego_driving_score", options);
+  show(score, snapshot(0, {ego(50, 0, 3), background("a", 0, 0, 6)}), 50.0);
+  show(score, snapshot(1, {ego(100, 0, 20), background("a", 0, 0, 10)}), 100.0);
+  EXPECT_DOUBLE_EQ(*score.at("ego_infraction_minimum_speed_missed").value, 1.0);
+  EXPECT_EQ(score.at("ego_infraction_minimum_speed_missed").n, 2U);
+  EXPECT_DOUBLE_EQ(*score.at("ego_infraction_minimum_speed_percent").value, 125.0);
+  EXPECT_EQ(score.at("ego_infraction_minimum_speed_percent").n, 2U);
+  for (const std::uint64_t tick : {2, 3}) {
+    const traffic::TrafficSnapshot at = snapshot(tick, {ego(100, 0, 5)});
+    MetricTick contact{at, nullptr, at.ego()};
+    contact.contacts = {{"a", {}}, {"", {"b"}}};
+    score.observe(contact);
+  }
+  EXPECT_EQ(*score.at("ego_infraction_vehicle_collisions").value, 1.0);
+  EXPECT_EQ(score.at("ego_infraction_vehicle_collisions").n, 2U);
+}
+
+// 80 m on the lane, then 20 m beside it; standing back is no progress.
+TEST(EgoInfractions, TakesTheShareOutsideOfTheProgress) {
+  const test::StraightRoad road;
+  SessionMetricsOptions options;
+  options.network = &road.network;
+  test::MetricUnderTest score("ego_driving_score", options, &road.route);
+  show(score, snapshot(0, {ego(0, 0, 5)}), 0.0);
+  show(score, snapshot(1, {ego(80, 0, 5)}), 80.0);
+  show(score, snapshot(2, {ego(100, -3, 5)}), 100.0);
+  show(score, snapshot(3, {ego(90, -3, 5)}), 90.0);
+  EXPECT_NEAR(*score.at("ego_infraction_outside_lanes_percent").value, 20.0, 1e-12);
+  EXPECT_EQ(score.at("ego_infraction_outside_lanes_percent").n, 4U);
+}
+
 TEST(EgoInfractions, SurvivesValuesThatAreNotFinite) {
   const test::StraightRoad road;
   SessionMetricsOptions options;

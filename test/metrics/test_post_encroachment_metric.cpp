@@ -50,6 +50,7 @@ class PostEncroachmentTimes {
     metric_.observe(tick);
   }
   Measure mean() { return metric_.at("post_encroachment_mean_s"); }
+  Measure at(const std::string& name) { return metric_.at(name); }
   std::vector<PostEncroachment> times() {
     std::vector<PostEncroachment> all;
     for (const MetricEntry& entry : metric_.list("/cbv/post_encroachments")) {
@@ -110,6 +111,22 @@ TEST(PostEncroachmentTimes, IsTheNetTimeGapOfOneBehindTheOther) {
   const auto all = driven({20, 0, 0, 8}, {0, 0, 0, 8}, 200).times();
   EXPECT_NEAR(*all[0].seconds, 1.9, 1e-9);
   EXPECT_TRUE(all[0].ego_first);
+}
+
+// All at 8 m/s, centers 20 and 36 m behind the ego's, 15.2 and 31.2 m between bumpers: 1.9 and
+// 3.9 s.
+TEST(PostEncroachmentTimes, HaveMeanDeviationAndMinimumOverCbvs) {
+  PostEncroachmentTimes times(10.0);
+  for (int tick = 0; tick <= 200; ++tick) {
+    const double time = kStep * tick;
+    times.observe(test::snapshot(static_cast<std::uint64_t>(tick),
+                                 {Drive{36, 0, 0, 8}.at(time, test::ego(0, 0, 0)),
+                                  Drive{16, 0, 0, 8}.at(time, test::cbv("a", 0, 0, 0)),
+                                  Drive{0, 0, 0, 8}.at(time, test::cbv("b", 0, 0, 0))}));
+  }
+  EXPECT_NEAR(*times.mean().value, 2.9, 1e-9);
+  EXPECT_NEAR(*times.at("post_encroachment_std_s").value, std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(*times.at("post_encroachment_min_s").value, 1.9, 1e-9);
 }
 
 TEST(PostEncroachmentTimes, IsZeroForAContact) {

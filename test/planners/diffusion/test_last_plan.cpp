@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "planners/course.h"
 #include "planners/diffusion/diffusion_situation.h"
 
 namespace cdiff::planners {
@@ -68,6 +69,58 @@ TEST(LastPlan, DoesNotHoldAfterAJump) {
   now = afterFirstRow(plan);
   now.speed -= 0.6;
   EXPECT_FALSE(last.holds(1, now, nullptr));
+}
+
+TEST(LastPlan, HoldsAfterWhatIsNoJump) {
+  const dynamics::ActionRollout dynamics;
+  const Rollout plan = drivenPlan(dynamics);
+  const LastPlan last(plan, 40, kStart, nullptr);
+  for (const double sign : {-1.0, 1.0}) {
+    traffic::VehicleState now = afterFirstRow(plan);
+    now.position.y() += 0.45 * sign;
+    now.heading += 0.09 * sign;
+    now.speed += 0.45 * sign;
+    EXPECT_TRUE(last.holds(1, now, nullptr));
+    now = afterFirstRow(plan);
+    now.position.y() += 0.55 * sign;
+    EXPECT_FALSE(last.holds(1, now, nullptr));
+    now = afterFirstRow(plan);
+    now.heading += 0.11 * sign;
+    EXPECT_FALSE(last.holds(1, now, nullptr));
+    now = afterFirstRow(plan);
+    now.speed += 0.55 * sign;
+    EXPECT_FALSE(last.holds(1, now, nullptr));
+  }
+}
+
+// Routes of one lane end at x = 100 m, or 0.4 and 0.6 m farther on.
+TEST(LastPlan, HoldsForTheSameGoal) {
+  const dynamics::ActionRollout dynamics;
+  const Rollout plan = drivenPlan(dynamics);
+  const traffic::VehicleState now = afterFirstRow(plan);
+  const auto network = testing::makeNetwork({{"a", testing::straight(0.0, 0.0, 100.0, 0.0)},
+                                             {"b", testing::straight(50.0, 0.0, 100.4, 0.0)},
+                                             {"c", testing::straight(0.0, 0.0, 100.6, 0.0)}});
+  const map::Route route = testing::routeAlong(network, {"a"});
+  const map::Route near = testing::routeAlong(network, {"b"});
+  const map::Route other = testing::routeAlong(network, {"c"});
+  const LastPlan last(plan, 40, kStart, &route);
+  EXPECT_TRUE(last.holds(1, now, &route));
+  EXPECT_TRUE(last.holds(1, now, &near));
+  EXPECT_FALSE(last.holds(1, now, &other));
+  EXPECT_FALSE(last.holds(1, now, nullptr));
+  EXPECT_FALSE(LastPlan(plan, 40, kStart, nullptr).holds(1, now, &route));
+}
+
+TEST(LastPlan, RepeatsItsLastRow) {
+  const dynamics::ActionRollout dynamics;
+  const Rollout plan = drivenPlan(dynamics);
+  const LastPlan last(plan, 40, kStart, nullptr);
+  EXPECT_FALSE(last.continued(0.0, dynamics, kStart));
+  const auto next = last.continued(32.0, dynamics, kStart);
+  ASSERT_TRUE(next);
+  for (const Eigen::Index row : {0, 31})
+    EXPECT_EQ((*next)(row, traffic::kRolloutThrottle), plan(31, traffic::kRolloutThrottle));
 }
 
 TEST(LastPlan, OnlyWholeRowsGoOn) {
