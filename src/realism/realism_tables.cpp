@@ -4,6 +4,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
+#include "evaluation/intervals/estimate_text.h"
 #include "page/page_parts.h"
 #include "realism/matched.h"
 #include "realism/pooled.h"
@@ -92,8 +93,7 @@ std::string matchedNote(const ContinuationOptions& options) {
 }
 
 std::string metaText(const evaluation::Statistics& meta) {
-  return numberText(meta.mean) +
-         (meta.half_width ? " ± " + core::formatFixed(*meta.half_width, 3) : "");
+  return numberText(meta.mean) + evaluation::intervalText(meta.interval, 3);
 }
 
 Sheet matchedSheet(const std::vector<MatchedRow>& rows, const ContinuationOptions& options) {
@@ -148,6 +148,10 @@ std::vector<Sheet> pooledSheets(const PooledResult& result) {
   return sheets;
 }
 
+ordered_json intervalJson(const std::optional<evaluation::Interval>& interval) {
+  return interval ? ordered_json{interval->low, interval->high} : ordered_json();
+}
+
 }  // namespace
 
 std::string matchedJson(const std::vector<MatchedRow>& rows, const ContinuationOptions& options) {
@@ -156,7 +160,7 @@ std::string matchedJson(const std::vector<MatchedRow>& rows, const ContinuationO
     drivers.push_back({{"driver", row.driver},
                        {"ceiling", row.ceiling},
                        {"realism_matched", orNull(row.meta.mean)},
-                       {"half_width_95", orNull(row.meta.half_width)},
+                       {"interval_95", intervalJson(row.meta.interval)},
                        {"scenarios", row.meta.n},
                        {"sessions", row.hand_overs},
                        {"sessions_without_cbv", row.without},

@@ -7,8 +7,8 @@
 #include <map>
 #include <string_view>
 
-#include "core/text.h"
 #include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::realism {

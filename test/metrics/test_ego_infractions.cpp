@@ -184,7 +184,7 @@ TEST(EgoInfractions, ReportsSpeedsAndCollisionsWithTheirNumbers) {
   for (const std::uint64_t tick : {2, 3}) {
     const traffic::TrafficSnapshot at = snapshot(tick, {ego(100, 0, 5)});
     MetricTick contact{at, nullptr, at.ego()};
-    contact.contacts = {{"a", {}}, {"", {"b"}}};
+    contact.contacts = {{"a", {}, ""}, {"", {"b"}, ""}};
     score.observe(contact);
   }
   EXPECT_EQ(*score.at("ego_infraction_vehicle_collisions").value, 1.0);

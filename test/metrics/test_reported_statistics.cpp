@@ -62,7 +62,7 @@ TEST(EgoCollisionsMetric, CountsContactsAndThoseThatAreTheEgosFault) {
   test::MetricUnderTest collisions("ego_collisions");
   const traffic::TrafficSnapshot snapshot = test::snapshot(1, {test::ego(0, 0, 5)});
   MetricTick tick{snapshot, nullptr, snapshot.ego()};
-  tick.contacts = {{"a", {}}, {"b", {}}, {"c", {}}, {"", {"d"}}};
+  tick.contacts = {{"a", {}, ""}, {"b", {}, ""}, {"c", {}, ""}, {"", {"d"}, ""}};
   EgoContact fault;
   fault.ego_at_fault = true;
   tick.ego_contacts = {fault, {}, fault};
