@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/task_registry.h"
 
 namespace cdiff::learning {
 

@@ -134,29 +134,4 @@ class Task {
   virtual TrainedModel finish() = 0;
 };
 
-/// What is known of a task before it is made: name, help and constructor.
-struct TaskDescriptor {
-  std::string name;  ///< value of --task
-  std::string help;  ///< what is trained, a sentence without its full stop
-  std::shared_ptr<Task> (*make)() = nullptr;
-};
-
-/// The table of what can be trained. The program that trains fills it from the list of planners.
-class TaskRegistry {
- public:
-  /// Throws InputError naming the planner's folder that must change: no name, no constructor, a
-  /// name that another task has.
-  void add(const TaskDescriptor& descriptor);
-  std::vector<std::string> names() const;
-  /// The task of this name; an empty name means the first of the table. Throws InputError naming
-  /// the nearest known task for an unknown name, and for an empty table.
-  const TaskDescriptor& descriptor(const std::string& name) const;
-
-  /// The task of this name with the default options; names and errors as in `descriptor`.
-  Training training(const std::string& name = "") const;
-
- private:
-  std::vector<TaskDescriptor> tasks_;
-};
-
 }  // namespace cdiff::learning

@@ -14,6 +14,9 @@
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/text.h"
+#include "learning/export.h"
+#include "learning/stage_runner.h"
+#include "learning/task.h"
 #include "learning/training_folder.h"
 
 namespace cdiff::learning {

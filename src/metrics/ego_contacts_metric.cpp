@@ -9,6 +9,13 @@
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
+namespace {
+
+/// Events in batches: over the km of the ego, whoever else takes part.
+constexpr PoolingRule kOverEgoKilometres = {Pooling::kCount, SessionWeight::kEgoKilometres};
+constexpr PoolingRule kPerEgoKilometre = {Pooling::kRate, SessionWeight::kEgoKilometres};
+
+}  // namespace
 
 const MeasureDefinition known::kEgoStruckCbvs = {
     "ego_contacts_struck_cbv",
@@ -20,6 +27,8 @@ const MeasureDefinition known::kEgoStruckCbvs = {
     "Contacts of the ego with a CBV that are the ego's fault (docs/protocols.md).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 const MeasureDefinition known::kEgoStruckByCbvs = {
     "ego_contacts_by_cbv",
@@ -31,6 +40,8 @@ const MeasureDefinition known::kEgoStruckByCbvs = {
     "Contacts of the ego with a CBV that are the CBV's fault (docs/protocols.md).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 const MeasureDefinition known::kEgoStruckStanding = {
     "ego_contacts_standing",
@@ -43,6 +54,8 @@ const MeasureDefinition known::kEgoStruckStanding = {
     "collision_minimum_speed (0.1 m/s).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 const MeasureDefinition known::kEgoAvoidable = {
     "ego_contacts_avoidable",
@@ -56,6 +69,8 @@ const MeasureDefinition known::kEgoAvoidable = {
     "came into its swept path would have prevented, on the path that it drove (docs/metrics.md).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 
 namespace {
@@ -70,6 +85,8 @@ constexpr MeasureDefinition kEgoStruckBackground = {
     "Contacts of the ego with a background vehicle that are the ego's fault (docs/protocols.md).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 constexpr MeasureDefinition kEgoByBackground = {
     "ego_contacts_by_background",
@@ -82,12 +99,15 @@ constexpr MeasureDefinition kEgoByBackground = {
     "(docs/protocols.md).",
     "",
     0,
+    false,
+    kOverEgoKilometres,
 };
 
 /// Of a count by the ego's km.
 constexpr MeasureDefinition egoRate(const char* name, const char* place, const char* label,
                                     Direction direction, const char* definition) {
-  return {name, place, label, "1/km", direction, Subject::kEgoAndOthers, definition, ""};
+  return {name,       place, label, "1/km", direction,       Subject::kEgoAndOthers,
+          definition, "",    3,     false,  kPerEgoKilometre};
 }
 
 constexpr MeasureDefinition kContactsPerKm = egoRate(

@@ -188,6 +188,9 @@ constexpr MeasureDefinition kScoreUnderAttack = {
     "Driving score of a session in mode safety_critical; absent in mode naturalistic, so that the "
     "mean over a batch is that of its attacks.",
     "",
+    3,
+    false,
+    kMeanToHundred,
 };
 
 Measure counted(std::size_t count, std::size_t n) {

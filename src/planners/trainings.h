@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include "learning/task.h"
+#include "learning/task_registry.h"
 
 namespace cdiff::planners {
 

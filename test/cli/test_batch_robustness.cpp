@@ -131,7 +131,7 @@ TEST_F(BatchRobustness, TablesAndFiguresAreMadeAgainFromTheFolderAlone) {
     bool found = false;
     for (const std::string& line : core::splitText(before.at("figures/figure_3.csv"), '\n')) {
       const auto cells = core::csvCells(line);
-      if (cells[0] != "E2E-CDiff" || cells[1] != quantity) continue;
+      if (cells[0] != "E2E-CDiff (method default)" || cells[1] != quantity) continue;
       found = true;
       EXPECT_EQ(cells[7], w["n"].dump());
       EXPECT_NEAR(std::stod(cells[10]), w["value"].get<double>(), 1e-9);

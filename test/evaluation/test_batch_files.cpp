@@ -48,12 +48,13 @@ TEST_F(BatchFiles, CsvHasARowPerPlannedRun) {
   const std::string csv = runsCsv(records_);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
   expectIn(
-      "id,scenario,ego_planner,cbv_planner,mode,guidance_profile,variant,seed,repetition,"
+      "id,scenario,ego_planner,cbv_planner,mode,method,guidance_profile,variant,seed,repetition,"
       "status,verdict,exit_code,attempts,wall_seconds,ego_completion_percent,ego_driving_score",
       csv);
   // The score's column is filled, the one before it (completion) and the one after it are empty.
   expectIn(
-      "\ns_none_1_1,s,pdm_lite,pdm_lite,naturalistic,none,,1,1,completed,passed,0,1,0.000,,10,,",
+      "\ns_none_1_1,s,pdm_lite,pdm_lite,naturalistic,default,none,,1,1,completed,passed,0,1,0.000,,"
+      "10,,",
       csv);
   expectIn("1,1,completed,struck,0,", csv);
   expectIn("1,1,completed,not_judged,0,", csv);

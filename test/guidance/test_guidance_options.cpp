@@ -162,6 +162,9 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
       {"ablation_speed", {"speed"}},
       {"naturalistic", {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance"}},
       {"none", {}},
+      {"paper_ablation_collision", {"collision_avoidance"}},
+      {"paper_ablation_drivable", {"drivable_area"}},
+      {"paper_ablation_speed", {"speed"}},
       {"paper_naturalistic", {"speed", "drivable_area", "collision_avoidance"}},
       {"paper_safety_critical", {"speed", "drivable_area", "collision_seeking"}},
       {"safety_critical", {"speed", "drivable_area", "collision_seeking", "traffic_avoidance"}}};
@@ -185,6 +188,26 @@ TEST(Profiles, ThePapersSeekAndAvoidByOneSetOfValues) {
             std::tie(risk.buffer, risk.kappa, risk.lambda, risk.sigma));
   for (const std::string name : {"speed", "drivable_area"})
     EXPECT_EQ(nat.find(name).weight, critical.find(name).weight) << name;
+}
+
+/// All values of an objective as YAML.
+std::string fieldsOf(WeightedObjective& entry) {
+  struct Fields {
+    WeightedObjective* entry;
+    void describe(core::OptionsVisitor& visitor) { entry->describe(visitor); }
+  };
+  return core::dumpOptions(Fields{&entry});
+}
+
+TEST(Profiles, ThePapersAblationsUseTheValuesOfItsNaturalistic) {
+  GuidanceOptions whole = loadProfile("paper_naturalistic");
+  for (const std::string name : {"collision", "drivable", "speed"}) {
+    GuidanceOptions alone = loadProfile("paper_ablation_" + name);
+    for (WeightedObjective& entry : alone.objectives) {
+      if (entry.weight == 0.0) continue;
+      EXPECT_EQ(fieldsOf(entry), fieldsOf(whole.find(entry.name))) << name;
+    }
+  }
 }
 
 TEST(Profiles, AblationsUseTheWeightsOfNaturalistic) {

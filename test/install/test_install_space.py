@@ -64,7 +64,7 @@ class InstallSpace(unittest.TestCase):
     def test_public_headers_compile_alone(self):
         include = self.prefix / "include"
         headers = sorted((SOURCE / "include/e2e_cdiff").rglob("*.h"))
-        self.assertGreater(len(headers), 20)
+        self.assertGreater(len(headers), 10)
         self.assertLess(len(headers), 60, "the public API is small; private headers lie beside their sources")
 
         def fault(header):

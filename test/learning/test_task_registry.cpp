@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "learning/task.h"
+#include "learning/task_registry.h"
 #include "learning/toy_task.h"
 
 namespace cdiff::learning {

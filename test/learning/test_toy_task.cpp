@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "learning/stopping_buffer.h"
 #include "learning/task.h"
+#include "learning/task_registry.h"
 #include "learning/toy_task.h"
 #include "learning/trainer.h"
 #include "learning/training_folder.h"

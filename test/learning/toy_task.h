@@ -11,6 +11,7 @@
 #include "learning/samples/dataset.h"
 #include "learning/samples/sample_order.h"
 #include "learning/task.h"
+#include "learning/task_registry.h"
 
 namespace cdiff::test {
 

@@ -82,7 +82,6 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "collisions",
                                           "contacts_at_fault",
                                           "contacts",
-                                          "distance_m",
                                           "collisions_per_km",
                                           "struck_cbvs",
                                           "struck_cbvs_per_km",
@@ -96,7 +95,8 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "struck_standing_per_km",
                                           "avoidable_contacts",
                                           "avoidable_contacts_per_km",
-                                          "off_road_percent"}));
+                                          "off_road_percent",
+                                          "distance_m"}));
   EXPECT_EQ(keysOf(summary["cbv"]), Keys({"count",
                                           "decisions",
                                           "off_road_rate_percent",

@@ -22,7 +22,8 @@ TEST(MeasureList, IsInTheDocumentationWordByWord) {
 TEST(MeasureList, HasASectionPerMeasure) {
   const std::string list = measureList();
   const std::string section =
-      "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; "
+      "### `cbv_collisions`\n\nCollisions of CBVs; count; of CBVs; no direction; count over the km "
+      "of CBVs; "
       "`/cbv/collisions`\n\n";
   EXPECT_NE(list.find(section), std::string::npos);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "learning/task.h"
+#include "learning/task_registry.h"
 #include "planners/diffusion/training/diffusion_stages.h"
 
 namespace cdiff::planners {
