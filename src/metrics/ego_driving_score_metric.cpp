@@ -111,45 +111,22 @@ constexpr MeasureDefinition kSpeedPercent = {
     false,
     kPlainMean,
 };
-constexpr MeasureDefinition kPedestrians = {
-    "ego_infraction_pedestrian_collisions",
-    "/ego/infractions/pedestrian_collisions",
-    "Collisions with pedestrians",
-    "",
-    Direction::kLowerIsBetter,
-    Subject::kEgo,
-    "Always absent: these sessions have no pedestrians.",
-    "",
-    3,
-    false,
-    kEvents,
-};
-constexpr MeasureDefinition kTimeouts = {
-    "ego_infraction_scenario_timeouts",
-    "/ego/infractions/scenario_timeouts",
-    "Scenario time-outs",
-    "",
-    Direction::kLowerIsBetter,
-    Subject::kEgo,
-    "Always absent: these sessions have no scripted scenarios.",
-    "",
-    3,
-    false,
-    kEvents,
-};
-constexpr MeasureDefinition kStaticCollisions = {
-    "ego_infraction_static_collisions",
-    "/ego/infractions/static_collisions",
-    "Collisions with static objects",
-    "",
-    Direction::kLowerIsBetter,
-    Subject::kEgo,
-    "Always absent: these sessions have no static objects to hit.",
-    "",
-    3,
-    false,
-    kEvents,
-};
+/// An infraction of CARLA's leaderboard that cannot happen here.
+constexpr MeasureDefinition absentInfraction(const char* name, const char* place, const char* label,
+                                             const char* why) {
+  return {name, place, label, "",     Direction::kLowerIsBetter, Subject::kEgo, why,
+          "",   3,     false, kEvents};
+}
+constexpr MeasureDefinition kPedestrians = absentInfraction(
+    "ego_infraction_pedestrian_collisions", "/ego/infractions/pedestrian_collisions",
+    "Collisions with pedestrians", "Always absent: these sessions have no pedestrians.");
+constexpr MeasureDefinition kTimeouts = absentInfraction(
+    "ego_infraction_scenario_timeouts", "/ego/infractions/scenario_timeouts", "Scenario time-outs",
+    "Always absent: these sessions have no scripted scenarios.");
+constexpr MeasureDefinition kStaticCollisions =
+    absentInfraction("ego_infraction_static_collisions", "/ego/infractions/static_collisions",
+                     "Collisions with static objects",
+                     "Always absent: these sessions have no static objects to hit.");
 constexpr MeasureDefinition kVehicleCollisions = {
     "ego_infraction_vehicle_collisions",
     "/ego/infractions/vehicle_collisions",
@@ -164,19 +141,10 @@ constexpr MeasureDefinition kVehicleCollisions = {
     false,
     kEvents,
 };
-constexpr MeasureDefinition kYieldsFailed = {
-    "ego_infraction_yields_failed",
-    "/ego/infractions/yields_failed",
-    "Failures to yield to emergency vehicles",
-    "",
-    Direction::kLowerIsBetter,
-    Subject::kEgo,
-    "Always absent: these sessions have no emergency vehicles.",
-    "",
-    3,
-    false,
-    kEvents,
-};
+constexpr MeasureDefinition kYieldsFailed =
+    absentInfraction("ego_infraction_yields_failed", "/ego/infractions/yields_failed",
+                     "Failures to yield to emergency vehicles",
+                     "Always absent: these sessions have no emergency vehicles.");
 
 constexpr MeasureDefinition kScoreUnderAttack = {
     "ego_driving_score_under_attack",

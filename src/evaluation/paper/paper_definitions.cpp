@@ -33,15 +33,6 @@ TableColumn offRoadRate() {
       {}};
 }
 
-TableColumn collisionsPerKilometre() {
-  return {"CPK",
-          "1/km",
-          known::kCollisionsPerKm.place,
-          known::kCbvDistance.place,
-          known::kRiftCollisionsPerKm.place,
-          {}};
-}
-
 std::vector<TableColumn> realism() {
   return {
       {"S-SW", "", known::kSpeedShapiroWilk.place, "", known::kRiftSpeedShapiroWilk.place, {}},
@@ -267,61 +258,6 @@ TableDefinition table6() {
 
 std::vector<TableDefinition> paperTables() {
   return {table1(), table2(), table3(), table4(), table5(), table6()};
-}
-
-TableDefinition collisionFigure() {
-  TableDefinition table = {
-      "figure_4",
-      "Figure 4. Collisions of CBVs per km without and with collision-seeking "
-      "guidance",
-      "The paper prints the values of PDM-Lite alone, in its text. What the two columns of a "
-      "method differ in besides the objectives stands in the settings of its runs.",
-      "Ego planner",
-      {},
-      {}};
-  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
-    for (const char* mode : {kNaturalistic, kSafetyCritical}) {
-      TableColumn column = collisionsPerKilometre();
-      column.name = std::string("E2E-CDiff") + (mode == kSafetyCritical ? " w/ coll" : "") +
-                    " (method " + own.method + ")";
-      column.levels = cbvLevels(own, mode);
-      table.columns.push_back(column);
-    }
-  }
-  for (const PaperSystem& ego : paperEgoPlanners()) {
-    if (ego.planner() == paper::kDiffusion.planner()) continue;
-    table.rows.push_back({ego.name, egoLevel(ego), {}, ""});
-  }
-  table.rows.front().paper = {{5.68, {}}, {20.77, {}}, {5.68, {}}, {20.77, {}}};
-  return table;
-}
-
-TableDefinition latencyFigure() {
-  const std::optional<double> paper[] = {3.96, 6.46, 734.03, 379.50, 856.66};
-  TableDefinition table = {
-      "figure_8",
-      "Figure 8. Latency of ego planners per decision",
-      "Wall-clock time of a decision (as CBV planner: of all CBVs together), the image being there "
-      "already. The paper prints means; they stand beside "
-      "our medians. A seed's value is the mean over its runs, weighted "
-      "by decisions.",
-      "Ego planner",
-      {{"p50", "ms", "/planner_latency_ms/{}/p50", "/planner_latency_ms/{}/n", "", {}},
-       {"p95", "ms", "/planner_latency_ms/{}/p95", "/planner_latency_ms/{}/n", "", {}}},
-      {}};
-  for (std::size_t i = 0; i < paperEgoPlanners().size(); ++i) {
-    const PaperSystem& ego = paperEgoPlanners()[i];
-    const auto printed = paper[std::min(i, std::size(paper) - 1)];
-    Factors levels = egoLevel(ego);
-    if (ego.planner() == paper::kDiffusion.planner()) levels["method"] = ego.method;
-    table.rows.push_back({ego.name, levels, {{printed, {}}}, "ego:" + std::string(ego.planner())});
-  }
-  for (const PaperSystem& cbv : paperExecutions()) {
-    const Factors levels = {{"cbv_planner", cbv.planner()}, {"method", cbv.method}};
-    table.rows.push_back(
-        {"CBV: " + std::string(cbv.name), levels, {}, "cbv:" + std::string(cbv.planner())});
-  }
-  return table;
 }
 
 }  // namespace cdiff::evaluation

@@ -22,8 +22,6 @@ constexpr double kRollbackSpeed = 0.5;      // [m/s]
 constexpr double kLaneChangeHorizon = 1.1;  // of boxes near a lane change [s]
 constexpr double kEndZone = 5.0;            // of the route [m]
 constexpr double kCreepSpeed = 1.0;         // in the end zone [m/s]
-constexpr double kLightGap = 6.0;           // s0 before a stop line [m]
-constexpr double kLightHeadway = 0.1;       // T before a stop line [s]
 constexpr double kLeastBraking = 1.0;       // of an even style that waits [m/s^2]
 constexpr double kHardestBraking = 8.0;     // of an even style [m/s^2]
 
@@ -63,57 +61,6 @@ void requireComplete(const planning::PlanningTask& task) {
   if (task.route == nullptr || task.route->empty()) {
     throw std::invalid_argument("PdmLite: vehicle '" + task.vehicle->id + "' has no route");
   }
-}
-
-/// PDM-Lite's constants, or those of a vehicle with an even style.
-IdmParameters parametersOf(const planning::DrivingStyle& style) {
-  IdmParameters parameters;
-  if (!style.even()) return parameters;
-  parameters.acceleration = style.acceleration;
-  parameters.slow_deceleration = style.deceleration;
-  parameters.fast_deceleration = style.deceleration;
-  return parameters;
-}
-
-/// Target on a free road: the desired speed, or for an even style IDM's approach to it, slowing
-/// down by no more than b.
-double freeSpeed(const planning::PlanningTask& task, double desired) {
-  if (!task.style.even()) return desired;
-  const double speed = task.vehicle->state.speed;
-  const IdmParameters parameters = parametersOf(task.style);
-  IdmObstacle none;
-  none.distance = 1e9;
-  return std::max(idmSpeed(speed, desired, none, parameters),
-                  speed - task.style.deceleration * parameters.time_bound);
-}
-
-/// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
-/// freeSpeed alone, for IDM's own term planning::knows no bound.
-double desiredBehind(const planning::PlanningTask& task, double desired) {
-  return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
-}
-
-/// IDM speed behind a leader or before a light.
-double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
-                 double desired) {
-  const traffic::Vehicle& self = *task.vehicle;
-  IdmObstacle obstacle;
-  obstacle.minimum_gap = task.style.minimum_gap;
-  obstacle.time_headway = task.style.time_headway;
-  obstacle.distance = (leader.state.position - self.state.position).norm();
-  obstacle.speed = leader.state.speed;
-  obstacle.length = leader.dimensions.length;
-  return idmSpeed(self.state.speed, desiredBehind(task, desired), obstacle,
-                  parametersOf(task.style));
-}
-
-double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance) {
-  IdmObstacle obstacle;
-  obstacle.distance = distance;
-  obstacle.minimum_gap = kLightGap;
-  obstacle.time_headway = kLightHeadway;
-  return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
-                  parametersOf(task.style));
 }
 
 }  // namespace

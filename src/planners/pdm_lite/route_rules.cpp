@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
+#include "planners/pdm_lite/forecasts.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
@@ -97,6 +98,61 @@ std::optional<double> distanceToRedLight(const map::Route& route, double arc_len
     if (!isGreenOrOff(signalLetter(snapshot, signal))) return signal.arc_length - arc_length;
   }
   return std::nullopt;
+}
+
+namespace {
+
+constexpr double kLightGap = 6.0;      // s0 before a stop line [m]
+constexpr double kLightHeadway = 0.1;  // T before a stop line [s]
+
+/// PDM-Lite's constants, or those of a vehicle with an even style.
+IdmParameters parametersOf(const planning::DrivingStyle& style) {
+  IdmParameters parameters;
+  if (!style.even()) return parameters;
+  parameters.acceleration = style.acceleration;
+  parameters.slow_deceleration = style.deceleration;
+  parameters.fast_deceleration = style.deceleration;
+  return parameters;
+}
+
+/// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
+/// freeSpeed alone, for IDM's own term knows no bound.
+double desiredBehind(const planning::PlanningTask& task, double desired) {
+  return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
+}
+
+}  // namespace
+
+double freeSpeed(const planning::PlanningTask& task, double desired) {
+  if (!task.style.even()) return desired;
+  const double speed = task.vehicle->state.speed;
+  const IdmParameters parameters = parametersOf(task.style);
+  IdmObstacle none;
+  none.distance = 1e9;
+  return std::max(idmSpeed(speed, desired, none, parameters),
+                  speed - task.style.deceleration * parameters.time_bound);
+}
+
+double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
+                 double desired) {
+  const traffic::Vehicle& self = *task.vehicle;
+  IdmObstacle obstacle;
+  obstacle.minimum_gap = task.style.minimum_gap;
+  obstacle.time_headway = task.style.time_headway;
+  obstacle.distance = (leader.state.position - self.state.position).norm();
+  obstacle.speed = leader.state.speed;
+  obstacle.length = leader.dimensions.length;
+  return idmSpeed(self.state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
+}
+
+double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance) {
+  IdmObstacle obstacle;
+  obstacle.distance = distance;
+  obstacle.minimum_gap = kLightGap;
+  obstacle.time_headway = kLightHeadway;
+  return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
+                  parametersOf(task.style));
 }
 
 }  // namespace cdiff::planners

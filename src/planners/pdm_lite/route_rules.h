@@ -5,13 +5,14 @@
 #include <optional>
 
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 
 namespace cdiff::planners {
 
 // PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
-// speed, lane change near, who leads, who trails, the next light.
+// speed, lane change near, who leads, who trails, the next light; and its IDM speeds.
 
 /// min(share x limit, task's target speed, limit), capped where a junction lies within 30 m [m/s].
 /// The limit is the lowest one within the distance of braking at 4 m/s^2: SUMO's lanes inside
@@ -34,5 +35,16 @@ bool isTrailing(const map::Route& route, double arc_length, const traffic::Vehic
 /// ('o', 'O') [m].
 std::optional<double> distanceToRedLight(const map::Route& route, double arc_length,
                                          const traffic::TrafficSnapshot& snapshot);
+
+/// Target on a free road [m/s]: the desired speed, or for an even style IDM's approach to it,
+/// slowing down by no more than b.
+double freeSpeed(const planning::PlanningTask& task, double desired);
+
+/// IDM speed behind a leader [m/s].
+double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
+                 double desired);
+
+/// IDM speed before a red light `distance` [m] ahead [m/s].
+double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance);
 
 }  // namespace cdiff::planners

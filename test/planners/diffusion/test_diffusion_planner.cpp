@@ -31,7 +31,7 @@ TEST_F(DiffusionPlannerTest, PlansAWholeRolloutForEveryVehicle) {
     ASSERT_EQ(planned.rollout.size(), 32U);
     EXPECT_EQ(planned.rollout.front().action, planned.action);
     ASSERT_EQ(planned.guidance.objectives.size(), 4U);
-    // The random state head planning::knows nothing of the dynamics: its places are meters off.
+    // The random state head knows nothing of the dynamics: its places are meters off.
     EXPECT_GT(planned.state_mismatch, 0.1);
   }
   EXPECT_FALSE(actions[0].action == actions[1].action);
