@@ -92,6 +92,7 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("sampler_effect"), "").size(), 10U * 3U * 3U);
   EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 5U * 18U);
   EXPECT_EQ(planRuns(loadMatrix("main_rows"), "").size(), 10U * 5U * 5U);
+  EXPECT_EQ(planRuns(loadMatrix("default_choice"), "").size(), 10U * 3U * 4U);
   EXPECT_EQ(planRuns(loadMatrix("cbv_choice"), "").size(), 10U * 3U * 2U * 3U);
   EXPECT_EQ(planRuns(loadMatrix("attack_effect"), "").size(), 10U * 5U * 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("realism_matched"), "").size(), 10U * 4U * 2U);
