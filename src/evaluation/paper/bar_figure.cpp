@@ -48,14 +48,24 @@ Markup interval(const page::ChartAxes& axes, double x, const Statistics& statist
   return core::element("path", {{"class", "error"}, {"d", data}});
 }
 
-/// A row's name, and why it has no bars.
+/// Whether the rows' names have room below the bars, in two lines that take turns.
+bool namesFit(const Table& table) {
+  const double room = 2.0 * page::kChartWidth / static_cast<double>(table.definition.rows.size());
+  return std::all_of(table.definition.rows.begin(), table.definition.rows.end(),
+                     [&](const TableRow& row) {
+                       return 2.0 * kHalfLetter * static_cast<double>(row.name.size()) <= room;
+                     });
+}
+
+/// A row's name, or its number among the notes where names have no room; and why it has no bars.
 Markup groupText(const Table& table, std::size_t row, const page::ChartAxes& axes) {
   const auto& cells = table.cells[row];
   const double middle = axes.x(static_cast<double>(row) + 0.5);
   const bool empty = std::none_of(cells.begin(), cells.end(),
                                   [](const TableCell& cell) { return cell.seeds.mean; });
   const double lower = row % 2 == 0 ? 0.0 : 14.0;  // so that names do not run into each other
-  const std::string& name = table.definition.rows[row].name;
+  const std::string name =
+      namesFit(table) ? table.definition.rows[row].name : std::to_string(row + 1);
   const double half =
       std::min(kHalfLetter * static_cast<double>(name.size()), 0.5 * page::kChartWidth);
   Markup svg = page::chartText("tick middle", std::clamp(middle, half, page::kChartWidth - half),
@@ -89,7 +99,8 @@ Markup groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes)
 std::vector<std::string> notesOf(const Table& table) {
   std::vector<std::string> notes;
   for (std::size_t row = 0; row < table.cells.size(); ++row) {
-    std::string text = table.definition.rows[row].name + ": ";
+    std::string text = (namesFit(table) ? "" : std::to_string(row + 1) + ". ") +
+                       table.definition.rows[row].name + ": ";
     for (std::size_t i = 0; i < table.cells[row].size(); ++i) {
       const TableCell& cell = table.cells[row][i];
       const std::string paper = paperText(cell.paper);
@@ -99,6 +110,7 @@ std::vector<std::string> notesOf(const Table& table) {
     notes.push_back(text);
   }
   notes.push_back(table.definition.note);
+  for (const std::string& line : settingsLines(table)) notes.push_back(line);
   return notes;
 }
 
@@ -112,7 +124,7 @@ Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>&
   figure.sheet.title = definition.title + " [" + definition.columns.front().unit + "]";
   for (std::size_t i = 0; i < definition.columns.size(); ++i) {
     figure.sheet.legend.emplace_back(page::systemStyle(i),
-                                     definition.columns[i].name + ", 95 % interval over seeds");
+                                     definition.columns[i].name + ", with its 95 % interval");
   }
   figure.sheet.legend.emplace_back(kPaperStyle, "as the paper prints it");
   const page::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));

@@ -59,17 +59,21 @@ std::set<int> elevationsOf(const std::vector<Eigen::Vector3d>& points, const Map
 }
 
 /// Drivable area: the levels that the ego route touches, and faintly below them the others in the
-/// picture.
+/// picture; where the picture does not show the route, all alike.
 Markup drivableArea(const session::SessionSetup& setup, const MapCanvas& canvas) {
   const map::DrivableArea& area = setup.drivableArea();
   const auto& route = setup.egoRoute().path().points();
-  const std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
-  std::set<int> elevations;
-  for (const map::Lane& lane : setup.network().lanes()) {
-    if (area.levelCount() > 1) elevations.merge(elevationsOf(lane.centerline.points(), canvas));
+  std::vector<std::string> own = levelsAt(elevationsOf(route, canvas), area, canvas);
+  std::vector<std::string> levels = own;
+  if (own.empty() || area.levelCount() > 1) {
+    std::set<int> elevations;
+    for (const map::Lane& lane : setup.network().lanes())
+      elevations.merge(elevationsOf(lane.centerline.points(), canvas));
+    levels = levelsAt(elevations, area, canvas);
   }
+  if (own.empty()) own = levels;
   Markup svg;
-  for (const std::string& level : levelsAt(elevations, area, canvas)) {
+  for (const std::string& level : levels) {
     if (std::find(own.begin(), own.end(), level) == own.end()) svg += svgPath("road other", level);
   }
   for (const std::string& level : own) svg += svgPath("road", level);
