@@ -25,16 +25,16 @@ struct BagConnection {
   std::string md5sum;  ///< MD5 of the type's definition
 };
 
-/// One message as the bag holds it; valid until the reader goes on.
+/// One message as the bag holds it, not yet decoded; valid until the next call of BagReader::next.
 struct BagMessage {
   const BagConnection* connection = nullptr;
-  std::string_view bytes;
+  std::string_view bytes;  ///< serialized content
 };
 
-/// The messages of a bag (ROS bag format 2.0) in the order of the file, read chunk by chunk without
-/// the bag's index. A bag whose recording was cut off, or of which bytes are lost, gives what is
-/// whole and names the rest. rosbag's C++ library refuses such bags, and its reindexing exists in
-/// Python only.
+/// Reads the messages of a bag (ROS bag format 2.0) in the order of the file, chunk by chunk,
+/// without the bag's index: used by RecordedSession and for drives that others recorded. Of a bag
+/// that was cut off or damaged it yields the intact messages and says what is lost (damage()),
+/// whereas rosbag's C++ library refuses such bags and can reindex them in Python only.
 class BagReader {
  public:
   /// Throws InputError naming the file when it cannot be read, is empty, is no bag of format 2.0 or
@@ -46,12 +46,11 @@ class BagReader {
 
   /// The next message; false after the last.
   bool next(BagMessage& message);
-  /// Back to the first message. Damage that was found is not named again.
+  /// Goes back to the first message. Damage already found is not listed twice.
   void rewind();
-  /// What is known of the bag's topics: all of them in a whole bag.
+  /// Connections found so far: all of the bag's where it is intact.
   std::vector<BagConnection> connections() const;
-  /// What of the file cannot be read, one sentence each in the order found; complete after the last
-  /// message.
+  /// What cannot be read, one sentence each in the order found; complete after the last message.
   const std::vector<std::string>& damage() const { return damage_; }
 
  private:
@@ -72,17 +71,18 @@ class BagReader {
   std::unique_ptr<Bytes> bytes_;
   std::vector<Chunk> chunks_;
   std::map<std::uint32_t, BagConnection> connections_;
-  std::set<std::uint32_t> unknown_;  ///< connections without a topic
+  std::set<std::uint32_t> unknown_;  ///< ids of connections whose record is lost
   std::vector<std::string> damage_;
   bool has_index_ = false;
   std::uint64_t index_position_ = 0;
   std::uint64_t chunks_promised_ = 0;
   std::size_t next_chunk_ = 0;
-  std::string text_;          ///< records of the present chunk
-  std::uint64_t cursor_ = 0;  ///< in it
+  std::string text_;          ///< decompressed records of the present chunk
+  std::uint64_t cursor_ = 0;  ///< offset in text_ of the next record
 };
 
-/// A message of a known type. Throws InputError when the bytes are none.
+/// The message as a value of a known type. Throws InputError naming the topic when the bytes are no
+/// such message.
 template <class Message>
 boost::shared_ptr<const Message> decode(const BagMessage& message) {
   auto decoded = boost::make_shared<Message>();

@@ -24,13 +24,13 @@ inline constexpr const char* kBagSource = "bag";
 /// Which images of a recording are read.
 enum class RecordedImages {
   kSeen,  ///< those that planners saw; a decision waits for them as in the session
-  kAll    ///< everything that was recorded; missing answers are not reported
+  kAll    ///< all that were recorded; missing ones are not reported
 };
 
-/// A session read from its bag, tick by tick, as the nodes saw it: set-up from SessionInfo, then
-/// each snapshot with the answers to it. What of the recording is missing or cannot be read is
-/// named among the faults of the snapshots that follow, and the session continues with what could
-/// be read.
+/// A session read from its bag tick by tick, as the nodes saw it: the set-up from SessionInfo, then
+/// each snapshot with the answers to it. Read by the replay (`cdiff replay`, replay_node) and by
+/// whatever turns bags into samples or courses. Parts that are missing or damaged are reported
+/// among the faults of the next snapshot, and reading continues with what is left.
 class RecordedSession {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
@@ -42,18 +42,19 @@ class RecordedSession {
 
   const ::e2e_cdiff::SessionInfo& info() const { return *info_; }
   const session::SessionSetup& setup() const { return *setup_; }
-  /// The set-up to keep; call it when no further snapshot is wanted, and nothing after it.
+  /// Hands the set-up over to the caller; call nothing else afterwards.
   std::unique_ptr<session::SessionSetup> takeSetup() { return std::move(setup_); }
-  /// Who took part; of a session that one process drove, the nodes that would have.
+  /// The nodes that took part; for a session that one process drove, those of the same session as
+  /// a node graph.
   const SessionGraph& graph() const { return graph_; }
 
-  /// The next snapshot, with what was found damaged since the last one among its faults. The last
-  /// one has a final status: a recording that ends before that of its session ends as interrupted.
-  /// nullptr after that, and at once when the bag holds no usable snapshot.
+  /// The next snapshot, among whose faults is what was found damaged since the one before. The last
+  /// one has a final status, `interrupted` where the recording was cut off. nullptr after the last,
+  /// and at once when the bag holds no usable snapshot.
   Snapshot next();
   /// Answers to the snapshot that `next` gave; older ones are forgotten.
   const TickAnswers& answers() const { return answers_; }
-  /// All that was found damaged or missing so far, one sentence each. Empty for a whole recording.
+  /// What was found damaged or missing so far, one sentence each; empty for an intact recording.
   const std::vector<std::string>& findings() const { return findings_; }
 
  private:
@@ -84,11 +85,11 @@ class RecordedSession {
   std::deque<Snapshot> snapshots_;
   Snapshot last_;                        ///< handed out
   std::optional<std::uint64_t> newest_;  ///< largest tick read
-  std::size_t newest_hash_ = 0;          ///< of its bytes
+  std::size_t newest_hash_ = 0;          ///< hash of that snapshot's bytes
   std::string unanswered_;               ///< what the last decision lacked
   bool session_over_ = false;            ///< a second session starts in the bag
-  std::size_t damage_copied_ = 0;        ///< of the reader's
-  std::size_t handed_out_ = 0;           ///< findings
+  std::size_t damage_copied_ = 0;        ///< entries of reader_.damage() copied to findings_
+  std::size_t handed_out_ = 0;           ///< findings_ that a snapshot has already carried
   std::vector<std::string> findings_;
 };
 

@@ -18,27 +18,30 @@
 
 namespace cdiff::ros {
 
-/// The decisions of a session that may go on without an answer: which answers have arrived, how
-/// late, and what drove each vehicle meanwhile. A decision is settled once nothing more of it is
-/// awaited.
+/// Keeps account, for the traffic simulator node, of the decisions of a session that does not wait
+/// for late answers (paced by the wall clock, or with an external ego): which answers have arrived,
+/// how late, and what drove each vehicle meanwhile. A decision is settled once nothing more is
+/// awaited for it: every answer is here, its planner has answered a later decision, or 10 s of
+/// simulated time have passed. Each settled decision gives one DecisionRecord message.
 class DecisionBook {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
-  /// Stands for the selection where an answer is named by its slot.
+  /// "Slot" under which the arrival of the selection is noted.
   static constexpr int kSelection = -2;
 
   explicit DecisionBook(const session::ScenarioOptions& options);
 
   /// A decision has been published.
   void open(const Snapshot& snapshot) { open_.push_back({snapshot, {}, {}}); }
-  /// An answer came for `slot` (kEgoSlot, kSelection); the first of a tick counts. `now`:
-  /// wall-clock time [s], of which differences count alone.
+  /// An answer to `tick` has arrived for `slot` (of a CBV, kEgoSlot, or kSelection); only the first
+  /// one counts. `now`: time of any steady clock [s].
   void arrived(int slot, std::uint64_t tick, double now) {
     arrivals_.try_emplace({tick, slot}, now);
   }
-  /// A tick, decision or not, went by with these actions.
+  /// A tick, with or without a decision, has ended in which these actions were applied.
   void ended(std::uint64_t tick, const std::vector<AppliedAction>& applied, double now);
-  /// The oldest decisions of which nothing more is awaited at `tick`, or all; each comes out once.
+  /// Records of the decisions, oldest first, that are settled at `tick` (with `all`: of every open
+  /// one), which are then closed.
   std::vector<::e2e_cdiff::DecisionRecord::ConstPtr> settle(const TickAnswers& answers,
                                                             std::uint64_t tick, bool all);
   /// Tick of the oldest decision that is not settled.
@@ -58,15 +61,15 @@ class DecisionBook {
             const TickAnswers& answers) const;
   double lateness(const Decision& decision, int slot, std::uint64_t tick) const;
   void count(const ::e2e_cdiff::DecisionRecord& record);
-  void forget();
+  void forget();  // drops what was noted about settled decisions
 
   std::string ego_planner_;
   std::string cbv_planner_;
   std::uint64_t ticks_per_decision_;
-  std::uint64_t give_up_after_;  ///< ticks
+  std::uint64_t give_up_after_;  ///< ticks after which a silent planner's answer is given up
   std::deque<Decision> open_;
-  std::map<std::pair<std::uint64_t, int>, double> arrivals_;  ///< by tick and slot
-  std::set<std::pair<std::uint64_t, int>> drove_;             ///< tick of the plan and slot
+  std::map<std::pair<std::uint64_t, int>, double> arrivals_;  ///< [s], by tick and slot
+  std::set<std::pair<std::uint64_t, int>> drove_;             ///< (tick, slot) of plans that drove
   std::uint64_t late_ = 0;
 };
 

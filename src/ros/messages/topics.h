@@ -4,21 +4,22 @@
 
 #include <set>
 #include <string>
+#include <typeindex>
 #include <vector>
 
 #include "ros/messages/channels.h"
 
 namespace cdiff::ros {
 
-// The topics of a session, and who publishes and hears them: what the table of channels says of
-// one session.
+// The topics of one session, who publishes them and who listens: the table of channels
+// (channels.h) applied to a session's nodes and slots (SessionGraph).
 
-/// One topic: a channel and, where it has one topic per slot, the slot.
+/// One topic: a channel and, where the channel has one topic per slot, the slot.
 struct Topic {
   Topic(ChannelId channel_id, int of_slot = kEgoSlot) : id(channel_id), slot(of_slot) {}  // NOLINT
 
   ChannelId id;
-  int slot;  ///< kEgoSlot unless the channel is of slots
+  int slot;  ///< kEgoSlot unless the channel has a topic per slot
 
   const Channel& row() const { return channel(id); }
   /// Name relative to the session's namespace; absolute names start with a slash.
@@ -29,12 +30,13 @@ struct Topic {
   }
 };
 
-/// Topics of a vehicle; `slot`: kEgoSlot for the ego.
+/// Topics of the vehicle in a slot: its commands, its images and their intrinsics. kEgoSlot: the
+/// ego's.
 Topic controlOf(int slot);
 Topic imageOf(int slot);
 Topic cameraInfoOf(int slot);
 
-/// The topics of a channel in a session with so many slots.
+/// The topics of a channel in a session with `max_cbv` slots.
 std::vector<Topic> topicsOf(const Channel& channel, int max_cbv);
 
 std::vector<std::string> namesOf(const std::vector<Topic>& topics);
@@ -43,37 +45,35 @@ std::vector<std::string> namesOf(const std::vector<Topic>& topics);
 /// first tick.
 std::vector<std::string> listeners(const Topic& topic, const SessionGraph& graph);
 
-/// The nodes whose messages count on a topic, without namespace: its publisher, and the traffic
-/// simulator where a replay publishes in its name. Empty where whoever comes first counts (the
-/// control of an external ego).
+/// The nodes, without namespace, whose messages are accepted on a topic: its publisher, and the
+/// traffic simulator, under whose name a replay publishes. Empty where the first sender is
+/// accepted, whoever it is (the control of an external ego).
 std::vector<std::string> publishersOf(const Topic& topic, const SessionGraph& graph);
 
-/// Whether a replay publishes a channel in place of its publisher: whatever the other nodes
-/// answered, as far as planners were given it.
+/// Whether a replay publishes a channel in place of its publisher: the answers of other nodes, and
+/// the images that planners were given.
 bool replayed(const Channel& channel, const SessionGraph& graph);
 
-/// Who answers on a topic, for messages to people: "cbv_planner_node" or the user's own ego
-/// planner.
+/// Name for error texts of the node that answers on a topic: "cbv_planner_node", or "the external
+/// ego planner".
 std::string answererOf(const Topic& topic, const SessionGraph& graph);
 
-/// Whether a node of that part listens to a channel in such a session.
+/// Whether the node that plays a part in the session listens to a channel.
 bool listensTo(const Channel& channel, Party party, const SessionGraph& graph);
 
-/// Channels that a decision needs before it is complete for a node of that part.
+/// Channels whose messages the node that plays a part waits for at a decision.
 using ChannelSet = std::set<ChannelId>;
 ChannelSet awaitedBy(Party party, const SessionGraph& graph);
 
-/// Why a message cannot be what its topic holds (another slot than the topic's, a selection that
-/// names more CBVs than slots or one twice); empty when it can.
+/// Why a message must be refused on a topic (it names another slot than the topic's, or is a
+/// selection with more CBVs than slots or with one twice); empty when it is accepted.
 std::string unusable(const AnyMessage& message, const Topic& topic, const SessionGraph& graph);
 
-/// Throws std::logic_error unless a channel's messages are of the type.
+/// Throws std::logic_error unless the messages of a channel have this type.
 void requireType(ChannelId id, const std::type_index& type);
 
-// The table of channels as documentation shows it.
-
-/// A Markdown table, one line a channel, with a line break at the end. Absolute topic names are
-/// those that a session without a namespace has.
+/// The table of channels for docs/ros_api.md: Markdown, one line a channel, with a line break at
+/// the end. Topic names are those of a session without a namespace.
 std::string channelTable();
 
 }  // namespace cdiff::ros
