@@ -17,40 +17,44 @@ struct PlannerLatency {
   double milliseconds = 0.0;
 };
 
-/// How the answer to a decision fared in a session that goes on without one that is late: the
-/// action of one vehicle, or the selection.
+/// When the answer to one decision arrived in a session that does not wait for late answers
+/// (real_time_factor > 0), and what stood in for it. The answer is the action of one vehicle, or
+/// the selection of CBV identification.
 struct AnswerTiming {
-  /// What drove the vehicle at the decision's tick in place of an answer that was not there.
+  /// What drove the vehicle at the decision's tick in place of an answer that had not arrived:
+  /// nothing was needed, the last plan's next action, full braking, or not yet taken over.
   enum class Instead { kNothing, kPlan, kFullBrake, kNotDriven };
 
   std::string planner;    ///< "ego:pdm_lite", "cbv:diffusion", "cbv_identification"
-  bool came = true;       ///< whether it came at all
-  double lateness = 0.0;  ///< wall time from the end of its tick until it came [s]; 0 in time
+  bool came = true;       ///< whether it arrived at all
+  double lateness = 0.0;  ///< wall time from the end of its tick to its arrival [s]; 0: in time
   Instead instead = Instead::kNothing;
 
   bool punctual() const { return came && lateness <= 0.0; }
 };
 
-/// What the vehicle of a slot saw at a decision.
+/// The front-view image that a vehicle's planner was given at a decision.
 struct SlotImage {
-  int slot = traffic::kEgoSlot;
+  int slot = traffic::kEgoSlot;  ///< slot of a CBV; kEgoSlot for the ego
   traffic::CameraImage image;
 };
 
-/// One tick. Selection, actions and latencies are there at decision ticks only. Where late answers
-/// are replaced, they are those of the decision, whenever they came: actions that drove, latencies
-/// of all.
+/// Everything that observers are given of one tick; the pointers hold during the call alone.
+/// Selection, actions, images and latencies are set at decision ticks only. Where late answers are
+/// replaced, `actions` holds the answers that drove a vehicle, however late, and `latencies` those
+/// of all answers.
 struct TickRecord {
   const traffic::TrafficSnapshot* snapshot = nullptr;
   const cbv::CbvSelection* selection = nullptr;                   ///< nullptr between decisions
   const std::vector<planning::PlannedAction>* actions = nullptr;  ///< ego first, then CBVs by slot
-  const std::vector<SlotImage>* images = nullptr;  ///< images of vehicles whose planner sees
-  std::vector<PlannerLatency> latencies;           ///< latencies of planners that report theirs
+  const std::vector<SlotImage>* images = nullptr;  ///< of vehicles whose planner uses images
+  std::vector<PlannerLatency> latencies;           ///< of planners that report theirs
   std::vector<AnswerTiming> timings;               ///< empty in sessions that wait for every answer
 };
 
-/// What a session shows to everything that records or measures it, tick by tick; the same whether
-/// one process or the node graph drives.
+/// Interface of everything that records or measures a session (metrics, result writer, video,
+/// progress line). session::ClosedLoop calls it in one process, the observer nodes and the replay
+/// of a bag elsewhere, with the same content.
 class SessionObserver {
  public:
   virtual ~SessionObserver() = default;

@@ -10,18 +10,19 @@
 
 namespace cdiff::simulation {
 
-/// A vehicle that we move ourselves: where it is after the coming step.
+/// Where a driven vehicle (ego or CBV, moved by our own dynamics) is to be after the coming step.
 struct DrivenVehicle {
   std::string id;
   traffic::VehicleState state;  ///< at the end of the step
-  /// Route it follows, so that its SUMO route reaches beyond the next junction.
+  /// Route that it follows; its SUMO route is kept reaching beyond the next junction on it.
   const map::Route* route = nullptr;
 };
 
-/// A vehicle as the simulator reports it.
+/// A vehicle as the simulator reports it after a step (map frame, SI units, position = center of
+/// the box).
 struct SimulatedVehicle {
   std::string id;
-  traffic::VehicleState state;  ///< for a vehicle that we drive only SUMO's echo
+  traffic::VehicleState state;  ///< of a driven vehicle: what was given to step()
   traffic::VehicleDimensions dimensions;
   double acceleration = 0.0;  ///< [m/s^2]
   std::string lane_id;        ///< empty off the road
@@ -30,40 +31,42 @@ struct SimulatedVehicle {
 /// The vehicle with this id among vehicles in order of their ids, or nullptr.
 const SimulatedVehicle* findVehicle(const std::vector<SimulatedVehicle>& vehicles,
                                     const std::string& id);
-/// A background vehicle of a snapshot; the simulator knows no yaw rate.
+/// The same vehicle as a snapshot holds it, in the role of a background vehicle; its yaw rate is 0,
+/// for the simulator reports none.
 traffic::Vehicle asBackground(const SimulatedVehicle& simulated);
 
-/// Background traffic as the rest of the system sees it: SI units, map frame, box centers, headings
-/// counter-clockwise. SUMO's own conventions stay inside simulation/.
-/// One owner thread; not copyable. Every method throws core::SimulatorError when the simulator
-/// died, froze or refused.
+/// Interface of the background traffic, implemented by SumoSimulator and called by the world of a
+/// session (session/world.h): map frame, SI units, positions of box centers, headings
+/// counter-clockwise. SUMO's own conventions stay inside simulation/. Owned by one thread; not
+/// copyable. Every method throws core::SimulatorError when the simulator has died, is frozen or
+/// refuses the call.
 class TrafficSimulator {
  public:
   virtual ~TrafficSimulator() = default;
 
-  /// Adds a vehicle that we drive from the beginning (the ego). It exists after the next step.
+  /// Adds a vehicle that we drive from the start (the ego). It exists after the next step.
   virtual void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
                          const DrivenVehicle& start) = 0;
   /// Takes a background vehicle over: from the next step on it must be in `driven`.
   virtual void takeOver(const std::string& id) = 0;
-  /// Gives a vehicle back to the simulator, to drive on from where it is along its route. Removed
-  /// where it is on no lane of its direction (returns false).
+  /// Gives a vehicle back to the simulator, which drives it on from where it is along its route.
+  /// Returns false, and removes the vehicle, when it is on no lane of its direction.
   virtual bool release(const DrivenVehicle& vehicle) = 0;
   /// Adds a background vehicle that the simulator drives along `edges`, departing now with its
-  /// front bumper at `depart_position` [m] of the first edge and `depart_speed` [m/s]. Answers
+  /// front bumper at `depart_position` [m] of the first edge and `depart_speed` [m/s]. Returns
   /// false when it is refused; one that finds no room in the next step is dropped.
   virtual bool addBackground(const std::string& id, const std::vector<std::string>& edges,
                              double depart_position, int depart_lane, double depart_speed,
                              const traffic::VehicleDimensions& dimensions) = 0;
-  /// Takes a vehicle out of the simulation (contact).
+  /// Takes a vehicle out of the simulation (after a contact).
   virtual void remove(const std::string& id) = 0;
 
   /// Moves the driven vehicles and advances by one simulation step.
   virtual void step(const std::vector<DrivenVehicle>& driven) = 0;
 
-  /// All vehicles after the last step, by id.
+  /// All vehicles after the last step, in order of their ids.
   virtual const std::vector<SimulatedVehicle>& vehicles() const = 0;
-  /// Traffic lights after the last step, by id.
+  /// Traffic lights after the last step, in order of their ids.
   virtual const std::vector<traffic::SignalState>& signals() const = 0;
   /// Version text of the simulator ("SUMO 1.15.0").
   virtual std::string version() const = 0;

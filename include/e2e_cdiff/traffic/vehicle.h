@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -29,7 +30,8 @@ struct VehicleDimensions {
   double height = 1.5;
 };
 
-/// Executable command: throttle in [0, 1], steer in [-1, 1] positive left, brake in [0, 1].
+/// Executable command of a vehicle: throttle in [0, 1], steer in [-1, 1] (positive left), brake in
+/// [0, 1]; without unit.
 struct ControlAction {
   double throttle = 0.0;
   double steer = 0.0;
@@ -51,19 +53,19 @@ const char* toText(VehicleRole role);
 
 /// Id of the ego in every snapshot.
 inline constexpr const char* kEgoId = "ego";
-/// Its number where slots name vehicles.
+/// Stands for the ego where vehicles are numbered by slot (CBVs have 0 and above).
 inline constexpr int kEgoSlot = -1;
 
-/// What is known of one vehicle at one tick (map frame, SI units; position = center of its box).
-/// One vehicle of a snapshot.
+/// One vehicle of a snapshot: all that is known about it at one tick (map frame, SI units; position
+/// = center of its box).
 struct Vehicle {
   std::string id;  ///< stable over the session
   VehicleRole role = VehicleRole::kBackground;
   int cbv_slot = -1;  ///< slot of a CBV, else -1
   VehicleState state;
   VehicleDimensions dimensions;
-  double acceleration = 0.0;  ///< d speed / d t over the last tick [m/s^2]
-  double yaw_rate = 0.0;      ///< d heading / d t over the last tick [rad/s]
+  double acceleration = 0.0;  ///< mean rate of change of speed over the last tick [m/s^2]
+  double yaw_rate = 0.0;      ///< mean rate of change of heading over the last tick [rad/s]
   std::optional<ControlAction>
       applied_action;   ///< held during the last tick; absent when SUMO drives it
   std::string lane_id;  ///< SUMO lane it is on; empty off the road
