@@ -19,11 +19,11 @@ namespace {
 constexpr std::size_t kLargestYaml = 8 << 20;  // [bytes]
 constexpr std::size_t kLongestText = 1 << 16;  // [bytes] of a key or value
 
-/// Takes values out of a YAML map and remembers which keys exist, so that unknown ones can be
-/// named.
+/// Reads the fields that an options struct describes from a YAML map, and collects their keys, so
+/// that a key that no field has can be refused with the nearest one. Throws InputError.
 class LoadVisitor : public OptionsVisitor {
  public:
-  /// `lines`: errors name the line of the source.
+  /// `source` names the text in errors; `lines`: errors give the line, too.
   LoadVisitor(std::string source, YAML::Node root, bool lines)
       : source_(std::move(source)), lines_(lines) {
     push("", std::move(root));
@@ -126,10 +126,11 @@ class LoadVisitor : public OptionsVisitor {
   }
 
  private:
+  /// A group being read: the whole map, or one nested in it.
   struct Level {
-    std::string prefix;
-    YAML::Node node;
-    std::vector<std::string> known;
+    std::string prefix;              ///< "group.subgroup.", before its keys in errors
+    YAML::Node node;                 ///< its map
+    std::vector<std::string> known;  ///< keys of the fields described so far
   };
 
   void push(const std::string& key, YAML::Node node) {
@@ -149,6 +150,7 @@ class LoadVisitor : public OptionsVisitor {
     levels_.push_back({prefix, node, {}});
   }
 
+  /// The value of a field, and notes that its key is known; an undefined node when not given.
   YAML::Node take(const FieldInfo& info) {
     levels_.back().known.emplace_back(info.key);
     const YAML::Node& level = levels_.back().node;
@@ -194,6 +196,7 @@ class LoadVisitor : public OptionsVisitor {
   std::vector<Level> levels_;
 };
 
+/// `value` as the only leaf below the keys of `path`, as in "a.b=value".
 YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
                   const YAML::Node& value) {
   if (depth == path.size()) return value;
@@ -202,7 +205,8 @@ YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
   return node;
 }
 
-/// A NUL byte is part of no YAML but one in UTF-16 or UTF-32, which starts with its mark.
+/// Refuses a text with a NUL byte, unless it starts with the byte order mark of UTF-16 or UTF-32,
+/// in which YAML may be written.
 void requireText(const YamlSource& source) {
   const std::size_t place = source.text.find('\0');
   if (place == std::string::npos) return;

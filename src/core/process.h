@@ -23,21 +23,24 @@ namespace cdiff::core {
 /// name in PATH. Throws InputError naming the program and the Debian package to install.
 std::filesystem::path findProgram(const std::string& name, const std::string& package);
 
-/// Our environment as "NAME=value", with this value of one variable.
+/// This process's environment as "NAME=value" texts, with one variable set to `value`.
 std::vector<std::string> environmentWith(const std::string& name, const std::string& value);
 
-/// "signal 11 (Segmentation fault)".
+/// Name of a signal for messages: "signal 11 (Segmentation fault)".
 std::string signalText(int signal);
 
-/// Where a child's standard streams lead. Descriptors are ours and stay open here.
+/// Where a child's standard streams lead. The descriptors belong to the caller and stay open here.
 struct ProcessStreams {
-  std::filesystem::path log = {};  ///< of output and errors unless `output` is set; empty: as ours
-  int input = -1;                  ///< descriptor to read from; -1: /dev/null
-  int output = -1;                 ///< descriptor of output and errors
-  bool append = true;  ///< to what the log holds; else it is created, with room for last words
+  /// File for output and errors, unless `output` is given; empty: this process's own streams.
+  std::filesystem::path log = {};
+  int input = -1;      ///< descriptor of standard input; -1: /dev/null
+  int output = -1;     ///< descriptor for output and errors; -1: see `log`
+  bool append = true;  ///< append to the log; false: empty it and reserve room on the disk, so that
+                       ///< last messages fit even if the disk fills up
 };
 
-/// What a program prints, kept in memory: its descriptor is that of ProcessStreams::output.
+/// A file in memory that collects what a child prints; give its descriptor to
+/// ProcessStreams::output.
 class ProcessOutput {
  public:
   ProcessOutput();
@@ -45,22 +48,23 @@ class ProcessOutput {
   ProcessOutput(const ProcessOutput&) = delete;
   ProcessOutput& operator=(const ProcessOutput&) = delete;
   int descriptor() const { return descriptor_; }
-  /// The last bytes of what was printed so far, at most `most`.
+  /// The last `most` bytes, or fewer, of what was printed so far.
   std::string end(std::size_t most = 4000) const;
 
  private:
   int descriptor_;
 };
 
-/// A child process in a process group of its own that never outlives us, even when we are killed,
-/// and that is ended when a deadline [s of wall time] passes: the only way out of a blocking call
-/// to a child that has frozen. Whatever of its group is left when it ends is ended, too.
+/// A child process in a process group of its own that never outlives this process, even when this
+/// process is killed, and that is killed when a deadline [s of wall time] passes: the only way out
+/// of a blocking call to a child that has frozen. When it ends, the rest of its group is killed,
+/// too. Used for SUMO, netconvert, ffmpeg and the sessions of a batch.
 class GuardedProcess {
  public:
   /// Starts `program`; exit code 127 when it cannot be executed. A guardian thread starts the child
   /// and lives as long as this object, because the kernel ends the child together with the thread
-  /// that started it. `environment` holds "NAME=value"; empty: ours. Throws SimulatorError when the
-  /// process cannot be made.
+  /// that started it. `environment` holds "NAME=value"; empty: this process's own. Throws
+  /// SimulatorError when the process cannot be made.
   GuardedProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  const std::vector<std::string>& environment, const ProcessStreams& streams);
   /// Ends and reaps the child.
@@ -73,7 +77,7 @@ class GuardedProcess {
   bool ended();
   /// Waits until it has ended, at most `seconds`; returns whether it has.
   bool waitForEnd(double seconds);
-  /// Sends a signal to its group; nothing where it has ended.
+  /// Sends a signal to its group; does nothing when it has ended.
   void signal(int number);
   /// Ends and reaps the child.
   void kill();
@@ -92,14 +96,14 @@ class GuardedProcess {
   bool deadlineMissed() const { return deadline_missed_.load(); }
 
  private:
-  struct Image;
+  struct Image;  // what the child runs, laid out before the fork
   void guard(const Image& image);
   void publish(pid_t id, int error);
   bool reap(bool wait);
 
   std::atomic<std::int64_t> deadline_{0};  ///< steady clock [ns]; 0 means none
   std::atomic<bool> deadline_missed_{false};
-  std::mutex mutex_;  ///< guards all below
+  std::mutex mutex_;  ///< guards all members below
   std::condition_variable changed_;
   pid_t id_ = 0;
   int start_error_ = 0;
@@ -116,30 +120,30 @@ class GuardedProcess {
 struct ProcessJob {
   std::filesystem::path program;
   std::vector<std::string> arguments;  ///< without the program
-  std::filesystem::path log = {};      ///< created; empty: its output goes where ours goes
+  std::filesystem::path log = {};      ///< created; empty: output goes to our own streams
 };
 
 /// How a job's process ended.
 struct ProcessEnd {
   std::size_t job = 0;
   int exit_code = -1;        ///< 128 + signal when killed
-  double seconds = 0.0;      ///< of wall time that it took
-  bool timed_out = false;    ///< killed for the time-out
-  bool interrupted = false;  ///< the jobs were being stopped
+  double seconds = 0.0;      ///< wall time that it took [s]
+  bool timed_out = false;    ///< killed because it took longer than PoolLimits::timeout
+  bool interrupted = false;  ///< it ended after the pool was asked to stop
 };
 
-/// How many processes of a pool run at a time, and how long each may take [s of wall time].
+/// How many processes of a pool run at a time, and how long each may take.
 struct PoolLimits {
   int at_a_time = 1;
   double timeout = std::numeric_limits<double>::infinity();  ///< of one process, wall time [s]
-  double grace = std::numeric_limits<double>::infinity();    ///< to end in after a stop [s]
+  double grace = std::numeric_limits<double>::infinity();    ///< time to end after a stop [s]
 };
 
-/// Callbacks of a pool: one prepares a job's process, the other takes its end.
+/// Callbacks of a pool.
 struct PoolCalls {
-  /// Prepares a job for the start of its process.
+  /// Called just before a job's process starts; returns what to run.
   std::function<ProcessJob(std::size_t job)> start;
-  /// Takes its end; returns whether the job comes again, before the others.
+  /// Called when it has ended; returns whether to run the job again, before the others.
   std::function<bool(const ProcessEnd& end)> ended;
 };
 

@@ -17,7 +17,7 @@
 namespace cdiff::core {
 namespace {
 
-// A signal handler can reach nothing else.
+// Global, because a signal handler has no other way to reach it.
 std::atomic<bool> stop_requested{false};
 
 void requestStop(int) { stop_requested = true; }
@@ -41,7 +41,7 @@ void ignoreSignal(int signal) {
 void prepareProgram() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
     if (::fcntl(descriptor, F_GETFD) >= 0) continue;
-    // The lowest free number is the one that is missing.
+    // open() takes the lowest free number, which is usually the missing one.
     const int opened = ::open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY);
     if (opened >= 0 && opened != descriptor) {
       ::dup2(opened, descriptor);

@@ -13,34 +13,35 @@ namespace cdiff::core {
 struct ExitCode {
   static constexpr int kPassed = 0;         ///< also a session that is struck or not judged
   static constexpr int kVerdictFailed = 1;  ///< of a session: a rule of its verdict is not met
-  static constexpr int kRunTimeError = 2;
-  static constexpr int kBadInput = 3;
-  static constexpr int kInterrupted = 130;
-  static constexpr int kSignal = 128;  ///< plus the number of the signal that ended a process
+  static constexpr int kRunTimeError = 2;   ///< the program or SUMO failed
+  static constexpr int kBadInput = 3;       ///< the user must change the input
+  static constexpr int kInterrupted = 130;  ///< stopped by a stop signal
+  static constexpr int kSignal = 128;       ///< plus the number of the signal that ended a process
 };
 
-// What the main functions of all programs share: standard streams that are open, signals that
-// must not end the process in the middle of a write, and stop requests as a flag.
+// What the main functions of all programs share: open standard streams, no death by a signal in the
+// middle of a write, stop requests as a flag, and errors as a text with an exit code.
 
-/// First statement of every main. Opens descriptors 0 to 2 on /dev/null where the caller closed
-/// them, so that no file of ours gets one of these numbers and receives what is printed. Ignores
-/// SIGPIPE and SIGXFSZ: a write to a closed pipe or beyond `ulimit -f` is an error with a message.
+/// To be called first in every main function. Opens descriptors 0 to 2 on /dev/null where the
+/// caller closed them, so that no file of ours gets one of these numbers and receives what is
+/// printed. Ignores SIGPIPE and SIGXFSZ: a write to a closed pipe or beyond `ulimit -f` is an error
+/// with a message.
 void prepareProgram();
 
-/// Ignores a signal; a handler that someone set stays.
+/// Ignores a signal, unless it has a handler already.
 void ignoreSignal(int signal);
 
-/// The signals that ask a program to stop in order: SIGINT, SIGTERM, and SIGHUP unless it is
-/// ignored, as under nohup.
+/// The signals that ask a program to stop in an orderly fashion: SIGINT, SIGTERM, and SIGHUP unless
+/// it is ignored, as under nohup.
 std::vector<int> stopSignals();
 
-/// From now on the stop signals set the flag returned, instead of ending the process. Clears it.
+/// Clears the returned flag, which from now on the stop signals set instead of ending the process.
 const std::atomic<bool>& catchStopSignals();
 
 /// Whether a stop signal was caught, or is blocked and waits to be taken.
 bool stopRequested();
 
-/// A system call's error as a text: its name, and for a file beyond `ulimit -f` the limit.
+/// Text of the error number of a failed write; for a file beyond `ulimit -f` it names the limit.
 std::string writeErrorText(int error);
 
 /// What a program says, and how it exits, when an exception reaches its main function.
