@@ -65,7 +65,8 @@ void addProperties(pugi::xml_node suite, const std::map<std::string, std::string
   }
 }
 
-/// Of a session's check. What was struck or not judged counts as passed and says so.
+/// The test case of one check of a session. A check that was struck, or whose session is not
+/// judged, counts as passed; its message says so.
 JunitCase caseOf(const SessionResult& result, const Check& check) {
   const bool session = check.name == "session";
   JunitCase junit;

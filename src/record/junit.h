@@ -10,20 +10,21 @@
 
 namespace cdiff::record {
 
-// Text of junit.xml: test cases of one suite.
+// The file junit.xml, by which continuous integration reads a session or a batch (format: Apache
+// Ant's JUnit report). Written by record and evaluation; times are seconds of wall time.
 
-/// A case of a JUnit file.
+/// A test case of a JUnit file: one rule of a session, or one run of a batch.
 struct JunitCase {
   enum class Kind { kPassed, kSkipped, kFailure, kError };
   Kind kind = Kind::kPassed;
   std::string name;
   double seconds = 0.0;
-  std::string message;  ///< for a case that counts as passed: what it has to say, in <system-out>
+  std::string message;  ///< why it failed; of a passed case a remark, written to <system-out>
   std::string type;     ///< type of a failure or an error
   std::string text;     ///< content of a failure or an error, beside the message
 };
 
-/// A suite of a JUnit file with its cases.
+/// A test suite of a JUnit file: its cases and properties.
 struct JunitSuite {
   std::string name;  ///< also in "e2e_cdiff.NAME", the class of its cases
   double seconds = 0.0;
@@ -31,12 +32,12 @@ struct JunitSuite {
   std::vector<JunitCase> cases = {};
 };
 
-/// What XML forbids in names and texts becomes U+FFFD (`core::plainText`).
+/// Content of the file. Characters that XML forbids become U+FFFD (`core::plainText`).
 std::string junitText(const JunitSuite& suite);
 
-/// One case for the session and one per rule of its scenario; a rule not met is a failure, a
-/// session that broke is an error. What was struck or not judged counts as passed and says so; the
-/// property "verdict" holds the outcome.
+/// Content of a session's junit.xml: one case for the session and one per rule of its scenario. A
+/// rule that was not met is a failure, a session that broke an error; what was struck or not judged
+/// counts as passed, with a remark. The property "verdict" holds the outcome.
 std::string junitXml(const SessionResult& result);
 
 }  // namespace cdiff::record

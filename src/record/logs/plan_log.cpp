@@ -14,10 +14,11 @@
 namespace cdiff::record {
 namespace {
 
-Waypoint wayPointOf(const traffic::VehicleState& state) {
+Waypoint waypointOf(const traffic::VehicleState& state) {
   return {state.position, state.heading, state.speed};
 }
 
+/// Linear between two states; `share` 0 gives `from`, 1 gives `to`.
 Waypoint between(const Waypoint& from, const Waypoint& to, double share) {
   return {from.position + share * (to.position - from.position),
           from.heading + share * core::wrapAngle(to.heading - from.heading),
@@ -29,11 +30,11 @@ LoggedPlan planOf(const traffic::TrafficSnapshot& snapshot, const traffic::Vehic
   LoggedPlan plan;
   plan.tick = snapshot.tick;
   plan.time = snapshot.time;
-  plan.start = wayPointOf(vehicle.state);
+  plan.start = waypointOf(vehicle.state);
   plan.state_mismatch = action.state_mismatch;
   plan.points.reserve(action.rollout.size());
   for (const planning::RolloutPoint& point : action.rollout) {
-    plan.points.push_back(wayPointOf(point.state));
+    plan.points.push_back(waypointOf(point.state));
   }
   return plan;
 }
@@ -55,7 +56,7 @@ void PlanLog::observe(const session::TickRecord& record) {
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) break;  // ego first, then CBVs
     if (vehicle.role != traffic::VehicleRole::kCbv) continue;
-    plansOf(vehicle).driven.emplace_back(snapshot.tick, wayPointOf(vehicle.state));
+    plansOf(vehicle).driven.emplace_back(snapshot.tick, waypointOf(vehicle.state));
   }
   if (record.actions == nullptr) return;
   for (const planning::PlannedAction& action : *record.actions) {
@@ -87,7 +88,7 @@ std::optional<Waypoint> PlanLog::drivenAfter(const VehiclePlans& vehicle, const 
   const auto whole = static_cast<std::uint64_t>(std::floor(ticks + 1e-6));
   const double share = std::max(0.0, ticks - static_cast<double>(whole));
   const std::uint64_t last = plan.tick + whole + (share > 1e-6 ? 1 : 0);
-  // The decision that selects a CBV finds it undriven still: its first driven tick is the next.
+  // At the decision that selects a CBV it is not driven yet: its first driven tick is the next one.
   const auto& driven = vehicle.driven;
   const auto begin =
       std::lower_bound(driven.begin(), driven.end(), plan.tick,
@@ -155,7 +156,7 @@ namespace {
 constexpr const char* kHeader =
     "vehicle_id,tick,seconds,planned_x,planned_y,planned_heading,planned_speed,driven_x,driven_y,"
     "driven_heading,driven_speed\n";
-constexpr std::size_t kStride = 4;  // rollout steps from row to row
+constexpr std::size_t kStride = 4;  // rollout rows (of 0.1 s) from one CSV row to the next
 
 void append(std::vector<std::string>& cells, const Waypoint& point) {
   for (const double value : {point.position.x(), point.position.y(), point.heading, point.speed})
@@ -164,7 +165,7 @@ void append(std::vector<std::string>& cells, const Waypoint& point) {
 
 std::string rowOf(const std::string& vehicle, const LoggedPlan& plan, std::size_t steps,
                   const Waypoint& planned, const std::optional<Waypoint>& driven) {
-  // Divided by 10, not multiplied by 0.1: 1.2, not 1.2000000000000002.
+  // Divided by 10 instead of multiplied by 0.1, which would give 1.2000000000000002 for 1.2.
   const double seconds = static_cast<double>(steps) / (1.0 / traffic::kRolloutStep);
   std::vector<std::string> cells = {vehicle, std::to_string(plan.tick),
                                     core::formatNumber(seconds)};
@@ -177,7 +178,7 @@ std::string rowOf(const std::string& vehicle, const LoggedPlan& plan, std::size_
   return core::csvRow(cells);
 }
 
-std::optional<Waypoint> wayPointOf(const std::vector<std::string>& cells, std::size_t first) {
+std::optional<Waypoint> waypointOf(const std::vector<std::string>& cells, std::size_t first) {
   std::vector<double> values;
   for (std::size_t i = first; i < first + 4; ++i) {
     const auto value = core::parseNumber(cells[i]);
@@ -192,10 +193,10 @@ std::optional<PlanRow> rowOf(std::string_view line) {
   if (cells.size() != 11) return std::nullopt;
   const auto tick = core::parseNumber(cells[1]);
   const auto seconds = core::parseNumber(cells[2]);
-  const auto planned = wayPointOf(cells, 3);
+  const auto planned = waypointOf(cells, 3);
   if (!tick || *tick < 0.0 || !seconds || !planned) return std::nullopt;
   return PlanRow{cells[0], static_cast<std::uint64_t>(*tick), *seconds, *planned,
-                 wayPointOf(cells, 7)};
+                 waypointOf(cells, 7)};
 }
 
 }  // namespace

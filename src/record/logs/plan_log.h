@@ -14,25 +14,26 @@
 
 namespace cdiff::record {
 
-/// A state of a plan or a drive.
+/// A planned or driven state of a vehicle (map frame).
 struct Waypoint {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< center of the box [m]
   double heading = 0.0;                                ///< [rad]
   double speed = 0.0;                                  ///< [m/s]
 };
 
-/// A decision with a rollout: points 0.1 s apart, the first 0.1 s after the decision.
+/// The plan that a vehicle was given at one decision: states 0.1 s apart, the first of them 0.1 s
+/// after the decision.
 struct LoggedPlan {
   std::uint64_t tick = 0;
   double time = 0.0;  ///< [s]
-  Waypoint start;     ///< where the vehicle was
+  Waypoint start;     ///< state of the vehicle at the decision
   std::vector<Waypoint> points;
   double state_mismatch = 0.0;  ///< see planning::PlannedAction [m]
 
-  double horizon() const;  ///< [s]
+  double horizon() const;  ///< duration of the plan [s]
 };
 
-/// One vehicle over the session.
+/// Plans and driven states of one vehicle over the session.
 struct VehiclePlans {
   std::string vehicle_id;
   traffic::VehicleDimensions dimensions;
@@ -40,27 +41,29 @@ struct VehiclePlans {
   std::vector<std::pair<std::uint64_t, Waypoint>> driven;  ///< (tick, state) while driven as CBV
 };
 
-/// What each CBV planned at its decisions and what it drove (map frame, SI units), and how far
-/// apart the two are: |planned(t0 + h) - driven(t0 + h)| in the plane, h seconds after the decision
-/// at t0.
+/// Records what each CBV planned at its decisions and what it then drove (map frame, SI units).
+/// Displacement of a plan h seconds after its decision at t0: |planned(t0 + h) - driven(t0 + h)| of
+/// the positions in the plane [m]. Filled by the result writer; read by summary, report, plans.csv
+/// and the figure of execution.
 class PlanLog {
  public:
   explicit PlanLog(double simulation_step) : simulation_step_(simulation_step) {}
-  /// Every tick in order.
+  /// Call at every tick, in order.
   void observe(const session::TickRecord& record);
 
-  /// In order of the first plan or the first drive.
+  /// In the order in which they were first planned for or driven.
   const std::vector<VehiclePlans>& vehicles() const { return vehicles_; }
   /// The plans of a vehicle, or nullptr.
   const VehiclePlans* find(const std::string& vehicle_id) const;
   /// Whether any plan was logged.
   bool empty() const;
 
-  /// Where the vehicle was `seconds` after the decision, between ticks by interpolation; nullopt
-  /// unless it was driven from the decision until then.
+  /// Driven state `seconds` after the decision, interpolated between ticks; nullopt unless the
+  /// vehicle was driven as CBV from the decision until then.
   std::optional<Waypoint> drivenAfter(const VehiclePlans& vehicle, const LoggedPlan& plan,
                                       double seconds) const;
-  /// Over the decisions whose plan and drive reach that far [m].
+  /// Displacement [m] `seconds` after each decision; decisions whose plan or drive is shorter are
+  /// left out.
   std::vector<double> displacements(const VehiclePlans& vehicle, double seconds) const;
   /// The plan whose whole horizon was driven and whose decision is nearest to `time` (the earlier
   /// of equals), or nullptr.
@@ -85,11 +88,11 @@ SampleSummary mismatchSummary(const VehiclePlans& vehicle);
 // plans.csv: planned against driven states of CBVs (map frame, SI units), a row per decision and
 // 0.4 s of the plan.
 
-/// Driven cells stay empty where the vehicle was not driven until then. At 0 s both states are
-/// where the vehicle was.
+/// Content of the file. Driven cells stay empty where the vehicle was not driven until then; at 0 s
+/// both states are that of the decision.
 std::string plansCsv(const PlanLog& plans);
 
-/// One row.
+/// One row of plans.csv.
 struct PlanRow {
   std::string vehicle_id;
   std::uint64_t tick = 0;  ///< of the decision

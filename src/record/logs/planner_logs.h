@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,7 +16,7 @@ namespace cdiff::record {
 /// Mean, 95th percentile (nearest rank) and maximum of a sample; values that are not finite are
 /// left out.
 struct SampleSummary {
-  std::optional<double> mean;  ///< absent when n = 0, and so on
+  std::optional<double> mean;  ///< absent when n = 0, as are the other two
   std::optional<double> percentile_95;
   std::optional<double> maximum;
   std::size_t n = 0;
@@ -31,12 +32,11 @@ struct LatencySummary {
   std::size_t n = 0;           ///< decisions
 };
 
-/// The smallest sample that at least `percent` of all are not above (nearest rank). `sorted`
-/// ascends and is not empty.
+/// Percentile by nearest rank: the smallest value that is not below `percent` % of all values.
+/// `sorted` is in ascending order and not empty.
 double nearestRank(const std::vector<double>& sorted, double percent);
 
-/// Wall time that each planner took per decision [ms]: median, 95th percentile (nearest rank) and
-/// maximum.
+/// Collects the wall time that each planner took per decision [ms].
 class LatencyLog {
  public:
   void observe(const std::vector<session::PlannerLatency>& latencies);
@@ -47,8 +47,7 @@ class LatencyLog {
   std::map<std::string, std::vector<double>> samples_;
 };
 
-/// How often a planner's answers came late in a paced session, what drove instead, and how late
-/// they came [s].
+/// How often one planner's answers were late in a paced session, how late, and what drove instead.
 struct LateCounts {
   std::size_t asked = 0;          ///< answers that were due
   std::size_t late = 0;           ///< answers that came after their tick
@@ -61,8 +60,7 @@ struct LateCounts {
   double maximum = 0.0;           ///< [s]
 };
 
-/// Answers that came late, by planner: how many, how late, and what drove instead. Of sessions that
-/// go on without an answer that is late (real_time_factor > 0).
+/// Collects late answers by planner, in sessions that do not wait for them (real_time_factor > 0).
 class LateLog {
  public:
   void observe(const std::vector<session::AnswerTiming>& timings);
@@ -93,14 +91,15 @@ struct GuidanceSeries {
   std::vector<GuidanceSample> samples;
 };
 
-/// Over the decisions in which the objective was active.
+/// One objective summed up over the decisions at which it was active. Units of value and gradient
+/// are the objective's own.
 struct ObjectiveSummary {
   std::optional<double> weight;  ///< weight at the last decision
   // Means; values that are not finite are left out.
   std::optional<double> value;
   std::optional<double> gradient_norm;
   std::optional<double> capped_share;
-  std::int64_t dropped = 0;  ///< denoising steps, over all decisions
+  std::int64_t dropped = 0;  ///< denoising steps that left it out, over all decisions
   std::size_t n = 0;         ///< decisions
 };
 
