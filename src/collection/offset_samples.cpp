@@ -37,22 +37,22 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
   planners::LateralController controller(
       setup_.options().planner_options.of<planners::PdmLiteOptions>());
   double arc_length = around.arc_length;
-  double heading = 0.0;
+  double heading = 0.0;  // since the start, not wrapped
   for (std::size_t t = 0; t < future.size(); ++t) {
     traffic::VehicleState& state = vehicle.state;
     const double reach = std::max(1.0, state.speed);
     arc_length = planning::extendedProjection(around.route, state.position, arc_length - reach,
                                               arc_length + reach);
-    const double aim = arc_length + planners::lookAheadDistance(state.speed);
+    const double aim_arc_length = arc_length + planners::lookAheadDistance(state.speed);
     auto row = rollout.row(static_cast<Eigen::Index>(t));
     const traffic::ControlAction action{
         row(traffic::kRolloutThrottle),
-        controller.steer(state.pose(), planning::extendedPositionAt(around.route, aim)),
+        controller.steer(state.pose(), planning::extendedPositionAt(around.route, aim_arc_length)),
         row(traffic::kRolloutBrake)};
-    const double before = state.heading;
+    const double previous_heading = state.heading;
     state = model_.step(state, action, traffic::kRolloutStep);
     state.elevation = future[t]->find(vehicle.id)->state.elevation;
-    heading += core::angleDifference(state.heading, before);
+    heading += core::angleDifference(state.heading, previous_heading);
     const Eigen::Vector2d position = start.pose().toBody(state.position);
     row << position.x(), position.y(), heading, state.speed, action.throttle, action.steer,
         action.brake;

@@ -103,28 +103,34 @@ struct SampleOffset {
   double heading = 0.0;
 };
 
-/// What displace() makes.
+/// A sample as it would be beside its route, made by OffsetSamples.
 struct DisplacedSample {
   learning::DrivingSample sample;
-  bool off_course = false;  ///< at its displaced place, as SampleKinds
+  bool off_course = false;  ///< SampleKinds::off_course at the displaced place
 };
 
-/// Samples of vehicles that are put beside their route: image from the displaced place, pedals as
-/// recorded, steering by which the expert would return to its route, states by the vehicle dynamics
-/// (so that actions and states agree), route tokens from the displaced place.
+/// Makes recovery samples: a recorded vehicle is put beside its route and drives back. The image
+/// and the route tokens are those of the displaced place, throttle and brake are as recorded, the
+/// steering is PDM-Lite's towards the route, and the states are what the vehicle dynamics makes of
+/// these actions (rows in the frame of the displaced vehicle, SI units). Called by SessionSamples
+/// for a share of the samples.
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.
   OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options);
 
-  /// `sample`, displaced; `future` holds the snapshots of the following T decisions. nullopt where
-  /// the vehicle would touch another one or leave the road at any time, or starts off it.
+  /// The sample with its vehicle displaced by `offset`; `future`: snapshots of the T decisions that
+  /// follow. nullopt when the vehicle would start off the drivable area, leave it, or touch another
+  /// vehicle.
   std::optional<DisplacedSample> displace(
       const learning::DrivingSample& sample, const SampleSurroundings& around,
       const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);
 
  private:
+  /// Whether the box lies on the drivable area and overlaps no other vehicle on its level.
   bool free(const traffic::Vehicle& vehicle, const traffic::TrafficSnapshot& snapshot) const;
+  /// Drives from the displaced place with the throttle and brake in `rollout`, whose states and
+  /// steering it overwrites; false as soon as the vehicle is not free.
   bool driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
                  const std::vector<const traffic::TrafficSnapshot*>& future,
                  traffic::Rollout& rollout) const;

@@ -19,13 +19,13 @@ using core::InputError;
 
 constexpr double kLargestWeight = 1000.0;
 constexpr double kLargestCap = 1e6;
-constexpr double kLeastRegion = 0.01;
-constexpr double kLargestRegion = 100.0;
+constexpr double kLeastRegion = 0.01;     // of trust_region, in units of r_k
+constexpr double kLargestRegion = 100.0;  // likewise
 constexpr std::int64_t kLastDiffusionStep = 10000;
 
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
 
-/// For values that were set in code, past the ranges of describe().
+/// Checks a value that code may have set without describe(), which checks what is loaded.
 void requireRange(const std::string& key, double value, double maximum) {
   if (value >= 0.0 && value <= maximum) return;
   throw InputError("key '" + key + "' is " + core::formatNumber(value) +
@@ -49,12 +49,14 @@ void validateEntry(const WeightedObjective& entry, const std::string& group) {
   }
 }
 
+/// Throws InputError when a bound of a window exceeds K.
 void requireStep(const std::string& key, std::int64_t step, int diffusion_steps) {
   if (step <= diffusion_steps) return;
   throw InputError("key '" + key + "' is " + std::to_string(step) + "; expected at most " +
                    std::to_string(diffusion_steps) + ", the model's number of diffusion steps K");
 }
 
+/// Throws InputError when the sampler visits no diffusion step of the objective's window.
 void requireVisit(const WeightedObjective& entry, const std::string& key,
                   const std::vector<int>& visited) {
   std::vector<std::string> names;
@@ -78,10 +80,9 @@ void WeightedObjective::describe(core::OptionsVisitor& visitor) {
                   first_step, 0, kLastDiffusionStep);
   visitor.integer({"last_step", "", "Acts at diffusion steps down to this one."}, last_step, 1,
                   kLastDiffusionStep);
-  visitor.number({"gradient_cap", "",
-                  "Largest norm of weight x gradient in normalised units; 0: "
-                  "none."},
-                 gradient_cap, 0.0, kLargestCap);
+  visitor.number(
+      {"gradient_cap", "", "Largest norm of weight x gradient in normalised units; 0: none."},
+      gradient_cap, 0.0, kLargestCap);
   objective->describe(visitor);
 }
 

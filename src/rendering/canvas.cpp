@@ -14,10 +14,10 @@ namespace {
 constexpr double kThinnest = 0.5;   // [samples] half the width of a drawn line
 constexpr double kShortest = 1e-6;  // [samples] shorter lines are left out
 constexpr double kFaintest = 0.02;  // less opaque lines are left out
-constexpr double kEdgeOn = 1e-9;    // [m] distance of the eye from a plane seen edge-on
+constexpr double kEdgeOn = 1e-9;    // [m] planes nearer to the eye are seen edge-on: left out
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Newell's normal of a polygon, twice its area long.
+/// Normal of a polygon (optical frame), twice its area long (Newell).
 Eigen::Vector3d normalOf(const Eigen::Vector3d* points, int count) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (int i = 1; i + 1 < count; ++i) {
@@ -26,7 +26,7 @@ Eigen::Vector3d normalOf(const Eigen::Vector3d* points, int count) {
   return normal;
 }
 
-/// The point where the line between two points meets the near plane; the same for both directions.
+/// Where the line between two points meets the near plane; the same in whatever order they come.
 Eigen::Vector3d nearCrossing(const Eigen::Vector3d& first, const Eigen::Vector3d& second) {
   const Eigen::Vector3d& behind = first.z() < second.z() ? first : second;
   const Eigen::Vector3d& ahead = first.z() < second.z() ? second : first;
@@ -36,7 +36,7 @@ Eigen::Vector3d nearCrossing(const Eigen::Vector3d& first, const Eigen::Vector3d
   return crossing;
 }
 
-/// Sutherland-Hodgman at the near plane; returns the count of corners kept.
+/// Clips a polygon at the near plane (Sutherland-Hodgman); returns the number of corners in `kept`.
 int clipNear(const Eigen::Vector3d* points, int count, Eigen::Vector3d* kept) {
   int corners = 0;
   for (int i = 0; i < count; ++i) {

@@ -18,12 +18,13 @@ namespace cdiff::rendering {
 /// Nothing nearer than this is drawn [m].
 constexpr double kNearPlane = 0.25;
 
-/// Where a camera stands: map frame to optical frame (x right, y down, z forward [m]) and on to the
-/// image plane (u right, v down from the principal point).
+/// Pose of a camera on a vehicle: transforms the map frame into the optical frame (x right, y down,
+/// z forward [m]). Made anew for each image by FrontCamera.
 class View {
  public:
   View(const CameraOptions& options, const traffic::Vehicle& vehicle);
 
+  /// A direction of the map frame in the optical frame.
   Eigen::Vector3d directionToCamera(const Eigen::Vector3d& direction) const {
     // Sums of products only: a scene mirrored in y gives the negated x and the same y and z, bit by
     // bit.
@@ -32,12 +33,14 @@ class View {
     return {-left, -(forward * pitch_sine_) - direction.z() * pitch_cosine_,
             forward * pitch_cosine_ - direction.z() * pitch_sine_};
   }
+  /// A point of the map frame in the optical frame [m].
   Eigen::Vector3d toCamera(const Eigen::Vector3d& point) const {
     return directionToCamera(point - eye_);
   }
-  /// Whether a ball may be seen: not behind, not beside the view, not beyond the far distance.
+  /// Whether a ball (map frame [m]) may be visible: not behind the camera, beside its view, or
+  /// beyond the far distance.
   bool maySee(const Eigen::Vector3d& center, double radius) const;
-  const Eigen::Vector3d& eye() const { return eye_; }
+  const Eigen::Vector3d& eye() const { return eye_; }  ///< map frame [m]
   double farDistance() const { return far_distance_; }
 
  private:
@@ -47,7 +50,7 @@ class View {
   double pitch_sine_;
   double far_distance_;
   double side_tangent_;  ///< tangent of half the field of view
-  double side_secant_;
+  double side_secant_;   ///< sqrt(1 + side_tangent_^2)
 };
 
 // Colors of the picture, packed as 0x00bbggrr.
@@ -69,7 +72,7 @@ inline Color mix(Color first, Color second, double share) {
   return mixed;
 }
 
-/// Every channel times a factor, at most 255.
+/// Every channel multiplied by a factor, at most 255.
 inline Color shade(Color color, double factor) {
   Color shaded = 0;
   for (int shift = 0; shift < 24; shift += 8) {
@@ -91,7 +94,8 @@ constexpr Color kWhitePaint = rgb(232, 232, 228);
 constexpr Color kYellowPaint = rgb(228, 184, 44);
 constexpr Color kConcrete = rgb(166, 166, 160);
 
-/// What lies flat on something else has a larger rank: its inverse depth is multiplied by it.
+/// Ranks of surfaces that lie on each other, such as a marking on the road: the inverse depth is
+/// multiplied by the rank, so that the larger rank wins.
 namespace rank {
 constexpr double kPavement = 0.97;
 constexpr double kRoad = 1.0;
@@ -110,23 +114,26 @@ struct Paint {
   double opacity = 1.0;
 };
 
-/// The picture in the making: supersampled colors with a depth buffer. A sample belongs to a
-/// convex polygon whose closed area holds its center; the sample of the larger inverse depth stays.
-/// Coordinates are counted from the middle of the picture, so that a mirrored scene gives the
-/// mirrored picture.
+/// Rasterizer of the front camera: convex polygons and lines in the optical frame [m] into a
+/// supersampled image (samples x samples per pixel) with a buffer of inverse depths [1/m]. A
+/// polygon covers the samples whose centers lie in its closed area; of several the larger inverse
+/// depth x rank stays. Image coordinates count from the middle of the picture (u right, v down
+/// [samples]), so that a mirrored scene gives the mirrored picture bit by bit. Called by the parts
+/// of the scene (road, signals, vehicles) through FrontCamera.
 class Canvas {
  public:
   explicit Canvas(const CameraOptions& options);
 
-  /// Sky and grass, nothing in front of them.
+  /// Starts a picture: sky and grass, and nothing in front of them.
   void clear();
-  /// A convex polygon in the optical frame [m], clipped at the near plane.
+  /// Draws a convex polygon (optical frame [m]), clipped at the near plane.
   void fill(const Eigen::Vector3d* points, int count, const Paint& paint);
-  /// A flat line from `begin` to `end`, `side` (half its width) wide to both sides; where it would
-  /// be thinner than a sample it is as wide as one and more transparent.
+  /// Draws a flat line from `begin` to `end` (optical frame [m]) that reaches `side`, half its
+  /// width as a vector, to both sides. Thinner than a sample it is drawn one sample wide and more
+  /// transparent.
   void line(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, const Eigen::Vector3d& side,
             const Paint& paint);
-  /// Averages the samples.
+  /// The picture: each pixel is the mean of its samples.
   traffic::CameraImage image() const;
 
  private:
@@ -143,6 +150,7 @@ class Canvas {
     Eigen::Vector2d second = Eigen::Vector2d::Zero();
     double opacity = 1.0;
   };
+  /// Rows of samples, both included; empty when last < first.
   struct RowRange {
     int first = 0;
     int last = -1;
@@ -170,10 +178,11 @@ class Canvas {
   double middle_column_;
   double middle_row_;
   std::vector<Color> background_;  ///< per row
-  std::vector<Color> colors_;
-  std::vector<float> depths_;  ///< inverse [1/m], times rank
-  std::vector<double> span_begin_;
-  std::vector<double> span_end_;
+  std::vector<Color> colors_;      ///< per sample, row by row
+  std::vector<float> depths_;      ///< per sample: inverse depth [1/m] x rank
+  std::vector<double>
+      span_begin_;                ///< per row: left end of the polygon being drawn, from the middle
+  std::vector<double> span_end_;  ///< per row: its right end
 };
 
 }  // namespace cdiff::rendering

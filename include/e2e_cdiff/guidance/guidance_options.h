@@ -11,13 +11,14 @@
 
 namespace cdiff::guidance {
 
-/// An objective as a profile uses it.
+/// An objective with the values that a profile gives it: its weight w_i in the sum, the diffusion
+/// steps k (counting down from K to 1) at which it acts, and the cap of its gradient.
 struct WeightedObjective {
   std::string name;
   double weight = 0.0;          ///< w_i; 0 switches it off
-  std::int64_t first_step = 0;  ///< acts at diffusion steps k <= first_step; 0: from K on
-  std::int64_t last_step = 1;   ///< and k >= last_step
-  double gradient_cap = 0.0;    ///< largest norm of w_i dJ_i per sample, normalized units; 0: none
+  std::int64_t first_step = 0;  ///< acts at k <= first_step; 0: from K on
+  std::int64_t last_step = 1;   ///< acts at k >= last_step
+  double gradient_cap = 0.0;    ///< largest |w_i dJ_i/d tau| of a sample, normalized units; 0: none
   std::unique_ptr<Objective> objective;
 
   bool actsAt(int diffusion_step) const {
@@ -28,8 +29,8 @@ struct WeightedObjective {
 };
 
 /// Guidance of a session: every objective with weight, window and cap; J_total = sum_i w_i J_i
-/// (paper III-D2). Profiles are YAML files of it in config/guidance.
-/// Copyable (deep). Holds one entry per known objective, all off by default.
+/// (paper III-D2). A profile, in config/guidance, is a YAML file of these options. Holds one entry
+/// per known objective, all switched off by default; copies are deep.
 struct GuidanceOptions {
   GuidanceOptions();
   GuidanceOptions(const GuidanceOptions& other);
@@ -38,8 +39,9 @@ struct GuidanceOptions {
   GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;
 
   std::vector<WeightedObjective> objectives;  ///< in the order of the table of objectives
-  double trust_region = 2.0;  ///< farthest that a step of sampler mode real_time moves an action,
-                              ///< in units of r_k
+  /// Farthest that a proximal step (sampler mode real_time) moves an action, in units of the spread
+  /// r_k (diffusion/sampler.h).
+  double trust_region = 2.0;
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);
@@ -67,8 +69,8 @@ struct ObjectiveReport {
   std::string name;
   double weight = 0.0;
   double value = 0.0;          ///< J of the rollout that was chosen (unweighted)
-  double gradient_norm = 0.0;  ///< mean over active steps of |w dJ/d tau| where the step starts,
-                               ///< before the cap, normalized units
+  double gradient_norm = 0.0;  ///< mean over active steps of |w dJ/d tau| at the start of the
+                               ///< step, before the cap, normalized units
   double capped_share = 0.0;   ///< share of active steps in which the gradient cap acted, [0, 1]
   std::int64_t dropped = 0;    ///< steps in which it was not finite and left out
 };
