@@ -12,11 +12,12 @@
 
 namespace cdiff::cli {
 
-/// A line on the terminal with the progress of a session: simulated time, pace, time left.
-/// Rewrites one line on a terminal; prints a plain line every 10 s of wall time elsewhere.
+/// Progress of a session on standard error, for `cdiff run`: simulated time, pace (x real time),
+/// time left at most. Rewrites one line on a terminal, every 0.2 s; elsewhere prints a line every
+/// 10 s of wall time.
 class Progress : public session::SessionObserver {
  public:
-  /// `time_limit` of the protocol [s].
+  /// `time_limit`: the protocol's limit of simulated time [s].
   explicit Progress(double time_limit);
   void observe(const session::TickRecord& record) override;
 
@@ -27,16 +28,16 @@ class Progress : public session::SessionObserver {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// How far a batch is: done of total, failed, pace, time left. One line that is rewritten on a
-/// terminal, a plain line per run elsewhere.
+/// Progress of a batch on standard error, for `cdiff evaluate`: runs done and failed, pace (x real
+/// time), wall time left. Rewrites one line on a terminal; elsewhere prints a line per run.
 class BatchProgress {
  public:
   explicit BatchProgress(std::size_t total);
-  /// Runs that a resumed batch runs again, or for the first time, for one cause: one line.
+  /// Prints one line on the runs that a resumed batch still has to do for one cause.
   void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
-  /// A run ended; `resumed`: it had before.
+  /// A run has ended; `resumed`: it was complete before this batch started.
   void ended(const evaluation::RunRecord& record, bool resumed);
-  /// Leaves the terminal on a line of its own.
+  /// Ends the rewritten line; call once, after the last run.
   void finish() const;
 
  private:
@@ -46,7 +47,7 @@ class BatchProgress {
   std::size_t done_ = 0;
   std::size_t resumed_ = 0;
   std::size_t failed_ = 0;
-  double simulated_ = 0.0;  ///< by all runs together [s]
+  double simulated_ = 0.0;  ///< simulated time of all runs together [s]
 };
 
 }  // namespace cdiff::cli

@@ -17,7 +17,8 @@ using core::InputError;
 constexpr const char* kReason =
     "; a sealed suite must not change: restore the folder from the repository";
 
-/// SHA-256 by path in the suite's folder.
+/// SHA-256 (hexadecimal) of each file, by its path relative to the suite's folder. Throws
+/// InputError naming a line of another form.
 std::map<std::string, std::string> readSeal(const fs::path& file) {
   std::map<std::string, std::string> hashes;
   for (const std::string& line : core::splitText(core::readFile(file, "seal"), '\n')) {

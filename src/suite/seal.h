@@ -8,9 +8,10 @@
 
 namespace cdiff::suite {
 
-// Sealed suites: test routes on which nothing is chosen. FOLDER/seal.sha256 holds a line
-// "SHA-256  PATH" for every other file of the suite (sha256sum's format), and suite.yaml the key
-// `sealed: true`; see docs/sealed_suites.md.
+// Sealed suites: test routes that no setting, weight or rule was chosen by. FOLDER/seal.sha256
+// holds a line "SHA-256  PATH" for every other file of the suite (sha256sum's format), and
+// suite.yaml the key `sealed: true`; see docs/sealed_suites.md. Evaluation and data collection
+// check the seal.
 
 constexpr const char* kSealFile = "seal.sha256";
 
@@ -25,8 +26,8 @@ void requireIntactSeal(const std::filesystem::path& suite_folder);
 /// for every other file and for the name of a scenario.
 std::optional<std::filesystem::path> sealedSuiteOf(const std::string& scenario);
 
-/// For commands that make training data. Throws InputError when the scenario is one of a sealed
-/// suite.
+/// Throws InputError when the scenario belongs to a sealed suite. Commands that make training data
+/// call it first.
 void requireNotSealed(const std::string& scenario);
 
 }  // namespace cdiff::suite

@@ -83,7 +83,7 @@ TEST_F(NetworkImport, DropsUnknownClassesAndNothingElse) {
   ASSERT_EQ(network.changes.size(), 1u);
   EXPECT_EQ(
       network.changes[0],
-      "removed the vehicle classes subway scooter drone from 5 attributes, SUMO 1.15 does not "
+      "removed the vehicle classes subway scooter drone from 5 attributes: SUMO 1.15 does not "
       "know them");
 }
 

@@ -15,6 +15,9 @@
 namespace cdiff::map {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// Wall time that netconvert may take [s]: kNetconvertLimit, or what the environment says.
 double netconvertLimit() {
   const char* given = std::getenv(kNetconvertLimitVariable);
   if (given == nullptr) return kNetconvertLimit;
@@ -23,8 +26,6 @@ double netconvertLimit() {
   throw core::InputError(std::string(kNetconvertLimitVariable) + " is '" + given +
                          "'; expected seconds above 0");
 }
-
-namespace fs = std::filesystem;
 
 /// netconvert's opening comment holds the date and paths.
 std::string withoutGeneratedComment(std::string text) {
@@ -35,7 +36,8 @@ std::string withoutGeneratedComment(std::string text) {
   return text;
 }
 
-/// `format` is netconvert's option for the source, `types` the type map that goes with it.
+/// Text of the SUMO network that netconvert makes of `source`; `format` is its option for the
+/// source, `types` the file of the type map that goes with it.
 std::string convert(const fs::path& source, const std::string& format, const std::string& types,
                     const std::vector<std::string>& options) {
   const core::ScratchFolder scratch;
@@ -58,7 +60,8 @@ std::string convert(const fs::path& source, const std::string& format, const std
   return withoutGeneratedComment(core::readFile(converted, "converted network"));
 }
 
-/// Part of the cache key: raise it when the importer makes something else of the same input.
+/// Part of the cache key: raise the number when the importer gives another result for the same
+/// input.
 constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
 
 bool endsWith(const std::string& text, const std::string& ending) {
@@ -100,15 +103,15 @@ bool isOpenDrive(const std::string& source, const std::string& content) {
 }
 
 bool isOpenStreetMap(const std::string& source, const std::string& content) {
-  constexpr std::size_t kHead = 4096;  // bytes before the first element of a file
+  constexpr std::size_t kHead = 4096;  // [bytes] within which the first element starts
   return endsWith(source, ".osm") || endsWith(source, ".osm.xml") ||
          std::string_view(content).substr(0, kHead).find("<osm") != std::string_view::npos;
 }
 
-/// A format that netconvert reads.
+/// A file format that netconvert converts.
 struct Format {
-  const char* name;
-  const char* element;
+  const char* name;     ///< for messages
+  const char* element;  ///< start of its root element's tag
   std::string (*convert)(const fs::path& source);
 };
 
@@ -145,7 +148,7 @@ void importSumoNetwork(const std::string& content, ImportedNetwork& network) {
   storeUnlessThere(network.file, network.text);
   network.changes.push_back("removed the vehicle classes " + core::joinText(rewrite.removed, " ") +
                             " from " + std::to_string(rewrite.attributes) +
-                            " attributes, SUMO 1.15 does not know them");
+                            " attributes: SUMO 1.15 does not know them");
 }
 
 }  // namespace
@@ -191,14 +194,14 @@ fs::path networkFile(const std::string& source) {
   if (source.empty())
     throw core::InputError("no network was given; a file or a shipped name was expected");
   if (core::isFile(source)) return source;
-  const bool path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
-                    endsWith(source, ".xodr") || endsWith(source, ".osm");
-  if (path && core::isFolder(source)) {
+  const bool is_path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
+                       endsWith(source, ".xodr") || endsWith(source, ".osm");
+  if (is_path && core::isFolder(source)) {
     throw core::InputError("network '" + source + "' is a folder; a file was expected");
   }
-  if (path && fs::exists(source))
+  if (is_path && fs::exists(source))
     throw core::InputError("network '" + source + "' is no regular file; a file was expected");
-  if (path) throw core::InputError("network file '" + source + "' does not exist");
+  if (is_path) throw core::InputError("network file '" + source + "' does not exist");
   const fs::path folder = core::shareFolder() / "networks";
   const fs::path file = folder / source / (source + ".net.xml");
   if (core::isFile(file)) return file;

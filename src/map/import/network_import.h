@@ -9,8 +9,8 @@
 
 namespace cdiff::map {
 
-/// Drops the vehicle classes that SUMO 1.15 does not know from the permissions of a network text;
-/// all other bytes stay.
+/// A network text without the vehicle classes that SUMO 1.15 does not know, made by
+/// dropUnknownClasses; all other bytes are as before.
 struct PermissionRewrite {
   std::string text;
   std::vector<std::string>
@@ -18,13 +18,14 @@ struct PermissionRewrite {
   std::size_t attributes = 0;  ///< attributes that were changed
 };
 
-/// An `allow` that becomes empty turns into disallow="all" (an empty one would allow everything); a
-/// `disallow` that becomes empty goes away.
+/// Removes unknown classes from the attributes `allow` and `disallow`. An `allow` left empty is
+/// replaced by disallow="all" (empty, it would allow everything); a `disallow` left empty is
+/// removed.
 PermissionRewrite dropUnknownClasses(std::string_view text);
 
-// Runs netconvert, which ends with us and within its time limit.
+// Runs netconvert as a child process that ends with this one and within a time limit.
 
-/// Name of the environment variable that replaces the limit below [s].
+/// Environment variable that replaces the limit below [s].
 inline constexpr const char* kNetconvertLimitVariable = "E2E_CDIFF_NETCONVERT_LIMIT";
 /// Wall time that netconvert may take [s].
 inline constexpr double kNetconvertLimit = 120.0;
@@ -41,13 +42,11 @@ void runNetconvert(const std::vector<std::string>& arguments, const std::string&
 /// Throws InputError and Interrupted as runNetconvert does.
 std::string convertOpenDrive(const std::filesystem::path& source);
 
-/// Roads for cars, simplified: points that only shape an edge are no junctions, junctions and
-/// lights near each other are one. Throws as above.
+/// Only roads for cars, simplified: points that merely shape an edge do not split it, and junctions
+/// or lights near each other are joined. Throws as convertOpenDrive does.
 std::string convertOpenStreetMap(const std::filesystem::path& source);
 
-/// Makes any given network usable by SUMO 1.15: drops vehicle classes that it does not know,
-/// converts OpenDRIVE and OpenStreetMap through netconvert, and caches the result by the hash of
-/// the input's content. The changes are named in the record.
+/// A network that SUMO 1.15 can load, made by importNetwork from whatever the user gave.
 struct ImportedNetwork {
   std::filesystem::path file;  ///< network that SUMO 1.15 loads (in the cache, or the input itself
                                ///< if nothing changed)
@@ -57,12 +56,15 @@ struct ImportedNetwork {
   std::vector<std::string> changes;  ///< one sentence each; empty when nothing was changed
 };
 
-/// The file that `source` stands for: a path, or the name of a shipped network. Throws InputError.
+/// The file that `source` stands for: a path, or the name of a network shipped in networks/. Throws
+/// InputError naming what is wrong, with the nearest shipped name.
 std::filesystem::path networkFile(const std::string& source);
 
-/// `source`: *.net.xml (also gzip-free older or newer), *.xodr, *.osm, or the name of a network
-/// shipped in networks/. Throws InputError naming the file and what is wrong (missing, not a
-/// network, netconvert's own message).
+/// Imports a network: *.net.xml of any SUMO version (not compressed), *.xodr, *.osm, or the name of
+/// a network shipped in networks/. Drops vehicle classes that SUMO 1.15 does not know, converts
+/// OpenDRIVE and OpenStreetMap with netconvert, and caches the result by the hash of the input.
+/// Called when a session is set up and by `cdiff import`. Throws InputError naming the file and
+/// what is wrong (missing, not a network, netconvert's own message).
 ImportedNetwork importNetwork(const std::string& source);
 
 }  // namespace cdiff::map
