@@ -14,8 +14,8 @@
 
 namespace cdiff::collection {
 
-/// What the sessions or bags of a data set gave: images, samples and kinds of driving, counted.
-/// What is in a data set; sums, so that those of several bags add up.
+/// What the sessions or bags of a data set gave: images, samples and kinds of driving, counted. All
+/// are sums, so that those of several bags add up.
 struct DatasetStatistics {
   std::uint64_t images = 0;
   std::uint64_t samples = 0;

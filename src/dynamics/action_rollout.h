@@ -43,7 +43,7 @@ class ActionRollout {
 
 /// What a vehicle did, or is to do, over 0.1 s.
 struct ObservedMotion {
-  double speed = 0.0;       ///< at its begin [m/s]
+  double speed = 0.0;       ///< at its start [m/s]
   double next_speed = 0.0;  ///< at its end [m/s]
   double turn = 0.0;        ///< change of heading [rad], positive left
 };

@@ -21,7 +21,8 @@ const std::vector<std::string>& dev10Routes();
 /// Which routes of a Bench2Drive file an evaluation runs: each place once.
 struct Bench2DriveSelection {
   std::vector<std::pair<std::string, std::string>> routes;  ///< id, network file
-  /// Left out for way points equal to those of a route that is run: by id, the id of that one.
+  /// Left out because of waypoints equal to those of a route that is run: by id, the id of that
+  /// one.
   std::map<std::string, std::string> repeated;
 };
 

@@ -131,7 +131,7 @@ std::string checksumOf(const SafetensorsHeader& header, const std::string& sourc
 }
 
 /// Hashes the data section piece by piece, so that a damaged file costs no memory, and goes back to
-/// its begin.
+/// its start.
 void requireChecksum(Input& input, std::uint64_t size, const std::string& expected) {
   if (size > kMaxData) {
     failOn(input.source(), "the data section of " + std::to_string(size) +

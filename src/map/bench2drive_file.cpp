@@ -21,7 +21,7 @@ std::string nearestIds(const std::string& id, std::vector<std::string> ids) {
   return core::joinText(nearest, ", ");
 }
 
-/// Town and way points as they are written.
+/// Town and waypoints as they are written.
 std::string placeOf(const pugi::xml_node& route) {
   std::string place = route.attribute("town").value();
   for (const pugi::xml_node& position : route.child("waypoints").children("position")) {

@@ -25,7 +25,7 @@ class Bench2DriveFile {
   std::vector<Bench2DriveEntry> entries() const;
 
   /// Routes that repeat another one: by the id of each, the lowest id in the same town with equal
-  /// way points. Such routes differ in their CARLA scenario alone, which is not run here, so that
+  /// waypoints. Such routes differ in their CARLA scenario alone, which is not run here, so that
   /// they would count one and the same route several times.
   std::map<std::string, std::string> repeatedRoutes() const;
 

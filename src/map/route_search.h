@@ -58,7 +58,7 @@ class LaneSearch {
   double lengthToStart(LaneIndex lane) const;
 
  private:
-  // Node n < lane count: lane n entered at its beginning. Node lane count + n: lane n abreast of
+  // Node n < lane count: lane n entered at its start. Node lane count + n: lane n abreast of
   // the start.
   std::size_t count() const { return network_.lanes().size(); }
   LaneIndex laneOf(std::size_t node) const {

@@ -54,7 +54,7 @@ constexpr MeasureDefinition kEgoCollisionsPerKm = {
     Direction::kNeither,
     Subject::kEgoAndOthers,
     "1000 x collisions of CBVs with the ego / distance driven as CBV in metres; n counts CBVs.",
-    "RIFT does not tell the partner.",
+    "RIFT does not record the partner.",
 };
 
 /// Contacts of CBVs with anyone and with the ego alone; a contact of two CBVs counts once.

@@ -17,7 +17,7 @@ constexpr MeasureDefinition kCbvStruckBackground = {
     Subject::kCbvs,
     "Contacts of a CBV with a background vehicle that are the CBV's fault: the rule for the ego's "
     "contacts with the CBV in the ego's place (docs/protocols.md).",
-    "RIFT does not tell who struck whom.",
+    "RIFT does not record who struck whom.",
     0,
 };
 constexpr MeasureDefinition kCbvByBackground = {
@@ -28,7 +28,7 @@ constexpr MeasureDefinition kCbvByBackground = {
     Direction::kNeither,
     Subject::kCbvs,
     "Contacts of a CBV with a background vehicle that are that vehicle's fault, by the same rule.",
-    "RIFT does not tell who struck whom.",
+    "RIFT does not record who struck whom.",
     0,
 };
 constexpr MeasureDefinition kCbvWithCbv = {
@@ -50,7 +50,7 @@ constexpr MeasureDefinition kCbvStruckBackgroundPerKm = {
     Direction::kLowerIsBetter,
     Subject::kCbvs,
     "1000 x cbv_contacts_struck_background / distance driven as CBV in metres; n counts CBVs.",
-    "RIFT does not tell who struck whom.",
+    "RIFT does not record who struck whom.",
 };
 constexpr MeasureDefinition kCbvByBackgroundPerKm = {
     "cbv_contacts_by_background_per_km",
@@ -60,7 +60,7 @@ constexpr MeasureDefinition kCbvByBackgroundPerKm = {
     Direction::kNeither,
     Subject::kCbvs,
     "1000 x cbv_contacts_by_background / distance driven as CBV in metres; n counts CBVs.",
-    "RIFT does not tell who struck whom.",
+    "RIFT does not record who struck whom.",
 };
 constexpr MeasureDefinition kCbvWithCbvPerKm = {
     "cbv_contacts_with_cbv_per_km",

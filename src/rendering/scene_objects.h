@@ -60,7 +60,7 @@ class SignalHeads {
   std::vector<int> visible_masts_;
 };
 
-// Other vehicles as shaded boxes: body, cabin, wheels, tail lights that tell whether it brakes,
+// Other vehicles as shaded boxes: body, cabin, wheels, tail lights that show whether it brakes,
 // headlights, and a shadow below.
 
 /// Whether the brake lights are on: it slows down by more than 0.5 m/s^2, brakes by more than 0.1,

@@ -11,7 +11,7 @@
 
 namespace cdiff::ros {
 
-// Nodes, without namespace.
+// Names of the nodes, without namespace.
 inline constexpr const char* kTrafficSimulatorNode = "traffic_simulator_node";
 inline constexpr const char* kCbvIdentificationNode = "cbv_identification_node";
 inline constexpr const char* kEgoPlannerNode = "ego_planner_node";
@@ -35,8 +35,7 @@ enum class Party {
   kParticipants  ///< every node but the traffic simulator
 };
 
-/// The nodes of a session by name, who of them takes part, and what their planners need.
-/// Who takes part in a session, besides the traffic simulator.
+/// Which nodes take part in a session besides the traffic simulator, and what their planners need.
 struct SessionGraph {
   std::vector<std::string> participants;  ///< nodes that the session counts on
   int max_cbv = 0;                        ///< slots

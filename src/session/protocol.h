@@ -13,10 +13,9 @@
 
 namespace cdiff::session {
 
-// Protocol presets and the rules by which a session ends: completed, blocked, deviated, timed out,
-// collided.
-
-/// Defaults: rift_dev10 (RIFT's protocol on Bench2Drive's ten development routes).
+/// The rules by which a session ends (completed, blocked, deviated, timed out, collided), as a
+/// preset or key by key. Defaults: rift_dev10 (RIFT's protocol on Bench2Drive's ten development
+/// routes).
 struct ProtocolOptions {
   std::string preset = "rift_dev10";      ///< name of the rules
   double time_limit = 40.0;               ///< simulated [s]

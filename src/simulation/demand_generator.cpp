@@ -31,7 +31,7 @@ bool laneNear(const Lane& lane, const geometry::Polyline& path, double radius) {
   return false;
 }
 
-/// Gap that a follower needs to a vehicle ahead: a headway, and the route to brake to its speed.
+/// Gap that a follower needs to a vehicle ahead: a headway, and the distance to brake to its speed.
 double neededGap(double speed, double speed_ahead) {
   const double braking = (speed * speed - speed_ahead * speed_ahead) / (2.0 * kBraking);
   return kSmallestGap + std::max(0.0, kHeadway * (speed - speed_ahead) + std::max(0.0, braking));
@@ -145,7 +145,7 @@ constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {
     {{4.2, 1.75, 1.50}, {4.5, 1.80, 1.50}, {4.8, 1.85, 1.45}, {5.2, 1.95, 1.85}}};
 constexpr double kLongest = 5.2;
 
-// Elements of one attempt's draws; the router's begin at 16.
+// Elements of one attempt's draws; the router's start at 16.
 constexpr std::uint32_t kPlaceElement = 0;
 constexpr std::uint32_t kSizeElement = 1;
 

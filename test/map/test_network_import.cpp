@@ -162,7 +162,7 @@ TEST_F(NetworkImport, ConvertsOpenStreetMapWithTheTypeMapOfThePackage) {
   // Two stretches of the road and one side street, both ways each; the footway is no road.
   EXPECT_EQ(read.edgeIds().size(), 6U);
   const auto lanesOf = [&](const std::string& edge) { return read.lanesOfEdge(edge); };
-  ASSERT_EQ(lanesOf("10#0").size(), 2U);  // four lanes, two each route
+  ASSERT_EQ(lanesOf("10#0").size(), 2U);  // four lanes, two each way
   EXPECT_NEAR(read.lane(lanesOf("10#0")[0]).speed_limit, 13.89, 1e-9);
   ASSERT_EQ(lanesOf("-11").size(), 1U);
   EXPECT_NEAR(read.lane(lanesOf("-11")[0]).speed_limit, 8.33, 1e-9);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // Kills the metrics node of a running session, as a crash would: at tick 10, by the process id that
-// its XML-RPC server tells.
+// its XML-RPC server reports.
 #include <csignal>
 
 #include "e2e_cdiff/TrafficSnapshot.h"

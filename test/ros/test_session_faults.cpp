@@ -86,7 +86,7 @@ TEST_F(SessionFaults, StoppedSimulatorIsMissedAndEnded) {
       << session_.log();
 }
 
-// The limit is 2 s; before, only the silence of 10 s or 30 s told.
+// The limit is 2 s; before, only the silence of 10 s or 30 s showed it.
 TEST_F(SessionFaults, KilledExternalEgoIsNoticedByItsConnection) {
   launchWithExternalEgo(kLong);
   ASSERT_TRUE(session_.signal("my_ego", SIGKILL));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-// Generated demand on a grid of 4 x 4 crossings, 150 m apart, two lanes each route; the ego route
+// Generated demand on a grid of 4 x 4 crossings, 150 m apart, two lanes each way; the ego route
 // leads straight east through the second row.
 #include <gtest/gtest.h>
 

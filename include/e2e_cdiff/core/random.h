@@ -18,10 +18,9 @@ struct RandomKey {
   std::uint16_t diffusion_step = 0;  ///< diffusion step k, or 0
 };
 
-/// Counter-based random numbers (Philox4x32-10, Salmon et al. 2011): a draw is a pure function of
-/// (root seed, named stream, vehicle, decision, diffusion step, element), so no draw depends on the
-/// order of others.
-/// A named stream of one root seed. Copyable, without state: the same arguments give the same draw.
+/// A named stream of random numbers of one root seed. Counter-based (Philox4x32-10, Salmon et al.
+/// 2011): a draw is a pure function of (root seed, named stream, vehicle, decision, diffusion step,
+/// element), so no draw depends on the order of others. Copyable, without state.
 class RandomStream {
  public:
   RandomStream(std::uint64_t root_seed, std::string_view name);

@@ -169,8 +169,8 @@ using MetricEntry =
 class MetricSink {
  public:
   virtual ~MetricSink() = default;
-  /// `measure` is one of the metric's; the unit of the measure is set to the measure's. Throws
-  /// core::Error for a measure that its descriptor does not have.
+  /// Sets one of the metric's measures, whose unit becomes that of `definition`. Throws core::Error
+  /// for a definition that the metric's descriptor does not have.
   virtual void set(const MeasureDefinition& definition, Measure measure) = 0;
   /// A list beside the measures of a part of summary.json, by JSON pointer ("/cbv/NAME").
   virtual void setList(const std::string& place, std::vector<MetricEntry> entries) = 0;

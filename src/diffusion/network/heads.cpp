@@ -132,7 +132,7 @@ void UNet::forward(const float* noisy, const inference::Activation& injection, f
     inference::copyIn(noisy + b * horizon_ * columns, horizon_, columns,
                       parts_.noisy->value.view(b));
   }
-  // inference::Layer by layer: its weights stay in the cache for all samples.
+  // Layer by layer: its weights stay in the cache for all samples.
   for (const auto& layer : parts_.layers) {
     for (std::int64_t b = 0; b < samples_; ++b) layer->forward(b, injection.row(b));
   }

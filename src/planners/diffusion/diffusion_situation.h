@@ -36,8 +36,8 @@ class GuidedBatch : public diffusion::CleanObjective {
 };
 
 // Which of several sampled plans (rollouts [T, 7], body frame, SI units) is driven: the one of the
-// lowest score; or, so that a vehicle does not waver between equal routes, the one nearest to the
-// last plan while it is no worse by more than a share.
+// lowest score; or, so that a vehicle does not waver between plans that are about equally good, the
+// one nearest to the last plan while it is no worse by more than a share.
 
 /// Index into `plans`. `previous` is the last plan as seen from here. Plans that are not finite are
 /// not chosen unless none is.

@@ -33,7 +33,7 @@ namespace cdiff::planners {
 ///    vehicle follows its present speed: two standing cars hold each other up only if the body of
 ///    one lies in the other's way.
 ///  - A task with an even style (planning::DrivingStyle) follows by IDM with that style's a and b
-///    and gives route by an even deceleration that ends before the boxes meet; its pedals are those
+///    and gives way by an even deceleration that ends before the boxes meet; its pedals are those
 ///    that the vehicle dynamics needs, and no rule makes it drive after standing for long; its
 ///    forecast is that of full throttle, which asks for more room. As published, pedals are full or
 ///    none and IDM has a = 24 m/s^2.

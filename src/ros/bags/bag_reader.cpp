@@ -171,7 +171,7 @@ bool BagReader::openChunk() {
   if (opened.fault.empty() || chunk.named) return true;
   chunk.named = true;
   note(rangeText(chunk.begin, chunk.begin + chunk.data.size()) + ", a part of the recording: " +
-       opened.fault + (text_.empty() ? "; nothing of it is left" : "; its begin can be read"));
+       opened.fault + (text_.empty() ? "; nothing of it is left" : "; its start can be read"));
   return true;
 }
 

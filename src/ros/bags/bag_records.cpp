@@ -80,7 +80,7 @@ std::optional<BagRecord> parseRecord(std::string_view bytes, std::uint64_t offse
 
 std::optional<std::uint64_t> findChunk(std::string_view bytes, std::uint64_t from) {
   constexpr std::string_view kOpField("\x04\x00\x00\x00op=\x05", 8);
-  constexpr std::uint64_t kFarthest = 64;  // [bytes] from the header's begin to its op
+  constexpr std::uint64_t kFarthest = 64;  // [bytes] from the header's start to its op
   const std::uint64_t first = from;
   std::uint64_t at = bytes.find(kOpField, from);
   for (; at != std::string_view::npos; at = bytes.find(kOpField, at + 1)) {
