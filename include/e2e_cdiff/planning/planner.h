@@ -31,11 +31,13 @@ struct PlanningContext {
   const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
 };
 
-/// How a vehicle drives, for planners that follow by IDM (defaults: PDM-Lite's).
+/// How a vehicle drives, for planners that follow by IDM (defaults: PDM-Lite's). With an
+/// acceleration the style is *even*: smooth pedals in place of full throttle and full brake by
+/// turns.
 struct DrivingStyle {
   double minimum_gap = 4.0;    ///< s0 behind a leader [m]
   double time_headway = 0.25;  ///< T [s]
-  double acceleration = 0.0;   ///< a; 0 leaves the pedals to PDM-Lite, which switches them [m/s^2]
+  double acceleration = 0.0;   ///< a [m/s^2]; 0: PDM-Lite's own pedals, full or none
   double deceleration = 3.0;   ///< b, comfortable, where a is given [m/s^2]
   bool even() const { return acceleration > 0.0; }
 };
