@@ -12,7 +12,7 @@ namespace cdiff::inference {
 
 namespace {
 
-/// Where a tile stands.
+/// Where a tile of outputs, and the weights and inputs that it needs, lie in memory.
 struct ConvolutionTile {
   const float* weights;
   const float* bias;
@@ -88,9 +88,8 @@ void convolve(const ConvolutionCall& call) {
 
 }  // namespace
 
-// Mish(x) = x tanh(ln(1 + e^x)) and its derivative for one vector type V; see
-// convolution_kernel.h about linkage. With e = e^x and n = e (e + 2), tanh(ln(1 + e)) = n / (n +
-// 2).
+// Mish(x) = x tanh(ln(1 + e^x)) and its derivative for one vector type V (linkage as
+// above). With e = e^x and n = e (e + 2), tanh(ln(1 + e)) = n / (n + 2).
 
 namespace {
 
@@ -144,8 +143,8 @@ void mish(const float* input, std::int64_t count, float* output, float* slope) {
 
 }  // namespace
 
-// Group normalization with Mish, and its pull-back, for one vector type V; see
-// convolution_kernel.h about linkage.
+// Group normalization with Mish, and its pull-back, for one vector type V (linkage as
+// above).
 
 namespace {
 

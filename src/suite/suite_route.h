@@ -26,7 +26,7 @@ struct SuiteRoute {
   std::vector<std::string> edges;
   double start_offset = 5.0;  ///< from the first edge's start [m]
   double end_offset = 5.0;    ///< from the last edge's end [m]
-  std::string manoeuvre;      ///< one of maneuvers()
+  std::string manoeuvre;      ///< one of manoeuvres()
   double turn = 0.0;          ///< heading after the last junction minus before the first [deg]
   double length = 0.0;        ///< [m]
   int conflicts = 0;          ///< edges whose streams, not the ego's own, cross or join the route

@@ -83,7 +83,7 @@ class IdmEquation {
         acceleration_(acceleration),
         closing_scale_(2.0 * std::sqrt(acceleration * deceleration)) {}
 
-  /// dv/dt at a time, with `traveled` meters driven since the start and speed `v`.
+  /// dv/dt at a time, with `travelled` meters driven since the start and speed `v`.
   double acceleration(double time, double travelled, double v) const {
     const double wanted_gap = obstacle_.minimum_gap + v * obstacle_.time_headway +
                               v * (v - obstacle_.speed) / closing_scale_;
