@@ -11,6 +11,7 @@
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
+#include "evaluation/sealed_opening.h"
 #include "realism/matched.h"
 #include "realism/pooled.h"
 #include "session/session_request.h"
@@ -82,6 +83,7 @@ int matched(const MatchedArguments& arguments) {
     std::cerr << "[" << ++done << "/" << jobs.size() << "] " << job.id << ": "
               << (end.score ? (end.resumed ? "resumed" : "done") : end.cause) << "\n";
   };
+  std::cerr << evaluation::recordOpening(matrix, folder);
   const auto ends = realism::runMatched(jobs, execution, core::catchStopSignals());
   const auto rows = realism::matchedRows(jobs, ends);
   writeResult(folder, realism::matchedJson(rows, arguments.options),

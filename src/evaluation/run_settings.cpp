@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/run_settings.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/text.h"
+#include "evaluation/paper/paper_table.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -44,6 +46,27 @@ std::string settingsOf(const session::ScenarioOptions& scenario) {
   return plannerText("ego", scenario.ego_planner, scenario, scenario.ego_guidance) + "; " +
          plannerText("CBVs", scenario.cbv_planner, scenario, scenario.guidance) + "; protocol " +
          scenario.protocol.preset + ", " + core::formatNumber(scenario.protocol.time_limit) + " s";
+}
+
+void addSettings(const TableRow& row, const TableDefinition& definition,
+                 const std::vector<BatchRun>& runs, Table& table) {
+  std::vector<TableSettings>& settings = table.settings;
+  for (const TableColumn& column : definition.columns) {
+    for (const BatchRun* run : runsWith(runs, merged(row.levels, column.levels))) {
+      if (run->settings.empty()) continue;
+      auto found = std::find_if(settings.begin(), settings.end(),
+                                [&](const auto& entry) { return entry.text == run->settings; });
+      if (found == settings.end()) found = settings.insert(settings.end(), {{}, run->settings});
+      if (found->rows.empty() || found->rows.back() != row.name) found->rows.push_back(row.name);
+    }
+  }
+}
+
+std::vector<std::string> settingsLines(const Table& table) {
+  std::vector<std::string> lines;
+  for (const TableSettings& entry : table.settings)
+    lines.push_back(core::joinText(entry.rows, " | ") + ": " + entry.text + ".");
+  return lines;
 }
 
 }  // namespace cdiff::evaluation

@@ -78,10 +78,11 @@ void addCount(const RouteSums& routes, RouteBootstrap& bootstrap, PooledEstimate
   }
   estimate.events = static_cast<std::size_t>(std::llround(events));
   if (!estimate.value) return;
-  const Interval expected = poissonInterval(estimate.events);
-  estimate.interval = {expected.low / estimate.exposure, expected.high / estimate.exposure};
-  estimate.interval_kind = IntervalKind::kPoisson;
   estimate.clustered = bootstrap.valueInterval(routes);
+  estimate.interval = rateInterval(estimate.events, estimate.exposure, estimate.clustered);
+  const Interval alone = rateInterval(estimate.events, estimate.exposure, std::nullopt);
+  const bool wider = estimate.interval->low < alone.low || estimate.interval->high > alone.high;
+  estimate.interval_kind = wider ? IntervalKind::kWider : IntervalKind::kPoisson;
   addDispersion(routes, estimate);
 }
 
@@ -109,6 +110,8 @@ const char* toText(IntervalKind kind) {
       return "bootstrap";
     case IntervalKind::kPoisson:
       return "poisson";
+    case IntervalKind::kWider:
+      return "poisson or bootstrap";
     case IntervalKind::kUnseen:
       return "unseen";
     case IntervalKind::kNone:
@@ -184,6 +187,14 @@ PooledEstimate pooledEstimate(const std::vector<const RunRecord*>& runs, const s
   PooledEstimate estimate = sums.estimate(bootstrap);
   estimate.seeds = seeds.size();
   return estimate;
+}
+
+Interval rateInterval(std::size_t events, double exposure,
+                      const std::optional<Interval>& by_routes) {
+  const Interval expected = poissonInterval(events);
+  Interval interval{expected.low / exposure, expected.high / exposure};
+  if (!by_routes) return interval;
+  return {std::min(interval.low, by_routes->low), std::max(interval.high, by_routes->high)};
 }
 
 Interval unseenInterval(double value, double least, double most, std::size_t routes) {

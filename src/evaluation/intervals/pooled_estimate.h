@@ -21,11 +21,12 @@ metrics::PoolingRule poolingOfMeasure(const std::string& measure);
 enum class IntervalKind {
   kNone,     ///< too few routes, or an unbounded figure without spread
   kRoutes,   ///< bootstrap clustered on routes
-  kPoisson,  ///< exact, of a count
+  kPoisson,  ///< exact, of a count, which holds that of the bootstrap by routes
+  kWider,    ///< of a count: from the lower to the upper end of both
   kUnseen,   ///< routes all alike: by the share of routes that may differ unseen
 };
 
-/// "bootstrap", "poisson", "unseen" or "none".
+/// "bootstrap", "poisson", "poisson or bootstrap", "unseen" or "none".
 const char* toText(IntervalKind kind);
 
 /// A measure over the runs of one system: its value, 95 % interval, and on what it stands.
@@ -82,6 +83,12 @@ bool knowDistances(const std::vector<const RunRecord*>& runs, const metrics::Poo
 /// routes.
 PooledEstimate pooledEstimate(const std::vector<const RunRecord*>& runs, const std::string& measure,
                               RouteBootstrap& bootstrap, const std::string& cluster = "scenario");
+
+/// Interval of the rate of events in `exposure` km: the exact Poisson interval, or where the
+/// bootstrap by routes (absent below two routes) reaches farther, up to its end: events of one
+/// route are not independent, and a bootstrap of few events is too narrow.
+Interval rateInterval(std::size_t events, double exposure,
+                      const std::optional<Interval>& by_routes);
 
 /// Interval of a bounded figure all of whose `routes` have the same `value`: at most
 /// largestShareUnseen(routes) of the routes differ, by as much as the bounds allow.

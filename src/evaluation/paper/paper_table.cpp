@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "evaluation/intervals/estimate_text.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/intervals/route_bootstrap.h"
 #include "metrics/metric_registry.h"
 #include "metrics/pooling.h"
@@ -90,15 +91,15 @@ class CellSums {
   }
 
   /// The same of events per km, where weights are metres; counts go to the cell.
-  Statistics ofEvents(TableCell& cell) const {
+  Statistics ofEvents(RouteBootstrap& bootstrap, TableCell& cell) const {
     Statistics statistics = statisticsOf(seedMeans(allRoutes()));
     cell.events = static_cast<std::size_t>(std::llround(events_));
     cell.kilometres = kilometres_;
-    const Interval expected = poissonInterval(*cell.events);
     statistics.interval = std::nullopt;
     if (used_ == 0) return statistics;
     statistics.mean = events_ / kilometres_;
-    statistics.interval = Interval{expected.low / kilometres_, expected.high / kilometres_};
+    statistics.interval =
+        rateInterval(*cell.events, kilometres_, bootstrap.valueInterval(perKilometre()));
     return statistics;
   }
 
@@ -114,6 +115,19 @@ class CellSums {
     events_ += std::round(share * value / 1000.0);
     kilometres_ += share / 1000.0;
     ++used_;
+  }
+
+  /// Events and km of each route.
+  RouteSums perKilometre() const {
+    RouteSums sums;
+    for (const auto& route : routes_) {
+      sums.emplace_back();
+      for (const auto& [seed, sum] : route) {
+        sums.back().sum += sum.sum / 1000.0;
+        sums.back().weight += sum.weight / 1000.0;
+      }
+    }
+    return sums;
   }
 
   std::vector<std::uint32_t> allRoutes() const {
@@ -182,7 +196,7 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   if (!column.rift_key.empty())
     cell.rift = CellSums(own, column.rift_key, weight).overSeeds(bootstrap);
   const CellSums sums(own, withSubject(column.key, row.subject), weight);
-  cell.seeds = showsEvents(column) ? sums.ofEvents(cell) : sums.overSeeds(bootstrap);
+  cell.seeds = showsEvents(column) ? sums.ofEvents(bootstrap, cell) : sums.overSeeds(bootstrap);
   cell.used = sums.used();
   cell.routes = sums.routes();
   if (!cell.seeds.mean) cell.note = reasonOf(levels, cell);
@@ -221,20 +235,6 @@ std::string statisticsText(const Statistics& statistics) {
   return text + intervalText(statistics.interval, 2);
 }
 
-/// Adds the row to the settings of each of its complete runs.
-void addSettings(const TableRow& row, const TableDefinition& definition,
-                 const std::vector<BatchRun>& runs, std::vector<TableSettings>& settings) {
-  for (const TableColumn& column : definition.columns) {
-    for (const BatchRun* run : runsWith(runs, merged(row.levels, column.levels))) {
-      if (run->settings.empty()) continue;
-      auto found = std::find_if(settings.begin(), settings.end(),
-                                [&](const auto& entry) { return entry.text == run->settings; });
-      if (found == settings.end()) found = settings.insert(settings.end(), {{}, run->settings});
-      if (found->rows.empty() || found->rows.back() != row.name) found->rows.push_back(row.name);
-    }
-  }
-}
-
 }  // namespace
 
 Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
@@ -245,7 +245,7 @@ Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& 
     table.cells.emplace_back();
     for (std::size_t i = 0; i < definition.columns.size(); ++i)
       table.cells.back().push_back(fillCell(row, i, definition.columns[i], runs, bootstrap));
-    addSettings(row, definition, runs, table.settings);
+    addSettings(row, definition, runs, table);
   }
   return table;
 }
@@ -262,13 +262,6 @@ std::string tableCsv(const Table& table) {
     }
   }
   return text;
-}
-
-std::vector<std::string> settingsLines(const Table& table) {
-  std::vector<std::string> lines;
-  for (const TableSettings& entry : table.settings)
-    lines.push_back(core::joinText(entry.rows, " | ") + ": " + entry.text + ".");
-  return lines;
 }
 
 std::string cellText(const TableCell& cell) {

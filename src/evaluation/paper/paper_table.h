@@ -132,6 +132,10 @@ Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& 
 /// A line per row, column and definition (clean, rift_compat).
 std::string tableCsv(const Table& table);
 
+/// Notes the settings of the row's complete runs.
+void addSettings(const TableRow& row, const TableDefinition& definition,
+                 const std::vector<BatchRun>& runs, Table& table);
+
 /// A line per entry of Table::settings.
 std::vector<std::string> settingsLines(const Table& table);
 
