@@ -6,7 +6,7 @@
 #include "core/text.h"
 #include "evaluation/comparison.h"
 #include "evaluation/intervals/estimate_text.h"
-#include "metrics/pooling.h"
+#include "metrics/metric_registry.h"
 
 namespace cdiff::evaluation {
 namespace {

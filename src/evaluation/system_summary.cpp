@@ -8,7 +8,7 @@
 #include "core/text.h"
 #include "evaluation/intervals/estimate_text.h"
 #include "metrics/known_measures.h"
-#include "metrics/pooling.h"
+#include "metrics/metric_registry.h"
 #include "page/page_parts.h"
 #include "record/summary.h"
 

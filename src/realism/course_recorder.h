@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/file.h"
-#include "metrics/measures/stop_lines.h"
+#include "metrics/measures/driving_score.h"
 #include "realism/continuation.h"
 #include "realism/hand_over_selector.h"
 #include "realism/recording.h"

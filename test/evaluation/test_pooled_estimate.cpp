@@ -8,7 +8,6 @@
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_records.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
-#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/distributions.h"
 #include "page/pictures/charts.h"
 #include "record/logs/driving_log.h"
 #include "record/result_folder.h"

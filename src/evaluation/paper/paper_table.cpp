@@ -10,7 +10,6 @@
 #include "evaluation/intervals/estimate_text.h"
 #include "evaluation/intervals/route_bootstrap.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 #include "planners/registry.h"
 #include "session/session_request.h"
 
