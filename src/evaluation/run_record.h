@@ -22,9 +22,6 @@ using Measures = std::map<std::string, double>;
 /// All names in the order of columns.
 const std::vector<std::string>& measureNames();
 
-/// How a batch sums up the measures that no metric defines; a plain mean for an unknown name.
-metrics::PoolingRule batchPooling(const std::string& measure);
-
 /// What a summary says.
 struct SummaryFacts {
   std::string status;

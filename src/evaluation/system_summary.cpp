@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/text.h"
-#include "evaluation/intervals/estimate_text.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 #include "page/page_parts.h"

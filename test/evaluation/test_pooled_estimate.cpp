@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "evaluation/intervals/estimate_text.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_records.h"
 #include "metrics/metric_registry.h"

@@ -3,12 +3,36 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "evaluation/matrix.h"
 
 namespace cdiff::evaluation {
+
+/// The level of `routes:` that stands for the ten routes on which RIFT and the paper report (their
+/// development set of Bench2Drive, drivetransformer_bench2drive_dev10.xml).
+constexpr const char* kDev10 = "dev10";
+
+/// Ids of these ten routes, sorted.
+const std::vector<std::string>& dev10Routes();
+
+/// Which routes of a Bench2Drive file an evaluation runs: each place once.
+struct Bench2DriveSelection {
+  std::vector<std::pair<std::string, std::string>> routes;  ///< id, network file
+  /// Left out because of waypoints equal to those of a route that is run: by id, the id of that
+  /// one.
+  std::map<std::string, std::string> repeated;
+};
+
+/// Throws InputError for a named route that the file or its town's network does not have, and for a
+/// selection without any route. Of dev10, routes in other towns are left out.
+Bench2DriveSelection selectBench2Drive(const Bench2DriveOptions& options);
+
+/// "left out ..." for people; empty where nothing was.
+std::string repeatedText(const Bench2DriveSelection& selection);
 
 // Opening a sealed suite (suite/seal.h) in an evaluation: only with a reason, and on record.
 
