@@ -13,7 +13,6 @@
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
-#include "page/assets.h"
 #include "page/page_parts.h"
 
 namespace cdiff::evaluation {

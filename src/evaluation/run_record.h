@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/metrics/metric.h"
 #include "evaluation/run_plan.h"
 #include "record/verdict.h"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "page/pictures/session_charts.h"
-
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
+#include "page/report_sections.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {
