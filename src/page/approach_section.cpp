@@ -5,10 +5,10 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "page/report_sections.h"
 #include "record/logs/cbv_log.h"
 
 namespace cdiff::page {

@@ -7,7 +7,6 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
-#include "page/report_sections.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {

@@ -6,10 +6,10 @@
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "page/report_sections.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {

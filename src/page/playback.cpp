@@ -7,9 +7,9 @@
 #include <set>
 
 #include "e2e_cdiff/core/angle.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/top_view.h"
-#include "page/report_sections.h"
 #include "record/logs/cbv_log.h"
 
 namespace cdiff::page {

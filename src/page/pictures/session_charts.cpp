@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "core/text.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "page/report_sections.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {
