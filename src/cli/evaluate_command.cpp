@@ -12,13 +12,11 @@
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
-#include "evaluation/bench2drive_selection.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
-#include "evaluation/sealed_opening.h"
+#include "evaluation/suite_selection.h"
 
 namespace cdiff::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
-#include "evaluation/sealed_opening.h"
+#include "evaluation/suite_selection.h"
 #include "realism/matched.h"
 #include "realism/pooled.h"
 #include "session/session_request.h"

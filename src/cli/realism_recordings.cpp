@@ -9,7 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "evaluation/executor.h"
-#include "realism/recorded_traffic.h"
+#include "realism/recording.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "realism/course_recorder.h"
 #include "ros/bags/replay.h"

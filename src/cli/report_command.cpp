@@ -11,7 +11,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison.h"
 #include "evaluation/matrix.h"
-#include "page/training_report.h"
+#include "page/training_pages.h"
 
 namespace cdiff::cli {
 namespace {

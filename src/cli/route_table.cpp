@@ -9,8 +9,8 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "evaluation/bench2drive_selection.h"
 #include "evaluation/executor.h"
+#include "evaluation/suite_selection.h"
 #include "map/route_source.h"
 
 namespace cdiff::cli {

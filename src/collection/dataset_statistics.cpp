@@ -15,7 +15,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "learning/samples/sample_order.h"
-#include "page/sample_sheet.h"
+#include "page/training_pages.h"
 #include "planners/pdm_lite/route_rules.h"
 
 namespace cdiff::collection {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "evaluation/batch_files.h"
-
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,6 +7,7 @@
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/text.h"
+#include "evaluation/batch_report.h"
 #include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
 #include "record/junit.h"

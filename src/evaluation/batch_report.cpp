@@ -2,14 +2,161 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/batch_report.h"
 
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/paper/paper_definitions.h"
+#include "evaluation/paper/paper_table.h"
+#include "evaluation/system_summary.h"
+#include "metrics/known_measures.h"
+#include "page/page_parts.h"
 
 namespace cdiff::evaluation {
+
+namespace {
+
+using core::element;
+using core::Markup;
+using record::Outcome;
+
+/// Outcomes of runs in the order of the page; what broke, was interrupted or did not run is an
+/// error.
+constexpr Outcome kOrder[] = {Outcome::kError, Outcome::kFailed, Outcome::kStruck,
+                              Outcome::kNotJudged, Outcome::kPassed};
+
+Outcome outcomeOf(const RunRecord& record) {
+  return record.complete() ? record.verdict : Outcome::kError;
+}
+
+/// Place in kOrder.
+std::ptrdiff_t rankOf(const RunRecord& record) {
+  return std::find(std::begin(kOrder), std::end(kOrder), outcomeOf(record)) - std::begin(kOrder);
+}
+
+/// The first outcome in kOrder that a run has; passed without runs.
+Outcome worstOf(const std::vector<BatchRun>& runs) {
+  std::ptrdiff_t rank = std::size(kOrder) - 1;
+  for (const BatchRun& run : runs) rank = std::min(rank, rankOf(run.record));
+  return kOrder[rank];
+}
+
+const char* headlineOf(Outcome worst) {
+  switch (worst) {
+    case Outcome::kPassed:
+      return "All runs passed";
+    case Outcome::kStruck:
+      return "No run failed, but egos were struck";
+    case Outcome::kFailed:
+      return "Verdicts failed";
+    case Outcome::kNotJudged:
+      return "No run failed, but not every run was judged";
+    case Outcome::kError:
+    case Outcome::kInterrupted:
+      break;
+  }
+  return "Not every run could be judged";
+}
+
+Markup headerOf(const std::string& name, const std::vector<BatchRun>& runs) {
+  const Outcome worst = worstOf(runs);
+  std::map<Outcome, std::size_t> counts;
+  for (const BatchRun& run : runs) ++counts[outcomeOf(run.record)];
+  const auto count = [&](Outcome outcome) { return std::to_string(counts[outcome]); };
+  const std::string counts_text = count(Outcome::kPassed) + " passed, " + count(Outcome::kStruck) +
+                                  " were struck, " + count(Outcome::kNotJudged) +
+                                  " were not judged, " + count(Outcome::kFailed) +
+                                  " ended with a failed verdict, " + count(Outcome::kError) +
+                                  " broke, were interrupted or did not run";
+  return page::pageHeader(
+      name, "evaluation of " + std::to_string(runs.size()) + " runs",
+      page::pageBanner(worst, headlineOf(worst), element("p", {}, counts_text)));
+}
+
+std::string valueText(const BatchRun& run, const std::string& name, int decimals) {
+  const auto found = run.record.measures.find(name);
+  return found == run.record.measures.end() ? "–" : core::formatFixed(found->second, decimals);
+}
+
+void addRow(const BatchRun& run, page::HtmlTable& table) {
+  const RunRecord& record = run.record;
+  const bool has_report = std::filesystem::exists(run.folder / "report.html");
+  const std::string link = "runs/" + record.id + "/report.html";
+  const std::string status =
+      record.status + (record.complete() ? ", " + record::wordOf(record.verdict) : "");
+  std::vector<Markup> cells = {
+      has_report ? element("a", {{"href", link}}, record.id) : Markup(record.id), status};
+  namespace known = metrics::known;
+  const std::pair<const char*, int> shown[] = {
+      {known::kRouteCompletion.name, 1},  {known::kDrivingScore.name, 1},
+      {known::kEgoCollisions.name, 0},    {known::kCbvDecisions.name, 0},
+      {known::kCbvEgoCollisions.name, 0}, {known::kCbvMinimumDistance.name, 1}};
+  for (const auto& [key, decimals] : shown) cells.emplace_back(valueText(run, key, decimals));
+  cells.emplace_back(record.complete() ? core::joinText(record.reasons, "; ") : record.cause);
+  table.row(cells, record::toText(outcomeOf(record)));
+}
+
+Markup runTable(const std::vector<BatchRun>& runs) {
+  std::vector<const BatchRun*> order;
+  for (const BatchRun& run : runs) order.push_back(&run);
+  std::stable_sort(order.begin(), order.end(), [](const BatchRun* left, const BatchRun* right) {
+    return rankOf(left->record) < rankOf(right->record);
+  });
+  page::HtmlTable table({"run", "status", "#route completion [%]", "#driving score",
+                         "#ego collisions", "#CBV decisions", "#CBV contacts with the ego",
+                         "#closest CBV [m]", "why"});
+  for (const BatchRun* run : order) addRow(*run, table);
+  return table.html();
+}
+
+Markup shownCell(const TableCell& cell) {
+  const std::string rift = riftText(cell);
+  const std::string paper = paperText(cell.paper);
+  Markup html = cellText(cell);
+  if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
+  if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
+  return html;
+}
+
+Markup paperTable(const Table& table) {
+  const TableDefinition& definition = table.definition;
+  std::vector<std::string> head = {definition.heading};
+  for (const TableColumn& column : definition.columns)
+    head.push_back(column.name + (column.unit.empty() ? "" : " [" + column.unit + "]"));
+  page::HtmlTable rows(head);
+  for (std::size_t i = 0; i < table.cells.size(); ++i) {
+    std::vector<Markup> cells = {definition.rows[i].name};
+    for (const TableCell& cell : table.cells[i]) cells.push_back(shownCell(cell));
+    rows.row(cells);
+  }
+  Markup html = rows.html();
+  if (!definition.note.empty()) html += page::pageNote(definition.note);
+  for (const std::string& line : settingsLines(table)) html += page::pageNote(line);
+  return html;
+}
+
+}  // namespace
+
+std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
+                      const std::vector<Table>& tables, const std::vector<Figure>& figures) {
+  std::vector<RunRecord> records;
+  for (const BatchRun& run : runs) records.push_back(run.record);
+  Markup html = headerOf(name, runs) +
+                page::pageSection("Systems", systemsHtml(systemsOf(records))) +
+                page::pageSection("Runs", runTable(runs));
+  for (const Table& table : tables)
+    html += page::pageSection(table.definition.title, paperTable(table));
+  for (const Figure& figure : figures) {
+    html += page::pageSection(figure.sheet.title, page::sheetSvg(figure.sheet),
+                              figure.wall_clock ? "wall-clock" : "");
+  }
+  return page::pageDocument(name + " – evaluation", {&page::kPanelSheetStyle, &kBatchPageStyle},
+                            html);
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -5,10 +5,11 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/comparison.h"
-#include "evaluation/intervals/estimate_text.h"
-#include "metrics/pooling.h"
+#include "evaluation/intervals/pooled_estimate.h"
+#include "metrics/metric_registry.h"
 
 namespace cdiff::evaluation {
+
 namespace {
 
 std::string levelText(const std::string& level) {
@@ -168,6 +169,31 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
       text += csvLine(comparison, measure);
   }
   return text;
+}
+
+void adjustForNumber(std::vector<Comparison>& comparisons) {
+  std::vector<double> p;
+  for (const Comparison& comparison : comparisons) {
+    for (const MeasureComparison& measure : comparison.measures) p.push_back(measure.p);
+  }
+  auto adjusted = holmAdjusted(p);
+  auto next = adjusted.begin();
+  for (Comparison& comparison : comparisons) {
+    for (MeasureComparison& measure : comparison.measures) measure.p_holm = *next++;
+  }
+}
+
+Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
+  constexpr double kLargest = 0.05;
+  Multiplicity result;
+  for (const Comparison& comparison : comparisons) {
+    for (const MeasureComparison& measure : comparison.measures) {
+      ++result.differences;
+      result.apart += measure.p <= kLargest;
+      result.apart_by_holm += measure.p_holm <= kLargest;
+    }
+  }
+  return result;
 }
 
 }  // namespace cdiff::evaluation

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/bench2drive_selection.h"
+#include "evaluation/suite_selection.h"
 #include "suite/suite.h"
 
 namespace cdiff::evaluation {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/run_record.h"
+#include "session/scenario_options.h"
 
 namespace cdiff::evaluation {
 
@@ -45,5 +46,10 @@ RunSet readRunSet(const std::filesystem::path& results);
 /// Throws InputError with the reason and what to do where the sets have other suites, or where runs
 /// of one scenario have other protocols, time limits or inputs in A than in B.
 void requireComparable(const RunSet& a, const RunSet& b);
+
+/// How the planners of a run work, for the heads of tables: for ego and CBVs with a network the
+/// method, sampler, candidates, conditioning and weights; for guided ones the objectives with their
+/// weights; then the protocol with its time limit [s]. Equal texts stand for equal settings.
+std::string settingsOf(const session::ScenarioOptions& scenario);
 
 }  // namespace cdiff::evaluation

@@ -14,7 +14,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
-#include "evaluation/sealed_opening.h"
+#include "evaluation/suite_selection.h"
 #include "map/import/network_import.h"
 #include "planners/registry.h"
 #include "session/closed_loop.h"

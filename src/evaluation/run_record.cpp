@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
-#include "evaluation/run_settings.h"
+#include "evaluation/run_conditions.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
 
@@ -85,15 +85,6 @@ std::string lastFault(const json& summary) {
 }
 
 }  // namespace
-
-metrics::PoolingRule batchPooling(const std::string& measure) {
-  static const std::map<std::string, metrics::PoolingRule> rules = {
-      {"cbv_passed_percent", metrics::kMeanToHundred},
-      {"cbv_completion_percent", metrics::kMeanToHundred},
-      {"guidance_trust_region_share", metrics::kMeanToOne}};
-  const auto rule = rules.find(measure);
-  return rule != rules.end() ? rule->second : metrics::kPlainMean;
-}
 
 const std::vector<std::string>& measureNames() {
   static const std::vector<std::string> names = [] {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/metrics/metric.h"
 #include "evaluation/run_plan.h"
 #include "record/verdict.h"
 
@@ -21,9 +20,6 @@ using Measures = std::map<std::string, double>;
 
 /// All names in the order of columns.
 const std::vector<std::string>& measureNames();
-
-/// How a batch sums up the measures that no metric defines; a plain mean for an unknown name.
-metrics::PoolingRule batchPooling(const std::string& measure);
 
 /// What a summary says.
 struct SummaryFacts {

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/text.h"
-#include "evaluation/intervals/estimate_text.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/known_measures.h"
-#include "metrics/pooling.h"
+#include "metrics/metric_registry.h"
 #include "page/page_parts.h"
 #include "record/summary.h"
 

@@ -5,7 +5,6 @@
 
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/collisions_per_km.h"
 #include "metrics/measures/free_road.h"
 #include "metrics/measures/sample_statistics.h"
 

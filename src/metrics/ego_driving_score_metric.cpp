@@ -8,7 +8,6 @@
 #include "metrics/known_measures.h"
 #include "metrics/measures/driving_score.h"
 #include "metrics/measures/sample_statistics.h"
-#include "metrics/measures/stop_lines.h"
 
 namespace cdiff::metrics {
 

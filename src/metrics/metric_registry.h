@@ -30,8 +30,17 @@ const char* toText(Direction direction);
 const char* toText(Subject subject);
 
 /// The metrics that come with the package. Their table is made from the list in
-/// src/metrics/CMakeLists.txt: NAME stands for NAME_metric.cpp, which defines the function
-/// nameMetric().
+/// src/metrics/CMakeLists.txt: NAME stands for the function nameMetric().
 std::vector<MetricDescriptor> shippedMetrics();
+
+/// The rule of a measure with nothing left to its unit, subject and kind. Shares lie between 0 and
+/// 100, counts and rates at 0 or above.
+PoolingRule poolingOf(const MeasureDefinition& definition);
+
+/// "mean", "statistic", "count", "rate" or "share".
+const char* toText(Pooling kind);
+
+/// For people: "share of samples, 0 to 100", "count, per km of the ego".
+std::string poolingText(const MeasureDefinition& definition);
 
 }  // namespace cdiff::metrics

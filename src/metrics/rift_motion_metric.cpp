@@ -7,9 +7,9 @@
 #include "e2e_cdiff/metrics/metric.h"
 #include "metrics/known_measures.h"
 #include "metrics/measures/body_motion.h"
+#include "metrics/measures/distributions.h"
 #include "metrics/measures/rift_histogram.h"
 #include "metrics/measures/sample_statistics.h"
-#include "metrics/measures/shapiro_wilk.h"
 
 namespace cdiff::metrics {
 

@@ -8,8 +8,7 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures/contact_avoidance.h"
-#include "metrics/measures/contact_fault.h"
+#include "metrics/measures/contacts.h"
 
 namespace cdiff::metrics {
 

@@ -6,13 +6,7 @@
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
-#include "page/approach_section.h"
-#include "page/assets.h"
-#include "page/motion_sections.h"
 #include "page/page_parts.h"
-#include "page/pictures/session_charts.h"
-#include "page/playback.h"
-#include "page/report_tables.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {

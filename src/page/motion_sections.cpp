@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "page/motion_sections.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
-#include "page/report_tables.h"
 #include "record/session_text.h"
 
 namespace cdiff::page {

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "page/page_parts.h"
 
-#include "page/assets.h"
-
 namespace cdiff::page {
 namespace {
 

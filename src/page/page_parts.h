@@ -10,6 +10,14 @@
 
 namespace cdiff::page {
 
+// Style sheets and scripts of the pages: the files in page/assets, written into each page so that
+// it needs nothing else.
+
+extern const core::Asset kReportStyle;  ///< of all pages
+extern const core::Asset kReportScript;
+extern const core::Asset kPanelSheetStyle;
+extern const core::Asset kSampleSheetStyle;
+
 // What HTML pages are made of: the document with its style sheets, headings, sections, the banner
 // with an outcome, tables, legends.
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "page/playback.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "e2e_cdiff/core/angle.h"
+#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"

@@ -5,19 +5,40 @@
 #include <atomic>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cbv/cbv_selector.h"
 #include "core/file.h"
-#include "metrics/measures/stop_lines.h"
+#include "metrics/measures/driving_score.h"
 #include "realism/continuation.h"
-#include "realism/hand_over_selector.h"
 #include "realism/recording.h"
 #include "session/session_observer.h"
 
 namespace cdiff::realism {
+
+/// Another selector up to its first hand-over; from there on only the vehicles of that hand-over
+/// stay selected, as long as the other selector keeps them.
+class HandOverSelector : public cbv::VehicleSelector {
+ public:
+  /// `hands_over` false: the first hand-over is noted, but not made.
+  HandOverSelector(std::unique_ptr<cbv::VehicleSelector> inner, bool hands_over);
+
+  void observe(const traffic::TrafficSnapshot& snapshot) override { inner_->observe(snapshot); }
+  cbv::CbvSelection update(const traffic::TrafficSnapshot& snapshot) override;
+  /// Assignments of the first hand-over; empty before.
+  const std::vector<cbv::CbvAssignment>& first() const { return first_; }
+
+ private:
+  bool isFirst(const std::string& vehicle_id) const;
+
+  std::unique_ptr<cbv::VehicleSelector> inner_;
+  bool hands_over_;
+  std::vector<cbv::CbvAssignment> first_;
+};
 
 /// Adds the vehicles of a snapshot to a recording as its next step. A vehicle that was not in the
 /// step before starts a track; so does one whose role changed where `by_role`.

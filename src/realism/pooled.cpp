@@ -8,7 +8,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "realism/interaction.h"
+#include "realism/recording.h"
 
 namespace cdiff::realism {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "evaluation/intervals/estimate_text.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "page/page_parts.h"
 #include "realism/matched.h"
 #include "realism/pooled.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -69,5 +70,52 @@ Motion smoothedMotion(Track& track);
 
 /// Derivative of equally spaced values by that filter [1/s]; empty below 11 values.
 Series smoothedDerivative(const Series& values);
+
+// Features of a vehicle among the others of its recording (SI units).
+
+/// Beyond every histogram: no other vehicle is there [m].
+inline constexpr double kNobody = 1e10;
+/// Of time to collision [s].
+inline constexpr double kLongestTime = 5.0;
+
+/// Distance of two boxes [m]; negative where they overlap: by how much they must be moved apart.
+/// That of the origin to the border of their Minkowski difference.
+double signedDistance(const geometry::OrientedBox& first, const geometry::OrientedBox& second);
+
+/// A vehicle as time to collision sees it.
+struct MovingBox {
+  geometry::OrientedBox box;
+  double speed = 0.0;  ///< along its heading [m/s]
+};
+
+/// Gap along its heading to the nearest vehicle ahead of its front divided by the closing speed,
+/// at most 5 s [s]. Ahead: headings differ by at most 75 degrees, 10 degrees where they overlap
+/// laterally by less than 0.5 m; the lateral extents overlap.
+double timeToCollision(const MovingBox& self, const std::vector<MovingBox>& others);
+
+/// Features of one track of a recording at the steps from `begin` to `end`, without those of the
+/// map (empty). `motions`: of all tracks. Steps without the track are NaN.
+Course courseOf(const Recording& recording, const std::vector<Motion>& motions, std::size_t track,
+                std::size_t begin, std::size_t end);
+
+/// Columns that a file of recorded traffic must have, in any order: recording, vehicle, t [s], x, y
+/// [m], heading [rad], length, width [m]. Others are passed over: speeds and accelerations are
+/// differentiated anew from x and y.
+const std::vector<std::string>& recordedColumns();
+
+/// Recorded traffic from a CSV file: rows of a vehicle lie together in order of time, 0.1 s apart.
+/// A longer gap starts another track. The site is the recording's name up to the first '-'. Throws
+/// InputError naming file, missing and expected columns, or the line that cannot be read.
+std::vector<Recording> readRecordedTraffic(const std::filesystem::path& file);
+
+/// The same of several files, or of all *.csv files that have these columns in a folder, sorted by
+/// name.
+std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::path>& files);
+
+/// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s. The trace
+/// holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m x 1.8 m, as
+/// generated demand and every vehicle of ours is. Throws InputError for a folder without them and
+/// for a simulation step of which 0.1 s is no multiple.
+Recording readResult(const std::filesystem::path& folder);
 
 }  // namespace cdiff::realism

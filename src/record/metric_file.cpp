@@ -11,11 +11,9 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/distributions.h"
 #include "metrics/measures/ttc_2d.h"
-#include "metrics/measures/wasserstein.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 
 namespace cdiff::record {
 namespace {

@@ -12,11 +12,9 @@
 
 #include "core/file.h"
 #include "core/markup.h"
-#include "evaluation/assets.h"
-#include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison.h"
-#include "evaluation/paper/paper_definitions.h"
+#include "evaluation/paper/paper_table.h"
 #include "evaluation/run_records.h"
 #include "page/outside_texts.h"
 

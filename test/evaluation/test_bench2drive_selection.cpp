@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/bench2drive_selection.h"
+#include "evaluation/suite_selection.h"
 #include "support/real_data.h"
 #include "support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "evaluation/intervals/exact_intervals.h"
+#include "evaluation/intervals/intervals.h"
 
 namespace cdiff::evaluation {
 namespace {

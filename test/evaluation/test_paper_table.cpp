@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include "evaluation/paper/paper_definitions.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_records.h"
 

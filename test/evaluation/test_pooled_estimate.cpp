@@ -4,11 +4,9 @@
 
 #include <cmath>
 
-#include "evaluation/intervals/estimate_text.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/run_records.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "e2e_cdiff/core/random.h"
-#include "evaluation/intervals/route_bootstrap.h"
+#include "evaluation/intervals/intervals.h"
 
 namespace cdiff::evaluation {
 namespace {

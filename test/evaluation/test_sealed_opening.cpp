@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/sealed_opening.h"
+#include "evaluation/suite_selection.h"
 #include "suite/suite.h"
 #include "support/temporary_folder.h"
 

@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "metrics/measures/collisions_per_km.h"
 #include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {

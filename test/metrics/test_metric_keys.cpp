@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// A measure's name and place stand as strings in its metric's file alone, so that a metric is one
-/// file.
+/// A measure's name and place stand as strings in its metric's file alone, so that a metric is in
+/// one file.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +49,7 @@ std::vector<std::string> metricFilesWith(const Sources& sources, const std::stri
   const std::vector<std::string> files = filesWith(sources, key);
   for (const std::string& file : files) {
     EXPECT_EQ(file.rfind("metrics/", 0), 0U) << key << " stands in " << file;
-    EXPECT_NE(file.find("_metric.cpp"), std::string::npos) << key << " stands in " << file;
+    EXPECT_NE(file.find("_metric"), std::string::npos) << key << " stands in " << file;
   }
   return files;
 }

@@ -8,9 +8,8 @@
 #include <sstream>
 
 #include "core/text.h"
-#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/distributions.h"
 #include "metrics/measures/ttc_2d.h"
-#include "metrics/measures/wasserstein.h"
 #include "metrics/reference_data.h"
 
 #define SKIP_WITHOUT(path) \

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/measures/shapiro_wilk.h"
+#include "metrics/measures/distributions.h"
 
 namespace cdiff::metrics {
 namespace {

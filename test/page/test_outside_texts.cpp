@@ -12,10 +12,9 @@
 #include "core/markup.h"
 #include "e2e_cdiff/metrics/metric.h"
 #include "learning/small_samples.h"
-#include "page/assets.h"
 #include "page/outside_texts.h"
-#include "page/sample_sheet.h"
-#include "page/training_report.h"
+#include "page/page_parts.h"
+#include "page/training_pages.h"
 
 namespace cdiff::page {
 namespace {

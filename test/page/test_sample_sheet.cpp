@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "learning/small_samples.h"
-#include "page/sample_sheet.h"
+#include "page/training_pages.h"
 
 namespace cdiff::page {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "page/training_report.h"
+#include "page/training_pages.h"
 
 namespace cdiff::page {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "realism/interaction.h"
+#include "realism/recording.h"
 
 namespace cdiff::realism {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "realism/recorded_traffic.h"
+#include "realism/recording.h"
 #include "support/real_data.h"
 
 namespace cdiff::realism {

@@ -8,11 +8,12 @@
 #include <set>
 #include <utility>
 
+#include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 
 namespace cdiff::evaluation {
+
 namespace {
 
 using metrics::Pooling;
@@ -95,6 +96,16 @@ void addInterval(const RouteSums& routes, const PoolingRule& rule, RouteBootstra
   if (!bounded(rule) || routes.size() < 2 || !estimate.value) return;
   estimate.interval = unseenInterval(*estimate.value, rule.least, rule.most, routes.size());
   estimate.interval_kind = IntervalKind::kUnseen;
+}
+
+/// How a batch sums up the measures that no metric defines; a plain mean for an unknown name.
+metrics::PoolingRule batchPooling(const std::string& measure) {
+  static const std::map<std::string, metrics::PoolingRule> rules = {
+      {"cbv_passed_percent", metrics::kMeanToHundred},
+      {"cbv_completion_percent", metrics::kMeanToHundred},
+      {"guidance_trust_region_share", metrics::kMeanToOne}};
+  const auto rule = rules.find(measure);
+  return rule != rules.end() ? rule->second : metrics::kPlainMean;
 }
 
 }  // namespace
@@ -200,6 +211,61 @@ Interval rateInterval(std::size_t events, double exposure,
 Interval unseenInterval(double value, double least, double most, std::size_t routes) {
   const double unseen = largestShareUnseen(routes);
   return {value + unseen * (least - value), value + unseen * (most - value)};
+}
+
+std::string intervalText(const std::optional<Interval>& interval, int decimals) {
+  if (!interval) return "";
+  return " [" + core::formatFixed(interval->low, decimals) + ", " +
+         core::formatFixed(interval->high, decimals) + "]";
+}
+
+std::string estimateText(const PooledEstimate& estimate, int decimals) {
+  std::string text;
+  if (estimate.counts()) {
+    text = std::to_string(estimate.events) + " / " +
+           (estimate.per_km ? core::formatFixed(estimate.exposure, 3) + " km"
+                            : core::formatFixed(estimate.exposure, 0) + " runs");
+    if (!estimate.value) return text;
+    text += " = ";
+  }
+  if (!estimate.value) return "-";
+  return text + core::formatFixed(*estimate.value, decimals) +
+         intervalText(estimate.interval, decimals);
+}
+
+std::string probabilityText(double p) { return p < 0.001 ? "< 0.001" : core::formatFixed(p, 3); }
+
+std::string estimateNote(const PooledEstimate& estimate) {
+  if (estimate.counts() && !estimate.per_km) return "no record says the km: per run";
+  if (estimate.over_dispersed) {
+    return "routes differ more than chance does (dispersion " +
+           core::formatFixed(*estimate.dispersion, 1) + "), interval by routes" +
+           intervalText(estimate.clustered);
+  }
+  return estimate.interval_kind == IntervalKind::kUnseen
+             ? "the same on all routes: interval by unseen routes"
+             : "";
+}
+
+std::string countText(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string fewWarning(std::size_t seeds, std::size_t clusters, bool routes) {
+  constexpr std::size_t kLeastClusters = 10;
+  std::string text;
+  if (seeds < kLeastSeeds) {
+    text = "only " + countText(seeds, "seed") + "; a figure needs at least " +
+           std::to_string(kLeastSeeds) + " (`--seeds 1,2,3,4,5`).";
+  }
+  if (clusters < kLeastClusters) {
+    const std::string noun = routes ? "route" : "cluster";
+    text += std::string(text.empty() ? "" : " ") + "Only " + countText(clusters, noun) +
+            (clusters < 2 ? ": no interval but that of a count says what other routes would give."
+                          : ": intervals by the bootstrap may be too narrow below " +
+                                std::to_string(kLeastClusters) + ".");
+  }
+  return text;
 }
 
 }  // namespace cdiff::evaluation

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "evaluation/paper/paper_definitions.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_table.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "evaluation/paper/paper_definitions.h"
-
 #include <algorithm>
 #include <iterator>
 

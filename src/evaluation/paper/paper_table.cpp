@@ -7,11 +7,9 @@
 #include <numeric>
 
 #include "core/text.h"
-#include "evaluation/intervals/estimate_text.h"
+#include "evaluation/intervals/intervals.h"
 #include "evaluation/intervals/pooled_estimate.h"
-#include "evaluation/intervals/route_bootstrap.h"
 #include "metrics/metric_registry.h"
-#include "metrics/pooling.h"
 #include "planners/registry.h"
 #include "session/session_request.h"
 

@@ -146,4 +146,13 @@ std::string paperText(const PaperFigure& figure);
 /// What RIFT's definition gives, or empty.
 std::string riftText(const TableCell& cell);
 
+// What the paper's tables and figures show, as data: rows and columns with the levels of their
+// runs, the keys of the measures, and the values that the paper prints.
+
+/// Tables 1 to 6.
+std::vector<TableDefinition> paperTables();
+/// Figures 4 (collisions per km) and 8 (latency), which are tables shown as bars.
+TableDefinition collisionFigure();
+TableDefinition latencyFigure();
+
 }  // namespace cdiff::evaluation

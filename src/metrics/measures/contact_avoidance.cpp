@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/contact_avoidance.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/road_strip.h"
+#include "metrics/measures/contacts.h"
+#include "metrics/measures/free_road.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/contact_fault.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
+#include "metrics/measures/contacts.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -69,5 +70,33 @@ inline Measure measureOrReason(const std::optional<double>& value, std::size_t n
                                const char* reason) {
   return {value, n, {}, value ? "" : reason};
 }
+
+/// The distance [m] that all CBVs drove as CBVs: chords between successive ticks.
+class CbvTravel {
+ public:
+  void observe(const MetricTick& tick) {
+    for (const CbvSighting& cbv : tick.cbvs) {
+      if (!cbv.placed()) continue;
+      driven_.insert(cbv.vehicle->id);
+      distance_ += cbv.chord;
+    }
+  }
+  /// Of all CBVs together [m].
+  double distance() const { return distance_; }
+  /// Vehicles that were CBVs.
+  std::size_t vehicles() const { return driven_.size(); }
+
+ private:
+  std::set<std::string> driven_;
+  double distance_ = 0.0;
+};
+
+// Collisions per kilometer (paper's CPK) [1/km]: 1000 x collisions / meters driven.
+
+/// 1000 x `count` / `distance` [m], n = `n`; absent with the reason where nobody moved.
+Measure countPerKilometre(std::size_t count, double distance, std::size_t n, const char* reason);
+
+/// n = `vehicles` that drove. Absent with a reason when there was none, or none moved.
+Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles);
 
 }  // namespace cdiff::metrics

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "page/pictures/map_canvas.h"
-
 #include <algorithm>
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "page/assets.h"
+#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 
 namespace cdiff::page {

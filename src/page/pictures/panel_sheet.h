@@ -28,7 +28,7 @@ struct PanelSheet {
   std::vector<std::string> notes = {};                           ///< a paragraph each
 };
 
-/// For a page that holds kPanelSheetStyle (page/assets.h).
+/// For a page that holds kPanelSheetStyle (page/page_parts.h).
 core::Markup sheetSvg(const PanelSheet& sheet);
 
 /// Text of a file of its own.
