@@ -149,10 +149,11 @@ class RunPlanner {
       next.request.ego_planner = combination.ego_planner;
       next.request.cbv_planner = combination.cbv_planner;
       next.request.mode = combination.mode;
-      auto& set = next.request.set = matrix_.set;
+      auto& set = next.request.set;
       const std::string& profile = combination.guidance_profile;
       if (!combination.method.empty()) set.push_back("method=" + combination.method);
       if (!profile.empty()) set.push_back("guidance_profile=" + profile);
+      set.insert(set.end(), matrix_.set.begin(), matrix_.set.end());
       set.insert(set.end(), variant.set.begin(), variant.set.end());
       next.request.set_source =
           source_ + (variant.name.empty() ? ": set" : ": set or variant '" + variant.name + "'");

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // The shipped model drives CBVs on six short routes of the development set, as method default has
 // it: what it does there must lie within the limits in driving_gate.json, between which such a gate
-// lies in 95 % of cases by the runs of `cdiff evaluate driving_gate` (scripts/driving_gate_limits
-// computes them). Planted regressions must fall outside.
+// lies in 95 % of cases (all six figures together) by the runs of `cdiff evaluate driving_gate`
+// (scripts/driving_gate_limits computes them). Planted regressions must fall outside.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -77,7 +77,9 @@ GateFigures poolFigures(const std::vector<Measures>& sessions) {
   return figures;
 }
 
-/// The first seed of each scenario of the evaluation driving_gate, with further overrides.
+/// The first seed of each scenario of the evaluation driving_gate, with further overrides: a
+/// regression must show against the spread of the seeds. It is no test of the limits themselves: of
+/// one further seed, 13, the six sessions had 4 contacts of CBVs, one more than the limit.
 GateFigures gate(const std::vector<std::string>& set = {}, const Change& change = {}) {
   MatrixOptions matrix = loadMatrix("driving_gate");
   matrix.seeds = {matrix.seeds.front()};

@@ -132,6 +132,9 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   EXPECT_EQ(plan[3].factors.at("method"), "paper");
   EXPECT_EQ(plan[3].factors.at("guidance_profile"), "none");
   expectIn("conditioning: \"image\"\n", plan[3].scenario_text);
+  matrix.set = {"method=paper"};  // ranks above the levels, as overrides of seeds and planners do
+  EXPECT_EQ(planRuns(matrix, "matrix.yaml")[0].factors.at("method"), "paper");
+  matrix.set = {};
   matrix.modes = {"naturalistic"};
   expectIn("key 'combinations' replaces ego_planners", errorOf(matrix));
   matrix.modes = {};
