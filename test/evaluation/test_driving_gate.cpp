@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // The shipped model drives CBVs on six short routes of the development set, as method default has
 // it: what it does there must lie within the limits in driving_gate.json, between which such a gate
-// lies in 95 % of cases (all six figures together) by the runs of `cdiff evaluate driving_gate`
+// lies in 95 % of cases (each figure) by the runs of `cdiff evaluate driving_gate`
 // (scripts/driving_gate_limits computes them). Planted regressions must fall outside.
 #include <gtest/gtest.h>
 
