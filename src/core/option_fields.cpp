@@ -12,6 +12,14 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 
+namespace cdiff::core {
+
+void OptionsVisitor::joinedTexts(const FieldInfo& info, std::string& value, char) {
+  text(info, value, {});
+}
+
+}  // namespace cdiff::core
+
 namespace cdiff::core::detail {
 namespace {
 

@@ -78,6 +78,15 @@ class LoadVisitor : public OptionsVisitor {
     value = given;
   }
 
+  void joinedTexts(const FieldInfo& info, std::string& value, char separator) override {
+    const YAML::Node node = levels_.back().node[info.key];
+    if (!node || !node.IsSequence()) return text(info, value, {});
+    std::vector<std::string> texts;
+    list(info, texts);
+    if (texts.empty()) fail(node, info.key, "a text, or a list of texts that is not empty");
+    value = joinText(texts, std::string(1, separator));
+  }
+
   void list(const FieldInfo& info, std::vector<std::string>& value) override {
     const YAML::Node node = take(info);
     if (!node) return;

@@ -3,9 +3,12 @@
 #include "planners/registry.h"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 
 #include "core/registry.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planners/planner_by_slot.h"
 
 namespace cdiff::planners {
 namespace {
@@ -35,6 +38,23 @@ Registry& table() {
   return planners;
 }
 
+/// The descriptor of "NAME+NAME...", made once; nullptr where one is unknown.
+const PlannerDescriptor* findBySlot(const std::string& joined) {
+  static std::mutex mutex;
+  static std::map<std::string, PlannerDescriptor> known;
+  const std::vector<std::string> names = planningMembers(joined);
+  if (names.size() < 2 || core::joinText(names, "+") != joined) return nullptr;
+  std::vector<const PlannerDescriptor*> members;
+  for (const std::string& name : names) members.push_back(table().find(name));
+  if (std::count(members.begin(), members.end(), nullptr) > 0) return nullptr;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto found = known.find(joined);
+  if (found != known.end()) return &found->second;
+  return &known.emplace(joined, describeBySlot(members)).first->second;
+}
+
+bool isBySlot(const std::string& name) { return name.find('+') != std::string::npos; }
+
 }  // namespace
 
 void registerPlanner(PlannerDescriptor descriptor, const std::string& source) {
@@ -43,7 +63,9 @@ void registerPlanner(PlannerDescriptor descriptor, const std::string& source) {
   table().add(std::move(descriptor), source);
 }
 
-const PlannerDescriptor* findPlanner(const std::string& name) { return table().find(name); }
+const PlannerDescriptor* findPlanner(const std::string& name) {
+  return isBySlot(name) ? findBySlot(name) : table().find(name);
+}
 
 std::vector<const PlannerDescriptor*> registeredPlanners() {
   std::vector<const PlannerDescriptor*> planners;
@@ -60,7 +82,8 @@ std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
         "planner 'external' is a node of the user's own: it needs the node graph "
         "(session.launch), not a planner in this process");
   }
-  auto planner = table().at(name).make(parts);
+  const PlannerDescriptor* known = findPlanner(name);
+  auto planner = (known != nullptr ? *known : table().at(name)).make(parts);
   if (planner) return planner;
   throw InputError("planner '" + name + "' of " + sourceOf(name) +
                    ": its constructor gives none; its author must mend it");

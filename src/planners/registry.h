@@ -18,7 +18,8 @@ namespace cdiff::planners {
 /// and a camera that no one publishes.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
 
-/// nullptr for an unknown name.
+/// nullptr for an unknown name. "NAME+NAME..." are several planners of CBVs by slot
+/// (planner_by_slot.h).
 const planning::PlannerDescriptor* findPlanner(const std::string& name);
 /// All, sorted by name.
 std::vector<const planning::PlannerDescriptor*> registeredPlanners();

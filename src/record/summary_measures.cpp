@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "metrics/metric_registry.h"
+#include "planners/planner_by_slot.h"
 #include "record/summary.h"
 
 namespace cdiff::record {
@@ -106,6 +107,7 @@ Json selectionObject(const CbvRecord& record, const SessionResult& result) {
   const session::SessionSetup& setup = result.setup;
   const double step = setup.options().simulation_step;
   Json object = {{"slot", record.slot},
+                 {"planner", planners::plannerOfSlot(setup.options().cbv_planner, record.slot)},
                  {"vehicle_id", record.vehicle_id},
                  {"selected_tick", record.selected_tick},
                  {"selected_seconds", secondsOf(record.selected_tick, step)},

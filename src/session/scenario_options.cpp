@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "planners/planner_by_slot.h"
 
 namespace cdiff::session {
 namespace {
@@ -76,21 +77,40 @@ void checkDemandFile(const std::string& file) {
 
 enum class Role { kEgo, kCbv };
 
-void requirePlanner(const std::string& key, const std::string& name, Role role) {
+/// Names of the planners with this role, sorted.
+std::vector<std::string> plannersFor(Role role) {
   std::vector<std::string> names;
   for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
     if (role == Role::kEgo ? planner->drives_ego : planner->drives_cbv)
       names.push_back(planner->name);
   }
   if (role == Role::kEgo) names.emplace_back(planning::kExternalPlanner);
+  return names;
+}
+
+/// Of one planner; `place` names key and value.
+void requireOnePlanner(const std::string& place, const std::string& name, Role role) {
+  const std::vector<std::string> names = plannersFor(role);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
   if (planners::findPlanner(name) != nullptr) {
-    throw InputError("key '" + key + "' is '" + name + "', a planner that does not drive " +
+    throw InputError(place + ", a planner that does not drive " +
                      (role == Role::kEgo ? "the ego" : "CBVs") + "; expected one of " +
                      core::joinText(names, ", "));
   }
-  throw InputError("key '" + key + "' is '" + name + "', an unknown planner" +
-                   core::didYouMean(name, names) + "; known: " + core::joinText(names, ", "));
+  throw InputError(place + ", an unknown planner" + core::didYouMean(name, names) +
+                   "; known: " + core::joinText(names, ", "));
+}
+
+void requirePlanner(const std::string& key, const std::string& name, Role role) {
+  const std::string place = "key '" + key + "' is '" + name + "'";
+  const bool by_slot = role == Role::kCbv && name.find('+') != std::string::npos;
+  if (!by_slot) return requireOnePlanner(place, name, role);
+  const std::vector<std::string> members = planners::planningMembers(name);
+  for (const std::string& member : members)
+    requireOnePlanner(place + ": '" + member + "'", member, role);
+  if (members.size() > 1 && core::joinText(members, "+") == name) return;
+  throw InputError(place + "; expected names of planners by slot, joined by single '+', of " +
+                   core::joinText(plannersFor(role), ", "));
 }
 
 }  // namespace
@@ -174,7 +194,10 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
       {"method", "", "Preset of guidance and sampling below all other keys: the paper's, or ours."},
       method, {});
   visitor.text({"ego_planner", "", "Planner of the ego, or external."}, ego_planner, {});
-  visitor.text({"cbv_planner", "", "Planner of all CBVs."}, cbv_planner, {});
+  visitor.joinedTexts({"cbv_planner", "",
+                       "Planner of the CBVs; several, by slot, as [a, b] or a+b: slot k has the "
+                       "(k mod n)-th."},
+                      cbv_planner, '+');
   visitor.integer({"max_cbv", "", "Most CBVs at a time."}, max_cbv, 0, 16);
   visitor.group({"cbv", "", "CBV identification."}, cbv);
   planner_options.describe(visitor);

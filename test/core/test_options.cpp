@@ -22,6 +22,7 @@ struct OuterOptions {
   std::int64_t seed = 1;
   bool record = false;
   double radius_of_start = 5.0;
+  std::string planners = "one";
   std::vector<std::string> edges;
   std::vector<Eigen::Vector3d> points;
   InnerOptions inner;
@@ -29,6 +30,7 @@ struct OuterOptions {
     visitor.integer({"seed", "", "Seed."}, seed, 0, 100);
     visitor.flag({"record", "", "Record."}, record);
     visitor.number({"radius_of_start", "m", "Radius of the start."}, radius_of_start, 0.0, 10.0);
+    visitor.joinedTexts({"planners", "", "Planners."}, planners, '+');
     visitor.list({"edges", "", "Edges."}, edges);
     visitor.points({"points", "m", "Points."}, points);
     visitor.group({"inner", "", "Inner."}, inner);
@@ -59,6 +61,22 @@ TEST(Options, LoadKeepsWhatIsNotGiven) {
   ASSERT_EQ(options.points.size(), 2u);
   EXPECT_EQ(options.points[0].z(), 0.0);
   EXPECT_EQ(options.points[1].z(), 5.0);
+}
+
+TEST(Options, JoinedTextsMayBeGivenAsAList) {
+  OuterOptions options;
+  loadOptions({"file.yaml", "planners: [a, b]\n"}, options);
+  EXPECT_EQ(options.planners, "a+b");
+  OuterOptions again;
+  loadOptions({"dump", dumpOptions(options)}, again);
+  EXPECT_EQ(again.planners, "a+b");
+  overrideOption("planners=[c, d]", "--set", options);
+  EXPECT_EQ(options.planners, "c+d");
+  overrideOption("planners=e", "--set", options);
+  EXPECT_EQ(options.planners, "e");
+  EXPECT_TRUE(mentions(errorOf("planners: []\n"), "a list of texts that is not empty"));
+  EXPECT_TRUE(mentions(errorOf("planners: {a: b}\n"), "a text"));
+  EXPECT_TRUE(mentions(errorOf("planners: [[a]]\n"), "a list of texts"));
 }
 
 TEST(Options, UnknownKeyNamesFileLineAndNearestKey) {

@@ -126,9 +126,9 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                           "faults",
                                           "plan"}));
   EXPECT_EQ(keysOf(summary["cbv"]["selections"][0]),
-            Keys({"slot", "vehicle_id", "selected_tick", "selected_seconds", "interaction_score",
-                  "conflict_point", "decisions_driven", "released_tick", "release_reason",
-                  "contact_with", "route_length_m", "route_completion_percent",
+            Keys({"slot", "planner", "vehicle_id", "selected_tick", "selected_seconds",
+                  "interaction_score", "conflict_point", "decisions_driven", "released_tick",
+                  "release_reason", "contact_with", "route_length_m", "route_completion_percent",
                   "conflict_point_passed", "route_completed"}));
   EXPECT_EQ(
       keysOf(summary["cbv"]["selections"][0]["conflict_point"]),

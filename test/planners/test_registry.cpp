@@ -7,6 +7,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/course.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
+#include "planners/planner_by_slot.h"
 #include "planners/registry.h"
 #include "planners/two_stage_pid/two_stage_pid.h"
 
@@ -171,6 +172,91 @@ TEST(PdmLiteOptions, UnknownKeysAndValuesOutOfRangeAreErrors) {
   PdmLiteOptions options;
   EXPECT_THROW(core::loadOptions({"text", "lateral_pk: 2.0"}, options), core::InputError);
   EXPECT_THROW(core::loadOptions({"text", "lateral_window: 0"}, options), core::InputError);
+}
+
+/// Plans throttle `throttle` for all its vehicles, or throws; notes the slots of each batch.
+class BatchPlanner final : public planning::Planner {
+ public:
+  BatchPlanner(double throttle, std::vector<std::vector<int>>& batches)
+      : throttle_(throttle), batches_(batches) {}
+  std::vector<planning::PlannedAction> plan(
+      const traffic::TrafficSnapshot&, const std::vector<planning::PlanningTask>& tasks) override {
+    std::vector<planning::PlannedAction> actions;
+    batches_.emplace_back();
+    for (const planning::PlanningTask& task : tasks) {
+      batches_.back().push_back(task.slot);
+      actions.push_back({task.slot, task.vehicle->id, {throttle_, 0.0, 0.0}, {}});
+    }
+    if (throttle_ < 0.0) throw std::runtime_error("no plan today");
+    return actions;
+  }
+
+ private:
+  double throttle_;
+  std::vector<std::vector<int>>& batches_;
+};
+
+class PlannersBySlot : public PlannerRegistry {
+ protected:
+  /// The actions for slots 0, 1, 2 of two planners with these throttles.
+  std::vector<planning::PlannedAction> plan(double first, double second) {
+    std::vector<PlannerBySlot::Member> members;
+    members.push_back({"first", std::make_unique<BatchPlanner>(first, first_batches_)});
+    members.push_back({"second", std::make_unique<BatchPlanner>(second, second_batches_)});
+    PlannerBySlot planner(std::move(members));
+    EXPECT_FALSE(planner.needsImages());
+    traffic::TrafficSnapshot snapshot;
+    snapshot.vehicles.resize(3);
+    std::vector<planning::PlanningTask> tasks;
+    for (int slot = 0; slot < 3; ++slot) {
+      traffic::Vehicle& vehicle = snapshot.vehicles[static_cast<std::size_t>(slot)];
+      vehicle.id = "cbv" + std::to_string(slot);
+      tasks.push_back({slot, &vehicle});
+    }
+    return planner.plan(snapshot, tasks);
+  }
+  std::vector<std::vector<int>> first_batches_;
+  std::vector<std::vector<int>> second_batches_;
+};
+
+TEST_F(PlannersBySlot, EachPlansItsSlotsInOneBatch) {
+  const auto actions = plan(0.25, 0.5);
+  ASSERT_EQ(actions.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(actions[i].slot, static_cast<int>(i));
+    EXPECT_EQ(actions[i].action.throttle, i == 1 ? 0.5 : 0.25);
+  }
+  EXPECT_EQ(first_batches_, (std::vector<std::vector<int>>{{0, 2}}));
+  EXPECT_EQ(second_batches_, (std::vector<std::vector<int>>{{1}}));
+}
+
+TEST_F(PlannersBySlot, OneThatFailsLeavesTheOthersDriving) {
+  const auto actions = plan(-1.0, 0.5);
+  ASSERT_EQ(actions.size(), 3U);
+  EXPECT_EQ(actions[0].fault, "first: no plan today");
+  EXPECT_EQ(actions[0].action.brake, 1.0);
+  EXPECT_EQ(actions[2].fault, "first: no plan today");
+  EXPECT_EQ(actions[1].fault, "");
+  EXPECT_EQ(actions[1].action.throttle, 0.5);
+}
+
+TEST_F(PlannersBySlot, AreKnownByTheirJoinedNames) {
+  const planning::PlannerDescriptor* joined = findPlanner("pdm_lite+diffusion");
+  ASSERT_NE(joined, nullptr);
+  EXPECT_FALSE(joined->drives_ego);
+  EXPECT_TRUE(joined->drives_cbv);
+  EXPECT_TRUE(joined->guided);
+  EXPECT_TRUE(joined->sees());
+  EXPECT_EQ(joined->title,
+            findPlanner("pdm_lite")->title + " + " + findPlanner("diffusion")->title);
+  EXPECT_EQ(joined->weights_sha256(options_), findPlanner("diffusion")->weights_sha256(options_));
+  EXPECT_TRUE(make("pdm_lite+diffusion")->needsImages());
+  EXPECT_FALSE(make("pdm_lite+pdm_lite")->needsImages());
+  EXPECT_FALSE(findPlanner("pdm_lite+pdm_lite")->network);
+  EXPECT_EQ(plannerOfSlot("pdm_lite+diffusion", 1), "diffusion");
+  EXPECT_EQ(plannerOfSlot("pdm_lite+diffusion", 2), "pdm_lite");
+  for (const char* wrong : {"pdm_lite+", "+", "pdm_lite++diffusion", "pdm_lite+none"})
+    EXPECT_EQ(findPlanner(wrong), nullptr) << wrong;
 }
 
 }  // namespace

@@ -108,6 +108,39 @@ TEST(ClosedLoop, UnknownPlannerAndExternalEgoAreInputErrors) {
   EXPECT_THROW(ClosedLoop{external}, core::InputError);
 }
 
+TEST(ClosedLoop, PlannersBySlotDriveLikeThemselves) {
+  // Slot 0 is PDM-Lite's in both: the first CBV alone drives alike until a second one is there.
+  const std::vector<std::string> one = {"max_cbv=1", "protocol.time_limit=12"};
+  const Course alone = runScenario(scenarioWith("roundabout_cross", one));
+  ScenarioOptions joined = scenarioWith("roundabout_cross", one);
+  joined.cbv_planner = "pdm_lite+diffusion";
+  joined.validate();
+  EXPECT_EQ(runScenario(joined).hash(), alone.hash());
+  joined.max_cbv = 2;
+  const Course both = runScenario(joined);
+  EXPECT_TRUE(both.faults_.empty());
+  EXPECT_NE(both.hash(),
+            runScenario(scenarioWith("roundabout_cross", {"protocol.time_limit=12", "max_cbv=2"}))
+                .hash());
+}
+
+TEST(ClosedLoop, PlannersBySlotAreNamedInErrors) {
+  const auto errorOf = [](const std::string& name) -> std::string {
+    try {
+      scenarioWith("crossing_left_turn", {"cbv_planner=" + name});
+    } catch (const core::InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(errorOf("pdm_lite+difusion").find("'difusion', an unknown planner"), std::string::npos)
+      << errorOf("pdm_lite+difusion");
+  EXPECT_NE(errorOf("pdm_lite+").find("joined by single '+'"), std::string::npos)
+      << errorOf("pdm_lite+");
+  EXPECT_THROW(scenarioWith("crossing_left_turn", {"ego_planner=pdm_lite+diffusion"}),
+               core::InputError);
+}
+
 TEST(ClosedLoop, AtMostSleepsAndChangesNothing) {
   const Course free = runScenario(scenarioWith("crossing_left_turn", {"protocol.time_limit=2"}));
   const auto begin = std::chrono::steady_clock::now();

@@ -34,6 +34,8 @@ class OptionsVisitor {
   /// A text; when `choices` is not empty, one of them.
   virtual void text(const FieldInfo& info, std::string& value,
                     const std::vector<std::string>& choices) = 0;
+  /// A text that may also be given as a list of texts, which `separator` joins.
+  virtual void joinedTexts(const FieldInfo& info, std::string& value, char separator);
   /// A list of texts.
   virtual void list(const FieldInfo& info, std::vector<std::string>& value) = 0;
   /// A list of points [x, y] or [x, y, z] in the map frame [m].
