@@ -134,6 +134,31 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   EXPECT_EQ(images.guided, decisions);
 }
 
+TEST_F(Session, PlannersBySlotHaveTheResultOfTheClosedLoop) {
+  const fs::path alone = folder_ / "one_process";
+  const std::string settings = "protocol.time_limit=8 verdict.judge=false diffusion.model=" +
+                               testing::writeRandomModel(folder_ / "model");
+  const std::string log = launch("e2e_cdiff session.launch",
+                                 "scenario:=roundabout_cross seed:=1 "
+                                 "cbv_planner:=diffusion+pdm_lite set:=\"" +
+                                     settings + "\"");
+  EXPECT_EQ(exitCode(), "0\n") << log;
+  session::SessionRequest request;
+  request.scenario = "roundabout_cross";
+  request.seed = "1";
+  request.cbv_planner = "diffusion+pdm_lite";
+  request.set = core::splitText(settings, ' ');
+  test::runInOneProcess(request, alone);
+  EXPECT_EQ(withoutWallClock(summary()), withoutWallClock(summaryIn(alone)));
+  EXPECT_EQ(summary()["cbv_planner"], "diffusion+pdm_lite");
+  EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
+  std::set<std::string> planners;
+  for (const auto& selection : summary()["cbv"]["selections"])
+    planners.insert(selection["planner"].get<std::string>());
+  EXPECT_EQ(planners, (std::set<std::string>{"diffusion", "pdm_lite"}))
+      << "the session shows one CBV alone; choose one that shows two";
+}
+
 TEST_F(Session, ReplayOfTheNodeGraphsBagHasItsResultOnTheCommandLineAndFromRoslaunch) {
   const std::string model = testing::writeRandomModel(folder_ / "model");
   const std::string log =
