@@ -27,11 +27,24 @@ std::set<std::string> levelsOf(const std::vector<RunRecord>& records, const std:
   return levels;
 }
 
-/// The one level of a factor that all records have; nullopt where they differ.
-std::optional<std::string> onlyLevel(const std::vector<RunRecord>& records,
-                                     const std::string& factor) {
-  const std::set<std::string> levels = levelsOf(records, factor);
-  return levels.size() == 1 ? std::make_optional(*levels.begin()) : std::nullopt;
+/// Whether a factor is a function of the other factors but `compared`, as the guidance profile is
+/// of mode and method where nothing else sets it.
+bool isDetermined(const std::vector<RunRecord>& records, const std::string& factor,
+                  const std::string& compared) {
+  std::map<Factors, std::string> levels;
+  for (const RunRecord& record : records) {
+    Factors others = record.factors;
+    others.erase(factor);
+    others.erase(compared);
+    const std::string& level = record.factors.at(factor);
+    if (levels.emplace(others, level).first->second != level) return false;
+  }
+  return true;
+}
+
+bool haveCommon(const std::set<std::string>& a, const std::set<std::string>& b) {
+  return std::any_of(a.begin(), a.end(),
+                     [&](const std::string& each) { return b.count(each) != 0; });
 }
 
 /// Complete runs by their levels of the factors that pair.
@@ -209,10 +222,7 @@ Comparison compareLevel(const RunSet& a, const RunSet& b, const std::string& fac
 std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b) {
   std::set<std::string> shared = kAlwaysPairs;
   for (const std::string& factor : factorNames()) {
-    const std::set<std::string> of_b = levelsOf(b.records, factor);
-    for (const std::string& level : levelsOf(a.records, factor)) {
-      if (of_b.count(level) != 0) shared.insert(factor);
-    }
+    if (haveCommon(levelsOf(a.records, factor), levelsOf(b.records, factor))) shared.insert(factor);
   }
   return shared;
 }
@@ -221,9 +231,13 @@ Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& 
   Followers followers;
   for (const std::string& other : factorNames()) {
     if (other == factor || kAlwaysPairs.count(other) != 0) continue;
-    const auto level_a = onlyLevel(a.records, other);
-    const auto level_b = onlyLevel(b.records, other);
-    if (level_a && level_b && *level_a != *level_b) followers[other] = {*level_a, *level_b};
+    const std::set<std::string> of_a = levelsOf(a.records, other);
+    const std::set<std::string> of_b = levelsOf(b.records, other);
+    if (haveCommon(of_a, of_b) || !isDetermined(a.records, other, factor) ||
+        !isDetermined(b.records, other, factor))
+      continue;
+    followers[other] = {core::joinText({of_a.begin(), of_a.end()}, ", "),
+                        core::joinText({of_b.begin(), of_b.end()}, ", ")};
   }
   return followers;
 }

@@ -30,7 +30,7 @@ struct MeasureComparison {
   double p_holm = 1.0;  ///< p adjusted for the number of comparisons in the report
 };
 
-/// Factors that change together with the one compared, each with its level in A and in B.
+/// Factors that change together with the one compared, each with its levels in A and in B.
 using Followers = std::map<std::string, std::pair<std::string, std::string>>;
 
 /// A factor, or a key of the scenario, that is not the same in A and in B.
@@ -84,8 +84,9 @@ struct Comparison {
 /// Scenario, seed, repetition, and every other factor of which both sets have a level in common.
 std::set<std::string> sharedFactors(const RunSet& a, const RunSet& b);
 
-/// Factors, other than scenario, seed and repetition, that have one level in A and another in B:
-/// they follow `factor`, as the guidance profile follows the mode where nothing else sets it.
+/// Factors, other than scenario, seed and repetition, of which A and B have no level in common and
+/// that the other factors determine in each: they follow `factor`, as the guidance profile follows
+/// mode and method where nothing else sets it.
 Followers followingFactors(const RunSet& a, const RunSet& b, const std::string& factor);
 
 /// Measures of `names`, or all when empty. Runs of one side that agree in all of `paired_by` count

@@ -211,6 +211,20 @@ TEST(Comparison, AFactorThatFollowsTheComparedOneDoesNotPair) {
             std::string::npos);
 }
 
+TEST(Comparison, AFactorThatSeveralOthersDetermineDoesNotPair) {
+  // Both methods in both modes, each with a profile of its own: 10 scenarios x 5 seeds x 2.
+  const auto records = drivenRuns("main_rows", "safety_critical", -8.0);
+  for (const auto& [factor, baseline] :
+       {std::pair{"method", "default"}, std::pair{"mode", "naturalistic"}}) {
+    const auto comparisons = compareLevels({"A", records}, factor, baseline, {});
+    ASSERT_EQ(comparisons.size(), 1U) << factor;
+    EXPECT_EQ(comparisons[0].pairs, 100U) << factor;
+    EXPECT_DOUBLE_EQ(*comparisons[0].measures.front().difference,
+                     std::string(factor) == "mode" ? -8.0 : 0.0);
+    EXPECT_EQ(comparisons[0].followers.count("guidance_profile"), 1U) << factor;
+  }
+}
+
 TEST(Comparison, AFactorWithSeveralLevelsPairs) {
   // Seed 1 drove both profiles in both modes: the profile does not follow, so profiles pair.
   std::vector<RunRecord> records;
