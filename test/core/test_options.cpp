@@ -59,7 +59,7 @@ TEST(Options, AreFlatByTheirFullKeys) {
   EXPECT_EQ(values.at("edges"), "[\"a\", \"b\"]");
   EXPECT_EQ(values.at("inner.radius"), "60");
   EXPECT_EQ(values.at("inner.ranking"), "\"score\"");
-  EXPECT_EQ(values.size(), 7u);  // the group itself has no value
+  EXPECT_EQ(values.size(), 8u);  // the group itself has no value
 }
 
 TEST(Options, AnAssignmentToAGroupNamesItsKeysAndTheirValues) {
