@@ -62,13 +62,10 @@ StageResult StageRunner::run() {
   started_ = last_report_ = last_checkpoint_ = now();
   last_report_step_ = result_.steps;
   while (!done && !finished()) {
-    if (stop_) {
-      save(false);
-      throw core::Interrupted("stopped at step " + std::to_string(result_.steps) + " of stage " +
-                              stage_.name() + "; --resume goes on from there");
-    }
+    if (stop_) interrupt();
     step();
-    if (now() - last_checkpoint_ >= options_.checkpoint_every) save(false);
+    const bool due = now() - last_checkpoint_ >= options_.checkpoint_every;
+    if (due && stage_.resumableAt(result_.steps)) save(false);
     if (result_.steps % options_.validation_every == 0 && !finished()) judge();
   }
   if (!done) {
@@ -79,6 +76,15 @@ StageResult StageRunner::run() {
   optimizer_.swapAverage();
   for (const TrainedPart& part : parts_) part.parameters->setTrained(false);
   return result_;
+}
+
+void StageRunner::interrupt() {
+  const std::string where =
+      "stopped at step " + std::to_string(result_.steps) + " of stage " + stage_.name();
+  if (!stage_.resumableAt(result_.steps))
+    throw core::Interrupted(where + "; --resume goes on from the last checkpoint");
+  save(false);
+  throw core::Interrupted(where + "; --resume goes on from there");
 }
 
 void StageRunner::step() {
@@ -103,7 +109,7 @@ void StageRunner::checkFinite(double value) {
                      "; the samples of its batch are";
   for (const std::size_t sample : stage_.samplesOf(result_.steps))
     text += " " + std::to_string(sample);
-  if (optimizer_.parametersFinite()) {
+  if (optimizer_.parametersFinite() && stage_.resumableAt(result_.steps)) {
     save(false);
     text += "; the weights before that step are in ";
   } else {
@@ -115,8 +121,8 @@ void StageRunner::checkFinite(double value) {
 double StageRunner::seconds() const { return seconds_before_ + (now() - started_); }
 
 bool StageRunner::finished() const {
-  return result_.steps >= options_.steps ||
-         (options_.time_limit > 0.0 && seconds() >= options_.time_limit);
+  const bool late = options_.time_limit > 0.0 && seconds() >= options_.time_limit;
+  return result_.steps >= options_.steps || (late && stage_.resumableAt(result_.steps));
 }
 
 double StageRunner::progress() const {
@@ -125,6 +131,7 @@ double StageRunner::progress() const {
 }
 
 double StageRunner::rate() const {
+  if (const auto own = stage_.learningRate(result_.steps)) return *own;
   const double start = options_.warm_up == 0
                            ? 1.0
                            : std::min(1.0, static_cast<double>(result_.steps + 1) /

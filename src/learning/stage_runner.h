@@ -48,6 +48,7 @@ class StageRunner {
  private:
   void save(bool done);
   bool resume();
+  [[noreturn]] void interrupt();
   void step();
   void checkFinite(double value);
   void logProgress(const Loss& loss, double norm);

@@ -9,6 +9,7 @@
 #include <iosfwd>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,12 @@ class Stage {
   virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
   /// Measures on held-out samples.
   virtual Measures judge() = 0;
+  /// The learning rate of a step where the stage has a course of its own; nullopt: warm-up and
+  /// cosine of the options.
+  virtual std::optional<double> learningRate(std::int64_t) const { return std::nullopt; }
+  /// Whether a run can stop and go on after so many steps. A stage whose steps depend on more than
+  /// weights says where they do not: only there checkpoints are written and the time limit counts.
+  virtual bool resumableAt(std::int64_t) const { return true; }
 };
 
 /// Which checkpoints give a part of the weights.
