@@ -136,7 +136,7 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
 
 TEST_F(Session, PlannersBySlotHaveTheResultOfTheClosedLoop) {
   const fs::path alone = folder_ / "one_process";
-  const std::string settings = "protocol.time_limit=8 verdict.judge=false diffusion.model=" +
+  const std::string settings = "protocol.time_limit=10 verdict.judge=false diffusion.model=" +
                                testing::writeRandomModel(folder_ / "model");
   const std::string log = launch("e2e_cdiff session.launch",
                                  "scenario:=roundabout_cross seed:=1 "
@@ -153,7 +153,8 @@ TEST_F(Session, PlannersBySlotHaveTheResultOfTheClosedLoop) {
   EXPECT_EQ(summary()["cbv_planner"], "diffusion+pdm_lite");
   EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
   std::set<std::string> planners;
-  for (const auto& selection : summary()["cbv"]["selections"])
+  const nlohmann::json result = summary();
+  for (const auto& selection : result["cbv"]["selections"])
     planners.insert(selection["planner"].get<std::string>());
   EXPECT_EQ(planners, (std::set<std::string>{"diffusion", "pdm_lite"}))
       << "the session shows one CBV alone; choose one that shows two";
