@@ -15,6 +15,7 @@
 #include "realism/matched.h"
 #include "realism/pooled.h"
 #include "session/session_request.h"
+#include "suite/seal.h"
 
 namespace cdiff::cli {
 namespace {
@@ -97,6 +98,7 @@ int matched(const MatchedArguments& arguments) {
 }
 
 int continueScenario(const ContinueArguments& arguments) {
+  suite::requireOpen(arguments.scenario);
   session::SessionRequest request;
   request.scenario = arguments.scenario;
   const session::SessionSetup setup(session::resolveRequest(request));

@@ -17,10 +17,10 @@
 #include "record/session_text.h"
 #include "session/closed_loop.h"
 #include "session/session_request.h"
+#include "suite/seal.h"
 #include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "ros/bags/session_bag_writer.h"
-#include "suite/seal.h"
 #endif
 
 namespace cdiff::cli {
@@ -222,18 +222,8 @@ struct RunArguments {
   bool overwrite = false;
 };
 
-/// Sessions on sealed routes are on record: those of `cdiff evaluate` alone. Throws InputError.
-void requireOpenSuite(const std::string& scenario) {
-  const auto suite = suite::sealedSuiteOf(scenario);
-  if (!suite) return;
-  throw core::InputError("'" + scenario + "' is a route of the sealed suite " +
-                         suite->filename().string() +
-                         ": nothing may be chosen on it, and every opening is recorded; run it by "
-                         "cdiff evaluate with --open-sealed \"REASON\"");
-}
-
 int run(const RunArguments& arguments) {
-  requireOpenSuite(arguments.request.scenario);
+  suite::requireOpen(arguments.request.scenario);
   const session::ScenarioOptions options = session::resolveRequest(arguments.request);
   const fs::path folder =
       arguments.results.empty()

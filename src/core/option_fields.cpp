@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "core/text.h"
@@ -23,8 +24,9 @@ class PathVisitor : public OptionsVisitor {
     add(info);
   }
   void flag(const FieldInfo& info, bool&) override { add(info); }
-  void text(const FieldInfo& info, std::string&, const std::vector<std::string>&) override {
+  void text(const FieldInfo& info, std::string&, const std::vector<std::string>& choices) override {
     add(info);
+    if (!choices.empty()) choices_[paths_.back()] = " (one of {" + joinText(choices, ", ") + "})";
   }
   void list(const FieldInfo& info, std::vector<std::string>&) override { add(info); }
   void points(const FieldInfo& info, std::vector<Eigen::Vector3d>&) override { add(info); }
@@ -36,12 +38,18 @@ class PathVisitor : public OptionsVisitor {
   void leave() override { prefixes_.pop_back(); }
 
   const std::vector<std::string>& paths() const { return paths_; }
+  /// " (one of {a, b})", or nothing.
+  std::string choicesOf(const std::string& path) const {
+    const auto found = choices_.find(path);
+    return found == choices_.end() ? "" : found->second;
+  }
 
  private:
   std::string prefix() const { return prefixes_.empty() ? "" : prefixes_.back(); }
   void add(const FieldInfo& info) { paths_.push_back(prefix() + info.key); }
   std::vector<std::string> prefixes_;
   std::vector<std::string> paths_;
+  std::map<std::string, std::string> choices_;  ///< as text, by path
 };
 
 std::string lastPart(const std::string& path) { return path.substr(path.rfind('.') + 1); }
@@ -172,6 +180,22 @@ std::string resolvePath(const std::string& key, const std::string& source, void*
                    nearestName(key, paths) + "'");
 }
 
+std::string keysInstead(const std::string& path, void* options, Describe describe) {
+  PathVisitor visitor;
+  describe(options, visitor);
+  std::vector<std::string> below;
+  std::vector<std::string> beside;
+  for (const std::string& key : visitor.paths()) {
+    const bool longer = key.size() > path.size() && key.compare(0, path.size(), path) == 0;
+    const bool direct = longer && key.find('.', path.size() + 1) == std::string::npos;
+    if (direct && key[path.size()] == '.') below.push_back(key + visitor.choicesOf(key));
+    if (direct && key[path.size()] == '_') beside.push_back(key);
+  }
+  if (below.empty()) return "";
+  below.insert(below.end(), beside.begin(), beside.end());
+  return joinText(below, ", ");
+}
+
 std::string rangeText(double low, double high, const char* unit) {
   const auto plain = [](double value) {
     constexpr double kMostDigits = 1e15;
@@ -180,6 +204,19 @@ std::string rangeText(double low, double high, const char* unit) {
   };
   const std::string range = "[" + plain(low) + ", " + plain(high) + "]";
   return unit[0] == '\0' ? range : range + " " + unit;
+}
+
+std::map<std::string, std::string> flatten(void* options, Describe describe) {
+  std::map<std::string, std::string> values;
+  std::vector<std::string> path;  // of the line, two spaces of indentation a level
+  for (const std::string& line : splitText(dump(options, describe, false), '\n')) {
+    const std::size_t indent = line.find_first_not_of(' ');
+    const std::size_t colon = line.find(':');
+    path.resize(indent / 2);
+    path.push_back(line.substr(indent, colon - indent));
+    if (colon + 2 < line.size()) values[joinText(path, ".")] = line.substr(colon + 2);
+  }
+  return values;
 }
 
 std::string dump(void* options, Describe describe, bool with_comments) {

@@ -257,6 +257,11 @@ void override_(const std::string& assignment, const std::string& source, void* o
   const std::string path = resolvePath(assignment.substr(0, equals), source, options, describe);
   const std::string value_text = assignment.substr(equals + 1);
   const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
+  const std::string instead = value.IsMap() ? "" : keysInstead(path, options, describe);
+  if (!instead.empty()) {
+    throw InputError(source + ": key '" + path + "' is a group of keys and cannot be '" +
+                     shortened(value_text) + "'; set one of its keys: " + instead);
+  }
   LoadVisitor visitor(source, nested(splitText(path, '.'), 0, value), false);
   describe(options, visitor);
 }

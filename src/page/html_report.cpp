@@ -8,6 +8,7 @@
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 #include "record/session_text.h"
+#include "session/session_request.h"
 
 namespace cdiff::page {
 namespace {
@@ -53,7 +54,8 @@ Markup banner(const record::SessionResult& result) {
   content += element("p", {{"class", "story"}}, story);
   return pageHeader(options.name,
                     options.mode + " · seed " + std::to_string(options.seed) + " · ego " +
-                        options.ego_planner + " · CBV " + options.cbv_planner,
+                        options.ego_planner + " · CBV " + options.cbv_planner + " · method " +
+                        session::methodText(session::methodOf(options)),
                     pageBanner(outcome, headlineOf(outcome), content));
 }
 

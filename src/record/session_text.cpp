@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "record/logs/cbv_log.h"
+#include "session/session_request.h"
 
 namespace cdiff::record {
 namespace {
@@ -117,6 +118,7 @@ std::string headRows(const SessionResult& result) {
   return row("scenario",
              options.name + ", seed " + std::to_string(options.seed) + ", " + options.mode) +
          row("planners", "ego " + options.ego_planner + ", CBV " + options.cbv_planner) +
+         row("method", session::methodText(session::methodOf(options))) +
          row("status", traffic::toText(result.status)) + row("time", time);
 }
 

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
+#include "session/session_request.h"
 
 namespace cdiff::record {
 namespace {
@@ -118,10 +119,14 @@ Json faultList(const std::vector<traffic::Fault>& faults) {
 /// How the session was asked for and how it ended.
 Json headOf(const SessionResult& result) {
   const session::ScenarioOptions& options = result.setup.options();
+  const session::MethodUse method = session::methodOf(options);
   Json head = {{"schema_version", 1},
                {"scenario", options.name},
                {"seed", options.seed},
                {"mode", options.mode},
+               {"method", method.name},
+               {"method_preset", method.preset},
+               {"method_changes", method.changed},
                {"ego_planner", options.ego_planner},
                {"cbv_planner", options.cbv_planner},
                {"status", traffic::toText(result.status)},

@@ -16,6 +16,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/lockstep/node_process.h"
 #include "ros/ros.h"
+#include "suite/seal.h"
 
 namespace cdiff::ros {
 namespace {
@@ -125,6 +126,12 @@ session::SessionRequest sessionRequest(const Parameters& parameters) {
   return request;
 }
 
+session::ScenarioOptions requestedScenario(const Parameters& parameters) {
+  const session::SessionRequest request = sessionRequest(parameters);
+  suite::requireOpen(request.scenario);
+  return session::resolveRequest(request);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,7 +196,7 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
     if (!folder.empty() && writtenByThisLaunch(folder / "exit_code"))
       return core::ExitCode::kRunTimeError;
     requireKnownLaunchArguments();  // else it would be the result of another session than was meant
-    const auto options = session::resolveRequest(sessionRequest(parameters));
+    const auto options = requestedScenario(parameters);
     folder = resultFolder(parameters.text("results"), options);
     const bool overwrite =
         parameters.flag("overwrite", false) || writtenByThisLaunch(folder / "session.yaml");

@@ -56,6 +56,10 @@ Parameters launchParameters();
 /// cbv_planner, seed and set ask for; crossing_left_turn when they name none.
 session::SessionRequest sessionRequest(const Parameters& parameters);
 
+/// That session's scenario, resolved. Throws InputError as session::resolveRequest does, and for a
+/// route of a sealed suite, which `cdiff evaluate --open-sealed` alone may run.
+session::ScenarioOptions requestedScenario(const Parameters& parameters);
+
 // Where a session of the node graph puts its files, and the result folder that the traffic
 // simulator writes when the metrics node cannot: a session always leaves a result that can be
 // read.

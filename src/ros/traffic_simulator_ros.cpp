@@ -36,7 +36,7 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   limits_ = {parameters.positive("start_timeout", 30.0),
              parameters.positive("answer_timeout", 30.0)};
   enterFolder(parameters.text("folder"));
-  const session::ScenarioOptions options = session::resolveRequest(sessionRequest(parameters));
+  const session::ScenarioOptions options = requestedScenario(parameters);
   results_ = resultFolder(parameters.text("results"), options);
   const bool overwrite = parameters.flag("overwrite", false);
   record::requireFreeFolder(results_, overwrite);

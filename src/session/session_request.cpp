@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/file.h"
+#include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "session/preset_file.h"
@@ -40,6 +42,79 @@ MethodOptions loadMethod(const std::string& name) {
 }
 
 std::vector<std::string> shippedMethods() { return core::shippedNames(methodFolder()); }
+
+namespace {
+
+using FlatValues = std::map<std::string, std::string>;
+
+/// Keys of `values` that have another value in `preset`.
+std::vector<std::string> changedKeys(const FlatValues& preset, const FlatValues& values) {
+  std::vector<std::string> changed;
+  for (const auto& [key, value] : values) {
+    const auto other = preset.find(key);
+    if (other == preset.end() || other->second != value) changed.push_back(key);
+  }
+  return changed;
+}
+
+bool hasNetwork(const std::string& planner) {
+  const planning::PlannerDescriptor* descriptor = planners::findPlanner(planner);
+  return descriptor != nullptr && descriptor->network;
+}
+
+/// Options of the planners with a network, which are what a method sets.
+void addPlannerChanges(const MethodOptions& method, const ScenarioOptions& scenario,
+                       std::vector<std::string>& changed) {
+  for (const std::string& key : changedKeys(core::flatOptions(method.planner_options),
+                                            core::flatOptions(scenario.planner_options))) {
+    if (hasNetwork(key.substr(0, key.find('.')))) changed.push_back(key);
+  }
+}
+
+/// Guidance under `group` that is not as the method's profile has it: by the name of another
+/// profile where one was given, else by its keys.
+void addGuidanceChanges(const std::string& group, const guidance::GuidanceOptions& guidance,
+                        const std::string& given, const std::string& profile,
+                        std::vector<std::string>& changed) {
+  const auto keys = changedKeys(core::flatOptions(guidance::loadProfile(profile)),
+                                core::flatOptions(guidance));
+  if (!keys.empty() && !given.empty() && given != profile) {
+    changed.push_back(group + "_profile");
+    return;
+  }
+  for (const std::string& key : keys) changed.push_back(group + "." + key);
+}
+
+}  // namespace
+
+MethodUse methodOf(const ScenarioOptions& scenario) {
+  MethodUse use{scenario.method, scenario.method, {}};
+  const std::vector<std::string> known = shippedMethods();
+  if (std::find(known.begin(), known.end(), scenario.method) == known.end()) {
+    use.changed.emplace_back("method");  // a recording's, which is no longer shipped
+  } else if (hasNetwork(scenario.ego_planner) || hasNetwork(scenario.cbv_planner)) {
+    const MethodOptions method = loadMethod(scenario.method);
+    addPlannerChanges(method, scenario, use.changed);
+    if (planners::canBeGuided(scenario.cbv_planner))
+      addGuidanceChanges("guidance", scenario.guidance, scenario.guidance_profile,
+                         method.profileOf(scenario.mode), use.changed);
+    if (planners::canBeGuided(scenario.ego_planner))
+      addGuidanceChanges("ego_guidance", scenario.ego_guidance, scenario.ego_guidance_profile,
+                         method.ego_profile, use.changed);
+  }
+  if (!use.changed.empty()) use.name = kCustomMethod;
+  return use;
+}
+
+std::string methodText(const MethodUse& method) {
+  constexpr std::size_t kShown = 3;
+  if (method.changed.empty()) return method.name;
+  std::vector<std::string> shown = method.changed;
+  const std::size_t more = shown.size() > kShown ? shown.size() - kShown : 0;
+  shown.resize(shown.size() - more);
+  return method.name + " (" + method.preset + " but for " + core::joinText(shown, ", ") +
+         (more == 0 ? "" : " and " + std::to_string(more) + " more keys") + ")";
+}
 
 namespace {
 

@@ -30,6 +30,23 @@ MethodOptions loadMethod(const std::string& name);
 /// Names of the shipped methods, sorted.
 std::vector<std::string> shippedMethods();
 
+/// What a method is called whose values were changed by single keys.
+inline constexpr const char* kCustomMethod = "custom";
+
+/// By which method the planners of a scenario work: what the planners with a network and the
+/// guidance of guided planners have, compared with the shipped method that the scenario names.
+struct MethodUse {
+  std::string name;                  ///< of the shipped method, or kCustomMethod
+  std::string preset;                ///< the shipped method that the scenario names
+  std::vector<std::string> changed;  ///< keys that differ from it; empty unless custom
+};
+
+/// Of a resolved scenario. Where no planner of it has a network, nothing counts as changed.
+MethodUse methodOf(const ScenarioOptions& scenario);
+
+/// For people: "default", "custom (paper but for diffusion.candidates)".
+std::string methodText(const MethodUse& method);
+
 // Samples of one quantity from a file, in the file's unit: one number a line, or the JSON that
 // `cdiff metric shapiro_wilk` reads.
 

@@ -62,6 +62,15 @@ std::optional<fs::path> sealedSuiteOf(const std::string& scenario) {
   return folder;
 }
 
+void requireOpen(const std::string& scenario) {
+  const std::optional<fs::path> folder = sealedSuiteOf(scenario);
+  if (!folder) return;
+  throw InputError("'" + scenario + "' is a route of the sealed suite " +
+                   folder->filename().string() +
+                   ": nothing may be chosen on it, and every opening is recorded; run it by "
+                   "cdiff evaluate with --open-sealed \"REASON\"");
+}
+
 void requireNotSealed(const std::string& scenario) {
   const std::optional<fs::path> folder = sealedSuiteOf(scenario);
   if (!folder) return;

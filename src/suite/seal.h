@@ -26,6 +26,11 @@ void requireIntactSeal(const std::filesystem::path& suite_folder);
 /// for every other file and for the name of a scenario.
 std::optional<std::filesystem::path> sealedSuiteOf(const std::string& scenario);
 
+/// Throws InputError when the scenario belongs to a sealed suite: sessions on its routes are those
+/// of `cdiff evaluate --open-sealed`, which are on record. Whatever runs a single session calls it
+/// first.
+void requireOpen(const std::string& scenario);
+
 /// Throws InputError when the scenario belongs to a sealed suite. Commands that make training data
 /// call it first.
 void requireNotSealed(const std::string& scenario);

@@ -69,6 +69,11 @@ TEST_F(SuiteCommand, ASealedSuiteIsOpenedWithAReasonOnly) {
   EXPECT_EQ(cdiff(command), 3);
   expectOutput("the suite development is sealed");
   EXPECT_FALSE(fs::exists(path("runs")));
+  EXPECT_EQ(cdiff({"run", path("suite/scenarios/development_left_1.yaml"), "--results",
+                   path("runs")}),
+            3);
+  expectOutput("is a route of the sealed suite suite");
+  EXPECT_FALSE(fs::exists(path("runs")));
   std::vector<std::string> opening = command;
   opening.insert(opening.end(), {"--open-sealed", "a test"});
   EXPECT_EQ(cdiff(opening), 0);

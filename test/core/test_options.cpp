@@ -49,6 +49,34 @@ bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST(Options, AreFlatByTheirFullKeys) {
+  OuterOptions options;
+  options.edges = {"a", "b"};
+  const std::map<std::string, std::string> values = flatOptions(options);
+  EXPECT_EQ(values.at("seed"), "1");
+  EXPECT_EQ(values.at("edges"), "[\"a\", \"b\"]");
+  EXPECT_EQ(values.at("inner.radius"), "60");
+  EXPECT_EQ(values.at("inner.ranking"), "\"score\"");
+  EXPECT_EQ(values.size(), 7u);  // the group itself has no value
+}
+
+TEST(Options, AnAssignmentToAGroupNamesItsKeysAndTheirValues) {
+  OuterOptions options;
+  const auto refusal = [&](const std::string& assignment) -> std::string {
+    try {
+      overrideOption(assignment, "--set", options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("inner=nearest"),
+            "--set: key 'inner' is a group of keys and cannot be 'nearest'; set one of its keys: "
+            "inner.radius, inner.ranking (one of {score, nearest})");
+  EXPECT_EQ(refusal("inner={radius: 7}"), "");
+  EXPECT_EQ(options.inner.radius, 7.0);
+}
+
 TEST(Options, LoadKeepsWhatIsNotGiven) {
   OuterOptions options;
   loadOptions({"file.yaml", "seed: 7\ninner:\n  radius: 12.5\npoints: [[1, 2], [3, 4, 5]]\n"},

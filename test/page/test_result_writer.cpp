@@ -45,6 +45,31 @@ int runSample(const test::TemporaryFolder& scratch, SessionStatus status,
   return writer.exitCode();
 }
 
+/// Compares the method that summary, report and table of the sample session name.
+void expectMethod(const session::ScenarioOptions& options, const std::string& name,
+                  const std::string& text) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample(options);
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  test::playSession(writer, sample.setup, 120, SessionStatus::kTimedOut, {});
+  writer.finish(2.0);
+  EXPECT_EQ(summaryOf(scratch)["method"], name);
+  EXPECT_EQ(summaryOf(scratch)["method_preset"], "default");
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  EXPECT_NE(page.find(" · method " + text), std::string::npos);
+  EXPECT_NE(writer.table().find("\n  method                  " + text + "\n"), std::string::npos)
+      << writer.table();
+}
+
+TEST(ResultWriter, SummaryReportAndTableNameTheMethod) {
+  session::ScenarioOptions options = test::sampleOptions();
+  options.cbv_planner = "diffusion";
+  options.guidance = guidance::loadProfile("naturalistic");
+  expectMethod(options, "default", "default");
+  options.guidance.find("speed").weight = 7.0;
+  expectMethod(options, "custom", "custom (default but for guidance.speed.weight)");
+}
+
 TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
   const test::TemporaryFolder scratch;
   EXPECT_EQ(runSample(scratch, SessionStatus::kTimedOut), 0);
@@ -54,6 +79,9 @@ TEST(ResultWriter, SummaryHasTheAgreedKeysInOrder) {
                                    "scenario",
                                    "seed",
                                    "mode",
+                                   "method",
+                                   "method_preset",
+                                   "method_changes",
                                    "ego_planner",
                                    "cbv_planner",
                                    "status",

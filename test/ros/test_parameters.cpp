@@ -4,9 +4,11 @@
 
 #include <csignal>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "ros/lockstep/node_process.h"
 #include "ros/session_files.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::ros {
 namespace {
@@ -54,6 +56,28 @@ TEST(Parameters, BadAssignmentNamesTheParameter) {
   } catch (const core::InputError& error) {
     EXPECT_NE(std::string(error.what()).find("parameter ~set"), std::string::npos) << error.what();
   }
+}
+
+std::string refusalOf(const Parameters& parameters) {
+  try {
+    requestedScenario(parameters);
+  } catch (const core::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Parameters, ARouteOfASealedSuiteIsRefused) {
+  const test::TemporaryFolder folder;
+  const auto suite = folder.path() / "sealed_mine";
+  const auto scenario = suite / "scenarios" / "mine.yaml";
+  std::filesystem::create_directories(scenario.parent_path());
+  core::writeFileAtomically(scenario, "network: crossing_district\nroute:\n  edges: [a2_b2, b2_c2]\n");
+  const Parameters parameters(Values{{"scenario", scenario.string()}});
+  EXPECT_EQ(refusalOf(parameters), "");
+  core::writeFileAtomically(suite / "seal.sha256", "");
+  for (const char* part : {"a route of the sealed suite sealed_mine", "--open-sealed"})
+    EXPECT_NE(refusalOf(parameters).find(part), std::string::npos) << refusalOf(parameters);
 }
 
 TEST(StopSignal, IsRememberedOnceRaised) {

@@ -183,6 +183,32 @@ TEST(SessionRequest, TheDefaultMethodIsWhatASessionWithoutOneDoes) {
   EXPECT_EQ(shippedMethods(), (std::vector<std::string>{"default", "paper"}));
 }
 
+TEST(SessionRequest, SaysWhichMethodItsPlannersFollowAndWhatWasChanged) {
+  SessionRequest request;
+  request.scenario = "crossing_left_turn";
+  request.cbv_planner = "diffusion";
+  const auto textOf = [&](const std::vector<std::string>& set) {
+    request.set = set;
+    return methodText(methodOf(resolveRequest(request)));
+  };
+  EXPECT_EQ(textOf({}), "default");
+  EXPECT_EQ(textOf({"method=paper"}), "paper");
+  EXPECT_EQ(textOf({"method=paper", "diffusion.candidates=2"}),
+            "custom (paper but for diffusion.candidates)");
+  EXPECT_EQ(textOf({"guidance.speed.weight=3"}), "custom (default but for guidance.speed.weight)");
+  EXPECT_EQ(textOf({"guidance_profile=none"}), "custom (default but for guidance_profile)");
+  // What no planner of the session follows changes nothing.
+  EXPECT_EQ(textOf({"pdm_lite.cbv_speed_spread=0.1", "ego_guidance_profile=none"}), "default");
+  request.cbv_planner = "pdm_lite";
+  EXPECT_EQ(textOf({"diffusion.candidates=2"}), "default");
+  request.ego_planner = "diffusion";
+  EXPECT_EQ(textOf({"ego_guidance_profile=none"}),
+            "custom (default but for ego_guidance_profile)");
+  ScenarioOptions recorded;
+  recorded.method = "gone";
+  EXPECT_EQ(methodText(methodOf(recorded)), "custom (gone but for method)");
+}
+
 TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
   SessionRequest request;
   request.scenario = "crossing_left_turn";
