@@ -29,6 +29,19 @@ struct ReportArguments {
   std::string csv;
 };
 
+/// Throws InputError for what is no batch, and says of a single session what to run instead.
+evaluation::RunSet readBatch(const std::string& folder) {
+  if (core::isFile(fs::path(folder) / "session.yaml")) {
+    throw InputError(
+        "'" + folder +
+        "' is the result of a single session; --compare pairs the runs of two batches by scenario "
+        "and seed. Run both settings over the same scenarios and seeds (cdiff evaluate MATRIX "
+        "--results DIR), one folder each or as levels of one factor in one folder; two sessions "
+        "stand side by side in their report.html");
+  }
+  return evaluation::readRunSet(folder);
+}
+
 std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
   evaluation::checkMeasureNames(arguments.measures);
   const std::vector<std::string>& folders = arguments.folders;
@@ -42,11 +55,11 @@ std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {
     throw InputError("--compare needs two result folders, or one with --factor and --baseline");
   }
   if (levels) {
-    return evaluation::compareLevels(evaluation::readRunSet(folders[0]), arguments.factor,
-                                     arguments.baseline, arguments.measures);
+    return evaluation::compareLevels(readBatch(folders[0]), arguments.factor, arguments.baseline,
+                                     arguments.measures);
   }
-  const evaluation::RunSet a = evaluation::readRunSet(folders[0]);
-  const evaluation::RunSet b = evaluation::readRunSet(folders[1]);
+  const evaluation::RunSet a = readBatch(folders[0]);
+  const evaluation::RunSet b = readBatch(folders[1]);
   return {evaluation::compareRuns(a, b, evaluation::sharedFactors(a, b), arguments.measures)};
 }
 

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
@@ -107,15 +108,15 @@ Markup runTable(const std::vector<BatchRun>& runs) {
   });
   page::HtmlTable table({"run", "status", "#route completion [%]", "#driving score",
                          "#ego collisions", "#CBV decisions", "#CBV contacts with the ego",
-                         "#closest CBV [m]", "why"});
+                         "#smallest distance of any CBV to the ego, centers [m]", "why"});
   for (const BatchRun* run : order) addRow(*run, table);
   return table.html();
 }
 
-Markup shownCell(const TableCell& cell) {
-  const std::string rift = riftText(cell);
+Markup shownCell(const TableCell& cell, bool with_interval) {
+  const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
-  Markup html = cellText(cell);
+  Markup html = cellText(cell, with_interval);
   if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
   if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
   return html;
@@ -129,10 +130,12 @@ Markup paperTable(const Table& table) {
   page::HtmlTable rows(head);
   for (std::size_t i = 0; i < table.cells.size(); ++i) {
     std::vector<Markup> cells = {definition.rows[i].name};
-    for (const TableCell& cell : table.cells[i]) cells.push_back(shownCell(cell));
+    const bool intervals = showsIntervals(table.cells[i]);
+    for (const TableCell& cell : table.cells[i]) cells.push_back(shownCell(cell, intervals));
     rows.row(cells);
   }
   Markup html = rows.html();
+  if (anyRowWithout(table)) html += page::pageNote(intervalRule());
   if (!definition.note.empty()) html += page::pageNote(definition.note);
   for (const std::string& line : settingsLines(table)) html += page::pageNote(line);
   return html;
@@ -186,20 +189,23 @@ std::string row(const std::vector<std::string>& cells) {
   return "| " + core::joinText(cells, " | ") + " |\n";
 }
 
-std::string markdownCell(const TableCell& cell) {
-  const std::string rift = riftText(cell);
+std::string markdownCell(const TableCell& cell, bool with_interval) {
+  const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
-  return cellText(cell) + (rift.empty() ? "" : "<br>RIFT: " + rift) +
+  return cellText(cell, with_interval) + (rift.empty() ? "" : "<br>RIFT: " + rift) +
          (paper.empty() ? "" : "<br>paper: " + paper);
 }
 
 }  // namespace
 
 std::string tablesMarkdown(const std::vector<Table>& tables) {
+  const std::string intervals =
+      std::any_of(tables.begin(), tables.end(), anyIntervals)
+          ? "[95 % interval, bootstrap by routes; of events per km exact Poisson] "
+          : "";
   std::string text =
-      "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds [95 % interval, "
-      "bootstrap "
-      "by routes; of events per km exact Poisson] (routes, seeds, runs that have the measure). "
+      "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " + intervals +
+      "(routes, seeds, runs that have the measure). "
       "RIFT: the same by RIFT's definition. paper: as printed there. "
       "In parentheses alone: why a cell is empty.\n";
   for (const Table& table : tables) {
@@ -212,10 +218,12 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
     text += row(head) + row(std::vector<std::string>(head.size(), "---"));
     for (std::size_t i = 0; i < table.cells.size(); ++i) {
       std::vector<std::string> cells = {definition.rows[i].name};
-      for (const TableCell& cell : table.cells[i]) cells.push_back(markdownCell(cell));
+      const bool intervals = showsIntervals(table.cells[i]);
+      for (const TableCell& cell : table.cells[i]) cells.push_back(markdownCell(cell, intervals));
       text += row(cells);
     }
     text += "\n";
+    if (anyRowWithout(table)) text += intervalRule() + "\n\n";
     for (const std::string& line : settingsLines(table)) text += "- " + line + "\n";
   }
   return text;

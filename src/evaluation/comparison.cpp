@@ -131,12 +131,6 @@ void addRates(MeasureComparison& compared) {
   compared.p = spread ? std::max(compared.rates->p, compared.p_exchange) : compared.rates->p;
 }
 
-/// Both sides' runs of each pair, in order.
-struct RunPair {
-  Runs a;
-  Runs b;
-};
-
 /// The comparison, or no pairs where no pair has the measure.
 MeasureComparison compareMeasure(const std::string& measure, const std::vector<RunPair>& pairs,
                                  const std::string& cluster, RouteBootstrap& bootstrap) {
@@ -246,6 +240,7 @@ Comparison compareRuns(const RunSet& a, const RunSet& b, const std::set<std::str
   comparison.runs_a = a.records.size();
   comparison.runs_b = b.records.size();
   comparison.pairs = pairs.size();
+  comparison.differences = differencesOf(pairs, a.conditions, b.conditions);
   comparison.cluster = clusterOf(paired_by);
   comparison.clusters = countLevels(pairs, comparison.cluster);
   comparison.seeds = countLevels(pairs, "seed");

@@ -33,6 +33,36 @@ struct MeasureComparison {
 /// Factors that change together with the one compared, each with its level in A and in B.
 using Followers = std::map<std::string, std::pair<std::string, std::string>>;
 
+/// A factor, or a key of the scenario, that is not the same in A and in B.
+struct Difference {
+  std::string name;
+  std::set<std::string> a;  ///< its values in the runs of the pairs
+  std::set<std::string> b;
+  std::size_t pairs = 0;  ///< in which they differ
+};
+
+/// What else than chance can make a difference between the runs of the pairs.
+struct Differences {
+  std::vector<Difference> factors;   ///< in the order of factorNames
+  std::vector<Difference> settings;  ///< by key
+  std::set<std::string> files;       ///< names of inputs with another content
+  bool known = true;                 ///< false where the runs' scenarios were not read
+};
+
+/// Runs of A and of B that agree in all factors by which they are paired, in order.
+struct RunPair {
+  std::vector<const RunRecord*> a;
+  std::vector<const RunRecord*> b;
+};
+
+/// Of the first runs of each pair. Settings are left out where scenarios do not pair.
+Differences differencesOf(const std::vector<RunPair>& pairs, const BatchConditions& a,
+                          const BatchConditions& b);
+
+/// "cbv_planner (A pdm_lite, B diffusion); key diffusion.conditioning (A image, B image_route);
+/// file program": plain text without an end, or that nothing on record differs.
+std::string differencesText(const Differences& differences, std::size_t pairs);
+
 /// Two sets of runs side by side: runs are paired by the factors that the sets share, and each
 /// measure is compared over the pairs, with routes as what is drawn (docs/evaluation.md).
 struct Comparison {
@@ -40,6 +70,7 @@ struct Comparison {
   std::string b;
   std::set<std::string> paired_by;  ///< factors
   Followers followers;              ///< factors that neither pair nor are compared
+  Differences differences;          ///< of the pairs' runs
   std::size_t pairs = 0;            ///< whose runs are both complete
   std::size_t runs_a = 0;           ///< all of them
   std::size_t runs_b = 0;

@@ -36,11 +36,13 @@ std::string clustersText(const Comparison& comparison) {
 std::string headOf(const Comparison& comparison) {
   std::string text =
       "## A = " + core::markdownText(comparison.a) + ", B = " + core::markdownText(comparison.b) +
-      "\n\n" + std::to_string(comparison.pairs) + " pairs of " + std::to_string(comparison.runs_a) +
-      " runs of A and " + std::to_string(comparison.runs_b) + " of B: " + clustersText(comparison) +
+      "\n\n" + countText(comparison.pairs, "pair") + " of " + countText(comparison.runs_a, "run") +
+      " of A and " + std::to_string(comparison.runs_b) + " of B: " + clustersText(comparison) +
       "; paired by " +
       core::joinText({comparison.paired_by.begin(), comparison.paired_by.end()}, ", ") +
       followersText(comparison) + ".\n";
+  text += "\nA and B differ in: " +
+          core::markdownText(differencesText(comparison.differences, comparison.pairs)) + ".\n";
   if (!comparison.conditions.empty())
     text += "\nConditions: " + core::markdownText(comparison.conditions) + ".\n";
   const std::string warning =
@@ -49,46 +51,51 @@ std::string headOf(const Comparison& comparison) {
 }
 
 /// "1.90 [0.68, 5.34]": rate of B / rate of A.
-std::string ratioText(const MeasureComparison& measure) {
+std::string ratioText(const MeasureComparison& measure, bool with_interval) {
   if (!measure.rates || !std::isfinite(measure.rates->ratio)) return "-";
+  if (!with_interval) return core::formatFixed(measure.rates->ratio, 2);
   const Interval& interval = measure.rates->interval;
   return core::formatFixed(measure.rates->ratio, 2) + " [" + core::formatFixed(interval.low, 2) +
          ", " + (std::isfinite(interval.high) ? core::formatFixed(interval.high, 2) : "inf") + "]";
 }
 
 /// What a reader has to know of one row.
-std::string noteOf(const MeasureComparison& measure) {
+std::string noteOf(const MeasureComparison& measure, bool with_intervals) {
   std::vector<std::string> notes;
   for (const auto& [side, estimate] : {std::pair{"A", &measure.a}, std::pair{"B", &measure.b}}) {
-    const std::string note = estimateNote(*estimate);
+    const std::string note = estimateNote(*estimate, with_intervals);
     if (!note.empty()) notes.push_back(std::string(side) + ": " + note);
   }
-  if (measure.interval_kind == IntervalKind::kUnseen)
+  if (with_intervals && measure.interval_kind == IntervalKind::kUnseen)
     notes.push_back("B - A is the same on all routes: interval by unseen routes");
   return core::joinText(notes, "; ");
 }
 
-std::string rowOf(const MeasureComparison& measure) {
-  const std::string difference = measure.difference ? core::formatFixed(*measure.difference, 3) +
-                                                          intervalText(measure.interval)
-                                                    : "-";
+std::string rowOf(const MeasureComparison& measure, bool intervals) {
+  const std::string difference =
+      measure.difference ? core::formatFixed(*measure.difference, 3) +
+                               (intervals ? intervalText(measure.interval) : "")
+                         : "-";
   return "| " +
          core::joinText(
              {core::markdownText(measure.measure), std::to_string(measure.pairs),
-              metrics::toText(measure.a.kind), estimateText(measure.a), estimateText(measure.b),
-              difference, ratioText(measure), probabilityText(measure.p),
-              probabilityText(measure.p_holm), noteOf(measure)},
+              metrics::toText(measure.a.kind), estimateText(measure.a, 3, intervals),
+              estimateText(measure.b, 3, intervals), difference, ratioText(measure, intervals),
+              probabilityText(measure.p), probabilityText(measure.p_holm),
+              noteOf(measure, intervals)},
              " | ") +
          " |\n";
 }
 
 std::string tableOf(const Comparison& comparison) {
-  std::string text =
-      headOf(comparison) +
-      "\n| measure | pairs | kind | A [95 %] | B [95 %] | B - A [95 %] | B / A [95 %] | p | "
-      "p (Holm) | note |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const MeasureComparison& measure : comparison.measures) text += rowOf(measure);
-  return text;
+  const bool intervals = showsIntervals(comparison.clusters);
+  const std::string range = intervals ? " [95 %] | " : " | ";
+  std::string text = headOf(comparison) + "\n| measure | pairs | kind | A" + range + "B" + range +
+                     "B - A" + range + "B / A" + range +
+                     "p | p (Holm) | note |\n|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const MeasureComparison& measure : comparison.measures) text += rowOf(measure, intervals);
+  const std::string drawn = comparison.cluster == "scenario" ? "route" : comparison.cluster;
+  return intervals ? text : text + "\n" + intervalRule(drawn + "s") + "\n";
 }
 
 std::string multiplicityText(const std::vector<Comparison>& comparisons) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
@@ -22,19 +23,21 @@ namespace fs = std::filesystem;
 using core::InputError;
 
 RunProtocol protocolOf(const session::ProtocolOptions& options) {
-  RunProtocol protocol;
-  protocol.text = options.preset + ", time limit " + core::formatNumber(options.time_limit) + " s";
-  for (const std::string& line : core::splitText(core::dumpOptions(options), '\n')) {
-    const std::size_t colon = line.find(':');
-    if (colon != std::string::npos) protocol.values[line.substr(0, colon)] = line.substr(colon + 1);
-  }
-  return protocol;
+  return {options.preset + ", time limit " + core::formatNumber(options.time_limit) + " s",
+          core::flatOptions(options)};
 }
 
-RunProtocol readProtocol(const fs::path& file) {
+/// What the scenario of a run says.
+struct RunScenario {
+  RunProtocol protocol;
+  std::shared_ptr<const Settings> settings;
+};
+
+RunScenario readScenario(const fs::path& file) {
   session::ScenarioOptions options;
   core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
-  return protocolOf(options.protocol);
+  return {protocolOf(options.protocol),
+          std::make_shared<const Settings>(core::flatOptions(options))};
 }
 
 /// What the complete runs of one scenario were driven by.
@@ -70,8 +73,8 @@ std::string differenceText(const RunProtocol& a, const RunProtocol& b) {
   std::vector<std::string> parts;
   for (const auto& [key, value] : a.values) {
     const auto other = b.values.find(key);
-    const std::string level = other == b.values.end() ? " (none)" : other->second;
-    if (level != value) parts.push_back(key + value + " in A and" + level + " in B");
+    const std::string level = other == b.values.end() ? "(none)" : other->second;
+    if (level != value) parts.push_back(key + " " + value + " in A and " + level + " in B");
   }
   return core::joinText(parts, ", ");
 }
@@ -118,13 +121,14 @@ BatchConditions readConditions(const fs::path& results, const std::vector<RunRec
   const fs::path file = results / "matrix.yaml";
   core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
   conditions.suite = fs::path(matrix.suite).filename().string();
-  std::map<std::string, RunProtocol> known;  // many runs have the same scenario text
+  std::map<std::string, RunScenario> known;  // repetitions have the same scenario text
   for (const RunRecord& record : records) {
     if (!record.complete()) continue;
-    RunProtocol& protocol = known[record.scenario_sha256];
-    if (protocol.text.empty())
-      protocol = readProtocol(runFolder(results, record.id) / "scenario.yaml");
-    conditions.protocols[record.id] = protocol;
+    RunScenario& scenario = known[record.scenario_sha256];
+    if (!scenario.settings)
+      scenario = readScenario(runFolder(results, record.id) / "scenario.yaml");
+    conditions.protocols[record.id] = scenario.protocol;
+    conditions.settings[record.id] = scenario.settings;
   }
   return conditions;
 }
@@ -197,6 +201,12 @@ std::string settingsOf(const session::ScenarioOptions& scenario) {
   return plannerText("ego", scenario.ego_planner, scenario, scenario.ego_guidance) + "; " +
          plannerText("CBVs", scenario.cbv_planner, scenario, scenario.guidance) + "; protocol " +
          scenario.protocol.preset + ", " + core::formatNumber(scenario.protocol.time_limit) + " s";
+}
+
+std::string cbvConditioningOf(const session::ScenarioOptions& scenario) {
+  const planning::PlannerDescriptor* planner = planners::findPlanner(scenario.cbv_planner);
+  if (planner == nullptr || !planner->network) return "";
+  return planner->network(scenario.planner_options, scenario.guidance).conditioning;
 }
 
 void addSettings(const TableRow& row, const TableDefinition& definition,

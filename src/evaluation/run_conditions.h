@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,14 @@ struct RunProtocol {
   std::map<std::string, std::string> values;  ///< of all keys of the group `protocol`
 };
 
+/// A resolved scenario: the value of each field as YAML, by its full key.
+using Settings = std::map<std::string, std::string>;
+
 /// Under what the runs of a result folder were driven.
 struct BatchConditions {
   std::string suite;                             ///< name of the route suite; empty: none
   std::map<std::string, RunProtocol> protocols;  ///< of complete runs, by id
+  std::map<std::string, std::shared_ptr<const Settings>> settings;  ///< likewise
 };
 
 /// From matrix.yaml and each complete run's scenario.yaml. Throws InputError naming a file that is
@@ -51,5 +56,8 @@ void requireComparable(const RunSet& a, const RunSet& b);
 /// method, sampler, candidates, conditioning and weights; for guided ones the objectives with their
 /// weights; then the protocol with its time limit [s]. Equal texts stand for equal settings.
 std::string settingsOf(const session::ScenarioOptions& scenario);
+
+/// What the network of the CBVs' planner is given, in the planner's own words; empty without one.
+std::string cbvConditioningOf(const session::ScenarioOptions& scenario);
 
 }  // namespace cdiff::evaluation

@@ -56,6 +56,8 @@ void addInteractions(const json& summary, std::size_t selections, Measures& meas
 /// Shares over the CBVs that were selected; absent where the summary does not have the keys.
 void addSelectionMeasures(const json& summary, Measures& measures) {
   const json selections = summary.value(json::json_pointer("/cbv/selections"), json::array());
+  if (summary.contains(json::json_pointer("/cbv/selections")))
+    measures[kSelectionCount] = static_cast<double>(selections.size());
   double passed = 0.0;
   double completion = 0.0;
   std::size_t with_passed = 0;
@@ -92,8 +94,9 @@ const std::vector<std::string>& measureNames() {
     for (const auto& [name, place] : places()) {
       all.emplace_back(name);
       if (all.back() != metrics::known::kCbvMinimumDistance.name) continue;
-      all.insert(all.end(), {"cbv_passed_percent", "cbv_completion_percent",
-                             "cbv_interactions_percent", "cbv_close_interactions_percent"});
+      all.insert(all.end(),
+                 {kSelectionCount, "cbv_passed_percent", "cbv_completion_percent",
+                  "cbv_interactions_percent", "cbv_close_interactions_percent"});
     }
     return all;
   }();
@@ -227,8 +230,6 @@ std::vector<RunRecord> readRecords(const fs::path& results) {
 
 namespace {
 
-using nlohmann::json;
-
 void addNumbers(const json& object, const std::string& place, SummaryNumbers& numbers) {
   for (const auto& [key, value] : object.items()) {
     if (value.is_object()) addNumbers(value, place + "/" + key, numbers);
@@ -270,7 +271,9 @@ std::vector<BatchRun> readBatchRuns(const std::filesystem::path& results) {
     const auto file = run.folder / "summary.json";
     if (record.complete()) {
       run.numbers = summaryNumbers(core::readFile(file, "summary"), file.string());
-      run.settings = settingsOf(scenarioOf(run));
+      const session::ScenarioOptions scenario = scenarioOf(run);
+      run.settings = settingsOf(scenario);
+      run.cbv_conditioning = cbvConditioningOf(scenario);
     }
     run.record = std::move(record);
     runs.push_back(std::move(run));

@@ -18,6 +18,9 @@ namespace cdiff::evaluation {
 /// Values by name; a measure that a session does not have is not there.
 using Measures = std::map<std::string, double>;
 
+/// Of how many vehicles were selected as CBV; one selected twice counts twice.
+inline constexpr const char* kSelectionCount = "cbv_selections";
+
 /// All names in the order of columns.
 const std::vector<std::string>& measureNames();
 
@@ -88,6 +91,7 @@ struct BatchRun {
   std::filesystem::path folder;
   SummaryNumbers numbers;  ///< empty unless the run is complete
   std::string settings{};  ///< see settingsOf; empty unless the run is complete
+  std::string cbv_conditioning{};  ///< see cbvConditioningOf; likewise
 
   /// Value at a JSON pointer; nullopt where the summary has no number there.
   std::optional<double> number(const std::string& pointer) const;

@@ -73,13 +73,14 @@ std::vector<std::string> rowCells(const System& system, const std::vector<System
   for (const std::size_t count :
        {system.runs, system.failed, system.missing, system.routes, system.seeds})
     cells.push_back(std::to_string(count));
+  const bool intervals = showsIntervals(system.routes);
   std::vector<std::string> notes;
   for (const std::string& name : shownMeasures()) {
     const auto found = system.measures.find(name);
     const PooledEstimate estimate =
         found == system.measures.end() ? PooledEstimate() : found->second;
-    cells.push_back(estimateText(estimate, 2));
-    const std::string note = estimateNote(estimate);
+    cells.push_back(estimateText(estimate, 2, intervals));
+    const std::string note = estimateNote(estimate, intervals);
     if (!note.empty()) notes.push_back(name + ": " + note);
   }
   cells.push_back(core::joinText(notes, "; "));
@@ -89,6 +90,7 @@ std::vector<std::string> rowCells(const System& system, const std::vector<System
 std::size_t countIntervals(const std::vector<System>& systems) {
   std::size_t count = 0;
   for (const System& system : systems) {
+    if (!showsIntervals(system.routes)) continue;
     for (const std::string& name : shownMeasures()) {
       const auto found = system.measures.find(name);
       count += found != system.measures.end() && found->second.interval.has_value();
@@ -100,14 +102,16 @@ std::size_t countIntervals(const std::vector<System>& systems) {
 /// How to read the table, then a warning where a system has few seeds or routes.
 std::vector<std::string> remarks(const std::vector<System>& systems) {
   const std::size_t intervals = countIntervals(systems);
+  const std::string compare =
+      " `cdiff report --compare` tests differences and corrects for their number.";
   std::vector<std::string> texts = {
-      "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts are "
-      "events "
-      "/ km = rate with exact Poisson intervals. The table holds " +
-      countText(intervals, "interval") + ": about " +
-      core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
-      " of them are expected to miss. `cdiff report --compare` tests differences and corrects for "
-      "their number."};
+      intervals == 0
+          ? "Figures over all routes; counts are events / km = rate." + compare
+          : "Figures over all routes with 95 % intervals: bootstrap clustered on routes; counts "
+            "are events / km = rate with exact Poisson intervals. The table holds " +
+                countText(intervals, "interval") + ": about " +
+                core::formatFixed(0.05 * static_cast<double>(intervals), 1) +
+                " of them are expected to miss." + compare};
   std::set<std::string> warnings;
   for (const System& system : systems) {
     const std::string warning = fewWarning(system.seeds, system.routes, true);
@@ -115,6 +119,12 @@ std::vector<std::string> remarks(const std::vector<System>& systems) {
   }
   texts.insert(texts.end(), warnings.begin(), warnings.end());
   return texts;
+}
+
+/// Whether a row shows no intervals.
+bool anyWithout(const std::vector<System>& systems) {
+  return std::any_of(systems.begin(), systems.end(),
+                     [](const System& system) { return !showsIntervals(system.routes); });
 }
 
 std::string markdownRow(const std::vector<std::string>& cells) {
@@ -157,7 +167,7 @@ std::string systemsMarkdown(const std::vector<System>& systems) {
     cells.front() = core::markdownText(cells.front());
     text += markdownRow(cells);
   }
-  return text;
+  return text + (anyWithout(systems) ? "\n" + intervalRule() + "\n" : "");
 }
 
 Markup systemsHtml(const std::vector<System>& systems) {
@@ -168,7 +178,9 @@ Markup systemsHtml(const std::vector<System>& systems) {
     const std::vector<std::string> cells = rowCells(system, systems);
     table.row({cells.begin(), cells.end()});
   }
-  return html + table.html();
+  html += table.html();
+  if (anyWithout(systems)) html += page::pageNote(intervalRule());
+  return html;
 }
 
 }  // namespace cdiff::evaluation

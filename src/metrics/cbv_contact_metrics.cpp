@@ -42,10 +42,7 @@ const MeasureDefinition known::kCollisionsPerKm = {
     3,
     true,
 };
-
-namespace {
-
-constexpr MeasureDefinition kEgoCollisionsPerKm = {
+const MeasureDefinition known::kCbvEgoCollisionsPerKm = {
     "cbv_ego_collisions_per_km",
     "/cbv/collisions_with_ego_per_km",
     "Collisions of CBVs with the ego per km",
@@ -55,6 +52,8 @@ constexpr MeasureDefinition kEgoCollisionsPerKm = {
     "1000 x collisions of CBVs with the ego / distance driven as CBV in metres; n counts CBVs.",
     "RIFT does not record the partner.",
 };
+
+namespace {
 
 /// Contacts of CBVs with anyone and with the ego alone; a contact of two CBVs counts once.
 class CbvCollisions final : public Metric {
@@ -72,7 +71,7 @@ class CbvCollisions final : public Metric {
     sink.set(known::kCbvEgoCollisions, countMeasure(ego_collisions_));
     sink.set(known::kCollisionsPerKm,
              collisionsPerKilometre(collisions_, travel_.distance(), travel_.vehicles()));
-    sink.set(kEgoCollisionsPerKm,
+    sink.set(known::kCbvEgoCollisionsPerKm,
              collisionsPerKilometre(ego_collisions_, travel_.distance(), travel_.vehicles()));
   }
 
@@ -88,7 +87,7 @@ MetricDescriptor cbvCollisionsMetric() {
   return {"cbv_collisions",
           "Collisions of CBVs, as counts and per kilometre.",
           {known::kCbvCollisions, known::kCbvEgoCollisions, known::kCollisionsPerKm,
-           kEgoCollisionsPerKm},
+           known::kCbvEgoCollisionsPerKm},
           [](const MetricContext&) { return std::make_unique<CbvCollisions>(); }};
 }
 

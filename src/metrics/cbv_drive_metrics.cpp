@@ -104,21 +104,21 @@ MetricDescriptor cbvDistanceMetric() {
 const MeasureDefinition known::kCbvClosestDistance = {
     "cbv_closest_distance_m",
     "/cbv/closest_distance_m",
-    "Closest approach of CBVs, mean",
+    "Smallest distance of each CBV to the ego, mean",
     "m",
     Direction::kNeither,
     Subject::kEgoAndOthers,
-    "Mean over CBVs of each one's smallest distance of centres to the ego while it was CBV.",
+    "Mean over CBVs of each one's smallest distance of centers to the ego while it was CBV.",
     "",
 };
 const MeasureDefinition known::kCbvMinimumDistance = {
     "cbv_minimum_distance_m",
     "/cbv/minimum_distance_m",
-    "Closest approach of CBVs, minimum",
+    "Smallest distance of any CBV to the ego",
     "m",
     Direction::kNeither,
     Subject::kEgoAndOthers,
-    "The smallest distance of centres between the ego and any CBV.",
+    "The smallest distance of centers between the ego and any CBV.",
     "",
 };
 

@@ -17,6 +17,7 @@ extern const MeasureDefinition kCbvCount;
 extern const MeasureDefinition kCbvDecisions;
 extern const MeasureDefinition kCbvDistance;
 extern const MeasureDefinition kCbvEgoCollisions;
+extern const MeasureDefinition kCbvEgoCollisionsPerKm;
 extern const MeasureDefinition kCbvMinimumDistance;
 extern const MeasureDefinition kCbvOffRoad;
 extern const MeasureDefinition kCbvSpeedError;

@@ -182,6 +182,8 @@ const char* weightText(SessionWeight weight) {
       return "over the km of CBVs";
     case SessionWeight::kCbvDecisions:
       return "over decisions with a CBV";
+    case SessionWeight::kCbvSelections:
+      return "over selected CBVs";
     case SessionWeight::kSeconds:
       return "over simulated time";
     case SessionWeight::kByKind:

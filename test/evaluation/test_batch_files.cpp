@@ -97,8 +97,35 @@ TEST_F(BatchFiles, SummaryHasASystemPerCombinationWithoutRoutes) {
             nlohmann::json::array({10.0, 30.0}));
   const std::string text = batchMarkdown("night", records);
   expectIn("| all runs | 2 | 0 | 0 | 2 | 1 |", text);
-  expectIn("| 4 / 2.000 km = 2.00 [0.54, 5.12] |", text);
-  expectIn("Warning: only 1 seed;", text);
+  expectIn("| 4 / 2.000 km = 2.00 |", text);
+  expectIn("Warning: only 1 seed; a figure needs at least 5 (`--seeds 1,2,3,4,5`). Only 2 routes: "
+           "too few for intervals, which need 5.",
+           text);
+}
+
+TEST_F(BatchFiles, ARowOfSystemsShowsAllIntervalsOrNone) {
+  // 5 routes with 1 contact in 1 km each: 1 per km, Garwood 1.6235 to 11.6683 over 5 km. Route 4
+  // lacks nothing in system "none", which shows intervals; system "speed" drove 4 of them.
+  std::vector<RunRecord> records;
+  for (const char* profile : {"none", "speed"}) {
+    for (const char* route : {"a", "b", "c", "d", "e"}) {
+      if (*route == 'e' && *profile == 's') continue;
+      records.push_back(recordWith({route, "1", profile}, 10.0 + (*route - 'a')));
+      records.back().measures["cbv_collisions"] = 1.0;
+      records.back().measures["cbv_distance_m"] = 1000.0;
+    }
+  }
+  records[0].measures["ttc_mean_s"] = 2.5;  // of one route alone
+  std::string text = batchMarkdown("night", records);
+  expectIn("Figures over all routes with 95 % intervals", text);
+  expectIn("| 5 / 5.000 km = 1.00 [0.32, 2.33] |", text);
+  expectIn("ttc_mean_s: no interval: one route has it", text);
+  expectIn("| 4 / 4.000 km = 1.00 |", text);
+  expectIn("A row shows the intervals of all its figures or none: it needs 5 routes.", text);
+  records.resize(4);  // 4 routes alone: nothing promises intervals
+  text = batchMarkdown("night", records);
+  expectIn("Figures over all routes; counts are events / km = rate.", text);
+  EXPECT_EQ(text.find("95 %"), std::string::npos) << text;
 }
 
 TEST_F(BatchFiles, JunitReportsErrorsFailuresAndWhatWasNotRun) {

@@ -46,7 +46,7 @@ TEST(Comparison, TakesDifferencesWithinPairs) {
   EXPECT_DOUBLE_EQ(score.p, 0.5);  // of 4 ways to exchange A and B, 2 are as large
 }
 
-/// Contacts with the ego on each of 3 routes of 1 km as CBV.
+/// Contacts with the ego on each of some routes of 1 km as CBV.
 RunSet contactsOf(const std::string& name, const std::vector<double>& contacts) {
   RunSet set{name, {}};
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -57,26 +57,49 @@ RunSet contactsOf(const std::string& name, const std::vector<double>& contacts) 
 }
 
 TEST(Comparison, TestsCountsExactly) {
-  // 0 against 2 + 2 + 1 on equal km: p = 2 / 2^5.
-  const RunSet a = contactsOf("A", {0, 0, 0});
-  const RunSet b = contactsOf("B", {2, 2, 1});
+  // 0 against 5 on equal km: p = 2 / 2^5. Garwood's 0 to 3.6889 and 1.6235 to 11.6683 over 5 km;
+  // routes that are all alike have no bootstrap.
+  const RunSet a = contactsOf("A", {0, 0, 0, 0, 0});
+  const RunSet b = contactsOf("B", {1, 1, 1, 1, 1});
   auto comparisons =
       std::vector{compareRuns(a, b, sharedFactors(a, b), {"cbv_ego_collisions", "cbv_distance_m"})};
   adjustForNumber(comparisons);
   const MeasureComparison& contacts = comparisons[0].measures.front();
   EXPECT_EQ(contacts.b.events, 5U);
-  EXPECT_DOUBLE_EQ(contacts.b.exposure, 3.0);
+  EXPECT_DOUBLE_EQ(contacts.b.exposure, 5.0);
   EXPECT_NEAR(contacts.p, 2.0 / 32.0, 1e-12);
   EXPECT_NEAR(contacts.p_holm, 4.0 / 32.0, 1e-12);  // of two comparisons
   const std::string text = comparisonMarkdown(comparisons);
-  EXPECT_NE(text.find("| 0 / 3.000 km = 0.000 [0.000, 1.230] | 5 / 3.000 km = 1.667 [0.541, "
-                      "3.889] |"),
+  EXPECT_NE(text.find("| 0 / 5.000 km = 0.000 [0.000, 0.738] | 5 / 5.000 km = 1.000 [0.325, "
+                      "2.334] |"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("3 pairs of 3 runs of A and 3 of B: 3 routes x 1 seed;"), std::string::npos);
+  EXPECT_NE(text.find("5 pairs of 5 runs of A and 5 of B: 5 routes x 1 seed;"), std::string::npos);
+  EXPECT_EQ(text.find("A row shows"), std::string::npos);
   EXPECT_NE(text.find("Warning: only 1 seed;"), std::string::npos);
   EXPECT_NE(text.find("Multiplicity: of 2 differences tested here, 0 have p <= 0.05, where about "
                       "0.1 would by chance"),
+            std::string::npos)
+      << text;
+}
+
+TEST(Comparison, OfFewRoutesShowsNoIntervalInAnyColumn) {
+  // On 2 routes counts, means and differences have intervals; on 1 route counts alone would.
+  RunSet a = contactsOf("A", {0, 1});
+  RunSet b = contactsOf("B", {3, 5});
+  for (RunSet* set : {&a, &b}) {
+    for (RunRecord& record : set->records) record.measures["ttc_mean_s"] = 2.0;
+  }
+  const auto comparisons = std::vector{compareRuns(a, b, sharedFactors(a, b), {})};
+  const std::string text = comparisonMarkdown(comparisons);
+  EXPECT_NE(text.find("| measure | pairs | kind | A | B | B - A | B / A | p | p (Holm) | note |"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| 1 / 2.000 km = 0.500 | 8 / 2.000 km = 4.000 | 3.500 | 8.00 |"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("interval by"), std::string::npos) << text;
+  EXPECT_NE(text.find("A row shows the intervals of all its figures or none: it needs 5 routes."),
             std::string::npos)
       << text;
 }
@@ -105,7 +128,7 @@ RunSet drivenBy(const std::string& name, const std::string& suite, const std::st
   set.conditions.suite = suite;
   set.conditions.protocols[set.records[0].id] = {
       "rift_dev10, time limit " + time_limit + " s",
-      {{"preset", " rift_dev10"}, {"time_limit", " " + time_limit}}};
+      {{"preset", "\"rift_dev10\""}, {"time_limit", time_limit}}};
   return set;
 }
 
@@ -229,14 +252,14 @@ TEST(Comparison, NamesTheNearestOfWhatItDoesNotKnow) {
 }
 
 TEST(Comparison, WritesTables) {
-  // Route s 10 and 12, t 20 and 26: differences 2 and 6.
+  // Route s 10 and 12, t 20 and 26: differences 2 and 6. The file holds the intervals, too.
   const RunSet a{"A", {recordWith({"s", "1"}, 10), recordWith({"t", "1"}, 20)}};
   const RunSet b{"B, new", {recordWith({"s", "1"}, 12), recordWith({"t", "1"}, 26)}};
   std::vector<Comparison> comparisons = {compareRuns(a, b, sharedFactors(a, b), {})};
   adjustForNumber(comparisons);
   const std::string markdown = comparisonMarkdown(comparisons);
-  EXPECT_NE(markdown.find("| ego_driving_score | 2 | mean | 15.000 [10.000, 20.000] | 19.000 "
-                          "[12.000, 26.000] | 4.000 [2.000, 6.000] | - | 0.500 | 0.500 |"),
+  EXPECT_NE(markdown.find("| ego_driving_score | 2 | mean | 15.000 | 19.000 | 4.000 | - | 0.500 | "
+                          "0.500 |"),
             std::string::npos)
       << markdown;
   const std::string csv = comparisonCsv(comparisons);

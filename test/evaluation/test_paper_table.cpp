@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "evaluation/batch_report.h"
+#include "evaluation/paper/paper_figures.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_records.h"
 
@@ -60,7 +62,8 @@ TEST(PaperTable, PrintsEventsPerKilometreBesideTheirKilometres) {
   EXPECT_EQ(*cell.events, 5U);
   EXPECT_DOUBLE_EQ(cell.kilometres, 2.0);
   EXPECT_DOUBLE_EQ(*cell.seeds.mean, 2.5);
-  EXPECT_EQ(cellText(cell), "5 / 2.000 km = 2.50 [0.81, 5.83] (2 routes, 1 seed, 2 runs)");
+  EXPECT_EQ(cellText(cell, false), "5 / 2.000 km = 2.50 (2 routes, 1 seed, 2 runs)");
+  EXPECT_EQ(cellText(cell, true), "5 / 2.000 km = 2.50 [0.81, 5.83] (2 routes, 1 seed, 2 runs)");
 }
 
 TEST(PaperTable, SaysWhyACellIsEmpty) {
@@ -74,6 +77,79 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
   EXPECT_EQ(note("pdm_lite", {broken}), "no run completed");
   EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this measure");
   EXPECT_EQ(note("pdm_lite", {runOf("1", {{"/r", 1.0}, {"/w", 1.0}}), broken}), "");
+}
+
+TEST(PaperTable, SaysInWhichModeACellIsNotApplicable) {
+  TableDefinition table = rateTable("pdm_lite");
+  table.rows[0].levels["mode"] = "safety_critical";
+  table.rows[0].levels["guidance_profile"] = "safety_critical";
+  const auto note = [&](const std::vector<BatchRun>& runs) {
+    return fillTable(table, runs).cells[0][0].note;
+  };
+  BatchRun natural = runOf("1", {{"/r", 1.0}, {"/w", 1.0}});
+  BatchRun attack = natural;  // with another profile than the row's
+  attack.record.factors["mode"] = "safety_critical";
+  EXPECT_EQ(note({natural}), "not applicable in mode naturalistic");
+  EXPECT_EQ(note({natural, attack}), "not run");
+  natural.record.factors["cbv_planner"] = "diffusion";
+  EXPECT_EQ(note({natural}), "not run");
+  EXPECT_NE(tablesMarkdown({fillTable(table, {runOf("1", {})})})
+                .find("| ours | (not applicable in mode naturalistic)<br>paper: 5.00"),
+            std::string::npos);
+}
+
+TEST(PaperTable, ARowShowsAllIntervalsOrNone) {
+  // Rate 2 on 5 routes, twice as much on the last; the second column has it on 4 of them.
+  TableDefinition table = rateTable("pdm_lite");
+  table.columns.push_back({"share", "%", "/cbv/off_road_rate_percent", "", "", {}});
+  std::vector<BatchRun> runs;
+  for (const char* route : {"a", "b", "c", "d", "e"}) {
+    runs.push_back(runOf("1", {{"/r", *route == 'e' ? 4.0 : 2.0}, {"/w", 1.0}}, route));
+    runs.back().numbers["/cbv/off_road_rate_percent"] = 0.0;
+  }
+  Table filled = fillTable(table, runs);
+  EXPECT_TRUE(showsIntervals(filled.cells[0]));
+  // 0 % on 5 routes: up to 1 - 0.025^(1/5) = 52.18 % of the routes may differ.
+  EXPECT_EQ(cellText(filled.cells[0][1], true), "0.00 [0.00, 52.18] (5 routes, 1 seed, 5 runs)");
+  std::string text = tablesMarkdown({filled});
+  EXPECT_NE(text.find("[95 % interval"), std::string::npos);
+  EXPECT_NE(text.find("2.40 [2.00, "), std::string::npos) << text;
+  EXPECT_EQ(text.find("A row shows"), std::string::npos);
+  runs.back().numbers.erase("/cbv/off_road_rate_percent");
+  filled = fillTable(table, runs);
+  text = tablesMarkdown({filled});
+  EXPECT_FALSE(anyIntervals(filled));
+  EXPECT_EQ(text.find("[95 %"), std::string::npos);
+  EXPECT_NE(text.find("| 2.40 (5 routes, 1 seed, 5 runs)"), std::string::npos) << text;
+  EXPECT_NE(text.find("A row shows the intervals of all its figures or none"), std::string::npos);
+}
+
+/// A run of E2E-CDiff against PDM-Lite on 1 km as CBV.
+BatchRun ownRun(const char* mode, const std::string& conditioning, double contacts,
+                double with_ego) {
+  BatchRun run = runOf("1", {{"/cbv/distance_m", 1000.0},
+                             {"/cbv/collisions_per_km", contacts},
+                             {"/cbv/collisions_with_ego_per_km", with_ego}});
+  for (const auto& [factor, level] : cbvLevels(paper::kDiffusion, mode))
+    run.record.factors[factor] = level;
+  run.cbv_conditioning = conditioning;
+  return run;
+}
+
+TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffers) {
+  const Figure figure =
+      barFigure(collisionFigure(), {ownRun(kNaturalistic, "image_route", 3.0, 1.0),
+                                    ownRun(kSafetyCritical, "image", 9.0, 7.0)});
+  ASSERT_EQ(figure.sheet.rows.size(), 2U);
+  EXPECT_EQ(figure.sheet.rows[1][0].title, "contacts of CBVs with the ego");
+  const std::string row = "PDM-Lite,\"E2E-CDiff w/ coll (method default), contacts with the ego\"";
+  EXPECT_NE(figure.csv.find(row + ",1/km,clean,,,7,"), std::string::npos) << figure.csv;
+  EXPECT_EQ(figure.sheet.notes.back(),
+            "The columns differ in conditioning, too (what the network of the CBVs is given): "
+            "E2E-CDiff (method default) image_route; E2E-CDiff w/ coll (method default) image.");
+  const Figure same = barFigure(collisionFigure(), {ownRun(kNaturalistic, "image", 3.0, 1.0),
+                                                    ownRun(kSafetyCritical, "image", 9.0, 7.0)});
+  EXPECT_EQ(same.sheet.notes.back().find("conditioning"), std::string::npos);
 }
 
 TEST(PaperTable, CsvHoldsThePapersValueBesideOurs) {

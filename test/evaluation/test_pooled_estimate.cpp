@@ -42,7 +42,8 @@ TEST(PooledEstimate, OfACountIsItsRatePerKilometre) {
   // Expected 0.75 and 2.25: (1.25^2 / 0.75 + 1.25^2 / 2.25) / 1 = 2.78, below chi2(0.95; 1) = 3.84.
   EXPECT_NEAR(*estimate.dispersion, 2.7778, 1e-4);
   EXPECT_FALSE(estimate.over_dispersed);
-  EXPECT_EQ(estimateText(estimate, 2), "3 / 2.000 km = 1.50 [0.31, 4.38]");
+  EXPECT_EQ(estimateText(estimate, 2, true), "3 / 2.000 km = 1.50 [0.31, 4.38]");
+  EXPECT_EQ(estimateText(estimate, 2, false), "3 / 2.000 km = 1.50");
 }
 
 TEST(PooledEstimate, OfARateCountsItsEvents) {
@@ -84,7 +85,10 @@ TEST(PooledEstimate, SaysWhenRoutesDifferMoreThanChance) {
   EXPECT_EQ(estimate.interval_kind, IntervalKind::kWider);
   EXPECT_DOUBLE_EQ(estimate.interval->low, 0.0);
   EXPECT_DOUBLE_EQ(estimate.interval->high, 12.0);
-  EXPECT_NE(estimateNote(estimate).find("dispersion 12.0"), std::string::npos);
+  EXPECT_NE(estimateNote(estimate, true).find("dispersion 12.0), interval by routes [0.000, 12"),
+            std::string::npos)
+      << estimateNote(estimate, true);
+  EXPECT_EQ(estimateNote(estimate, false).find("interval"), std::string::npos);
 }
 
 TEST(PooledEstimate, WithoutDistancesIsPerRun) {
@@ -93,7 +97,7 @@ TEST(PooledEstimate, WithoutDistancesIsPerRun) {
       "ego_collisions");
   EXPECT_FALSE(estimate.per_km);
   EXPECT_DOUBLE_EQ(*estimate.value, 0.5);
-  EXPECT_EQ(estimateText(estimate, 1), "1 / 2 runs = 0.5 [0.0, 2.8]");  // 5.572 / 2
+  EXPECT_EQ(estimateText(estimate, 1, true), "1 / 2 runs = 0.5 [0.0, 2.8]");  // 5.572 / 2
 }
 
 TEST(PooledEstimate, OfASharePoolsSamples) {
@@ -105,6 +109,23 @@ TEST(PooledEstimate, OfASharePoolsSamples) {
   EXPECT_DOUBLE_EQ(*estimate.value, 1.0);
   EXPECT_DOUBLE_EQ(estimate.interval->low, 0.0);
   EXPECT_DOUBLE_EQ(estimate.interval->high, 10.0);
+}
+
+TEST(PooledEstimate, OfAShareOfCbvsPoolsCbvs) {
+  // 1 of 2 CBVs passed and 6 of 6: 7 of 8 = 87.5 %, not (50 + 100) / 2 = 75 %.
+  std::vector<RunRecord> records = {
+      runOf("a", "1", {{"cbv_passed_percent", 50}, {"cbv_selections", 2}}),
+      runOf("b", "1", {{"cbv_passed_percent", 100}, {"cbv_selections", 6}})};
+  EXPECT_DOUBLE_EQ(*estimateOf(records, "cbv_passed_percent").value, 87.5);
+  // A record of an earlier version counts its CBVs: (50 x 3 + 100 x 6) / 9.
+  records[0].measures = {{"cbv_passed_percent", 50}, {"cbv_count", 3}};
+  EXPECT_DOUBLE_EQ(*estimateOf(records, "cbv_passed_percent").value, 250.0 / 3.0);
+  // Nobody was selected: nothing to weigh.
+  records = {runOf("a", "1", {{"cbv_passed_percent", 50}, {"cbv_selections", 0}})};
+  EXPECT_FALSE(estimateOf(records, "cbv_passed_percent").value.has_value());
+  for (const char* name :
+       {"cbv_completion_percent", "cbv_interactions_percent", "cbv_close_interactions_percent"})
+    EXPECT_EQ(poolingOfMeasure(name).weight, metrics::SessionWeight::kCbvSelections) << name;
 }
 
 TEST(PooledEstimate, OfAShareAtItsBoundIsNoPoint) {
@@ -133,6 +154,8 @@ TEST(PooledEstimate, OfAnUnboundedFigureOnOneRouteHasNoInterval) {
   EXPECT_FALSE(estimate.interval.has_value());
   EXPECT_EQ(estimate.routes, 1U);
   EXPECT_EQ(estimate.seeds, 2U);
+  EXPECT_EQ(estimateNote(estimate, true), "no interval: one route has it");
+  EXPECT_EQ(estimateNote(estimate, false), "");
 }
 
 TEST(Pooling, FollowsFromUnitAndSubjectUnlessSaid) {
@@ -163,7 +186,10 @@ TEST(Pooling, EveryMeasureLiesWithinItsBounds) {
 TEST(FewWarning, NamesSeedsAndRoutes) {
   EXPECT_EQ(fewWarning(5, 10, true), "");
   EXPECT_NE(fewWarning(3, 10, true).find("only 3 seeds"), std::string::npos);
-  EXPECT_NE(fewWarning(5, 4, true).find("Only 4 routes"), std::string::npos);
+  EXPECT_NE(fewWarning(5, 4, true).find("Only 4 routes: too few for intervals, which need 5."),
+            std::string::npos);
+  EXPECT_NE(fewWarning(5, 5, true).find("Only 5 routes: intervals by the bootstrap"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ TEST(RunMeasures, OfASummary) {
   EXPECT_DOUBLE_EQ(facts.simulated_seconds, 12.5);
   EXPECT_DOUBLE_EQ(facts.measures.at("ego_completion_percent"), 80.0);
   EXPECT_DOUBLE_EQ(facts.measures.at("ego_collisions"), 0.0);
+  EXPECT_DOUBLE_EQ(facts.measures.at("cbv_selections"), 3.0);
   EXPECT_NEAR(facts.measures.at("cbv_passed_percent"), 200.0 / 3.0, 1e-12);
   EXPECT_DOUBLE_EQ(facts.measures.at("cbv_completion_percent"), 75.0);
   EXPECT_NEAR(facts.measures.at("cbv_interactions_percent"), 200.0 / 3.0, 1e-12);

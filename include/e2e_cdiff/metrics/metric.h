@@ -44,6 +44,7 @@ enum class SessionWeight {
   kEgoKilometres,  ///< driven by the ego
   kCbvKilometres,  ///< driven as CBV
   kCbvDecisions,   ///< decisions with a CBV
+  kCbvSelections,  ///< vehicles selected as CBV; one selected twice counts twice
   kSeconds,        ///< simulated time
 };
 

@@ -39,6 +39,10 @@ std::optional<double> weightOf(const RunRecord& record, SessionWeight weight) {
       return kilometres(measureOf(record, known::kCbvDistance.name));
     case SessionWeight::kCbvDecisions:
       return measureOf(record, known::kCbvDecisions.name);
+    case SessionWeight::kCbvSelections: {
+      const auto selections = measureOf(record, kSelectionCount);
+      return selections ? selections : measureOf(record, known::kCbvCount.name);  // earlier records
+    }
     case SessionWeight::kSeconds:
       return record.simulated_seconds;
     case SessionWeight::kByKind:
@@ -100,9 +104,12 @@ void addInterval(const RouteSums& routes, const PoolingRule& rule, RouteBootstra
 
 /// How a batch sums up the measures that no metric defines; a plain mean for an unknown name.
 metrics::PoolingRule batchPooling(const std::string& measure) {
-  static const std::map<std::string, metrics::PoolingRule> rules = {
-      {"cbv_passed_percent", metrics::kMeanToHundred},
-      {"cbv_completion_percent", metrics::kMeanToHundred},
+  constexpr PoolingRule kShareOfCbvs = {Pooling::kShare, SessionWeight::kCbvSelections, 0.0, 100.0};
+  static const std::map<std::string, PoolingRule> rules = {
+      {"cbv_passed_percent", kShareOfCbvs},
+      {"cbv_completion_percent", kShareOfCbvs},
+      {"cbv_interactions_percent", kShareOfCbvs},
+      {"cbv_close_interactions_percent", kShareOfCbvs},
       {"guidance_trust_region_share", metrics::kMeanToOne}};
   const auto rule = rules.find(measure);
   return rule != rules.end() ? rule->second : metrics::kPlainMean;
@@ -219,7 +226,13 @@ std::string intervalText(const std::optional<Interval>& interval, int decimals) 
          core::formatFixed(interval->high, decimals) + "]";
 }
 
-std::string estimateText(const PooledEstimate& estimate, int decimals) {
+std::string intervalRule(const std::string& clusters) {
+  return "A row shows the intervals of all its figures or none: it needs " +
+         std::to_string(kLeastRoutes) + " " + clusters +
+         ". The JSON and CSV files hold every interval that can be computed.";
+}
+
+std::string estimateText(const PooledEstimate& estimate, int decimals, bool with_interval) {
   std::string text;
   if (estimate.counts()) {
     text = std::to_string(estimate.events) + " / " +
@@ -230,17 +243,23 @@ std::string estimateText(const PooledEstimate& estimate, int decimals) {
   }
   if (!estimate.value) return "-";
   return text + core::formatFixed(*estimate.value, decimals) +
-         intervalText(estimate.interval, decimals);
+         (with_interval ? intervalText(estimate.interval, decimals) : "");
 }
 
 std::string probabilityText(double p) { return p < 0.001 ? "< 0.001" : core::formatFixed(p, 3); }
 
-std::string estimateNote(const PooledEstimate& estimate) {
+std::string estimateNote(const PooledEstimate& estimate, bool with_interval) {
   if (estimate.counts() && !estimate.per_km) return "no record says the km: per run";
   if (estimate.over_dispersed) {
     return "routes differ more than chance does (dispersion " +
-           core::formatFixed(*estimate.dispersion, 1) + "), interval by routes" +
-           intervalText(estimate.clustered);
+           core::formatFixed(*estimate.dispersion, 1) + ")" +
+           (with_interval ? ", interval by routes" + intervalText(estimate.clustered) : "");
+  }
+  if (!with_interval || !estimate.value) return "";
+  if (!estimate.interval) {
+    return "no interval: " + (estimate.routes < 2 ? "one route has it"
+                                                  : std::string("the same on all routes, without "
+                                                                "bounds"));
   }
   return estimate.interval_kind == IntervalKind::kUnseen
              ? "the same on all routes: interval by unseen routes"
@@ -261,9 +280,10 @@ std::string fewWarning(std::size_t seeds, std::size_t clusters, bool routes) {
   if (clusters < kLeastClusters) {
     const std::string noun = routes ? "route" : "cluster";
     text += std::string(text.empty() ? "" : " ") + "Only " + countText(clusters, noun) +
-            (clusters < 2 ? ": no interval but that of a count says what other routes would give."
-                          : ": intervals by the bootstrap may be too narrow below " +
-                                std::to_string(kLeastClusters) + ".");
+            (!showsIntervals(clusters)
+                 ? ": too few for intervals, which need " + std::to_string(kLeastRoutes) + "."
+                 : ": intervals by the bootstrap may be too narrow below " +
+                       std::to_string(kLeastClusters) + ".");
   }
   return text;
 }

@@ -99,8 +99,19 @@ Interval unseenInterval(double value, double least, double most, std::size_t rou
 /// Fewer seeds than these are warned of.
 inline constexpr std::size_t kLeastSeeds = 5;
 
+/// Fewest routes of a row of a table that shows intervals. A row shows all of its intervals or
+/// none; below, the bootstrap's quantiles are the lowest and the highest route, which estimate
+/// nothing, and on one route a count alone would have an interval.
+inline constexpr std::size_t kLeastRoutes = 5;
+
+/// Whether a row of a table whose runs lie on so many routes shows intervals.
+inline bool showsIntervals(std::size_t routes) { return routes >= kLeastRoutes; }
+
+/// What stands under a table of which some rows show no intervals; `clusters`: what is drawn.
+std::string intervalRule(const std::string& clusters = "routes");
+
 /// "20.123 [18.4, 22.0]", of counts "7 / 1.520 km = 4.605 [1.851, 9.488]"; "-" without a value.
-std::string estimateText(const PooledEstimate& estimate, int decimals = 3);
+std::string estimateText(const PooledEstimate& estimate, int decimals, bool with_interval);
 
 /// " [18.400, 22.000]", or nothing.
 std::string intervalText(const std::optional<Interval>& interval, int decimals = 3);
@@ -108,8 +119,9 @@ std::string intervalText(const std::optional<Interval>& interval, int decimals =
 /// "0.012", "< 0.001".
 std::string probabilityText(double p);
 
-/// What a reader has to know of it: over-dispersed, no distances, routes all alike; or nothing.
-std::string estimateNote(const PooledEstimate& estimate);
+/// What a reader has to know of it: over-dispersed, no distances, routes all alike, an interval
+/// that the row's other cells have and this one has not; or nothing.
+std::string estimateNote(const PooledEstimate& estimate, bool with_interval);
 
 /// "1 route", "10 routes".
 std::string countText(std::size_t count, const std::string& noun);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
@@ -21,10 +21,31 @@ using page::svgPlace;
 constexpr double kBarShare = 0.8;  // of a group's width that bars fill
 const std::string kPaperStyle = page::systemStyle(7);
 
-double topOf(const Table& table) {
+/// Columns that one picture shows, by their places in the table.
+struct Bars {
+  const Table& table;
+  std::vector<std::size_t> columns = {};
+
+  const TableColumn& column(std::size_t i) const { return table.definition.columns[columns[i]]; }
+};
+
+/// A picture for each TableColumn::panel, in the order of the columns.
+std::vector<Bars> picturesOf(const Table& table) {
+  std::vector<Bars> pictures;
+  for (std::size_t i = 0; i < table.definition.columns.size(); ++i) {
+    const std::string& panel = table.definition.columns[i].panel;
+    if (pictures.empty() || pictures.back().column(0).panel != panel)
+      pictures.push_back(Bars{table});
+    pictures.back().columns.push_back(i);
+  }
+  return pictures;
+}
+
+double topOf(const Bars& bars) {
   double top = 1.0;
-  for (const auto& row : table.cells) {
-    for (const TableCell& cell : row) {
+  for (const auto& row : bars.table.cells) {
+    for (const std::size_t column : bars.columns) {
+      const TableCell& cell = row[column];
       top = std::max(top, cell.paper.mean.value_or(0.0));
       top = std::max(top, cell.seeds.mean.value_or(0.0));
       if (cell.seeds.interval) top = std::max(top, cell.seeds.interval->high);
@@ -77,22 +98,57 @@ Markup groupText(const Table& table, std::size_t row, const page::ChartAxes& axe
 }
 
 /// Bars of one row: per column ours and the paper's.
-Markup groupOf(const Table& table, std::size_t row, const page::ChartAxes& axes) {
-  const auto& cells = table.cells[row];
-  const double width = kBarShare / (2.0 * static_cast<double>(cells.size()));
+Markup groupOf(const Bars& bars, std::size_t row, const page::ChartAxes& axes) {
+  const auto& cells = bars.table.cells[row];
+  const double width = kBarShare / (2.0 * static_cast<double>(bars.columns.size()));
   double left = static_cast<double>(row) + 0.5 * (1.0 - kBarShare);
   Markup svg;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const TableCell& cell = cells[i];
+  for (std::size_t i = 0; i < bars.columns.size(); ++i) {
+    const TableCell& cell = cells[bars.columns[i]];
     if (cell.seeds.mean) {
-      svg += bar(axes, left, width, *cell.seeds.mean, page::systemStyle(i)) +
-             interval(axes, left + 0.45 * width, cell.seeds);
+      svg += bar(axes, left, width, *cell.seeds.mean, page::systemStyle(i));
+      if (showsIntervals(cells)) svg += interval(axes, left + 0.45 * width, cell.seeds);
     }
     left += width;
     if (cell.paper.mean) svg += bar(axes, left, width, *cell.paper.mean, kPaperStyle);
     left += width;
   }
-  return svg + groupText(table, row, axes);
+  return svg + groupText(bars.table, row, axes);
+}
+
+page::Panel barPanel(const Bars& bars) {
+  const Table& table = bars.table;
+  const page::ChartAxes axes(0.0, static_cast<double>(table.cells.size()), 0.0, topOf(bars));
+  page::Panel panel;
+  panel.title = bars.column(0).panel;
+  panel.width = page::kChartWidth;
+  panel.height = page::kChartHeight + 14.0;
+  panel.content = axes.valueGrid() + "\n";
+  for (std::size_t row = 0; row < table.cells.size(); ++row)
+    panel.content += groupOf(bars, row, axes);
+  return panel;
+}
+
+/// A sentence where the network of the CBVs is not given the same in all columns; else nothing.
+std::string conditioningNote(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
+  std::set<std::string> levels;
+  std::vector<std::string> parts;
+  for (const TableColumn& column : definition.columns) {
+    if (column.panel != definition.columns.front().panel) continue;  // the same runs again
+    std::set<std::string> own;
+    for (const TableRow& row : definition.rows) {
+      for (const BatchRun* run : runsWith(runs, merged(row.levels, column.levels))) {
+        if (!run->cbv_conditioning.empty()) own.insert(run->cbv_conditioning);
+      }
+    }
+    if (own.empty()) continue;
+    const std::string text = core::joinText({own.begin(), own.end()}, " and ");
+    levels.insert(text);
+    parts.push_back(column.name + " " + text);
+  }
+  if (levels.size() < 2) return "";
+  return "The columns differ in conditioning, too (what the network of the CBVs is given): " +
+         core::joinText(parts, "; ") + ".";
 }
 
 /// Numbers below the bars, one line a row.
@@ -104,12 +160,14 @@ std::vector<std::string> notesOf(const Table& table) {
     for (std::size_t i = 0; i < table.cells[row].size(); ++i) {
       const TableCell& cell = table.cells[row][i];
       const std::string paper = paperText(cell.paper);
-      text += (i > 0 ? "; " : "") + table.definition.columns[i].name + " " + cellText(cell) +
+      text += (i > 0 ? "; " : "") + table.definition.columns[i].name + " " +
+              cellText(cell, showsIntervals(table.cells[row])) +
               (paper.empty() ? "" : ", paper " + paper);
     }
     notes.push_back(text);
   }
   notes.push_back(table.definition.note);
+  if (anyRowWithout(table)) notes.push_back(intervalRule());
   for (const std::string& line : settingsLines(table)) notes.push_back(line);
   return notes;
 }
@@ -118,36 +176,59 @@ std::vector<std::string> notesOf(const Table& table) {
 
 Figure barFigure(const TableDefinition& definition, const std::vector<BatchRun>& runs) {
   const Table table = fillTable(definition, runs);
+  const std::vector<Bars> pictures = picturesOf(table);
+  const std::string with_interval = anyIntervals(table) ? ", with its 95 % interval" : "";
   Figure figure;
   figure.id = definition.id;
   figure.csv = tableCsv(table);
   figure.sheet.title = definition.title + " [" + definition.columns.front().unit + "]";
-  for (std::size_t i = 0; i < definition.columns.size(); ++i) {
+  for (std::size_t i = 0; i < pictures.front().columns.size(); ++i) {
     figure.sheet.legend.emplace_back(page::systemStyle(i),
-                                     definition.columns[i].name + ", with its 95 % interval");
+                                     pictures.front().column(i).name + with_interval);
   }
   figure.sheet.legend.emplace_back(kPaperStyle, "as the paper prints it");
-  const page::ChartAxes axes(0.0, static_cast<double>(definition.rows.size()), 0.0, topOf(table));
-  page::Panel panel;
-  panel.width = page::kChartWidth;
-  panel.height = page::kChartHeight + 14.0;
-  panel.content = axes.valueGrid() + "\n";
-  for (std::size_t row = 0; row < table.cells.size(); ++row)
-    panel.content += groupOf(table, row, axes);
-  figure.sheet.rows = {{panel}};
+  for (const Bars& bars : pictures) figure.sheet.rows.push_back({barPanel(bars)});
   figure.sheet.notes = notesOf(table);
+  const std::string conditioning = conditioningNote(definition, runs);
+  if (!conditioning.empty()) figure.sheet.notes.push_back(conditioning);
   return figure;
 }
 
 namespace {
 
-TableColumn collisionsPerKilometre() {
-  return {"CPK",
+/// Contacts of CBVs with anyone, with what RIFT's code counts of them.
+TableColumn allContacts() {
+  return {"",
           "1/km",
           metrics::known::kCollisionsPerKm.place,
           metrics::known::kCbvDistance.place,
           metrics::known::kRiftCollisionsPerKm.place,
-          {}};
+          {},
+          "contacts of CBVs with anyone"};
+}
+
+/// Those with the ego alone, which the paper does not print.
+TableColumn contactsWithTheEgo() {
+  return {", contacts with the ego",
+          "1/km",
+          metrics::known::kCbvEgoCollisionsPerKm.place,
+          metrics::known::kCbvDistance.place,
+          "",
+          {},
+          "contacts of CBVs with the ego"};
+}
+
+/// One column for each method and mode of the paper's own system, named after them and `measure`.
+void addModes(const TableColumn& measure, TableDefinition& table) {
+  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
+    for (const char* mode : {kNaturalistic, kSafetyCritical}) {
+      TableColumn column = measure;
+      column.name = std::string("E2E-CDiff") + (mode == kSafetyCritical ? " w/ coll" : "") +
+                    " (method " + own.method + ")" + measure.name;
+      column.levels = cbvLevels(own, mode);
+      table.columns.push_back(column);
+    }
+  }
 }
 
 }  // namespace
@@ -157,20 +238,14 @@ TableDefinition collisionFigure() {
       "figure_4",
       "Figure 4. Collisions of CBVs per km without and with collision-seeking "
       "guidance",
-      "The paper prints the values of PDM-Lite alone, in its text. What the two columns of a "
-      "method differ in besides the objectives stands in the settings of its runs.",
+      "The paper prints the values of PDM-Lite alone, in its text, and none of contacts with the "
+      "ego. What the two columns of a method differ in besides the objectives stands in the "
+      "settings of its runs.",
       "Ego planner",
       {},
       {}};
-  for (const PaperSystem& own : {paper::kDiffusion, paper::kPaperMethod}) {
-    for (const char* mode : {kNaturalistic, kSafetyCritical}) {
-      TableColumn column = collisionsPerKilometre();
-      column.name = std::string("E2E-CDiff") + (mode == kSafetyCritical ? " w/ coll" : "") +
-                    " (method " + own.method + ")";
-      column.levels = cbvLevels(own, mode);
-      table.columns.push_back(column);
-    }
-  }
+  addModes(allContacts(), table);
+  addModes(contactsWithTheEgo(), table);
   for (const PaperSystem& ego : paperEgoPlanners()) {
     if (ego.planner() == paper::kDiffusion.planner()) continue;
     table.rows.push_back({ego.name, egoLevel(ego), {}, ""});

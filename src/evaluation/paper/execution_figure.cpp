@@ -76,7 +76,7 @@ Execution executionOf(const ShownSystem& system, const std::vector<BatchRun>& ru
     if (execution.run_of.emplace(key, run).second) execution.plans[key] = drivenPlans(rows);
   }
   if (execution.displacements.empty())
-    execution.note = reasonOf(system, runs, "no plan of a CBV was driven");
+    execution.note = emptyReason(system.levels, runs, "no plan of a CBV was driven");
   return execution;
 }
 

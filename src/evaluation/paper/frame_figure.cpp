@@ -188,8 +188,8 @@ std::unique_ptr<session::SessionSetup> setupOf(const RunsBySystem& row, Figure& 
       (*run)->record.factors.at("seed") +
       ". CBV purple, ego red, background blue; red circle: interaction of ego and CBV.");
   figure.sheet.notes.emplace_back(
-      "Frames 1.5 s before, at and 1 s after the closest approach of ego and CBV. "
-      "Boxes have the default size.");
+      "Frames 1.5 s before, at and 1 s after the smallest distance between the centers of ego and "
+      "CBV. Boxes have the default size.");
   try {
     return std::make_unique<session::SessionSetup>(scenarioOf(**run));
   } catch (const core::InputError& error) {
@@ -213,7 +213,7 @@ Figure frameFigure(const std::string& id, const std::string& title,
       figure.sheet.rows.push_back(FrameRow(systems[i], *row[i], setup.get()).panels(figure.csv));
       continue;
     }
-    const std::string reason = reasonOf(systems[i], runs, "no CBV was driven in this scenario");
+    const std::string reason = emptyReason(systems[i].levels, runs, "no CBV was driven in this scenario");
     figure.sheet.notes.push_back(systems[i].name + ": " + reason);
     std::vector<std::string> cells(14);
     cells.front() = systems[i].name;

@@ -12,7 +12,6 @@
 #include "evaluation/paper/paper_table.h"
 #include "metrics/measures/distributions.h"
 #include "page/pictures/charts.h"
-#include "planners/registry.h"
 #include "record/logs/driving_log.h"
 #include "record/result_folder.h"
 
@@ -53,15 +52,6 @@ std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs) {
     systems.back().levels["cbv_planner"] = planner;
   }
   return systems;
-}
-
-std::string reasonOf(const ShownSystem& system, const std::vector<BatchRun>& runs,
-                     const std::string& otherwise) {
-  const std::vector<std::string> known = planners::plannerNames();
-  const std::string& planner = system.levels.at("cbv_planner");
-  if (std::find(known.begin(), known.end(), planner) == known.end()) return "not implemented";
-  if (runsWith(runs, system.levels).empty()) return "not run";
-  return completeRuns(runs, system.levels).empty() ? "no run completed" : otherwise;
 }
 
 std::vector<const BatchRun*> completeRuns(const std::vector<BatchRun>& runs,
@@ -145,7 +135,7 @@ PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>&
   for (const BatchRun* run : own) addRun(*run, samples);
   conclude(samples.speeds);
   conclude(samples.accelerations);
-  if (samples.speeds.values.empty()) samples.note = reasonOf(system, runs, "no CBV was driven");
+  if (samples.speeds.values.empty()) samples.note = emptyReason(system.levels, runs, "no CBV was driven");
   return samples;
 }
 

@@ -31,10 +31,6 @@ struct ShownSystem {
 /// naturalistic.
 std::vector<ShownSystem> shownCbvPlanners(const std::vector<BatchRun>& runs);
 
-/// Why a system has nothing to show: not implemented, not run, no run completed, or `otherwise`.
-std::string reasonOf(const ShownSystem& system, const std::vector<BatchRun>& runs,
-                     const std::string& otherwise);
-
 /// Complete runs with these levels.
 std::vector<const BatchRun*> completeRuns(const std::vector<BatchRun>& runs, const Factors& levels);
 std::size_t countSeeds(const std::vector<const BatchRun*>& runs);

@@ -80,6 +80,7 @@ struct TableColumn {
   std::string weight;  ///< pointer likewise: weight of a run within its seed; empty: all alike
   std::string rift_key;  ///< the figure by RIFT's definition; empty: it has none
   Factors levels;        ///< that runs of this column have besides those of the row
+  std::string panel = {};  ///< title of the picture in which a figure shows it
 };
 
 /// A row of a table of the paper: the runs it covers and the values that the paper prints for them.
@@ -127,7 +128,22 @@ struct Table {
   std::vector<std::vector<TableCell>> cells;  ///< by row and column
 };
 
+/// Note of a cell whose runs all lack the measure.
+inline constexpr const char* kNoRunHasIt = "no run has this measure";
+
 Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs);
+
+/// Whether a row shows its intervals: each of its figures stands on kLeastRoutes routes or more.
+bool showsIntervals(const std::vector<TableCell>& row);
+/// Whether any row, or not every row with a figure, does.
+bool anyIntervals(const Table& table);
+bool anyRowWithout(const Table& table);
+
+/// Why nothing stands where runs with these levels would: "not implemented" (a planner that is
+/// not), "not applicable in mode M" (the batch ran them in other modes alone, here M), "not run",
+/// "no run completed", or `otherwise`.
+std::string emptyReason(const Factors& levels, const std::vector<BatchRun>& runs,
+                        const std::string& otherwise);
 
 /// A line per row, column and definition (clean, rift_compat).
 std::string tableCsv(const Table& table);
@@ -141,10 +157,10 @@ std::vector<std::string> settingsLines(const Table& table);
 
 /// "2.79 ± 0.10 [2.54, 3.04] (10 routes, 3 seeds, 30 runs)", with "7 / 1.520 km = " before events
 /// per km; or the note in parentheses.
-std::string cellText(const TableCell& cell);
+std::string cellText(const TableCell& cell, bool with_interval);
 std::string paperText(const PaperFigure& figure);
 /// What RIFT's definition gives, or empty.
-std::string riftText(const TableCell& cell);
+std::string riftText(const TableCell& cell, bool with_interval);
 
 // What the paper's tables and figures show, as data: rows and columns with the levels of their
 // runs, the keys of the measures, and the values that the paper prints.
