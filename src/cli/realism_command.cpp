@@ -45,13 +45,15 @@ struct PooledArguments {
   std::vector<std::string> log;
   std::string site;
   std::string out;
+  bool overwrite = false;
 };
 
 constexpr const char* kSumoDriver = "sumo";
+constexpr const char* kResultFile = "realism.json";
 
 void writeResult(const fs::path& folder, const std::string& json, const std::string& markdown,
                  const std::string& page) {
-  core::writeFileAtomically(folder / "realism.json", json);
+  core::writeFileAtomically(folder / kResultFile, json);
   core::writeFileAtomically(folder / "realism.md", markdown);
   core::writeFileAtomically(folder / "realism.html", page);
   std::cout << markdown << "\npage: " << (folder / "realism.html").string() << "\n";
@@ -108,7 +110,15 @@ int continueScenario(const ContinueArguments& arguments) {
   return ExitCode::kPassed;
 }
 
+/// Refuses to replace an earlier comparison unless asked to.
+void requirePooledFolder(const fs::path& folder, bool overwrite) {
+  if (overwrite || !core::isFile(folder / kResultFile)) return;
+  throw InputError("'" + folder.string() + "' holds an earlier comparison (" + kResultFile +
+                   "); replace it (--overwrite) or give another --out");
+}
+
 int pooled(const PooledArguments& arguments) {
+  requirePooledFolder(fs::absolute(arguments.out), arguments.overwrite);
   const std::vector<fs::path> files(arguments.log.begin(), arguments.log.end());
   const auto log = readLogs(files);
   const auto drivers = pooledDrivers({arguments.results.begin(), arguments.results.end()});
@@ -174,6 +184,8 @@ void addPooled(CLI::App* realism, int& exit_code) {
   command->add_option("--site", arguments->site,
                       "Site of the headline (default: Lanker, else the first)");
   command->add_option("--out", arguments->out, "Folder of realism.json, .md and .html")->required();
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "Replace an earlier comparison in the folder");
   command->callback([arguments, &exit_code] { exit_code = pooled(*arguments); });
 }
 

@@ -59,6 +59,15 @@ void RecordingBuilder::add(const traffic::TrafficSnapshot& snapshot) {
   ++steps_;
 }
 
+void RecordingBuilder::noteContacts(const traffic::TrafficSnapshot& snapshot) {
+  for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
+    const auto found = latest_.find(vehicle.id);
+    if (found == latest_.end() || !collides(snapshot, vehicle)) continue;
+    Track& track = recording_.tracks[found->second];
+    if (!by_role_ || track.role == traffic::toText(vehicle.role)) track.noteContact(steps_ - 1);
+  }
+}
+
 Track& RecordingBuilder::trackOf(const traffic::Vehicle& vehicle) {
   std::vector<Track>& tracks = recording_.tracks;
   const std::string role = traffic::toText(vehicle.role);
@@ -75,6 +84,7 @@ Track& RecordingBuilder::trackOf(const traffic::Vehicle& vehicle) {
 
 void SessionRecorder::observe(const session::TickRecord& record) {
   if (record.snapshot->decision_tick) builder_.add(*record.snapshot);
+  builder_.noteContacts(*record.snapshot);
 }
 
 CourseRecorder::CourseRecorder(const session::SessionSetup& setup, const HandOverSelector& selector,

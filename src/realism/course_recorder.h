@@ -46,6 +46,8 @@ class RecordingBuilder {
  public:
   explicit RecordingBuilder(bool by_role) : by_role_(by_role) {}
   void add(const traffic::TrafficSnapshot& snapshot);
+  /// Notes which vehicles of a snapshot, that of the latest step or of a tick after it, overlap.
+  void noteContacts(const traffic::TrafficSnapshot& snapshot);
   std::size_t steps() const { return steps_; }
   Recording take() { return std::move(recording_); }
 
@@ -58,7 +60,8 @@ class RecordingBuilder {
   std::map<std::string, std::size_t> latest_;  ///< track of each vehicle
 };
 
-/// Keeps all decisions of a session or its bag as a recording with roles.
+/// Keeps all decisions of a session or its bag as a recording with roles, and the contacts of every
+/// tick.
 class SessionRecorder : public session::SessionObserver {
  public:
   void observe(const session::TickRecord& record) override;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -14,7 +14,8 @@ namespace cdiff::realism {
 namespace {
 
 constexpr const char* kDefaultSite = "Lanker";
-constexpr const char* kCeiling = "recorded drivers, one half against the other (ceiling)";
+constexpr const char* kCeiling =
+    "recorded drivers, one half of the vehicles against the other (ceiling)";
 
 /// Only steps at which the vehicle moves.
 void keepMoving(double moving_speed, Course& course) {
@@ -30,17 +31,54 @@ bool hasValue(const Series& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
 }
 
-/// The courses that a track is cut into.
+/// The courses that a track is cut into, the last first.
 void addCourses(const Recording& recording, const std::vector<Motion>& motions, std::size_t track,
                 const PooledOptions& options, std::vector<Course>& courses) {
   const Track& self = recording.tracks[track];
   if (self.states.size() < kSmoothingWindow) return;
-  for (std::size_t begin = self.first; begin < self.end(); begin += options.course_steps) {
-    const std::size_t end = std::min(begin + options.course_steps, self.end());
+  std::size_t begin = self.end();
+  for (std::size_t end = begin; end > self.first; end = begin) {
+    begin = end - std::min(options.course_steps, end - self.first);
     if (end - begin < options.shortest_course) return;
     Course course = courseOf(recording, motions, track, begin, end);
     keepMoving(options.moving_speed, course);
     if (hasValue(course[kLinearSpeed])) courses.push_back(std::move(course));
+  }
+}
+
+/// Courses of the tracks that `wanted` is true of. The headings of all become those of their
+/// motion.
+template <class Wanted>
+void addRecording(Recording recording, const PooledOptions& options, const Wanted& wanted,
+                  std::vector<Course>& courses) {
+  std::vector<Motion> motions;
+  for (Track& track : recording.tracks) motions.push_back(smoothedMotion(track));
+  for (std::size_t i = 0; i < recording.tracks.size(); ++i) {
+    if (wanted(recording.tracks[i])) addCourses(recording, motions, i, options, courses);
+  }
+}
+
+/// Puts numbers in order: 99 before 100.
+struct ByNumber {
+  bool operator()(const std::string& left, const std::string& right) const {
+    return left.size() != right.size() ? left.size() < right.size() : left < right;
+  }
+};
+
+/// Names of a site's vehicles in two halves of about as many states.
+void halveVehicles(const std::vector<const Recording*>& recordings, RecordedSite& site) {
+  std::map<std::string, std::size_t, ByNumber> states;  // by vehicle
+  std::size_t all = 0;
+  for (const Recording* recording : recordings) {
+    for (const Track& track : recording->tracks) {
+      states[track.id] += track.states.size();
+      all += track.states.size();
+    }
+  }
+  std::size_t before = 0;
+  for (const auto& [vehicle, count] : states) {
+    site.vehicles[2 * before < all ? 0 : 1].insert(vehicle);
+    before += count;
   }
 }
 
@@ -80,12 +118,9 @@ std::vector<Course> pooledCourses(std::vector<Recording> recordings, const std::
                                   const PooledOptions& options) {
   std::vector<Course> courses;
   for (Recording& recording : recordings) {
-    std::vector<Motion> motions;
-    for (Track& track : recording.tracks) motions.push_back(smoothedMotion(track));
-    for (std::size_t i = 0; i < recording.tracks.size(); ++i) {
-      if (role.empty() || recording.tracks[i].role == role)
-        addCourses(recording, motions, i, options, courses);
-    }
+    addRecording(
+        std::move(recording), options,
+        [&](const Track& track) { return role.empty() || track.role == role; }, courses);
   }
   return courses;
 }
@@ -106,14 +141,20 @@ Likelihoods pooledLikelihoods(const std::vector<Course>& logged,
 
 std::map<std::string, RecordedSite> recordedSites(const std::vector<Recording>& recordings,
                                                   const PooledOptions& options) {
+  std::map<std::string, std::vector<const Recording*>> recordings_at;
+  for (const Recording& recording : recordings) recordings_at[recording.site].push_back(&recording);
   std::map<std::string, RecordedSite> sites;
-  std::map<std::string, std::size_t> counts;
-  for (const Recording& recording : recordings) {
-    RecordedSite& site = sites[recording.site];
-    const std::vector<Course> courses = pooledCourses({recording}, "", options);
-    site.all.insert(site.all.end(), courses.begin(), courses.end());
-    std::vector<Course>& half = site.halves[counts[recording.site]++ % 2];
-    half.insert(half.end(), courses.begin(), courses.end());
+  for (const auto& [name, own] : recordings_at) {
+    RecordedSite& site = sites[name];
+    halveVehicles(own, site);
+    for (std::size_t half = 0; half < std::size(site.halves); ++half) {
+      const auto in_half = [&](const Track& track) {
+        return site.vehicles[half].count(track.id) != 0;
+      };
+      for (const Recording* recording : own)
+        addRecording(*recording, options, in_half, site.halves[half]);
+      site.all.insert(site.all.end(), site.halves[half].begin(), site.halves[half].end());
+    }
   }
   return sites;
 }
@@ -129,6 +170,12 @@ std::size_t countValues(const std::vector<Course>& courses, Feature feature) {
   return count;
 }
 
+std::size_t countCollided(const std::vector<Course>& courses) {
+  return static_cast<std::size_t>(std::count_if(
+      courses.begin(), courses.end(),
+      [](const Course& course) { return indicatorOf(course, kCollision) == 1.0; }));
+}
+
 PooledResult comparePooled(const std::vector<Recording>& log, const PooledDrivers& drivers,
                            const std::string& headline) {
   PooledResult result;
@@ -136,13 +183,21 @@ PooledResult comparePooled(const std::vector<Recording>& log, const PooledDriver
   if (result.sites.empty()) throw core::InputError("the log holds no recording");
   result.headline = headlineOf(result.sites, headline);
   for (const auto& [driver, courses] : drivers) {
-    PooledRow row{driver, courses.size(), countValues(courses, kLinearSpeed), {}};
+    PooledRow row{driver,
+                  courses.size(),
+                  countValues(courses, kLinearSpeed),
+                  countCollided(courses),
+                  {}};
     for (const auto& [name, site] : result.sites)
       row.at_site[name] = pooledLikelihoods(site.all, courses);
     result.rows.push_back(row);
   }
   const RecordedSite& recorded = result.sites.at(result.headline);
-  PooledRow ceiling{kCeiling, recorded.all.size(), countValues(recorded.all, kLinearSpeed), {}};
+  PooledRow ceiling{kCeiling,
+                    recorded.all.size(),
+                    countValues(recorded.all, kLinearSpeed),
+                    countCollided(recorded.all),
+                    {}};
   for (const auto& [name, site] : result.sites) ceiling.at_site[name] = pooledCeiling(site);
   result.rows.push_back(ceiling);
   return result;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,11 +17,12 @@ namespace cdiff::realism {
 /// not its metric: nothing starts from the same situation, features of the map are left out, and
 /// the weights of the others (0.65 together) are scaled to 1. Both sides are differentiated by the
 /// same filter (smoothedMotion); a step counts while the vehicle moves (> 1 m/s); tracks are cut
-/// into courses of at most 8 s, so that "any collision" means the same on both sides.
+/// into courses of at most 8 s, so that "any collision" means the same on both sides, from their
+/// ends backward, since a CBV's contact is the last that is known of it.
 struct PooledOptions {
   double moving_speed = 1.0;         ///< slower steps do not count [m/s]
   std::size_t course_steps = 80;     ///< longest course
-  std::size_t shortest_course = 20;  ///< what remains of a track below is dropped
+  std::size_t shortest_course = 20;  ///< what remains below, at a track's beginning, is dropped
 };
 
 /// Courses of the vehicles of one role (all where it is empty) in recordings. Features of the map
@@ -33,11 +35,13 @@ std::vector<Course> pooledCourses(std::vector<Recording> recordings, const std::
 Likelihoods pooledLikelihoods(const std::vector<Course>& logged,
                               const std::vector<Course>& simulated);
 
-/// Courses of recorded drivers by site, in two halves (every other recording by its place in the
-/// site).
+/// Courses of recorded drivers of a site, and the same in two halves that share no vehicle, whatever
+/// recordings it is in: vehicles in the order of their names (by length, then by letters, so that
+/// numbers count up, as NGSIM's do with time) up to half of all states, and the others.
 struct RecordedSite {
   std::vector<Course> all;
   std::vector<Course> halves[2];
+  std::set<std::string> vehicles[2];  ///< of the halves, by name
 };
 std::map<std::string, RecordedSite> recordedSites(const std::vector<Recording>& recordings,
                                                   const PooledOptions& options = {});
@@ -49,11 +53,15 @@ Likelihoods pooledCeiling(const RecordedSite& site);
 /// Steps at which a feature has a value.
 std::size_t countValues(const std::vector<Course>& courses, Feature feature);
 
+/// Courses with a collision at any step.
+std::size_t countCollided(const std::vector<Course>& courses);
+
 /// One row of the comparison: who drove, and the likelihoods at each site.
 struct PooledRow {
   std::string driver;
   std::size_t courses = 0;
   std::size_t steps = 0;                       ///< with a speed
+  std::size_t collided = 0;                    ///< courses with a collision
   std::map<std::string, Likelihoods> at_site;  ///< by site
 };
 

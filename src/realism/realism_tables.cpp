@@ -123,7 +123,8 @@ constexpr const char* kPooledNote =
 Sheet pooledSheet(const PooledResult& result, const std::string& site) {
   Sheet sheet{"realism_pooled against " + site, kPooledNote, {"driver"}, {}};
   if (site == result.headline) sheet.title += " (headline)";
-  for (const char* name : {"#realism_pooled", "#courses", "#steps"}) sheet.head.emplace_back(name);
+  for (const char* name : {"#realism_pooled", "#courses", "#steps", "#courses with a collision"})
+    sheet.head.emplace_back(name);
   addTitles(false, sheet.head);
   for (const PooledRow& row : result.rows) {
     const Likelihoods& likelihoods = row.at_site.at(site);
@@ -131,8 +132,10 @@ Sheet pooledSheet(const PooledResult& result, const std::string& site) {
     const std::vector<Course>& recorded = result.sites.at(site).all;
     const std::size_t courses = ceiling ? recorded.size() : row.courses;
     const std::size_t steps = ceiling ? countValues(recorded, kLinearSpeed) : row.steps;
+    const std::size_t collided = ceiling ? countCollided(recorded) : row.collided;
     std::vector<std::string> cells = {row.driver, numberText(metaMetric(likelihoods)),
-                                      std::to_string(courses), std::to_string(steps)};
+                                      std::to_string(courses), std::to_string(steps),
+                                      std::to_string(collided)};
     addLikelihoods(likelihoods, false, cells);
     sheet.rows.push_back(cells);
   }
@@ -194,8 +197,11 @@ std::string pooledJson(const PooledResult& result) {
       sites[site] = {{"realism_pooled", orNull(metaMetric(likelihoods))},
                      {"likelihoods", jsonOf(likelihoods)}};
     }
-    drivers.push_back(
-        {{"driver", row.driver}, {"courses", row.courses}, {"steps", row.steps}, {"sites", sites}});
+    drivers.push_back({{"driver", row.driver},
+                       {"courses", row.courses},
+                       {"steps", row.steps},
+                       {"courses_with_collision", row.collided},
+                       {"sites", sites}});
   }
   return ordered_json({{"schema_version", 1},
                        {"measure", "realism_pooled"},

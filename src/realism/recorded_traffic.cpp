@@ -213,24 +213,77 @@ std::uint64_t ticksPerStep(const fs::path& folder) {
                    " s; expected 0.1 s to be a multiple of it");
 }
 
+/// Makes a recording of the rows of a trace, which come tick by tick.
+class TraceRecorder {
+ public:
+  explicit TraceRecorder(std::uint64_t ticks_per_step) : ticks_(ticks_per_step) {}
+
+  void add(const record::TraceRow& row) {
+    if (!rows_.empty() && rows_.front().tick != row.tick) closeTick();
+    rows_.push_back(row);
+  }
+  Recording take() {
+    closeTick();
+    return std::move(recording_);
+  }
+
+ private:
+  using Key = std::pair<std::string, traffic::VehicleRole>;
+
+  void closeTick() {
+    for (const record::TraceRow& row : rows_) {
+      if (row.tick % ticks_ == 0) append(row);
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      for (std::size_t j = i + 1; j < rows_.size(); ++j) {
+        if (!touch(rows_[i], rows_[j])) continue;
+        noteContact(rows_[i]);
+        noteContact(rows_[j]);
+      }
+    }
+    rows_.clear();
+  }
+
+  void append(const record::TraceRow& row) {
+    std::vector<Track>& tracks = recording_.tracks;
+    const std::size_t step = row.tick / ticks_;
+    const auto [found, fresh] = latest_.try_emplace(Key{row.id, row.role}, tracks.size());
+    if (fresh || tracks[found->second].end() != step) {
+      found->second = tracks.size();
+      tracks.push_back({row.id, traffic::toText(row.role)});
+      tracks.back().first = step;
+    }
+    tracks[found->second].states.push_back({row.position, row.heading, 0.0});
+  }
+
+  static bool touch(const record::TraceRow& first, const record::TraceRow& second) {
+    const Track size;  // the trace does not hold it
+    const auto box = [&](const record::TraceRow& row) {
+      return geometry::OrientedBox{row.position, row.heading, size.length, size.width};
+    };
+    const double reach = std::hypot(size.length, size.width);
+    return (first.position - second.position).norm() <= reach &&
+           geometry::overlap(box(first), box(second));
+  }
+
+  void noteContact(const record::TraceRow& row) {
+    const auto found = latest_.find(Key{row.id, row.role});
+    if (found != latest_.end()) recording_.tracks[found->second].noteContact(row.tick / ticks_);
+  }
+
+  std::uint64_t ticks_;
+  std::vector<record::TraceRow> rows_;  ///< of one tick
+  Recording recording_;
+  std::map<Key, std::size_t> latest_;  ///< track of each vehicle and role
+};
+
 }  // namespace
 
 Recording readResult(const fs::path& folder) {
-  const std::uint64_t ticks = ticksPerStep(folder);
-  Recording recording;
+  TraceRecorder recorder(ticksPerStep(folder));
+  for (const record::TraceRow& row : record::readTrace(folder / "trace.csv")) recorder.add(row);
+  Recording recording = recorder.take();
   recording.name = folder.filename().string();
-  std::map<std::pair<std::string, traffic::VehicleRole>, std::size_t> open;  // latest track of each
-  for (const record::TraceRow& row : record::readTrace(folder / "trace.csv")) {
-    if (row.tick % ticks != 0) continue;
-    const std::size_t step = row.tick / ticks;
-    const auto [found, fresh] = open.try_emplace({row.id, row.role}, recording.tracks.size());
-    if (fresh || recording.tracks[found->second].end() != step) {
-      found->second = recording.tracks.size();
-      recording.tracks.push_back({row.id, traffic::toText(row.role)});
-      recording.tracks.back().first = step;
-    }
-    recording.tracks[found->second].states.push_back({row.position, row.heading, 0.0});
-  }
   return recording;
 }
 

@@ -71,6 +71,14 @@ geometry::OrientedBox Track::box(std::size_t step) const {
   return {state.position, state.heading, length, width};
 }
 
+bool Track::touchesAt(std::size_t step) const {
+  return std::binary_search(contacts.begin(), contacts.end(), step);
+}
+
+void Track::noteContact(std::size_t step) {
+  if (covers(step) && (contacts.empty() || contacts.back() < step)) contacts.push_back(step);
+}
+
 Motion centralMotion(const Track& track) {
   const Series dx = centralDifference(coordinate(track, 0), plainDifference);
   const Series dy = centralDifference(coordinate(track, 1), plainDifference);
@@ -179,7 +187,7 @@ void addStep(const Recording& recording, const std::vector<Motion>& motions, std
     others.push_back({its, motions[i].speed[step - other.first]});
   }
   course[kNearestObject].push_back(nearest);
-  course[kCollision].push_back(nearest < 0.0 ? 1.0 : 0.0);
+  course[kCollision].push_back(nearest < 0.0 || self.touchesAt(step) ? 1.0 : 0.0);
   const double speed = motions[track].speed[step - self.first];
   course[kTimeToCollision].push_back(timeToCollision({box, speed}, others));
 }

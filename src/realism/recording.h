@@ -33,7 +33,13 @@ struct Track {
   double width = 1.8;     ///< [m]
   std::size_t first = 0;  ///< step of the first state
   std::vector<TrackState> states = {};
+  /// Steps at which, or between which and the next, a tick of the simulation shows an overlap with
+  /// another vehicle, in order; none in recorded traffic, where steps are all there is.
+  std::vector<std::size_t> contacts = {};
 
+  bool touchesAt(std::size_t step) const;
+  /// Adds the step to `contacts` where the track covers it; steps must not decrease.
+  void noteContact(std::size_t step);
   std::size_t end() const { return first + states.size(); }
   bool covers(std::size_t step) const { return step >= first && step < end(); }
   const TrackState& at(std::size_t step) const { return states[step - first]; }
@@ -112,9 +118,10 @@ std::vector<Recording> readRecordedTraffic(const std::filesystem::path& file);
 /// name.
 std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::path>& files);
 
-/// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s. The trace
-/// holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m x 1.8 m, as
-/// generated demand and every vehicle of ours is. Throws InputError for a folder without them and
+/// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s, with the
+/// contacts of every tick: a CBV leaves the simulation at the tick after one, which need not be a
+/// step. The trace holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m
+/// x 1.8 m, as generated demand and every vehicle of ours is. Throws InputError for a folder without them and
 /// for a simulation step of which 0.1 s is no multiple.
 Recording readResult(const std::filesystem::path& folder);
 

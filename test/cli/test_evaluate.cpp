@@ -45,9 +45,11 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
             0);
   expectOutput("## A = variant slow, B = variant fast");
   expectOutput("| ego_completion_percent | 2 |");
+  expectOutput("A and B differ in: variant (A slow, B fast); key target_speed (A 3, B 9).\n");
   EXPECT_EQ(lines(fs::path(results) / "compare.csv"), 2U);
   ASSERT_EQ(cdiff({"report", "--compare", results, results}), 0);
   expectOutput("4 pairs of 4 runs of A and 4 of B: 1 route x 2 seeds;");
+  expectOutput("A and B differ in: no factor, key or file.\n");
   expectOutput("Conditions: protocol rift_dev10, time limit 3 s.");
   expectOutput("Warning: only 2 seeds;");
   expectOutput("Multiplicity: of ");
@@ -70,6 +72,8 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   EXPECT_EQ(cdiff({"report", "--compare", results, other}), 3);
   expectOutput("were driven by different protocols: scenario 'arterial_exit'");
   expectOutput("time_limit 3 in A and 4 in B");
+  EXPECT_EQ(cdiff({"report", "--compare", run.string(), results}), 3);
+  expectOutput("is the result of a single session; --compare pairs the runs of two batches");
 }
 
 TEST_F(EvaluateCommand, TriesAgainWhenSumoDiesAndSaysSo) {
@@ -126,6 +130,10 @@ TEST_F(EvaluateCommand, RefusesWrongInput) {
        "key 'seeds' holds 'one'"},
       {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: [target_sped=3]\n",
        "'target_speed'"},
+      {"scenarios: [arterial_exit]\nset: [protocol=leaderboard_2_1]\n",
+       "key 'protocol' is a group of keys and cannot be 'leaderboard_2_1'; set one of its keys: "
+       "protocol.preset (one of {bench2drive, leaderboard_2_0, leaderboard_2_1, rift_dev10}), "
+       "protocol.time_limit"},
       {"scenarios: [arterial_exit]\ncbv_planners: [pdm_lite]\nset: [real_time_factor=1]\n",
        "needs the node graph"}};
   for (const auto& [text, expected] : cases) {

@@ -231,6 +231,26 @@ TEST_F(ResultFolder, NetconvertThatHangsOrCrashesIsNamed) {
   ::unsetenv("E2E_CDIFF_NETCONVERT_LIMIT");
 }
 
+TEST_F(ResultFolder, AComparisonWithRecordedTrafficIsReplacedWhereAskedTo) {
+  made("session");
+  write("session/session.yaml", "scenario:\n  simulation_step: 0.1\n");
+  write("session/trace.csv", "tick,id,role,x,y,heading,speed,throttle,steer,brake\n0,ego,ego,0,0,0,"
+                             "1,0,0,0\n");
+  const std::string log = write("log.csv", "recording,vehicle,t,x,y,heading,length,width\n"
+                                           "Main-1,7,0,0,0,0,4,2\n");
+  std::vector<std::string> words = {"realism", "pooled", folder("session"), "--log",
+                                    log,       "--out",  results()};
+  EXPECT_EQ(cdiff(words), 0) << output();
+  const auto before = contentsOf(results());
+  write("log.csv", "recording,vehicle,t,x,y,heading,length,width\nSide-1,7,0,0,0,0,4,2\n");
+  EXPECT_EQ(cdiff(words), 3);
+  expectOutput("holds an earlier comparison (realism.json); replace it (--overwrite) or give");
+  EXPECT_EQ(contentsOf(results()), before);
+  words.emplace_back("--overwrite");
+  EXPECT_EQ(cdiff(words), 0) << output();
+  EXPECT_NE(contentsOf(results()), before);
+}
+
 TEST_F(ResultFolder, ABatchIsResumedReplacedOrRefused) {
   const std::string network = folder("town.net.xml");
   fs::copy(fs::path(CDIFF_SHARE) / "networks/arterial_merge/arterial_merge.net.xml", network);

@@ -103,6 +103,28 @@ TEST_F(RecordedTraffic, ReadsResultsEveryTenthOfASecond) {
   EXPECT_THROW(readResult(folder_.path()), core::InputError);
 }
 
+/// Boxes are 4.5 m long. Vehicle a touches b at tick 3, between steps 1 and 2, and is gone.
+TEST_F(RecordedTraffic, ReadsContactsOfEveryTick) {
+  core::writeFileAtomically(folder_.path() / "session.yaml",
+                            "scenario:\n  simulation_step: 0.05\n");
+  core::writeFileAtomically(folder_.path() / "trace.csv",
+                            "tick,id,role,x,y,heading,speed,throttle,steer,brake\n"
+                            "2,ego,ego,10,0,0,1,0,0,0\n"
+                            "2,a,cbv,5,0,0,1,0,0,0\n"
+                            "2,c,background,5,9,0,1,,,\n"
+                            "3,ego,ego,10,0,0,1,0,0,0\n"
+                            "3,a,cbv,5.6,0,0,1,0,0,0\n"
+                            "3,c,background,5.6,9,0,1,,,\n"
+                            "4,ego,ego,10,0,0,1,0,0,0\n"
+                            "4,c,background,6,9,0,1,,,\n");
+  const Recording recording = readResult(folder_.path());
+  ASSERT_EQ(recording.tracks.size(), 3U);
+  EXPECT_EQ(recording.tracks[0].contacts, std::vector<std::size_t>{1});
+  EXPECT_EQ(recording.tracks[1].contacts, std::vector<std::size_t>{1});
+  EXPECT_TRUE(recording.tracks[1].touchesAt(1));
+  EXPECT_TRUE(recording.tracks[2].contacts.empty());
+}
+
 TEST(RecordedFiles, HoldTheVehiclesThatTheirReadmeCounts) {
   const auto folder = test::realData("real_traffic");
   CDIFF_SKIP_WITHOUT(folder);
