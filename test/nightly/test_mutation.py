@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What mutation.py draws from a small source.
+"""What mutation.py draws from a small source, and that the lists of mutants follow the code.
 
     test_mutation.py RESULT.xml
 """
@@ -8,6 +8,10 @@ import sys
 import unittest
 from pathlib import Path
 
+import yaml
+
+HERE = Path(__file__).resolve().parent
+SOURCES = HERE.parents[1] / "src"
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 import junit  # noqa: E402
 import mutation  # noqa: E402
@@ -71,8 +75,36 @@ class Mutation(unittest.TestCase):
         self.assertEqual(len(set(keys(1, 1000))), number)
 
 
+def single(text):
+    """With single spaces, as mutants name lines."""
+    return " ".join(text.split())
+
+
+class Lists(unittest.TestCase):
+    def test_every_equivalent_mutant_can_be_drawn(self):
+        rows = yaml.safe_load((HERE / "equivalent_mutants.yaml").read_text())
+        self.assertGreater(len(rows), 1)
+        for row in rows:
+            path = SOURCES / row["file"]
+            self.assertTrue(path.is_file(), f"equivalent_mutants.yaml: there is no file {row['file']}")
+            drawn = itertools.chain(*mutation.sites([mutation.Source(row["file"], path.read_text())]).values())
+            self.assertIn((single(row["was"]), single(row["now"])), {(mutant.old, mutant.new) for mutant in drawn}, row["file"])
+
+    def test_every_listed_mutant_applies(self):
+        rows = yaml.safe_load((HERE / "mutants.yaml").read_text())
+        self.assertGreater(len(rows), 1)
+        for row in rows:
+            path = SOURCES / row["file"]
+            self.assertTrue(path.is_file(), f"mutants.yaml: there is no file {row['file']}")
+            text = path.read_text()
+            for was, now in [(row["was"], row["now"]), *row.get("also", [])]:
+                self.assertEqual(text.count(was), 1, f"mutants.yaml: {row['file']}: {was}")
+                text = text.replace(was, now)
+
+
 if __name__ == "__main__":
-    suite = unittest.defaultTestLoader.loadTestsFromTestCase(Mutation)
+    load = unittest.defaultTestLoader.loadTestsFromTestCase
+    suite = unittest.TestSuite([*load(Mutation), *load(Lists)])
     names = [test.id() for test in suite]
     outcome = unittest.TextTestRunner(verbosity=2).run(suite)
     junit.write_unittest(sys.argv[1], "mutation", outcome, names)
