@@ -2,8 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "ros/lockstep/message_gate.h"
+#include "ros/lockstep/participant_book.h"
 #include "ros/messages/message_checks.h"
+#include "ros/messages/topics.h"
 
 namespace cdiff::ros {
 namespace {
@@ -77,6 +81,49 @@ TEST(Selection, WithSlotsThatThereAreNotCannotBeUsed) {
   EXPECT_NE(unusableWith({{0, "a"}, {0, "b"}}).find("twice"), std::string::npos);
   EXPECT_NE(unusableWith({{0, "a"}, {1, "a"}}).find("twice"), std::string::npos);
   EXPECT_NE(unusableWith({{0, "a"}, {1, "b"}, {0, "c"}}).find("3 assignments"), std::string::npos);
+}
+
+TEST(SilenceWatch, CountsOnlyTheTimeOfItsOwnLooks) {
+  SilenceWatch watch;
+  EXPECT_FALSE(watch.silent(100.0));  // no one was ever heard
+  watch.heard(1.0);
+  EXPECT_FALSE(watch.silent(130.0));  // one look adds 0.5 s, however long we did not look
+  EXPECT_FALSE(watch.silent(130.5));  // 1.0 s is not longer than 1.0 s
+  EXPECT_TRUE(watch.silent(130.6));
+  watch.heard(1.0);
+  EXPECT_FALSE(watch.silent(130.7));
+}
+
+msgs::TickAck ackOf(const std::string& node, std::uint8_t kind) {
+  msgs::TickAck message;
+  message.node = node;
+  message.kind = kind;
+  return message;
+}
+
+TEST(ParticipantBook, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
+  using namespace std::chrono_literals;
+  const ParticipantBook::Clock::time_point begin;
+  ParticipantBook book({kCameraNode, kCbvPlannerNode, kMetricsNode});
+  book.note(ackOf(kCameraNode, msgs::TickAck::READY), begin);
+  book.note(ackOf(kCbvPlannerNode, msgs::TickAck::READY), begin);
+  book.note(ackOf(kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);
+  EXPECT_EQ(book.silent(5.0, begin + 5s), std::vector<std::string>());
+  EXPECT_EQ(book.silent(5.0, begin + 6s), std::vector<std::string>{kCameraNode});
+  EXPECT_TRUE(book.heard(kCameraNode));
+  EXPECT_FALSE(book.heard(kMetricsNode));
+}
+
+TEST(Connections, KnowsWhoListenedAndDoesNotAnyMore) {
+  Connections connections;
+  EXPECT_FALSE(connections.stoppedListening("/my_ego"));  // it never did
+  connections.connected("traffic", "/my_ego");
+  connections.connected("/clock", "/my_ego");
+  connections.disconnected("traffic", "/my_ego");
+  EXPECT_FALSE(connections.stoppedListening("/my_ego"));
+  connections.disconnected("/clock", "/my_ego");
+  EXPECT_TRUE(connections.stoppedListening("/my_ego"));
+  EXPECT_TRUE(connections.left().empty());  // no one had counted on it
 }
 
 }  // namespace

@@ -10,9 +10,6 @@
 #include <thread>
 
 #include "ros/launched_session.h"
-#include "ros/lockstep/message_gate.h"
-#include "ros/lockstep/participant_book.h"
-#include "ros/messages/topics.h"
 #include "rosbag/bag.h"
 #include "rosbag/view.h"
 
@@ -20,7 +17,6 @@ namespace cdiff {
 namespace {
 
 namespace fs = std::filesystem;
-namespace msgs = ::e2e_cdiff;
 
 // A session that goes on for as long as the fault needs, at the pace of the wall clock.
 const char* const kLong =
@@ -267,49 +263,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"metrics_node", SIGSTOP}, Fault{"recorder_node", SIGKILL},
                       Fault{"recorder_node", SIGSTOP}, Fault{"rosmaster", SIGKILL}),
     nameOf);
-
-TEST(SilenceWatch, CountsOnlyTheTimeOfItsOwnLooks) {
-  ros::SilenceWatch watch;
-  EXPECT_FALSE(watch.silent(100.0));  // no one was ever heard
-  watch.heard(1.0);
-  EXPECT_FALSE(watch.silent(130.0));  // one look adds 0.5 s, however long we did not look
-  EXPECT_FALSE(watch.silent(130.5));  // 1.0 s is not longer than 1.0 s
-  EXPECT_TRUE(watch.silent(130.6));
-  watch.heard(1.0);
-  EXPECT_FALSE(watch.silent(130.7));
-}
-
-msgs::TickAck ackOf(const std::string& node, std::uint8_t kind) {
-  msgs::TickAck message;
-  message.node = node;
-  message.kind = kind;
-  return message;
-}
-
-TEST(ParticipantBook, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
-  using namespace std::chrono_literals;
-  const ros::ParticipantBook::Clock::time_point begin;
-  ros::ParticipantBook book({ros::kCameraNode, ros::kCbvPlannerNode, ros::kMetricsNode});
-  book.note(ackOf(ros::kCameraNode, msgs::TickAck::READY), begin);
-  book.note(ackOf(ros::kCbvPlannerNode, msgs::TickAck::READY), begin);
-  book.note(ackOf(ros::kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);
-  EXPECT_EQ(book.silent(5.0, begin + 5s), std::vector<std::string>());
-  EXPECT_EQ(book.silent(5.0, begin + 6s), std::vector<std::string>{ros::kCameraNode});
-  EXPECT_TRUE(book.heard(ros::kCameraNode));
-  EXPECT_FALSE(book.heard(ros::kMetricsNode));
-}
-
-TEST(Connections, KnowsWhoListenedAndDoesNotAnyMore) {
-  ros::Connections connections;
-  EXPECT_FALSE(connections.stoppedListening("/my_ego"));  // it never did
-  connections.connected("traffic", "/my_ego");
-  connections.connected("/clock", "/my_ego");
-  connections.disconnected("traffic", "/my_ego");
-  EXPECT_FALSE(connections.stoppedListening("/my_ego"));
-  connections.disconnected("/clock", "/my_ego");
-  EXPECT_TRUE(connections.stoppedListening("/my_ego"));
-  EXPECT_TRUE(connections.left().empty());  // no one had counted on it
-}
 
 }  // namespace
 }  // namespace cdiff
