@@ -72,7 +72,7 @@ class Figures:
 
 @contextlib.contextmanager
 def touched(path):
-    """Newer than everything that was built from it, and as before afterwards: other builds of the tree do not notice."""
+    """Newer than everything that was built from it, and as before afterward: other builds of the tree do not notice."""
     status = path.stat()
     os.utime(path)
     try:

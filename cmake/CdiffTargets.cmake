@@ -3,7 +3,7 @@ set(CDIFF_WARNINGS -Wall -Wextra -Werror)
 # Private headers lie beside their sources: "FOLDER/name.h". Only quoted names are looked up there, so <ros/...> stays ROS's.
 set(CDIFF_PRIVATE_HEADERS "SHELL:-iquote ${PROJECT_SOURCE_DIR}/src")
 
-# Several sources of a target are compiled as one: most of a file's time goes into the headers that its neighbours read too.
+# Several sources of a target are compiled as one: most of a file's time goes into the headers that its neighbors read too.
 option(E2E_CDIFF_UNITY "Compile sources of a target together, six at a time" ON)
 set(CMAKE_UNITY_BUILD ${E2E_CDIFF_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)

@@ -85,7 +85,7 @@ def shortest_chain(network, start, end):
 
 
 def lanes_allow(network, chain, first_length):
-    """Whether lane changes of LANE_CHANGE metres each lead along the chain, from any lane of the first edge."""
+    """Whether lane changes of LANE_CHANGE meters each lead along the chain, from any lane of the first edge."""
     lanes = set(range(len(network.edges[chain[0]])))
     for i, (one, other) in enumerate(zip(chain, chain[1:])):
         reach = int((first_length if i == 0 else network.edge_length(one)) / LANE_CHANGE)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Copyright (c) 2026 The e2e_cdiff authors
-"""Networks from parametrised plain XML: nodes, edges and connections, every number drawn (m, m/s, map frame)."""
+"""Networks from parametrized plain XML: nodes, edges and connections, every number drawn (m, m/s, map frame)."""
 import math
 
 KINDS = ["roundabout", "merge", "lane_drop", "weaving", "bridge_ramp", "t_junction", "signals", "crossing"]

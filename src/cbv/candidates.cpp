@@ -15,9 +15,9 @@ namespace cdiff::cbv {
 namespace {
 
 void describeGates(CbvOptions& options, core::OptionsVisitor& visitor) {
-  visitor.number({"search_radius", "m", "Farthest candidate from the ego, centre to centre."},
+  visitor.number({"search_radius", "m", "Farthest candidate from the ego, center to center."},
                  options.search_radius, 1.0, 1000.0);
-  visitor.number({"minimum_distance", "m", "Nearest candidate to the ego, centre to centre."},
+  visitor.number({"minimum_distance", "m", "Nearest candidate to the ego, center to center."},
                  options.minimum_distance, 0.0, 1000.0);
   visitor.number({"interaction_radius", "m",
                   "Straight distance from a candidate to a point of the ego's route."},
@@ -29,7 +29,7 @@ void describeGates(CbvOptions& options, core::OptionsVisitor& visitor) {
                   "Difference of the distances to drive that a conflict stays below."},
                  options.route_distance_gate, 0.1, 1000.0);
   visitor.number(
-      {"preview_distance", "m", "Point ahead of a candidate's centre that must lie on a lane."},
+      {"preview_distance", "m", "Point ahead of a candidate's center that must lie on a lane."},
       options.preview_distance, 0.0, 20.0);
   visitor.number({"junction_heading_gate", "deg",
                   "Largest angle between candidate and lane inside a junction."},
@@ -77,7 +77,7 @@ void describeTimes(CbvOptions& options, core::OptionsVisitor& visitor) {
 constexpr double kSearchRadius = 5.0;       // [m] at least half the width of any lane
 constexpr double kHeadingAgreement = 60.0;  // [deg] of a vehicle with its own lane
 constexpr double kLeastRemaining = 0.5;     // [m] of its lane: a route may start with a lane change
-constexpr double kMetresPerRadian = 2.0;    // among overlapping lanes: heading against distance
+constexpr double kMetersPerRadian = 2.0;    // among overlapping lanes: heading against distance
 
 bool liesOn(const map::RoadNetwork& network, const map::LaneMatch& match) {
   return match.projection.distance <= 0.5 * network.lane(match.lane).width;
@@ -109,7 +109,7 @@ std::optional<map::LanePosition> ownLane(const map::RoadNetwork& network,
     const double last = std::max(0.0, lane.centerline.length() - kLeastRemaining);
     const map::LanePosition place{match.lane, std::min(match.projection.arc_length, last)};
     if (lane.id == vehicle.lane_id && liesOn(network, match)) return place;
-    const double cost = match.projection.distance + kMetresPerRadian * difference;
+    const double cost = match.projection.distance + kMetersPerRadian * difference;
     if (cost >= best_cost) continue;
     best_cost = cost;
     best = place;

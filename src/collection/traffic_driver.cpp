@@ -25,7 +25,7 @@ class RandomWalk {
       : network_(network), random_(random), key_(key) {}
 
   /// Lanes from `start` on, at least `length` beyond `begin` of it where the network allows; the
-  /// length in `length` afterwards.
+  /// length in `length` afterward.
   map::LanePath walk(LaneIndex start, double begin, double& length, double lane_change_share) {
     map::LanePath path;
     path.lanes.push_back(start);
@@ -69,9 +69,9 @@ class RandomWalk {
     const bool ends = followers(path.lanes.back()).empty();
     if (!wished && !ends) return;
     std::vector<LaneIndex> beside;
-    for (const LaneIndex neighbour : {lane.right, lane.left}) {
-      if (neighbour == map::kNoLane || !network_.lane(neighbour).routable) continue;
-      if (!followers(neighbour).empty()) beside.push_back(neighbour);
+    for (const LaneIndex neighbor : {lane.right, lane.left}) {
+      if (neighbor == map::kNoLane || !network_.lane(neighbor).routable) continue;
+      if (!followers(neighbor).empty()) beside.push_back(neighbor);
     }
     if (beside.empty()) return;
     path.lanes.push_back(beside[random_.index(key_, element_++, beside.size())]);

@@ -65,7 +65,7 @@ class Sha256 {
   Sha256(const Sha256&) = delete;
   Sha256& operator=(const Sha256&) = delete;
   void update(std::string_view text);
-  /// Lower-case hexadecimal digits; the object is spent afterwards.
+  /// Lower-case hexadecimal digits; the object is spent afterward.
   std::string finish();
 
  private:

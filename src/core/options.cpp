@@ -181,11 +181,11 @@ class LoadVisitor : public OptionsVisitor {
 
   Eigen::Vector3d point(const FieldInfo& info, const YAML::Node& item) const {
     const bool sized = item.IsSequence() && (item.size() == 2 || item.size() == 3);
-    if (!sized) fail(item, info.key, "points [x, y] or [x, y, z] in metres");
+    if (!sized) fail(item, info.key, "points [x, y] or [x, y, z] in meters");
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < item.size(); ++i) {
       const auto parsed = item[i].IsScalar() ? parseNumber(item[i].Scalar()) : std::nullopt;
-      if (!parsed) fail(item[i], info.key, "points of finite numbers in metres");
+      if (!parsed) fail(item[i], info.key, "points of finite numbers in meters");
       result[static_cast<Eigen::Index>(i)] = *parsed;
     }
     return result;

@@ -51,7 +51,7 @@ class SamplingBatch {
 };
 
 // The proximal step of guided few-step sampling: actions x of each sample go from the prediction
-// x_hat towards argmin J(x) + |x - x_hat|^2 / (2 r_k^2), at most c r_k away per element.
+// x_hat toward argmin J(x) + |x - x_hat|^2 / (2 r_k^2), at most c r_k away per element.
 
 /// Settings of the proximal step of mode `real_time`.
 struct ProximalOptions {

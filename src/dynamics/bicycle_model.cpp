@@ -77,9 +77,9 @@ void requireValid(const traffic::ControlAction& action) {
 
 void BicycleModelOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"steering_gain", "rad", "Wheel angle at steer = 1."}, steering_gain, 0.01, 1.2);
-  visitor.number({"rear_length", "m", "Centre to rear axle of the fitted bicycle."}, rear_length,
+  visitor.number({"rear_length", "m", "Center to rear axle of the fitted bicycle."}, rear_length,
                  0.1, 10.0);
-  visitor.number({"front_length", "m", "Centre to front axle of the fitted bicycle."}, front_length,
+  visitor.number({"front_length", "m", "Center to front axle of the fitted bicycle."}, front_length,
                  -5.0, 10.0);
   visitor.number({"max_deceleration", "m/s^2", "Cap of the deceleration under full brake."},
                  max_deceleration, 0.1, 20.0);
@@ -123,7 +123,7 @@ SpeedResponse BicycleModel::speedResponse(double speed,
   const double uncapped = brakedSpeed(v) - v;
   const double brake = std::clamp(uncapped, strongest, 0.0);
   const double raw = (v + (1.0 - action.brake) * drive + action.brake * brake) / kKmhPerMps;
-  const bool stands = response.speed == 0.0 && raw > 0.0;  // the last millimetre per second
+  const bool stands = response.speed == 0.0 && raw > 0.0;  // the last millimeter per second
   if (raw < 0.0 || raw > options_.max_speed || stands) return response;
   const double drive_by_v = driven ? drivenSpeedByV(v, action.throttle) - 1.0 : 0.0;
   const double brake_by_v = uncapped == brake ? brakedSpeedByV(v) - 1.0 : 0.0;

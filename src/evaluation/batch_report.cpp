@@ -203,11 +203,11 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
       std::any_of(tables.begin(), tables.end(), anyIntervals)
           ? "[95 % interval, bootstrap by routes; of events per km exact Poisson] "
           : "";
-  std::string text =
-      "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " + intervals +
-      "(routes, seeds, runs that have the measure). "
-      "RIFT: the same by RIFT's definition. paper: as printed there. "
-      "In parentheses alone: why a cell is empty.\n";
+  std::string text = "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " +
+                     intervals +
+                     "(routes, seeds, runs that have the measure). "
+                     "RIFT: the same by RIFT's definition. paper: as printed there. "
+                     "In parentheses alone: why a cell is empty.\n";
   for (const Table& table : tables) {
     const TableDefinition& definition = table.definition;
     text += "\n## " + definition.title + "\n\n";

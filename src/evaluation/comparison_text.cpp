@@ -72,18 +72,17 @@ std::string noteOf(const MeasureComparison& measure, bool with_intervals) {
 }
 
 std::string rowOf(const MeasureComparison& measure, bool intervals) {
-  const std::string difference =
-      measure.difference ? core::formatFixed(*measure.difference, 3) +
-                               (intervals ? intervalText(measure.interval) : "")
-                         : "-";
+  const std::string difference = measure.difference
+                                     ? core::formatFixed(*measure.difference, 3) +
+                                           (intervals ? intervalText(measure.interval) : "")
+                                     : "-";
   return "| " +
-         core::joinText(
-             {core::markdownText(measure.measure), std::to_string(measure.pairs),
-              metrics::toText(measure.a.kind), estimateText(measure.a, 3, intervals),
-              estimateText(measure.b, 3, intervals), difference, ratioText(measure, intervals),
-              probabilityText(measure.p), probabilityText(measure.p_holm),
-              noteOf(measure, intervals)},
-             " | ") +
+         core::joinText({core::markdownText(measure.measure), std::to_string(measure.pairs),
+                         metrics::toText(measure.a.kind), estimateText(measure.a, 3, intervals),
+                         estimateText(measure.b, 3, intervals), difference,
+                         ratioText(measure, intervals), probabilityText(measure.p),
+                         probabilityText(measure.p_holm), noteOf(measure, intervals)},
+                        " | ") +
          " |\n";
 }
 

@@ -94,9 +94,8 @@ const std::vector<std::string>& measureNames() {
     for (const auto& [name, place] : places()) {
       all.emplace_back(name);
       if (all.back() != metrics::known::kCbvMinimumDistance.name) continue;
-      all.insert(all.end(),
-                 {kSelectionCount, "cbv_passed_percent", "cbv_completion_percent",
-                  "cbv_interactions_percent", "cbv_close_interactions_percent"});
+      all.insert(all.end(), {kSelectionCount, "cbv_passed_percent", "cbv_completion_percent",
+                             "cbv_interactions_percent", "cbv_close_interactions_percent"});
     }
     return all;
   }();

@@ -89,8 +89,8 @@ SummaryNumbers summaryNumbers(const std::string& text, const std::string& source
 struct BatchRun {
   RunRecord record;
   std::filesystem::path folder;
-  SummaryNumbers numbers;  ///< empty unless the run is complete
-  std::string settings{};  ///< see settingsOf; empty unless the run is complete
+  SummaryNumbers numbers;          ///< empty unless the run is complete
+  std::string settings{};          ///< see settingsOf; empty unless the run is complete
   std::string cbv_conditioning{};  ///< see cbvConditioningOf; likewise
 
   /// Value at a JSON pointer; nullopt where the summary has no number there.

@@ -79,7 +79,7 @@ std::unique_ptr<Objective> SpeedObjective::clone() const {
 void DrivableAreaObjective::describe(core::OptionsVisitor& visitor) {
   visitor.number({"margin", "m", "Distance to the border at which the pull starts."}, margin, 0.0,
                  20.0);
-  visitor.text({"points", "", "Points of the box: its centre, or centre, front and rear."}, points,
+  visitor.text({"points", "", "Points of the box: its center, or center, front and rear."}, points,
                {"center", "bumpers"});
 }
 

@@ -81,7 +81,7 @@ void WeightedObjective::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"last_step", "", "Acts at diffusion steps down to this one."}, last_step, 1,
                   kLastDiffusionStep);
   visitor.number(
-      {"gradient_cap", "", "Largest norm of weight x gradient in normalised units; 0: none."},
+      {"gradient_cap", "", "Largest norm of weight x gradient in normalized units; 0: none."},
       gradient_cap, 0.0, kLargestCap);
   objective->describe(visitor);
 }

@@ -253,8 +253,8 @@ void pullBackNormalize(const NormalizationGradientCall& call) {
     const V product = V::load(products + c);
     const V inverse = V::load(call.inverse_deviation + c);
     for (std::int64_t row = 0; row < shape.rows; ++row) {
-      const V centred = pulled(row, c) - mean - normalized(row, c) * product;
-      (centred * inverse).store(to + row * call.input_gradient.row + c);
+      const V centered = pulled(row, c) - mean - normalized(row, c) * product;
+      (centered * inverse).store(to + row * call.input_gradient.row + c);
     }
   }
 }

@@ -55,7 +55,7 @@ void describeTimes(TrainingOptions& options, OptionsVisitor& visitor) {
   visitor.number(
       {"time_limit", "s",
        "Time for the steps of the stage, resumptions included; computing features and the "
-       "last judgement come on top; 0: none."},
+       "last judgment come on top; 0: none."},
       options.time_limit, 0.0, kLongest);
   visitor.flag({"anneal_by_time", "", "The learning rate falls to 0 at the time limit."},
                options.anneal_by_time);
@@ -72,7 +72,7 @@ void describeValidation(TrainingOptions& options, OptionsVisitor& visitor) {
                  options.validation_share, 0.0, 0.9);
   visitor.integer({"validation_samples", "", "Held-out samples that judge, at most."},
                   options.validation_samples, 1, kMost);
-  visitor.integer({"validation_every", "", "Steps between two judgements."},
+  visitor.integer({"validation_every", "", "Steps between two judgments."},
                   options.validation_every, 1, kMost);
 }
 

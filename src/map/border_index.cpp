@@ -13,7 +13,7 @@
 namespace cdiff::map {
 namespace {
 
-constexpr double kUnitsPerMetre = 1000.0;
+constexpr double kUnitsPerMeter = 1000.0;
 constexpr double kClosingRadius = 0.15;  // [m] half the widest slit that is closed
 constexpr double kLeastHoleArea = 1.0;   // [m^2]
 constexpr double kMitreLimit = 2.0;      // longest mitre in strip half-widths
@@ -22,8 +22,8 @@ ClipperLib::Path toGrid(const std::vector<Eigen::Vector2d>& points) {
   ClipperLib::Path path;
   path.reserve(points.size());
   for (const Eigen::Vector2d& point : points) {
-    path.emplace_back(std::llround(point.x() * kUnitsPerMetre),
-                      std::llround(point.y() * kUnitsPerMetre));
+    path.emplace_back(std::llround(point.x() * kUnitsPerMeter),
+                      std::llround(point.y() * kUnitsPerMeter));
   }
   return path;
 }
@@ -32,7 +32,7 @@ ClipperLib::Paths stripOutline(const Strip& strip) {
   ClipperLib::ClipperOffset offset(kMitreLimit);
   offset.AddPath(toGrid(strip.line), ClipperLib::jtMiter, ClipperLib::etOpenButt);
   ClipperLib::Paths outline;
-  offset.Execute(outline, 0.5 * strip.width * kUnitsPerMetre);
+  offset.Execute(outline, 0.5 * strip.width * kUnitsPerMeter);
   return outline;
 }
 
@@ -47,12 +47,12 @@ ClipperLib::Paths grown(const ClipperLib::Paths& paths, double distance) {
   ClipperLib::ClipperOffset offset(kMitreLimit);
   offset.AddPaths(paths, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
   ClipperLib::Paths result;
-  offset.Execute(result, distance * kUnitsPerMetre);
+  offset.Execute(result, distance * kUnitsPerMeter);
   return result;
 }
 
 std::vector<Ring> toRings(const ClipperLib::Paths& paths) {
-  constexpr double kLeastHole = kLeastHoleArea * kUnitsPerMetre * kUnitsPerMetre;
+  constexpr double kLeastHole = kLeastHoleArea * kUnitsPerMeter * kUnitsPerMeter;
   std::vector<Ring> rings;
   for (const ClipperLib::Path& path : paths) {
     const double area = ClipperLib::Area(path);  // negative for holes
@@ -60,8 +60,8 @@ std::vector<Ring> toRings(const ClipperLib::Paths& paths) {
     Ring ring;
     ring.reserve(path.size());
     for (const ClipperLib::IntPoint& point : path) {
-      ring.emplace_back(static_cast<double>(point.X) / kUnitsPerMetre,
-                        static_cast<double>(point.Y) / kUnitsPerMetre);
+      ring.emplace_back(static_cast<double>(point.X) / kUnitsPerMeter,
+                        static_cast<double>(point.Y) / kUnitsPerMeter);
     }
     rings.push_back(std::move(ring));
   }

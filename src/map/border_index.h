@@ -10,7 +10,7 @@
 
 namespace cdiff::map {
 
-// Union of lane strips and polygons in the map frame [m], on a millimetre grid, with narrow slits
+// Union of lane strips and polygons in the map frame [m], on a millimeter grid, with narrow slits
 // closed.
 
 /// Closed ring of points; the last is joined to the first.
@@ -36,7 +36,7 @@ class BorderIndex {
   /// Rings with the area on their left. Throws InputError without any.
   explicit BorderIndex(const std::vector<Ring>& rings);
 
-  /// Positive on the area. On the border the gradient is the normal towards the area.
+  /// Positive on the area. On the border the gradient is the normal toward the area.
   SignedDistance query(const Eigen::Vector2d& point) const;
 
  private:

@@ -15,10 +15,10 @@ constexpr double kTolerance = 0.5;  // [m] "abreast" is only as exact as that wh
 double laneChangePenalty(const Lane& lane, double available) {
   constexpr double kPenalty = 5.0;
   constexpr double kComfortableLength = 25.0;
-  constexpr double kPerMissingMetre = 0.5;
+  constexpr double kPerMissingMeter = 0.5;
   constexpr double kInsideJunction = 20.0;
   const double missing = std::max(0.0, kComfortableLength - available);
-  return kPenalty + kPerMissingMetre * missing + (lane.internal ? kInsideJunction : 0.0);
+  return kPenalty + kPerMissingMeter * missing + (lane.internal ? kInsideJunction : 0.0);
 }
 
 double arcLengthAbreast(const RoadNetwork& network, LaneIndex from, double arc_length,
@@ -75,22 +75,22 @@ void LaneSearch::expand(std::size_t node) {
     relax(static_cast<std::size_t>(next.to), node, rank_[node] + remaining, driven_[node] + length);
   }
   if (!limits_.lane_changes) return;
-  relaxNeighbour(node, lane.left);
-  relaxNeighbour(node, lane.right);
+  relaxNeighbor(node, lane.left);
+  relaxNeighbor(node, lane.right);
 }
 
-void LaneSearch::relaxNeighbour(std::size_t node, LaneIndex neighbour) {
-  if (neighbour == kNoLane) return;
+void LaneSearch::relaxNeighbor(std::size_t node, LaneIndex neighbor) {
+  if (neighbor == kNoLane) return;
   const Lane& from = network_.lane(laneOf(node));
   const double length = from.centerline.length();
   const double available = node < count() ? length : length + driven_[node];
   const double penalty = laneChangePenalty(from, available);
   if (node < count()) {
-    relax(static_cast<std::size_t>(neighbour), node, rank_[node] + penalty, driven_[node]);
+    relax(static_cast<std::size_t>(neighbor), node, rank_[node] + penalty, driven_[node]);
     return;
   }
-  const double beside = arcLengthAbreast(network_, laneOf(node), -driven_[node], neighbour);
-  relax(count() + static_cast<std::size_t>(neighbour), node, rank_[node] + penalty, -beside);
+  const double beside = arcLengthAbreast(network_, laneOf(node), -driven_[node], neighbor);
+  relax(count() + static_cast<std::size_t>(neighbor), node, rank_[node] + penalty, -beside);
 }
 
 void LaneSearch::relax(std::size_t node, std::size_t from, double rank, double driven) {

@@ -153,7 +153,7 @@ void NetworkReader::readEdge(const pugi::xml_node& edge) {
   const auto first = static_cast<LaneIndex>(network_.lanes_.size());
   if (id.front() != ':') network_.edge_ids_.push_back(id);
   for (const pugi::xml_node& lane : edge.children("lane")) readLane(lane, edge);
-  joinNeighbours(first);
+  joinNeighbors(first);
 }
 
 void NetworkReader::readLane(const pugi::xml_node& node, const pugi::xml_node& edge) {
@@ -187,7 +187,7 @@ void NetworkReader::readLane(const pugi::xml_node& node, const pugi::xml_node& e
   network_.lanes_.push_back(std::move(lane));
 }
 
-void NetworkReader::joinNeighbours(LaneIndex first) {
+void NetworkReader::joinNeighbors(LaneIndex first) {
   std::vector<Lane>& lanes = network_.lanes_;
   for (std::size_t i = static_cast<std::size_t>(first); i + 1 < lanes.size(); ++i) {
     if (lanes[i + 1].index != lanes[i].index + 1) continue;

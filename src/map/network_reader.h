@@ -33,7 +33,7 @@ class NetworkReader {
   void readLocation(const pugi::xml_node& net);
   void readEdge(const pugi::xml_node& edge);
   void readLane(const pugi::xml_node& node, const pugi::xml_node& edge);
-  void joinNeighbours(LaneIndex first);
+  void joinNeighbors(LaneIndex first);
   void readJunction(const pugi::xml_node& node);
   void readConnection(const pugi::xml_node& node);
   void link(LaneIndex from, const LaneLink& link);

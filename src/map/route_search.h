@@ -66,7 +66,7 @@ class LaneSearch {
   }
   void run();
   void expand(std::size_t node);
-  void relaxNeighbour(std::size_t node, LaneIndex neighbour);
+  void relaxNeighbor(std::size_t node, LaneIndex neighbor);
   void relax(std::size_t node, std::size_t from, double rank, double driven);
 
   const RoadNetwork& network_;

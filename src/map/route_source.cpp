@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMergeDistance = 0.1;  // [m] key points nearer than this are one
 constexpr double kHeadingScale =
-    0.6;                            // [rad] towards the next key point, which may lie behind a bend
+    0.6;                            // [rad] toward the next key point, which may lie behind a bend
 constexpr double kBackwards = 0.5;  // [m] a projection may fall back by so much on its lane
 constexpr double kFarSearch = 20000.0;  // distinguishes a long route from none [m]
 

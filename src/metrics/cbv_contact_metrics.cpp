@@ -36,7 +36,7 @@ const MeasureDefinition known::kCollisionsPerKm = {
     "1/km",
     Direction::kNeither,
     Subject::kCbvs,
-    "1000 x collisions of CBVs with anyone / distance driven as CBV in metres; n counts CBVs "
+    "1000 x collisions of CBVs with anyone / distance driven as CBV in meters; n counts CBVs "
     "(paper's CPK: lower is better in naturalistic mode, higher in safety-critical mode).",
     "RIFT divides collided CBVs by the distance summed over decision ticks.",
     3,
@@ -49,7 +49,7 @@ const MeasureDefinition known::kCbvEgoCollisionsPerKm = {
     "1/km",
     Direction::kNeither,
     Subject::kEgoAndOthers,
-    "1000 x collisions of CBVs with the ego / distance driven as CBV in metres; n counts CBVs.",
+    "1000 x collisions of CBVs with the ego / distance driven as CBV in meters; n counts CBVs.",
     "RIFT does not record the partner.",
 };
 
@@ -70,9 +70,9 @@ class CbvCollisions final : public Metric {
     sink.set(known::kCbvCollisions, countMeasure(collisions_));
     sink.set(known::kCbvEgoCollisions, countMeasure(ego_collisions_));
     sink.set(known::kCollisionsPerKm,
-             collisionsPerKilometre(collisions_, travel_.distance(), travel_.vehicles()));
+             collisionsPerKilometer(collisions_, travel_.distance(), travel_.vehicles()));
     sink.set(known::kCbvEgoCollisionsPerKm,
-             collisionsPerKilometre(ego_collisions_, travel_.distance(), travel_.vehicles()));
+             collisionsPerKilometer(ego_collisions_, travel_.distance(), travel_.vehicles()));
   }
 
  private:
@@ -85,7 +85,7 @@ class CbvCollisions final : public Metric {
 
 MetricDescriptor cbvCollisionsMetric() {
   return {"cbv_collisions",
-          "Collisions of CBVs, as counts and per kilometre.",
+          "Collisions of CBVs, as counts and per kilometer.",
           {known::kCbvCollisions, known::kCbvEgoCollisions, known::kCollisionsPerKm,
            known::kCbvEgoCollisionsPerKm},
           [](const MetricContext&) { return std::make_unique<CbvCollisions>(); }};
@@ -134,7 +134,7 @@ constexpr MeasureDefinition kCbvStruckBackgroundPerKm = {
     "1/km",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "1000 x cbv_contacts_struck_background / distance driven as CBV in metres; n counts CBVs.",
+    "1000 x cbv_contacts_struck_background / distance driven as CBV in meters; n counts CBVs.",
     "RIFT does not record who struck whom.",
 };
 constexpr MeasureDefinition kCbvByBackgroundPerKm = {
@@ -144,7 +144,7 @@ constexpr MeasureDefinition kCbvByBackgroundPerKm = {
     "1/km",
     Direction::kNeither,
     Subject::kCbvs,
-    "1000 x cbv_contacts_by_background / distance driven as CBV in metres; n counts CBVs.",
+    "1000 x cbv_contacts_by_background / distance driven as CBV in meters; n counts CBVs.",
     "RIFT does not record who struck whom.",
 };
 constexpr MeasureDefinition kCbvWithCbvPerKm = {
@@ -154,7 +154,7 @@ constexpr MeasureDefinition kCbvWithCbvPerKm = {
     "1/km",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "1000 x cbv_contacts_with_cbv / distance driven as CBV in metres; n counts CBVs.",
+    "1000 x cbv_contacts_with_cbv / distance driven as CBV in meters; n counts CBVs.",
     "RIFT counts one for each of the two.",
 };
 
@@ -182,7 +182,7 @@ class CbvContactKinds final : public Metric {
   void set(MetricSink& sink, const MeasureDefinition& counted, const MeasureDefinition& per_km,
            std::size_t count) const {
     sink.set(counted, countMeasure(count));
-    sink.set(per_km, collisionsPerKilometre(count, travel_.distance(), travel_.vehicles()));
+    sink.set(per_km, collisionsPerKilometer(count, travel_.distance(), travel_.vehicles()));
   }
 
   CbvTravel travel_;

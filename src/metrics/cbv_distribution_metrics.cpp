@@ -58,7 +58,7 @@ constexpr MeasureDefinition kSpeedP = {
     Direction::kNeither,
     Subject::kCbvs,
     "Probability of a W as small as speed_shapiro_wilk for a normal sample of the same size "
-    "(Royston 1995); neighbouring samples of one drive are not independent, so that it is no test "
+    "(Royston 1995); neighboring samples of one drive are not independent, so that it is no test "
     "at that level.",
     "RIFT reports W alone.",
     3,

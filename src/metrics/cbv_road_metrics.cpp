@@ -17,10 +17,10 @@ const MeasureDefinition known::kCbvOffRoad = {
     "%",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "100 x CBV ticks with the centre of the box off the drivable area of its level / CBV ticks; n "
+    "100 x CBV ticks with the center of the box off the drivable area of its level / CBV ticks; n "
     "counts ticks (paper's ORR).",
     "RIFT counts decision ticks (10 Hz) and asks CARLA for a Driving or Parking waypoint at the "
-    "centre.",
+    "center.",
     3,
     true,
 };
@@ -34,8 +34,8 @@ constexpr MeasureDefinition kCornerOffRoad = {
     "%",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "100 x CBV ticks with the centre or any corner of the box off the drivable area of its level / "
-    "CBV ticks; never below the rate by the centre.",
+    "100 x CBV ticks with the center or any corner of the box off the drivable area of its level / "
+    "CBV ticks; never below the rate by the center.",
     "RIFT does not look at corners.",
 };
 
@@ -44,17 +44,17 @@ class CbvOffRoad final : public Metric {
   void observe(const MetricTick& tick) override {
     for (const CbvSighting& cbv : tick.cbvs) {
       if (!cbv.placed()) continue;
-      centre_.add(cbv.off_road);
+      center_.add(cbv.off_road);
       corner_.add(cbv.off_road || cbv.corner_off_road);
     }
   }
   void report(MetricSink& sink) const override {
-    sink.set(known::kCbvOffRoad, centre_.measure(kNoCbv));
+    sink.set(known::kCbvOffRoad, center_.measure(kNoCbv));
     sink.set(kCornerOffRoad, corner_.measure(kNoCbv));
   }
 
  private:
-  TickShare centre_;
+  TickShare center_;
   TickShare corner_;
 };
 
@@ -131,7 +131,7 @@ const MeasureDefinition known::kCbvWrongWay = {
     Subject::kCbvs,
     "100 x distance that CBVs drove the wrong way / distance that they drove on lanes outside "
     "junctions, each CBV decision counting speed x decision period. A CBV is on the lanes whose "
-    "width holds its centre, on its level; it drives the wrong way where its heading is more than "
+    "width holds its center, on its level; it drives the wrong way where its heading is more than "
     "90 deg from each of them. n counts decisions on such lanes.",
     "RIFT does not compute it.",
 };

@@ -35,7 +35,7 @@ constexpr MeasureDefinition kFreeStandPerKm = {
     "1/km",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "1000 x cbv_standing_free / distance driven as CBV in metres; n counts CBVs.",
+    "1000 x cbv_standing_free / distance driven as CBV in meters; n counts CBVs.",
     "RIFT does not compute it.",
 };
 constexpr MeasureDefinition kFreeStandShare = {
@@ -80,7 +80,7 @@ class CbvStanding final : public Metric {
     }
     sink.set(known::kCbvStanding, {static_cast<double>(standing_.size()), routed_.size(), {}, {}});
     sink.set(kFreeStandPerKm,
-             collisionsPerKilometre(standing_.size(), travel_.distance(), travel_.vehicles()));
+             collisionsPerKilometer(standing_.size(), travel_.distance(), travel_.vehicles()));
     sink.set(kFreeStandShare,
              {100.0 * static_cast<double>(standing_decisions_) / static_cast<double>(decisions_),
               decisions_,

@@ -69,8 +69,8 @@ MetricDescriptor egoCollisionsMetric() {
 namespace {
 
 /// Events in batches: over the km of the ego, whoever else takes part.
-constexpr PoolingRule kOverEgoKilometres = {Pooling::kCount, SessionWeight::kEgoKilometres};
-constexpr PoolingRule kPerEgoKilometre = {Pooling::kRate, SessionWeight::kEgoKilometres};
+constexpr PoolingRule kOverEgoKilometers = {Pooling::kCount, SessionWeight::kEgoKilometres};
+constexpr PoolingRule kPerEgoKilometer = {Pooling::kRate, SessionWeight::kEgoKilometres};
 
 }  // namespace
 
@@ -85,7 +85,7 @@ const MeasureDefinition known::kEgoStruckCbvs = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 const MeasureDefinition known::kEgoStruckByCbvs = {
     "ego_contacts_by_cbv",
@@ -98,7 +98,7 @@ const MeasureDefinition known::kEgoStruckByCbvs = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 const MeasureDefinition known::kEgoStruckStanding = {
     "ego_contacts_standing",
@@ -112,7 +112,7 @@ const MeasureDefinition known::kEgoStruckStanding = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 const MeasureDefinition known::kEgoAvoidable = {
     "ego_contacts_avoidable",
@@ -127,7 +127,7 @@ const MeasureDefinition known::kEgoAvoidable = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 
 namespace {
@@ -143,7 +143,7 @@ constexpr MeasureDefinition kEgoStruckBackground = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 constexpr MeasureDefinition kEgoByBackground = {
     "ego_contacts_by_background",
@@ -157,43 +157,43 @@ constexpr MeasureDefinition kEgoByBackground = {
     "",
     0,
     false,
-    kOverEgoKilometres,
+    kOverEgoKilometers,
 };
 
 /// Of a count by the ego's km.
 constexpr MeasureDefinition egoRate(const char* name, const char* place, const char* label,
                                     Direction direction, const char* definition) {
   return {name,       place, label, "1/km", direction,       Subject::kEgoAndOthers,
-          definition, "",    3,     false,  kPerEgoKilometre};
+          definition, "",    3,     false,  kPerEgoKilometer};
 }
 
 constexpr MeasureDefinition kContactsPerKm = egoRate(
     "ego_collisions_per_km", "/ego/collisions_per_km", "Collisions of the ego per km",
-    Direction::kLowerIsBetter, "1000 x ego_collisions / distance driven by the ego in metres.");
+    Direction::kLowerIsBetter, "1000 x ego_collisions / distance driven by the ego in meters.");
 constexpr MeasureDefinition kStruckCbvsPerKm =
     egoRate("ego_contacts_struck_cbv_per_km", "/ego/struck_cbvs_per_km",
             "Contacts in which the ego struck a CBV, per km", Direction::kLowerIsBetter,
-            "1000 x ego_contacts_struck_cbv / distance driven by the ego in metres.");
+            "1000 x ego_contacts_struck_cbv / distance driven by the ego in meters.");
 constexpr MeasureDefinition kByCbvsPerKm =
     egoRate("ego_contacts_by_cbv_per_km", "/ego/struck_by_cbvs_per_km",
             "Contacts in which a CBV struck the ego, per km", Direction::kNeither,
-            "1000 x ego_contacts_by_cbv / distance driven by the ego in metres.");
+            "1000 x ego_contacts_by_cbv / distance driven by the ego in meters.");
 constexpr MeasureDefinition kEgoStruckBackgroundPerKm = egoRate(
     "ego_contacts_struck_background_per_km", "/ego/struck_background_per_km",
     "Contacts in which the ego struck a background vehicle, per km", Direction::kLowerIsBetter,
-    "1000 x ego_contacts_struck_background / distance driven by the ego in metres.");
+    "1000 x ego_contacts_struck_background / distance driven by the ego in meters.");
 constexpr MeasureDefinition kEgoByBackgroundPerKm =
     egoRate("ego_contacts_by_background_per_km", "/ego/struck_by_background_per_km",
             "Contacts in which a background vehicle struck the ego, per km", Direction::kNeither,
-            "1000 x ego_contacts_by_background / distance driven by the ego in metres.");
+            "1000 x ego_contacts_by_background / distance driven by the ego in meters.");
 constexpr MeasureDefinition kEgoStandingPerKm =
     egoRate("ego_contacts_standing_per_km", "/ego/struck_standing_per_km",
             "Contacts with a standing ego per km", Direction::kLowerIsBetter,
-            "1000 x ego_contacts_standing / distance driven by the ego in metres.");
+            "1000 x ego_contacts_standing / distance driven by the ego in meters.");
 constexpr MeasureDefinition kAvoidablePerKm =
     egoRate("ego_contacts_avoidable_per_km", "/ego/avoidable_contacts_per_km",
             "Contacts that the ego could have avoided, per km", Direction::kLowerIsBetter,
-            "1000 x ego_contacts_avoidable / distance driven by the ego in metres.");
+            "1000 x ego_contacts_avoidable / distance driven by the ego in meters.");
 
 /// Who struck whom in the contacts of the ego, and how many of them it could have helped.
 class EgoContactKinds final : public Metric {
@@ -238,7 +238,7 @@ class EgoContactKinds final : public Metric {
   }
 
   Measure rate(std::size_t count) const {
-    return countPerKilometre(count, distance_, ticks_,
+    return countPerKilometer(count, distance_, ticks_,
                              ticks_ == 0 ? kNoEgo : "the ego did not move");
   }
   void set(MetricSink& sink, const MeasureDefinition& counted, const MeasureDefinition& per_km,

@@ -139,7 +139,7 @@ constexpr MeasureDefinition kOffRoad = {
     "%",
     Direction::kLowerIsBetter,
     Subject::kEgo,
-    "100 x ticks with the centre of the ego's box off the "
+    "100 x ticks with the center of the ego's box off the "
     "drivable area of its level / ticks with the ego.",
     "",
 };

@@ -44,7 +44,7 @@ constexpr MeasureDefinition kAct = {
     Direction::kHigherIsBetter,
     Subject::kEgoAndOthers,
     "Per decision the smallest over vehicles within 60 m of shortest corner-to-corner distance / "
-    "approach speed of the centres, rounded to 0.01 s; mean of 0.5 s bins below 5 s at ego speeds "
+    "approach speed of the centers, rounded to 0.01 s; mean of 0.5 s bins below 5 s at ego speeds "
     "of 3 to 10 m/s.",
     "",
 };
@@ -106,7 +106,7 @@ const MeasureDefinition known::kRiftCollisionsPerKm = {
     "1/km",
     Direction::kNeither,
     Subject::kCbvs,
-    "1000 x CBVs that collided / distance over decision ticks in metres.",
+    "1000 x CBVs that collided / distance over decision ticks in meters.",
     "",
     3,
     false,
@@ -119,7 +119,7 @@ const MeasureDefinition known::kRiftOffRoad = {
     "%",
     Direction::kLowerIsBetter,
     Subject::kCbvs,
-    "100 x CBV decisions with the centre off the drivable area / CBV decisions.",
+    "100 x CBV decisions with the center off the drivable area / CBV decisions.",
     "",
 };
 
@@ -171,7 +171,7 @@ class RiftRates final : public Metric {
     sink.set(known::kRiftOffRoad, off_road_.measure(kNoCbv));
     sink.set(kRiftUncomfortable, uncomfortable_.measure(kNoCbv));
     sink.set(known::kRiftCollisionsPerKm,
-             collisionsPerKilometre(collided_.size(), distance_, driven_.size()));
+             collisionsPerKilometer(collided_.size(), distance_, driven_.size()));
     const std::optional<double> progress =
         driven_.empty() ? std::nullopt : std::optional<double>(distance_);
     sink.set(kReachedProgress, measureOrReason(progress, driven_.size(), kNoCbv));

@@ -40,7 +40,7 @@ constexpr MeasureDefinition meanMeasure(const char* name, const char* label,
 constexpr MeasureDefinition kFollowingShare = shareMeasure(
     "ttc_following_percent", "2D-TTC of the ego's own following, share",
     "100 x decisions at which the vehicle that sets ttc_mean_s is ahead in the ego's lane / "
-    "decisions at which it is defined: its centre within half a lane's width of the ego's route "
+    "decisions at which it is defined: its center within half a lane's width of the ego's route "
     "ahead of the ego, its heading within 45 deg of the route's; whoever drives it.");
 constexpr MeasureDefinition kFollowingCbvShare =
     shareMeasure("ttc_following_cbv_percent", "2D-TTC of following a CBV, share",

@@ -225,7 +225,7 @@ Markup approachPart(const record::SessionResult& result, const record::Approach&
                               : "the outlines overlap";
   const std::string heading =
       approach.vehicle_id + " at " + core::formatFixed(approach.time(), 2) + " s: " + gap;
-  const std::string line = "Centres " + core::formatFixed(approach.center_distance, 1) +
+  const std::string line = "Centers " + core::formatFixed(approach.center_distance, 1) +
                            " m apart; CBV " + speedText(*cbv) + ", ego " + speedText(*ego);
   const Markup seen = views(camera, approach, *cbv, "CBV", approach.cbv_image) +
                       views(camera, approach, *ego, "ego", approach.ego_image);

@@ -45,7 +45,7 @@ std::vector<traffic::VehicleState> forecastMotion(const traffic::Vehicle& vehicl
 
 // Where a vehicle whose route is known will be (map frame, SI units): along the route at its
 // present lateral offset, with its present acceleration for one second and constant speed
-// afterwards.
+// afterward.
 
 /// States 0.1, 0.2 ... steps x 0.1 s from now; `arc_length` is the vehicle's place on the route.
 std::vector<traffic::VehicleState> forecastAlongRoute(const traffic::Vehicle& vehicle,

@@ -171,9 +171,9 @@ std::size_t countValues(const std::vector<Course>& courses, Feature feature) {
 }
 
 std::size_t countCollided(const std::vector<Course>& courses) {
-  return static_cast<std::size_t>(std::count_if(
-      courses.begin(), courses.end(),
-      [](const Course& course) { return indicatorOf(course, kCollision) == 1.0; }));
+  return static_cast<std::size_t>(
+      std::count_if(courses.begin(), courses.end(),
+                    [](const Course& course) { return indicatorOf(course, kCollision) == 1.0; }));
 }
 
 PooledResult comparePooled(const std::vector<Recording>& log, const PooledDrivers& drivers,
@@ -183,11 +183,8 @@ PooledResult comparePooled(const std::vector<Recording>& log, const PooledDriver
   if (result.sites.empty()) throw core::InputError("the log holds no recording");
   result.headline = headlineOf(result.sites, headline);
   for (const auto& [driver, courses] : drivers) {
-    PooledRow row{driver,
-                  courses.size(),
-                  countValues(courses, kLinearSpeed),
-                  countCollided(courses),
-                  {}};
+    PooledRow row{
+        driver, courses.size(), countValues(courses, kLinearSpeed), countCollided(courses), {}};
     for (const auto& [name, site] : result.sites)
       row.at_site[name] = pooledLikelihoods(site.all, courses);
     result.rows.push_back(row);

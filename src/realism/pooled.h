@@ -35,9 +35,9 @@ std::vector<Course> pooledCourses(std::vector<Recording> recordings, const std::
 Likelihoods pooledLikelihoods(const std::vector<Course>& logged,
                               const std::vector<Course>& simulated);
 
-/// Courses of recorded drivers of a site, and the same in two halves that share no vehicle, whatever
-/// recordings it is in: vehicles in the order of their names (by length, then by letters, so that
-/// numbers count up, as NGSIM's do with time) up to half of all states, and the others.
+/// Courses of recorded drivers of a site, and the same in two halves that share no vehicle,
+/// whatever recordings it is in: vehicles in the order of their names (by length, then by letters,
+/// so that numbers count up, as NGSIM's do with time) up to half of all states, and the others.
 struct RecordedSite {
   std::vector<Course> all;
   std::vector<Course> halves[2];
@@ -75,7 +75,7 @@ struct PooledResult {
   std::vector<PooledRow> rows;  ///< the ceiling is the last
 };
 
-/// `headline`: a site, or empty: the signalised arterial "Lanker" where it is there, else the first
+/// `headline`: a site, or empty: the signalized arterial "Lanker" where it is there, else the first
 /// by name. Throws InputError for a site that is not there.
 PooledResult comparePooled(const std::vector<Recording>& log, const PooledDrivers& drivers,
                            const std::string& headline);

@@ -121,8 +121,8 @@ std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::pa
 /// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s, with the
 /// contacts of every tick: a CBV leaves the simulation at the tick after one, which need not be a
 /// step. The trace holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m
-/// x 1.8 m, as generated demand and every vehicle of ours is. Throws InputError for a folder without them and
-/// for a simulation step of which 0.1 s is no multiple.
+/// x 1.8 m, as generated demand and every vehicle of ours is. Throws InputError for a folder
+/// without them and for a simulation step of which 0.1 s is no multiple.
 Recording readResult(const std::filesystem::path& folder);
 
 }  // namespace cdiff::realism

@@ -27,13 +27,13 @@ Bound boundOf(const traffic::Vehicle& vehicle) {
                           size.height * size.height)};
 }
 
-traffic::CameraImage midGrey(const CameraOptions& options, std::uint64_t tick) {
-  constexpr std::uint8_t kMidGrey = 128;
+traffic::CameraImage midGray(const CameraOptions& options, std::uint64_t tick) {
+  constexpr std::uint8_t kMidGray = 128;
   traffic::CameraImage image;
   image.width = static_cast<int>(options.width);
   image.height = static_cast<int>(options.height);
   image.tick = tick;
-  image.rgb.assign(static_cast<std::size_t>(3 * options.width * options.height), kMidGrey);
+  image.rgb.assign(static_cast<std::size_t>(3 * options.width * options.height), kMidGray);
   return image;
 }
 
@@ -43,14 +43,14 @@ void CameraOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"width", "px", "Width of the image."}, width, 1, 4096);
   visitor.integer({"height", "px", "Height of the image."}, height, 1, 4096);
   visitor.number({"field_of_view", "deg", "Horizontal field of view."}, field_of_view, 10.0, 170.0);
-  visitor.number({"mount_forward", "m", "Mounting point ahead of the box's centre."}, mount_forward,
+  visitor.number({"mount_forward", "m", "Mounting point ahead of the box's center."}, mount_forward,
                  -20.0, 20.0);
   visitor.number({"mount_height", "m", "Mounting point above the road."}, mount_height, 0.2, 10.0);
   visitor.number({"pitch", "deg", "Downward tilt."}, pitch, -45.0, 45.0);
   visitor.number({"far_distance", "m", "Farthest ground and vehicles that are drawn."},
                  far_distance, 5.0, 1000.0);
   visitor.integer({"supersampling", "", "Samples per pixel and axis."}, supersampling, 1, 8);
-  visitor.flag({"blind", "", "Whether every pixel is mid-grey, to see what an image is worth."},
+  visitor.flag({"blind", "", "Whether every pixel is mid-gray, to see what an image is worth."},
                blind);
 }
 
@@ -84,7 +84,7 @@ FrontCamera::~FrontCamera() = default;
 traffic::CameraImage FrontCamera::render(const traffic::TrafficSnapshot& snapshot,
                                          const traffic::Vehicle& vehicle) {
   Scene& scene = *scene_;
-  if (scene.options.blind) return midGrey(scene.options, snapshot.tick);
+  if (scene.options.blind) return midGray(scene.options, snapshot.tick);
   const View view(scene.options, vehicle);
   scene.canvas.clear();
   scene.road.draw(view, scene.canvas);

@@ -13,7 +13,7 @@ constexpr double kTallBody = 2.1;    // [m] higher vehicles have no cabin of the
 constexpr double kLongBody = 6.5;    // [m] nor have longer ones
 constexpr double kNarrowBody = 1.1;  // [m] nor have bicycles and motorcycles
 constexpr Color kGlass = rgb(36, 44, 54);
-constexpr Color kTyre = rgb(22, 22, 24);
+constexpr Color kTire = rgb(22, 22, 24);
 constexpr Color kShadow = rgb(44, 46, 50);
 constexpr Color kTailLight = rgb(128, 14, 16);
 constexpr Color kBrakeLight = rgb(255, 36, 24);
@@ -156,12 +156,12 @@ void paintWheels(const traffic::VehicleDimensions& size, Painter& painter) {
   const double half = 0.5 * size.width;
   const double radius = std::clamp(0.21 * size.height, 0.28, 0.5);
   for (const double x : {-0.31 * size.length, 0.31 * size.length}) {
-    painter.face(wheelOf(x, half, radius), kTyre, rank::kBodyDetail);
-    painter.face(wheelOf(x, -half, radius), kTyre, rank::kBodyDetail);
+    painter.face(wheelOf(x, half, radius), kTire, rank::kBodyDetail);
+    painter.face(wheelOf(x, -half, radius), kTire, rank::kBodyDetail);
     const Block tread = {x - radius, x - radius, x + radius, x + radius,
                          half,       half,       0.0,        kClearance};
-    painter.face(rearOf(tread), kTyre, rank::kBody);
-    painter.face(frontOf(tread), kTyre, rank::kBody);
+    painter.face(rearOf(tread), kTire, rank::kBody);
+    painter.face(frontOf(tread), kTire, rank::kBody);
   }
 }
 

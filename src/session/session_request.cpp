@@ -76,8 +76,8 @@ void addPlannerChanges(const MethodOptions& method, const ScenarioOptions& scena
 void addGuidanceChanges(const std::string& group, const guidance::GuidanceOptions& guidance,
                         const std::string& given, const std::string& profile,
                         std::vector<std::string>& changed) {
-  const auto keys = changedKeys(core::flatOptions(guidance::loadProfile(profile)),
-                                core::flatOptions(guidance));
+  const auto keys =
+      changedKeys(core::flatOptions(guidance::loadProfile(profile)), core::flatOptions(guidance));
   if (!keys.empty() && !given.empty() && given != profile) {
     changed.push_back(group + "_profile");
     return;

@@ -70,7 +70,7 @@ class RightOfWay {
   RightOfWay(const map::RoadNetwork& network, const std::vector<traffic::SignalState>& signals);
 
   /// Changes after a step of `step` seconds. No vehicle may go while another moves in the
-  /// junction or towards it. To ours, traffic always yields: while one of ours comes, only those go
+  /// junction or toward it. To ours, traffic always yields: while one of ours comes, only those go
   /// that stand ahead of it on its own edge, and other grants end. A queue ahead of ours at a light
   /// has priority ('G') until ours is the first.
   RightOfWayChanges update(const std::vector<SimulatedVehicle>& vehicles, const IsDriven& is_driven,
@@ -79,9 +79,9 @@ class RightOfWay {
  private:
   /// What goes on at a junction in this step, and who may go.
   struct JunctionState {
-    bool moving = false;           ///< a vehicle moves in it or towards it
+    bool moving = false;           ///< a vehicle moves in it or toward it
     std::string ours_edge;         ///< edge on which ours comes or waits; empty when none
-    bool ours_coming = false;      ///< one of ours moves towards it
+    bool ours_coming = false;      ///< one of ours moves toward it
     bool ours_near = false;        ///< ... and arrives within seconds
     bool ours_on_several = false;  ///< ours come on different edges
     double ours_to_end = 0.0;      ///< of ours on `ours_edge` [m]

@@ -180,7 +180,7 @@ class ArmShape {
   bool elevation_;
 };
 
-/// Both directions of a road: "NAME_in" towards the node `inner`, "NAME_out" away from it.
+/// Both directions of a road: "NAME_in" toward the node `inner`, "NAME_out" away from it.
 struct ArmPlan {
   std::string name;
   std::string inner;

@@ -185,9 +185,9 @@ void VideoMap::drawConflicts(cv::Mat picture, const page::MapCanvas& canvas) con
 }
 
 void VideoMap::drawScale(cv::Mat picture, const page::MapCanvas& canvas) const {
-  constexpr double kMetres = 20.0;
+  constexpr double kMeters = 20.0;
   const cv::Point left(16, size_.height - 16);
-  const cv::Point right(left.x + static_cast<int>(std::lround(kMetres * canvas.scale())), left.y);
+  const cv::Point right(left.x + static_cast<int>(std::lround(kMeters * canvas.scale())), left.y);
   cv::line(picture, left, right, ink::kText, 2, cv::LINE_AA);
   writeText(picture, "20 m", left + cv::Point(0, -8), 0.45, ink::kText);
   const cv::Point top(size_.width - 20, 14);

@@ -60,7 +60,7 @@ class TownSelection : public ::testing::Test {
   }
 
   /// Whether a lane lies beside another or starts at most 3 m after its end (lanes of a few
-  /// centimetres, which this town has, get no point of a route of their own).
+  /// centimeters, which this town has, get no point of a route of their own).
   bool follows(map::LaneIndex before, map::LaneIndex here) const {
     if (here == before) return true;
     const double end = network_->lane(before).centerline.length();

@@ -17,7 +17,7 @@ namespace cdiff::test {
 class CdiffCommand : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
-  /// Runs cdiff; its output is in expectOutput() afterwards.
+  /// Runs cdiff; its output is in expectOutput() afterward.
   int cdiff(const std::vector<std::string>& arguments) const {
     return run(CDIFF_PROGRAM, arguments);
   }

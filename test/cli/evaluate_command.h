@@ -23,7 +23,7 @@ class EvaluateCommand : public testing::Test {
     return (scratch_.path() / name).string();
   }
   std::string folder(const std::string& name) const { return (scratch_.path() / name).string(); }
-  /// Runs cdiff; its output is in output() afterwards.
+  /// Runs cdiff; its output is in output() afterward.
   int cdiff(const std::vector<std::string>& arguments) const {
     return ProgramRun(CDIFF_PROGRAM, arguments, scratch_.path() / "output").wait();
   }

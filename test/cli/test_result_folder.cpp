@@ -53,7 +53,7 @@ class ResultFolder : public test::EvaluateCommand {
   nlohmann::json summary() const {
     return nlohmann::json::parse(core::readFile(results() + "/summary.json", "summary"));
   }
-  /// Runs a shell script; its output is in output() afterwards.
+  /// Runs a shell script; its output is in output() afterward.
   int shell(const std::string& script, const std::vector<std::string>& wrapper = {}) const {
     std::vector<std::string> words = wrapper;
     words.insert(words.end(), {"/bin/sh", "-c", script});
@@ -234,10 +234,12 @@ TEST_F(ResultFolder, NetconvertThatHangsOrCrashesIsNamed) {
 TEST_F(ResultFolder, AComparisonWithRecordedTrafficIsReplacedWhereAskedTo) {
   made("session");
   write("session/session.yaml", "scenario:\n  simulation_step: 0.1\n");
-  write("session/trace.csv", "tick,id,role,x,y,heading,speed,throttle,steer,brake\n0,ego,ego,0,0,0,"
-                             "1,0,0,0\n");
-  const std::string log = write("log.csv", "recording,vehicle,t,x,y,heading,length,width\n"
-                                           "Main-1,7,0,0,0,0,4,2\n");
+  write("session/trace.csv",
+        "tick,id,role,x,y,heading,speed,throttle,steer,brake\n0,ego,ego,0,0,0,"
+        "1,0,0,0\n");
+  const std::string log = write("log.csv",
+                                "recording,vehicle,t,x,y,heading,length,width\n"
+                                "Main-1,7,0,0,0,0,4,2\n");
   std::vector<std::string> words = {"realism", "pooled", folder("session"), "--log",
                                     log,       "--out",  results()};
   EXPECT_EQ(cdiff(words), 0) << output();

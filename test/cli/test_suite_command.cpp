@@ -69,9 +69,9 @@ TEST_F(SuiteCommand, ASealedSuiteIsOpenedWithAReasonOnly) {
   EXPECT_EQ(cdiff(command), 3);
   expectOutput("the suite development is sealed");
   EXPECT_FALSE(fs::exists(path("runs")));
-  EXPECT_EQ(cdiff({"run", path("suite/scenarios/development_left_1.yaml"), "--results",
-                   path("runs")}),
-            3);
+  EXPECT_EQ(
+      cdiff({"run", path("suite/scenarios/development_left_1.yaml"), "--results", path("runs")}),
+      3);
   expectOutput("is a route of the sealed suite suite");
   EXPECT_FALSE(fs::exists(path("runs")));
   std::vector<std::string> opening = command;

@@ -39,7 +39,7 @@ TEST(Normalizer, RoundTrip) {
 }
 
 TEST(Normalizer, GradientIsMultipliedByTheScale) {
-  // metric = normalized x scale + mean, so dJ/dnormalised = 3 x (i + 1).
+  // metric = normalized x scale + mean, so dJ/dnormalized = 3 x (i + 1).
   const traffic::Rollout gradient = traffic::Rollout::Constant(2, 7, 3.0);
   const Trajectory normalized = counting().toNormalizedGradient(gradient);
   for (int i = 0; i < 14; ++i) EXPECT_EQ(normalized.data()[i], static_cast<float>(3 * (i + 1)));

@@ -145,7 +145,7 @@ TEST(Sampler, ObjectiveThatDoesNotActLeavesEveryBit) {
   }
 }
 
-TEST(Sampler, SampleDoesNotDependOnItsNeighbours) {
+TEST(Sampler, SampleDoesNotDependOnItsNeighbors) {
   for (const char* name : {"paper", "real_time", "unguided"}) {
     const NoiseSchedule schedule(100);
     const traffic::Rollout spread = traffic::Rollout::Constant(kHorizon, 7, 0.3);

@@ -98,9 +98,10 @@ TEST_F(BatchFiles, SummaryHasASystemPerCombinationWithoutRoutes) {
   const std::string text = batchMarkdown("night", records);
   expectIn("| all runs | 2 | 0 | 0 | 2 | 1 |", text);
   expectIn("| 4 / 2.000 km = 2.00 |", text);
-  expectIn("Warning: only 1 seed; a figure needs at least 5 (`--seeds 1,2,3,4,5`). Only 2 routes: "
-           "too few for intervals, which need 5.",
-           text);
+  expectIn(
+      "Warning: only 1 seed; a figure needs at least 5 (`--seeds 1,2,3,4,5`). Only 2 routes: "
+      "too few for intervals, which need 5.",
+      text);
 }
 
 TEST_F(BatchFiles, ARowOfSystemsShowsAllIntervalsOrNone) {

@@ -58,8 +58,7 @@ TEST(Comparison, SaysInHowManyPairsASettingDiffers) {
           std::make_shared<const Settings>(Settings{{"max_cbv", other ? "3" : "2"}});
     }
   }
-  EXPECT_EQ(differenceOf(a, b),
-            "A and B differ in: key max_cbv (A 2, B 2, 3, in 1 of 2 pairs).");
+  EXPECT_EQ(differenceOf(a, b), "A and B differ in: key max_cbv (A 2, B 2, 3, in 1 of 2 pairs).");
 }
 
 TEST(Comparison, CountsOneOfAKind) {

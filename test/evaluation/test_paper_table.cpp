@@ -50,7 +50,7 @@ TEST(PaperTable, PoolsRatesWithinASeedAndSumsUpOverSeeds) {
   EXPECT_EQ(cell.note, "");
 }
 
-TEST(PaperTable, PrintsEventsPerKilometreBesideTheirKilometres) {
+TEST(PaperTable, PrintsEventsPerKilometerBesideTheirKilometers) {
   // 4 per km on 500 m and 2 per km on 1500 m: 2 + 3 contacts in 2 km; Garwood 1.6235 to 11.6683.
   TableDefinition table = rateTable("pdm_lite");
   table.columns = {{"CPK", "1/km", "/cbv/collisions_per_km", "/cbv/distance_m", "", {}}};
@@ -60,7 +60,7 @@ TEST(PaperTable, PrintsEventsPerKilometreBesideTheirKilometres) {
                  runOf("1", {{"/cbv/collisions_per_km", 2.0}, {"/cbv/distance_m", 1500.0}}, "b")})
           .cells[0][0];
   EXPECT_EQ(*cell.events, 5U);
-  EXPECT_DOUBLE_EQ(cell.kilometres, 2.0);
+  EXPECT_DOUBLE_EQ(cell.kilometers, 2.0);
   EXPECT_DOUBLE_EQ(*cell.seeds.mean, 2.5);
   EXPECT_EQ(cellText(cell, false), "5 / 2.000 km = 2.50 (2 routes, 1 seed, 2 runs)");
   EXPECT_EQ(cellText(cell, true), "5 / 2.000 km = 2.50 [0.81, 5.83] (2 routes, 1 seed, 2 runs)");
@@ -137,9 +137,9 @@ BatchRun ownRun(const char* mode, const std::string& conditioning, double contac
 }
 
 TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffers) {
-  const Figure figure =
-      barFigure(collisionFigure(), {ownRun(kNaturalistic, "image_route", 3.0, 1.0),
-                                    ownRun(kSafetyCritical, "image", 9.0, 7.0)});
+  const Figure figure = barFigure(
+      collisionFigure(),
+      {ownRun(kNaturalistic, "image_route", 3.0, 1.0), ownRun(kSafetyCritical, "image", 9.0, 7.0)});
   ASSERT_EQ(figure.sheet.rows.size(), 2U);
   EXPECT_EQ(figure.sheet.rows[1][0].title, "contacts of CBVs with the ego");
   const std::string row = "PDM-Lite,\"E2E-CDiff w/ coll (method default), contacts with the ego\"";

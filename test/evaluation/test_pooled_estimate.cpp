@@ -27,7 +27,7 @@ PooledEstimate estimateOf(const std::vector<RunRecord>& records, const std::stri
   return pooledEstimate(runs, measure, bootstrap);
 }
 
-TEST(PooledEstimate, OfACountIsItsRatePerKilometre) {
+TEST(PooledEstimate, OfACountIsItsRatePerKilometer) {
   // 3 contacts in 0.5 + 1.5 km of CBVs: 1.5 per km, Garwood 0.6187 to 8.7673 over 2 km.
   const PooledEstimate estimate =
       estimateOf({runOf("a", "1", {{"cbv_collisions", 2}, {"cbv_distance_m", 500}}),

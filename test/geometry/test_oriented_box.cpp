@@ -27,7 +27,7 @@ TEST(OrientedBox, GapAcross) {
 }
 
 // A square of side 2 turned by 45 degrees has its corner at distance sqrt(2) from the center.
-TEST(OrientedBox, CornerTowardsEdge) {
+TEST(OrientedBox, CornerTowardEdge) {
   const OrientedBox first{{0, 0}, 0.0, 2.0, 2.0};
   const OrientedBox second{{1 + std::sqrt(2.0) + 0.5, 0}, core::kPi / 4, 2.0, 2.0};
   EXPECT_NEAR(distance(first, second), 0.5, 1e-12);

@@ -160,7 +160,7 @@ TEST(CollisionSeeking, StillPullsFromTheTriggerDistance) {
               2e-4);
 }
 
-TEST(CollisionSeeking, MeetingCentresGiveFiniteNumbers) {
+TEST(CollisionSeeking, MeetingCentersGiveFiniteNumbers) {
   GuidanceWorld world;
   world.setOther(40.0, 0.0);
   const Rollout gradient =

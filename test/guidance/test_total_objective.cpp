@@ -140,7 +140,7 @@ TEST(TotalObjective, WindowsOpenAndClose) {
   EXPECT_EQ(total.score(rollout).value, 9.0 * test::kRows);  // whatever the window
 }
 
-TEST(TotalObjective, CapsTheNormInNormalisedUnits) {
+TEST(TotalObjective, CapsTheNormInNormalizedUnits) {
   GuidanceWorld world;
   GuidanceOptions options = withWeights(0.5, 0.0, 0.0);
   options.find("speed").gradient_cap = 2.0;

@@ -13,7 +13,7 @@ namespace {
 
 /// Normalizes channel c, pixel p of the value 1000 c + p^2 (32 channels of 2 x 3 pixels) in a
 /// layout, and returns [channel, pixel].
-std::vector<double> normalised(dnnl::memory::format_tag layout, bool residual,
+std::vector<double> normalized(dnnl::memory::format_tag layout, bool residual,
                                EncoderNorm::Activation activation) {
   const MapShape shape{32, 2, 3};
   Tensor gain{{32}, std::vector<float>(32, 2.0F)};
@@ -46,7 +46,7 @@ TEST(EncoderNorm, NormalisesGroupsOf16ChannelsInEveryLayout) {
     for (const bool residual : {false, true}) {
       for (const bool relu : {false, true}) {
         const std::vector<double> result =
-            normalised(layout, residual,
+            normalized(layout, residual,
                        relu ? EncoderNorm::Activation::kRelu : EncoderNorm::Activation::kNone);
         for (int c = 0; c < 32; ++c) {
           for (int p = 0; p < 6; ++p) {

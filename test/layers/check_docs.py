@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Check what the documents say about the source tree: paths, links, identifiers, the folder table.
+"""Check what the documents say about the source tree: paths, links, identifiers, the folder table; and American spelling in all texts.
 
     check_docs.py SOURCE RESULT.xml
 
-Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
+No text of the tree spells one of BRITISH. Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
 the files of the row; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
 """
 import re
@@ -24,6 +24,17 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 PLACEHOLDER = re.compile(r"\b(?:[A-Z]{3,}|Name)\b|[A-Z]{3,}_")
 # Files that a document has the reader make.
 MADE_BY_READER = {"src/guidance/standstill_objective.h", "src/guidance/standstill_objective.cpp"}
+# British words, as stems; "manoeuvre" and the variants "grey" of image_effect are keys in files, which stay.
+BRITISH = ["centre", "metre", "kilometre", "millimetre", "centimetre", "neighbour", "colour", "behaviour", "grey", "towards", "afterwards", "spelt",
+           "travelled", "travelling", "signalled", "labelled", "labelling", "modelled", "modelling", "cancelled", "judgement", "licence", "defence",
+           "favour", "honour", "catalogue", "artefact", "programme", "learnt", "tyre", "kerb", "whilst", "analysed", "analysing",
+           *(stem + ending for stem in ("optimi", "normali", "minimi", "maximi", "penali", "parametri", "rasteri", "recogni", "initiali", "seriali",
+                                        "synchroni", "generali", "summari", "randomi", "organi", "signali", "visuali", "standardi", "speciali",
+                                        "denormali", "locali", "reali") for ending in ("se", "sed", "ser", "sing", "sation"))]
+SPELLING = re.compile(r"(?<![A-Za-z_])(?:" + "|".join(BRITISH) + r")(?:s|d|ed|ing)?(?![A-Za-z_])", re.IGNORECASE)
+TEXTS = {".h", ".cpp", ".in", ".py", ".md", ".rst", ".yaml", ".msg", ".launch", ".cmake", ".txt", ".css", ".js", ""}
+# Folders and files whose words stand for something else: sealed bytes, keys in files, and this list.
+LEFT_ALONE = ["config/suites", "config/evaluations/image_effect.yaml", "test/layers/check_docs.py"]
 TABLES = ["docs/glossary.md", "docs/notation.md"]
 
 
@@ -128,6 +139,19 @@ def wrong_folders(source):
         yield "docs/architecture.md: the arrows are not the order of test/layers/check_layers.py"
 
 
+def british_words(source):
+    """Places of British spelling in the texts of the tree."""
+    folders = [source / top for top in [*TOPS, "networks", "rviz", "sumo"]]
+    paths = [path for folder in folders for path in sorted(folder.rglob("*"))] + sorted(source.glob("*.*"))
+    for path in paths:
+        name = str(path.relative_to(source))
+        if not path.is_file() or path.suffix not in TEXTS or any(name.startswith(left) for left in LEFT_ALONE):
+            continue
+        for line, content in enumerate(path.read_text(errors="ignore").splitlines(), 1):
+            for found in SPELLING.finditer(content):
+                yield f"{name}:{line}: '{found.group(0)}' is British spelling"
+
+
 def self_test():
     """The search finds what is wrong, and nothing else."""
     wrong = []
@@ -143,6 +167,10 @@ def self_test():
         found = list(wrong_paths(source))
         wrong += [f"finds {found}"] if len(found) != len(expected) else []
         wrong += [f"misses {word}" for word in expected if not any(word in line for line in found)]
+        page.write_text("Colours of centred `analyses`, analysed.\nA centimetre, kEgoKilometres, parameter, reality\n")
+        found = list(british_words(source))
+        if [line.split("'")[1] for line in found] != ["Colours", "centred", "analysed", "centimetre"]:
+            wrong.append(f"finds {found}")
         page.write_text("| T | In the code |\n|---|---|\n| a \\| b | `Route`, `src/map/route.h` |\n| c | `Rout`, `src/map/route.h` |\n| d | `src/map/route.h` |\n")
         found = list(wrong_identifiers(source, "docs/a.md"))
         if [line.split(":")[1] for line in found] != ["4", "5"]:
@@ -152,7 +180,8 @@ def self_test():
 
 def main():
     source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source)))]
+    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))),
+               ("spelling", list(british_words(source)))]
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
     for _, found in results:
         print("\n".join(found), end="\n" if found else "")

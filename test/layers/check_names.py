@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Check that a name stands as a string in its table alone: where else it is spelt, a change of the table would not reach.
+"""Check that a name stands as a string in its table alone: where else it is spelled, a change of the table would not reach.
 
     check_names.py SOURCE RESULT.xml
 
@@ -17,7 +17,7 @@ INCLUDE = re.compile(r"^[ \t]*#[ \t]*include.*$", re.MULTILINE)
 
 
 def literals_of(text):
-    """(line number, contents) of each string of a C++ source; comments and includes hold none. Neighbours are one string."""
+    """(line number, contents) of each string of a C++ source; comments and includes hold none. Neighbors are one string."""
     text = INCLUDE.sub("", text)
     text = re.sub(r"//[^\n]*|/\*.*?\*/|" + LITERAL.pattern,
                   lambda found: found.group(0) if found.group(0).startswith('"') else "\n" * found.group(0).count("\n"), text, flags=re.DOTALL)

@@ -17,7 +17,7 @@ namespace {
 
 using core::InputError;
 
-/// One weight of three values is drawn towards targets that differ from step to step.
+/// One weight of three values is drawn toward targets that differ from step to step.
 class ToyStage : public Stage {
  public:
   ToyStage() : parameters_(core::RandomStream(5, "toy")) {

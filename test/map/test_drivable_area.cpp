@@ -21,7 +21,7 @@ namespace {
 using test::NetworkText;
 using Point = Eigen::Vector2d;
 
-constexpr double kGrid = 2e-3;  // [m] two roundings to the millimetre grid
+constexpr double kGrid = 2e-3;  // [m] two roundings to the millimeter grid
 
 /// Signed distance by the definition: nearest segment of all rings, inside by the even-odd rule.
 double definition(const std::vector<std::vector<Point>>& rings, const Point& point) {

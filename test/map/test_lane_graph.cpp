@@ -158,7 +158,7 @@ TEST(LaneGraphTurns, NamesConnectionsThatTurnRound) {
   EXPECT_EQ(turnRoundText(fork().network()), "");
 }
 
-TEST_F(LaneGraphTest, PlacesPointsEveryMetreOnTheCentreLine) {
+TEST_F(LaneGraphTest, PlacesPointsEveryMeterOnTheCenterLine) {
   const auto path = graph_.shortestPath({lane("a_0"), 20.0}, {lane("b_0"), 30.0}, 1000.0);
   const Route route = graph_.toRoute(*path, 20.0, 30.0);
   EXPECT_NEAR(route.length(), 130.0, 1e-9);

@@ -12,7 +12,7 @@
 namespace cdiff::map {
 namespace {
 
-/// Two lanes eastwards (y = 0 and 4), a signalled junction with an internal junction on the left
+/// Two lanes eastwards (y = 0 and 4), a signaled junction with an internal junction on the left
 /// turn, a route north, and a bridge from south to north at x = 50, 8 m above.
 constexpr const char* kCrossing = R"(<?xml version="1.0"?>
 <net version="1.9">
@@ -103,7 +103,7 @@ TEST(RoadNetwork, ReadsLanesAndPermissions) {
   EXPECT_EQ(laneNamed(network, "bridge_0").centerline.pointAt(60.0), Eigen::Vector3d(50, 0, 8));
 }
 
-TEST(RoadNetwork, ReadsNeighboursThatAdmitCars) {
+TEST(RoadNetwork, ReadsNeighborsThatAdmitCars) {
   const RoadNetwork network = crossing();
   const std::vector<LaneIndex> lanes = network.lanesOfEdge("in");
   ASSERT_EQ(lanes.size(), 4u);
@@ -151,7 +151,7 @@ TEST(RoadNetwork, ReadsJunctionsWithoutInternalOnes) {
   EXPECT_EQ(network.junctions()[0].position, Eigen::Vector3d(110, 5, 0));
 }
 
-TEST(RoadNetwork, DrawsLanesOfNoLengthAlongTheirNeighbours) {
+TEST(RoadNetwork, DrawsLanesOfNoLengthAlongTheirNeighbors) {
   const RoadNetwork network = RoadNetwork::fromText(
       crossingWith("shape=\"100,0 120,0\"", "shape=\"100,0 100,0\""), "crossing");
   const Lane& stub = laneNamed(network, ":j_0_0");

@@ -93,7 +93,7 @@ TEST(MatchRoute, AcceptsPointsFarApartAndNoisy) {
   EXPECT_EQ(route.edges(), (Names{"a", "t", "b"}));
 }
 
-TEST(MatchRoute, FollowsALaneChangeBetweenTheCentreLines) {
+TEST(MatchRoute, FollowsALaneChangeBetweenTheCenterLines) {
   const RoadNetwork network = street();
   Points points;
   for (int x = 0; x <= 40; ++x) points.emplace_back(x, std::clamp(0.2 * (x - 10), 0.0, 4.0), 0.0);

@@ -80,7 +80,7 @@ TEST_F(RouteSource, NamesWrongEdges) {
   EXPECT_ERROR(routeAlongEdges(graph_, {}, 5, 5), "at least one edge");
 }
 
-TEST_F(RouteSource, FollowsCentreLinesThroughNoisyPoints) {
+TEST_F(RouteSource, FollowsCenterLinesThroughNoisyPoints) {
   const Route route = routeThroughPoints(
       graph_,
       {{10, 0.4, 0}, {10.05, 0.4, 0}, {40, -0.8, 0}, {39.8, -0.8, 0}, {95, 0.2, 0}, {160, 0, 0}});

@@ -130,7 +130,7 @@ TEST(ContactFault, SideBySideTheOneThatMovesAcrossTheLaneIsAtFault) {
   EXPECT_FALSE(fault.ego_at_fault);
   // 8 sin(10 deg) = 1.389.
   EXPECT_EQ(fault.reason,
-            "side by side, the other moved towards the ego: across the lane 0.00 m/s (ego), 1.39 "
+            "side by side, the other moved toward the ego: across the lane 0.00 m/s (ego), 1.39 "
             "m/s (other)");
   EXPECT_EQ(fault.ego_side, "left side");
   EXPECT_EQ(fault.other_side, "right side");

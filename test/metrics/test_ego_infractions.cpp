@@ -30,7 +30,7 @@ TEST(CollisionCounter, TakesTheSamePartnerWithinFiveSecondsAsOne) {
   EXPECT_EQ(counter.contacts(), 4U);
 }
 
-TEST(CollisionCounter, TakesContactsWithinFiveMetresAsOne) {
+TEST(CollisionCounter, TakesContactsWithinFiveMetersAsOne) {
   CollisionCounter counter({});
   counter.observe(0.0, at(0, 0, 5), "a");
   counter.observe(60.0, at(4.9, 0, 5), "b");

@@ -24,14 +24,14 @@ class FreeRoadTest : public ::testing::Test {
 
 TEST_F(FreeRoadTest, IsFreeAlone) { EXPECT_TRUE(isFree({})); }
 
-TEST_F(FreeRoadTest, EndsAtAVehicleWithinTenMetres) {
+TEST_F(FreeRoadTest, EndsAtAVehicleWithinTenMeters) {
   // Rear = center - 2.4.
   EXPECT_FALSE(isFree({background("v", 64.7, 0, 0)}));
   EXPECT_TRUE(isFree({background("v", 64.9, 0, 0)}));
   EXPECT_TRUE(isFree({background("v", 45.0, 0, 0)}));
 }
 
-TEST_F(FreeRoadTest, LeavesAQuarterOfAMetreToEachSide) {
+TEST_F(FreeRoadTest, LeavesAQuarterOfAMeterToEachSide) {
   // Half of 1.8 + 0.5 m is 1.15 m, half the other 0.9 m: they touch at 2.05 m.
   EXPECT_FALSE(isFree({background("v", 57, 2.0, 0)}));
   EXPECT_TRUE(isFree({background("v", 57, 2.1, 0)}));
@@ -74,11 +74,11 @@ class FreeRoadAtALight : public ::testing::Test {
   map::Route route_;
 };
 
-TEST_F(FreeRoadAtALight, EndsAtRedAndYellowUpToTenMetresAhead) {
+TEST_F(FreeRoadAtALight, EndsAtRedAndYellowUpToTenMetersAhead) {
   ASSERT_EQ(route_.signals().size(), 1U);
   for (const char* color : {"r", "u", "y"}) EXPECT_FALSE(isFree(58.0, color)) << color;
   for (const char* color : {"g", "G"}) EXPECT_TRUE(isFree(58.0, color)) << color;
-  // The line is at 60: 10 m are from 50 on. One metre beyond it a vehicle still stands at it.
+  // The line is at 60: 10 m are from 50 on. One meter beyond it a vehicle still stands at it.
   EXPECT_FALSE(isFree(50.5, "r"));
   EXPECT_TRUE(isFree(49.5, "r"));
   EXPECT_FALSE(isFree(60.9, "r"));

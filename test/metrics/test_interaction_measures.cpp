@@ -27,7 +27,7 @@ TEST(InteractionOf, TakesMinimaOverVehicles) {
   EXPECT_NEAR(*interaction.nearest_distance, 15.2, 1e-12);
 }
 
-TEST(InteractionOf, TakesTheNearestBoxNotTheNearestCentre) {
+TEST(InteractionOf, TakesTheNearestBoxNotTheNearestCenter) {
   // Beside: 8 - 1.8 = 6.2 m. Ahead a truck of 12 m: 14 - 2.4 - 6 = 5.6 m.
   auto truck = background("truck", 14, 0, 0);
   truck.dimensions.length = 12.0;

@@ -18,18 +18,18 @@ TEST(TickShare, IsAShareOfTicks) {
   EXPECT_EQ(rate.measure("none").n, 4U);
 }
 
-TEST(CollisionsPerKilometre, DividesByTheDistance) {
+TEST(CollisionsPerKilometer, DividesByTheDistance) {
   // 2 collisions in 500 m: 4 per km.
-  const Measure measure = collisionsPerKilometre(2, 500.0, 3);
+  const Measure measure = collisionsPerKilometer(2, 500.0, 3);
   EXPECT_DOUBLE_EQ(*measure.value, 4.0);
   EXPECT_EQ(measure.n, 3U);
-  EXPECT_DOUBLE_EQ(*collisionsPerKilometre(0, 500.0, 3).value, 0.0);
+  EXPECT_DOUBLE_EQ(*collisionsPerKilometer(0, 500.0, 3).value, 0.0);
 }
 
-TEST(CollisionsPerKilometre, NamesTheReasonForItsAbsence) {
-  EXPECT_EQ(collisionsPerKilometre(0, 0.0, 0).reason, "no CBV was driven");
-  EXPECT_EQ(collisionsPerKilometre(1, 0.0, 1).reason, "no CBV moved");
-  EXPECT_FALSE(collisionsPerKilometre(1, 0.0, 1).value.has_value());
+TEST(CollisionsPerKilometer, NamesTheReasonForItsAbsence) {
+  EXPECT_EQ(collisionsPerKilometer(0, 0.0, 0).reason, "no CBV was driven");
+  EXPECT_EQ(collisionsPerKilometer(1, 0.0, 1).reason, "no CBV moved");
+  EXPECT_FALSE(collisionsPerKilometer(1, 0.0, 1).value.has_value());
 }
 
 TEST(SampleStatistics, GivesMeanDeviationAndMinimum) {

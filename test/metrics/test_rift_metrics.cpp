@@ -60,7 +60,7 @@ TEST(RiftMeasures, AreAbsentWithAReasonWithoutCbv) {
   EXPECT_FALSE(measures.at("ttc_2d_s").reason.empty());
 }
 
-TEST(RiftMeasures, BinTimesBelowFiveSecondsAtThreeToTenMetresPerSecond) {
+TEST(RiftMeasures, BinTimesBelowFiveSecondsAtThreeToTenMetersPerSecond) {
   RiftMeasures rift;
   rift.observeEgo(5.0, 1.2);   // bin 1 to 1.5: 1.25
   rift.observeEgo(5.0, 2.5);   // bin 2 to 2.5: 2.25

@@ -122,7 +122,7 @@ std::size_t notObeyed(const std::string& state, double front_before_line, double
   return lines.stopSigns();
 }
 
-TEST(StopSigns, AskForAStopWithinFourMetres) {
+TEST(StopSigns, AskForAStopWithinFourMeters) {
   EXPECT_EQ(notObeyed("s", 3.9, 0.09), 0U);
   EXPECT_EQ(notObeyed("w", 3.9, 0.09), 0U);  // all-way stop
   EXPECT_EQ(notObeyed("s", 3.9, 0.11), 1U);

@@ -116,7 +116,7 @@ TEST(RiftTimeToCollision, NeedsAnApproach) {
   EXPECT_FALSE(riftTimeToCollision(car(0, 0, 0, 10), car(20, 3.5, 0, 0)).has_value());
 }
 
-TEST(RiftTimeToCollision, PassesOverContactsWhoseCentresDrawApart) {
+TEST(RiftTimeToCollision, PassesOverContactsWhoseCentersDrawApart) {
   // Two 12 m trucks side by side, the first faster by 3 m/s and drifting over at 0.5 m/s: the gap
   // 3 - 1.8 = 1.2 m closes in 2.4 s, while the trucks still overlap lengthwise (-1 - 7.2 = -8.2 m
   // of 12 m). Now -u . (v_B - v_A) is (3, 0.5) . (-1, 3) / |u| < 0.
@@ -138,7 +138,7 @@ TEST(LongitudinalLateralTimeToCollision, TakesTheSmallerValidDirection) {
   // Lateral: 10 - (1.8 + 1.8) / 2 = 8.2 m at 2 m/s, longitudinal offset 0; the boxes count as
   // parallel.
   EXPECT_NEAR(*longitudinalLateralTimeToCollision(car(0, 0, 0, 0), car(0, 10, -90, 2)), 4.1, 1e-12);
-  // From the left and ahead at 45 degrees towards the standing first: lateral gap 8.2 m at 5 m/s
+  // From the left and ahead at 45 degrees toward the standing first: lateral gap 8.2 m at 5 m/s
   // in 1.64 s, when the second is at x = 10 - 5 x 1.64 = 1.8 (inside 4.8): valid. Longitudinal
   // gap 5.2 m in 1.04 s, when it is at y = 4.8: not valid.
   MovingBox diagonal = car(10, 10, 0, 0);

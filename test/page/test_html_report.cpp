@@ -107,7 +107,7 @@ TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
   // Ego at (5 + 8 t, -2), CBV at (102, -60 + 6 t): they approach until the end at 6 s, when dx = 49
   // and dy = 22: 53.7 m.
   EXPECT_NE(article.find("<h3>bg_1 at 6.00 s"), std::string::npos) << article.substr(0, 300);
-  EXPECT_NE(article.find("Centres 53.7 m apart; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
+  EXPECT_NE(article.find("Centers 53.7 m apart; CBV 6.0 m/s, ego 8.0 m/s"), std::string::npos);
   EXPECT_EQ(countOf(article, "width=\"640\" height=\"384\""), 2u);  // from the CBV and the ego
   EXPECT_EQ(countOf(article, "width=\"160\" height=\"96\""), 1u);   // only the CBV's planner sees
   EXPECT_NE(article.find(record::pngDataUri(test::redAndBlue(120))), std::string::npos);

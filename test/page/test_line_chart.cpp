@@ -33,7 +33,7 @@ TEST(LineChart, PlacesPointsOnItsAxesAndBreaksWhereAValueIsMissing) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(LineChart, APointWithoutNeighboursIsADot) {
+TEST(LineChart, APointWithoutNeighborsIsADot) {
   Chart chart;
   chart.duration = 10.0;
   chart.least_top = 10.0;

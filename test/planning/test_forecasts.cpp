@@ -88,7 +88,7 @@ TEST(MotionForecast, AStandingVehicleStays) {
   EXPECT_EQ(states[19].heading, 0.2);
 }
 
-TEST(EgoForecast, AcceleratesTowardsTheTargetAndLeavesTheDriverAlone) {
+TEST(EgoForecast, AcceleratesTowardTheTargetAndLeavesTheDriverAlone) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
   const map::Route route = routeAlong(network, {"road"});
   planners::DriverState driver{RouteFollower(),

@@ -56,7 +56,7 @@ class Thrower : public cdiff::planning::Planner {
 class TestPlugin : public cdiff::plugins::Plugin {
  public:
 #if defined(PLUGIN_throwing_constructor)
-  TestPlugin() { throw std::runtime_error("no licence found"); }
+  TestPlugin() { throw std::runtime_error("no license found"); }
 #elif defined(PLUGIN_other_version)
   int apiVersion() const override { return cdiff::plugins::kApiVersion + 1; }
 #endif

@@ -71,7 +71,7 @@ TEST(PluginLoader, WhatThrowsInPlanBrakesAndIsRecorded) {
 TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
   expectIn("was built for version 2 of the API; this is version 1: build it again",
            refusalOf("other_version"));
-  expectIn("throws in its constructor: no licence found; its author must mend it",
+  expectIn("throws in its constructor: no license found; its author must mend it",
            refusalOf("throwing_constructor"));
   expectIn("throws in planners(): no planner today", refusalOf("throwing_list"));
   expectIn("planner 'pdm_lite' is already registered by package e2e_cdiff",

@@ -108,7 +108,7 @@ TEST(CbvLog, FollowsTheVehicleAlongItsConflictAwareRoute) {
   EXPECT_FALSE(record.routeCompleted());
 }
 
-TEST(CbvLog, TheConflictPointIsPassedByTheCentre) {
+TEST(CbvLog, TheConflictPointIsPassedByTheCenter) {
   EXPECT_FALSE(stayOf(41.9, "").conflict_point_passed);
   const CbvRecord record = stayOf(42.1, "");
   EXPECT_TRUE(record.conflict_point_passed);

@@ -40,7 +40,7 @@ inline traffic::TrafficSnapshot snapshotOf(std::vector<traffic::Vehicle> vehicle
 }
 
 /// One lane eastwards, y = 0, 4 m wide, from x = -50 to `end`, then a junction with a light.
-inline map::RoadNetwork signalledLane(double end) {
+inline map::RoadNetwork signaledLane(double end) {
   const std::string x = std::to_string(end);
   return map::RoadNetwork::fromText(
       R"(<net><edge id="in" from="a" to="j"><lane id="in_0" index="0" speed="14" width="4" shape="-50,0 )" +
@@ -48,7 +48,7 @@ inline map::RoadNetwork signalledLane(double end) {
           R"(,0"/></edge><edge id="out" from="j" to="b"><lane id="out_0" index="0" speed="14" )" +
           R"(width="4" shape=")" + x + R"(,0 200,0"/></edge><connection from="in" to="out" )" +
           R"(fromLane="0" toLane="0" tl="light" linkIndex="1" dir="s"/></net>)",
-      "signalled lane");
+      "signaled lane");
 }
 
 /// A straight lane eastwards, y = 0, 4 m wide, at the given height.

@@ -53,7 +53,7 @@ TEST(CameraOptions, LoadsFromYaml) {
   EXPECT_EQ(options.height, 96);
 }
 
-TEST(Intrinsics, FocalLengthAndCentre) {
+TEST(Intrinsics, FocalLengthAndCenter) {
   // tan(45 deg) = 1, so f = 160 / 2.
   const Intrinsics intrinsics = intrinsicsOf({});
   EXPECT_NEAR(intrinsics.focal_length, 80.0, 1e-12);

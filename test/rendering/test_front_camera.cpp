@@ -27,7 +27,7 @@ TEST(FrontCamera, ProjectsPointsOfTheMap) {
   EXPECT_FALSE(camera.project(vehicleAt("ego", 0.0, 0.0), {-20.5, 2.0, 0.0}));
 }
 
-TEST(FrontCamera, ABlindOneShowsMidGreyAtItsTick) {
+TEST(FrontCamera, ABlindOneShowsMidGrayAtItsTick) {
   CameraOptions options = levelCamera();
   options.blind = true;
   FrontCamera camera(options, straightRoad());
@@ -70,8 +70,8 @@ TEST(FrontCamera, RejectsBadOptions) {
   EXPECT_THROW(FrontCamera(options, straightRoad()), core::InputError);
 }
 
-TEST(FrontCamera, PaintsTheStopLineInTheColourOfItsLight) {
-  FrontCamera camera(levelCamera(), signalledLane(10.5));
+TEST(FrontCamera, PaintsTheStopLineInTheColorOfItsLight) {
+  FrontCamera camera(levelCamera(), signaledLane(10.5));
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
   traffic::TrafficSnapshot snapshot = snapshotOf({ego});
   snapshot.signals = {{"light", "Gr"}};  // link 1 is red
@@ -86,7 +86,7 @@ TEST(FrontCamera, PaintsTheStopLineInTheColourOfItsLight) {
 }
 
 TEST(FrontCamera, LampAndStopLineFollowTheLight) {
-  FrontCamera camera(levelCamera(), signalledLane(10.5));
+  FrontCamera camera(levelCamera(), signaledLane(10.5));
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
   traffic::TrafficSnapshot snapshot = snapshotOf({ego});
   const auto see = [&](const char* state) {
@@ -168,8 +168,8 @@ TEST(FrontCamera, DoesNotSeeItself) {
 }
 
 TEST(FrontCamera, SameInputSameBytes) {
-  FrontCamera camera(CameraOptions(), signalledLane(30.0));
-  FrontCamera second(CameraOptions(), signalledLane(30.0));
+  FrontCamera camera(CameraOptions(), signaledLane(30.0));
+  FrontCamera second(CameraOptions(), signaledLane(30.0));
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0, 0.03);
   traffic::TrafficSnapshot snapshot = snapshotOf({ego, vehicleAt("a", 15, 1.3, 0.4)});
   snapshot.tick = 17;

@@ -89,7 +89,7 @@ TEST(FrontCameraScenes, NearerHidesFartherInAnyOrder) {
   EXPECT_EQ(camera.render(snapshotOf({ego, far, near}), ego).rgb, only_near.rgb);
 }
 
-TEST(FrontCameraScenes, LongVehicleHidesOneWhoseCentreIsNearer) {
+TEST(FrontCameraScenes, LongVehicleHidesOneWhoseCenterIsNearer) {
   FrontCamera camera(levelCamera(), straightRoad());
   const traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0);
   // A train of 30 m from x = 6 to 36, its right side at y = 2.25; its center is 20.8 m from the

@@ -106,8 +106,8 @@ void LaunchedSession::start(const std::string& command) {
 }
 
 void LaunchedSession::noteSignal() {
-  signalled_at_ = now();
-  signalled_at_wall_ = wallNow();
+  signaled_at_ = now();
+  signaled_at_wall_ = wallNow();
 }
 
 std::vector<LaunchedSession::Process> LaunchedSession::processes() const {
@@ -168,12 +168,12 @@ bool LaunchedSession::hasTicks() const {
 }
 
 double LaunchedSession::endAfter(double limit) {
-  for (; now() - signalled_at_ < limit; pause()) {
+  for (; now() - signaled_at_ < limit; pause()) {
     int status = 0;
     if (::waitpid(launch_, &status, WNOHANG) != launch_) continue;
     launch_ = 0;
     exit_status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return now() - signalled_at_;
+    return now() - signaled_at_;
   }
   return limit;
 }
@@ -206,7 +206,7 @@ double LaunchedSession::errorAfter(const std::string& text) const {
   const std::size_t at = all.find(text);
   const std::size_t stamp = at == std::string::npos ? at : all.rfind(begin, at);
   if (stamp == std::string::npos) return std::numeric_limits<double>::quiet_NaN();
-  return std::strtod(all.c_str() + stamp + begin.size(), nullptr) - signalled_at_wall_;
+  return std::strtod(all.c_str() + stamp + begin.size(), nullptr) - signaled_at_wall_;
 }
 
 std::string LaunchedSession::exitCode() const { return contentOf(results() / "exit_code"); }

@@ -69,8 +69,8 @@ class LaunchedSession {
   int port_;
   pid_t launch_ = 0;
   int exit_status_ = -1;
-  double signalled_at_ = 0.0;       ///< steady clock [s]
-  double signalled_at_wall_ = 0.0;  ///< system clock [s]
+  double signaled_at_ = 0.0;       ///< steady clock [s]
+  double signaled_at_wall_ = 0.0;  ///< system clock [s]
 };
 
 }  // namespace cdiff::test

@@ -123,8 +123,8 @@ TEST(DiffusionPlanner, WaitsForTheImageAndBrakesWithANamedFaultWithoutAUsableOne
         [&] { return simulator.cbv_controls.count(tick) + simulator.guidance.count(tick) == 2; });
   };
   const auto imageAt = [](std::uint64_t tick) {
-    const traffic::CameraImage grey{160, 96, tick, std::vector<std::uint8_t>(3 * 160 * 96, 128)};
-    return ros::toMsg(grey, 0.05 * static_cast<double>(tick), "bg_0");
+    const traffic::CameraImage gray{160, 96, tick, std::vector<std::uint8_t>(3 * 160 * 96, 128)};
+    return ros::toMsg(gray, 0.05 * static_cast<double>(tick), "bg_0");
   };
   const auto expectNoAnswer = [&](std::uint64_t tick) {
     const ::ros::WallTime wait = ::ros::WallTime::now() + ::ros::WallDuration(0.3);

@@ -162,7 +162,7 @@ TEST_F(DrivingBagTest, WhatIsMissingOrOfAnotherTypeIsNamed) {
   EXPECT_NE(error().find("image is not given"), std::string::npos);
 }
 
-TEST_F(DrivingBagTest, ImagesWithoutColourAndBagsWithoutAHorizonAreRefused) {
+TEST_F(DrivingBagTest, ImagesWithoutColorAndBagsWithoutAHorizonAreRefused) {
   writeDrive(file_, 1e9, "32FC1");
   EXPECT_NE(error().find("cannot be used"), std::string::npos);
   writeDrive(file_, 3.0, "bgr8", 10.0);

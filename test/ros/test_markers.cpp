@@ -38,7 +38,7 @@ TEST(Markers, OnlyTheFirstArrayClearsAndEveryIdIsItsOwn) {
   EXPECT_EQ(count(second, "labels"), 2);  // ego and CBV
 }
 
-TEST(Markers, RolesHaveTheirColours) {
+TEST(Markers, RolesHaveTheirColors) {
   SessionMarkers markers;
   const MarkerArray array = markers.build(test::sampleSnapshot(0), nullptr);
   std::vector<Marker> vehicles;

@@ -94,7 +94,7 @@ TEST(SilenceWatch, CountsOnlyTheTimeOfItsOwnLooks) {
   EXPECT_FALSE(watch.silent(130.7));
 }
 
-msgs::TickAck ackOf(const std::string& node, std::uint8_t kind) {
+msgs::TickAck ackFrom(const std::string& node, std::uint8_t kind) {
   msgs::TickAck message;
   message.node = node;
   message.kind = kind;
@@ -105,9 +105,9 @@ TEST(ParticipantBook, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
   using namespace std::chrono_literals;
   const ParticipantBook::Clock::time_point begin;
   ParticipantBook book({kCameraNode, kCbvPlannerNode, kMetricsNode});
-  book.note(ackOf(kCameraNode, msgs::TickAck::READY), begin);
-  book.note(ackOf(kCbvPlannerNode, msgs::TickAck::READY), begin);
-  book.note(ackOf(kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);
+  book.note(ackFrom(kCameraNode, msgs::TickAck::READY), begin);
+  book.note(ackFrom(kCbvPlannerNode, msgs::TickAck::READY), begin);
+  book.note(ackFrom(kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);
   EXPECT_EQ(book.silent(5.0, begin + 5s), std::vector<std::string>());
   EXPECT_EQ(book.silent(5.0, begin + 6s), std::vector<std::string>{kCameraNode});
   EXPECT_TRUE(book.heard(kCameraNode));

@@ -72,7 +72,8 @@ TEST(Parameters, ARouteOfASealedSuiteIsRefused) {
   const auto suite = folder.path() / "sealed_mine";
   const auto scenario = suite / "scenarios" / "mine.yaml";
   std::filesystem::create_directories(scenario.parent_path());
-  core::writeFileAtomically(scenario, "network: crossing_district\nroute:\n  edges: [a2_b2, b2_c2]\n");
+  core::writeFileAtomically(scenario,
+                            "network: crossing_district\nroute:\n  edges: [a2_b2, b2_c2]\n");
   const Parameters parameters(Values{{"scenario", scenario.string()}});
   EXPECT_EQ(refusalOf(parameters), "");
   core::writeFileAtomically(suite / "seal.sha256", "");

@@ -72,13 +72,13 @@ TEST_F(Protocol, BlockedIsWithheldAndItsTimeCountsOn) {
   EXPECT_FALSE(monitor_.standingSince());
 }
 
-TEST_F(Protocol, DeviatedBeyondThirtyMetres) {
+TEST_F(Protocol, DeviatedBeyondThirtyMeters) {
   EXPECT_EQ(at(1.0, 30.0, 5.0), SessionStatus::kRunning);
   EXPECT_EQ(at(1.0, 30.1, 5.0), SessionStatus::kDeviated);
 }
 
 // 30 % of 100 m: progress made 15 m off the route from x = 10 m on has used it up beyond x = 40 m.
-TEST_F(Protocol, DeviatedAfterThirtyPercentFifteenMetresAway) {
+TEST_F(Protocol, DeviatedAfterThirtyPercentFifteenMetersAway) {
   EXPECT_EQ(at(10.0, 0.0, 5.0), SessionStatus::kRunning);
   for (int x = 11; x <= 40; ++x) ASSERT_EQ(at(x, 15.0, 5.0), SessionStatus::kRunning) << x;
   EXPECT_EQ(at(41.0, 14.9, 5.0), SessionStatus::kRunning);  // near enough not to count

@@ -202,8 +202,7 @@ TEST(SessionRequest, SaysWhichMethodItsPlannersFollowAndWhatWasChanged) {
   request.cbv_planner = "pdm_lite";
   EXPECT_EQ(textOf({"diffusion.candidates=2"}), "default");
   request.ego_planner = "diffusion";
-  EXPECT_EQ(textOf({"ego_guidance_profile=none"}),
-            "custom (default but for ego_guidance_profile)");
+  EXPECT_EQ(textOf({"ego_guidance_profile=none"}), "custom (default but for ego_guidance_profile)");
   ScenarioOptions recorded;
   recorded.method = "gone";
   EXPECT_EQ(methodText(methodOf(recorded)), "custom (gone but for method)");

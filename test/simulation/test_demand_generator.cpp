@@ -141,7 +141,7 @@ TEST_F(Grid, CoversEveryDirection) {
   EXPECT_GE(sizes.size(), 3U);
 }
 
-TEST_F(Grid, NoTwoVehiclesOnALaneAreNearerThanEightMetres) {
+TEST_F(Grid, NoTwoVehiclesOnALaneAreNearerThanEightMeters) {
   options_.density = 200;  // more than there is room for
   const std::vector<DemandVehicle> vehicles = fill(5);
   EXPECT_LT(vehicles.size(), 200U);

@@ -61,7 +61,7 @@ TEST_F(Crossing, LinksLeadThroughTheJunction) {
   EXPECT_TRUE(edges_.connected(edges_.find("west"), edges_.find("east")));
   EXPECT_TRUE(edges_.connected(edges_.find("west"), edges_.find("north")));
   EXPECT_FALSE(edges_.connected(edges_.find("west"),
-                                edges_.find("south")));  // its direction is towards the crossing
+                                edges_.find("south")));  // its direction is toward the crossing
   EXPECT_EQ(edges_.find("nowhere"), simulation::kNoEdge);
   const map::Lane& lane = made_.network.lane(made_.network.findLane("west_0"));
   for (const map::LaneLink& link : lane.next) {

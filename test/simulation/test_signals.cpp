@@ -50,7 +50,7 @@ TEST_F(Signals, GreenForTheWholeSession) {
   EXPECT_EQ(statesShown(true), std::set<std::string>{std::string(16, 'g')});
 }
 
-TEST_F(Signals, FollowTheProgramme) {
+TEST_F(Signals, FollowTheProgram) {
   const std::set<std::string> states = statesShown(false);
   EXPECT_GE(states.size(), 4U);  // green and yellow for each of the two roads
   for (const std::string& state : states) EXPECT_EQ(state.size(), 16U);

@@ -87,8 +87,8 @@ TEST_F(SuiteFiles, NamesLineAndKeyOfAWrongManifest) {
   expectPart(errorOf(), "line 5: key 'manoeuvre' is 'u_turn'; expected one of left, right");
   writeWhole(changed("density: low", "densty: low"));
   expectPart(errorOf(), "line 5: key 'density' is missing");
-  writeWhole(changed("turn: 90", "turn: 90, colour: red"));
-  expectPart(errorOf(), "unknown key 'colour'");
+  writeWhole(changed("turn: 90", "turn: 90, color: red"));
+  expectPart(errorOf(), "unknown key 'color'");
   writeWhole(changed("length: 120", "length: long"));
   expectPart(errorOf(), "key 'length': expected a number");
   writeWhole(changed("schema_version: 1", "schema_version: 2"));

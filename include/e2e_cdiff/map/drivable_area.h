@@ -13,7 +13,7 @@ namespace cdiff::map {
 struct SignedDistance {
   double distance = 0.0;  ///< [m], positive inside, zero on the border
   Eigen::Vector2d gradient =
-      Eigen::Vector2d::Zero();  ///< unit vector of steepest increase (towards the inside)
+      Eigen::Vector2d::Zero();  ///< unit vector of steepest increase (toward the inside)
 };
 
 /// The drivable area: union of the outlines of lanes that allow cars and of junctions, in levels of

@@ -110,7 +110,7 @@ double expandedTail(std::size_t routes) {
   return boost::math::cdf(boost::math::normal(), -std::sqrt(m / (m - 1.0)) * t);
 }
 
-/// Linear between neighbours; `sorted` is not empty.
+/// Linear between neighbors; `sorted` is not empty.
 double quantileOf(const std::vector<double>& sorted, double probability) {
   const double place = probability * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

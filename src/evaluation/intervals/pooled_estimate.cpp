@@ -25,8 +25,8 @@ std::optional<double> measureOf(const RunRecord& record, const std::string& name
   return found == record.measures.end() ? std::nullopt : std::optional<double>(found->second);
 }
 
-std::optional<double> kilometres(const std::optional<double>& metres) {
-  return metres ? std::optional<double>(*metres / 1000.0) : std::nullopt;
+std::optional<double> kilometers(const std::optional<double>& meters) {
+  return meters ? std::optional<double>(*meters / 1000.0) : std::nullopt;
 }
 
 /// What a run weighs; nullopt where its record does not say.
@@ -34,9 +34,9 @@ std::optional<double> weightOf(const RunRecord& record, SessionWeight weight) {
   namespace known = metrics::known;
   switch (weight) {
     case SessionWeight::kEgoKilometres:
-      return kilometres(measureOf(record, known::kEgoDistance.name));
+      return kilometers(measureOf(record, known::kEgoDistance.name));
     case SessionWeight::kCbvKilometres:
-      return kilometres(measureOf(record, known::kCbvDistance.name));
+      return kilometers(measureOf(record, known::kCbvDistance.name));
     case SessionWeight::kCbvDecisions:
       return measureOf(record, known::kCbvDecisions.name);
     case SessionWeight::kCbvSelections: {

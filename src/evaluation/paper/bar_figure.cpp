@@ -209,12 +209,8 @@ TableColumn allContacts() {
 
 /// Those with the ego alone, which the paper does not print.
 TableColumn contactsWithTheEgo() {
-  return {", contacts with the ego",
-          "1/km",
-          metrics::known::kCbvEgoCollisionsPerKm.place,
-          metrics::known::kCbvDistance.place,
-          "",
-          {},
+  return {", contacts with the ego",          "1/km", metrics::known::kCbvEgoCollisionsPerKm.place,
+          metrics::known::kCbvDistance.place, "",     {},
           "contacts of CBVs with the ego"};
 }
 

@@ -213,7 +213,8 @@ Figure frameFigure(const std::string& id, const std::string& title,
       figure.sheet.rows.push_back(FrameRow(systems[i], *row[i], setup.get()).panels(figure.csv));
       continue;
     }
-    const std::string reason = emptyReason(systems[i].levels, runs, "no CBV was driven in this scenario");
+    const std::string reason =
+        emptyReason(systems[i].levels, runs, "no CBV was driven in this scenario");
     figure.sheet.notes.push_back(systems[i].name + ": " + reason);
     std::vector<std::string> cells(14);
     cells.front() = systems[i].name;

@@ -135,7 +135,8 @@ PlannerSamples samplesOf(const ShownSystem& system, const std::vector<BatchRun>&
   for (const BatchRun* run : own) addRun(*run, samples);
   conclude(samples.speeds);
   conclude(samples.accelerations);
-  if (samples.speeds.values.empty()) samples.note = emptyReason(system.levels, runs, "no CBV was driven");
+  if (samples.speeds.values.empty())
+    samples.note = emptyReason(system.levels, runs, "no CBV was driven");
   return samples;
 }
 

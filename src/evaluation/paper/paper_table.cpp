@@ -71,7 +71,7 @@ std::string csvLine(const Table& table, std::size_t row, std::size_t column, boo
                        core::csvNumber(statistics.standard_deviation), core::csvNumber(low),
                        core::csvNumber(high), std::to_string(statistics.n),
                        std::to_string(cell.routes), counted ? std::to_string(*cell.events) : "",
-                       counted ? core::csvNumber(cell.kilometres) : "", std::to_string(cell.runs),
+                       counted ? core::csvNumber(cell.kilometers) : "", std::to_string(cell.runs),
                        std::to_string(cell.used), std::to_string(cell.failed),
                        statistics.mean     ? ""
                        : cell.note.empty() ? kNoRunHasIt
@@ -125,10 +125,11 @@ std::string tableCsv(const Table& table) {
 std::string cellText(const TableCell& cell, bool with_interval) {
   if (!cell.seeds.mean) return "(" + cell.note + ")";
   const std::string events = cell.events ? std::to_string(*cell.events) + " / " +
-                                               core::formatFixed(cell.kilometres, 3) + " km = "
+                                               core::formatFixed(cell.kilometers, 3) + " km = "
                                          : std::string();
-  return events + statisticsText(cell.seeds, with_interval) + " (" + countText(cell.routes, "route") + ", " +
-         countText(cell.seeds.n, "seed") + ", " + countText(cell.used, "run") +
+  return events + statisticsText(cell.seeds, with_interval) + " (" +
+         countText(cell.routes, "route") + ", " + countText(cell.seeds.n, "seed") + ", " +
+         countText(cell.used, "run") +
          (cell.failed > 0 ? ", " + std::to_string(cell.failed) + " failed" : "") + ")";
 }
 

@@ -78,8 +78,8 @@ struct TableColumn {
   std::string unit;
   std::string key;     ///< JSON pointer in a run's summary.json; "{}" stands for the row's subject
   std::string weight;  ///< pointer likewise: weight of a run within its seed; empty: all alike
-  std::string rift_key;  ///< the figure by RIFT's definition; empty: it has none
-  Factors levels;        ///< that runs of this column have besides those of the row
+  std::string rift_key;    ///< the figure by RIFT's definition; empty: it has none
+  Factors levels;          ///< that runs of this column have besides those of the row
   std::string panel = {};  ///< title of the picture in which a figure shows it
 };
 
@@ -114,7 +114,7 @@ struct TableCell {
   Statistics rift;                    ///< the same by RIFT's definition; n = 0 where it has none
   std::size_t routes = 0;             ///< of the runs that have the measure
   std::optional<std::size_t> events;  ///< of events per km
-  double kilometres = 0.0;            ///< for these events
+  double kilometers = 0.0;            ///< for these events
   std::size_t runs = 0;               ///< runs at these levels, however they ended
   std::size_t failed = 0;             ///< those of them that broke, were interrupted or not run
   std::size_t used = 0;               ///< those of them that have the measure

@@ -50,16 +50,16 @@ class CellSums {
     return statistics;
   }
 
-  /// The same of events per km, where weights are metres; counts go to the cell.
+  /// The same of events per km, where weights are meters; counts go to the cell.
   Statistics ofEvents(RouteBootstrap& bootstrap, TableCell& cell) const {
     Statistics statistics = statisticsOf(seedMeans(allRoutes()));
     cell.events = static_cast<std::size_t>(std::llround(events_));
-    cell.kilometres = kilometres_;
+    cell.kilometers = kilometers_;
     statistics.interval = std::nullopt;
     if (used_ == 0) return statistics;
-    statistics.mean = events_ / kilometres_;
+    statistics.mean = events_ / kilometers_;
     statistics.interval =
-        rateInterval(*cell.events, kilometres_, bootstrap.valueInterval(perKilometre()));
+        rateInterval(*cell.events, kilometers_, bootstrap.valueInterval(perKilometer()));
     return statistics;
   }
 
@@ -73,12 +73,12 @@ class CellSums {
     sum.sum += share * value;
     sum.weight += share;
     events_ += std::round(share * value / 1000.0);
-    kilometres_ += share / 1000.0;
+    kilometers_ += share / 1000.0;
     ++used_;
   }
 
   /// Events and km of each route.
-  RouteSums perKilometre() const {
+  RouteSums perKilometer() const {
     RouteSums sums;
     for (const auto& route : routes_) {
       sums.emplace_back();
@@ -116,16 +116,15 @@ class CellSums {
   std::map<std::string, std::size_t> names_;  ///< of routes
   std::vector<std::map<std::size_t, RouteSum>> routes_;
   std::size_t used_ = 0;
-  double events_ = 0.0;  ///< where values are per km and weights metres
-  double kilometres_ = 0.0;
+  double events_ = 0.0;  ///< where values are per km and weights meters
+  double kilometers_ = 0.0;
 };
 
 /// The rule of the measure at a place of summary.json; a plain mean where there is none.
 metrics::PoolingRule ruleAt(const std::string& place) {
   const auto& all = metrics::measureDefinitions();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& definition) {
-    return place == definition.place;
-  });
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const auto& definition) { return place == definition.place; });
   return found == all.end() ? metrics::kPlainMean : metrics::poolingOf(*found);
 }
 
@@ -182,8 +181,8 @@ std::string emptyReason(const Factors& levels, const std::vector<BatchRun>& runs
     const std::string modes = otherModes(levels, runs);
     return modes.empty() ? "not run" : "not applicable in mode " + modes;
   }
-  const bool completed = std::any_of(
-      own.begin(), own.end(), [](const BatchRun* run) { return run->record.complete(); });
+  const bool completed = std::any_of(own.begin(), own.end(),
+                                     [](const BatchRun* run) { return run->record.complete(); });
   return completed ? otherwise : "no run completed";
 }
 

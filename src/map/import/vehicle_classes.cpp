@@ -110,7 +110,7 @@ class Rewriter {
     result_.text += tag.substr(cursor);
   }
 
-  /// Whether the tag's `allow` names unknown classes only: afterwards nothing may use the lane.
+  /// Whether the tag's `allow` names unknown classes only: afterward nothing may use the lane.
   static bool isEmptied(std::string_view tag) {
     for (Attribute at = nextAttribute(tag, 0); !at.name.empty(); at = nextAttribute(tag, at.end)) {
       if (at.name != "allow") continue;

@@ -102,7 +102,7 @@ void judgeSideBySide(const Closing& closing, ContactFault& fault) {
   fault.ego_at_fault = closing.egoStrikes();
   fault.reason =
       std::string("side by side, ") +
-      (fault.ego_at_fault ? "the ego moved towards the other" : "the other moved towards the ego") +
+      (fault.ego_at_fault ? "the ego moved toward the other" : "the other moved toward the ego") +
       ": across the lane " + speedText(closing.ego) + " (ego), " + speedText(closing.other) +
       " (other)";
 }

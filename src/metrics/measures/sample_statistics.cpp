@@ -69,13 +69,13 @@ Measure TickShare::measure(const std::string& reason_when_empty) const {
   return measure;
 }
 
-Measure countPerKilometre(std::size_t count, double distance, std::size_t n, const char* reason) {
+Measure countPerKilometer(std::size_t count, double distance, std::size_t n, const char* reason) {
   if (!(distance > 0.0)) return {std::nullopt, n, {}, reason};
   return {1000.0 * static_cast<double>(count) / distance, n, {}, {}};
 }
 
-Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles) {
-  return countPerKilometre(collisions, distance, vehicles, vehicles == 0 ? kNoCbv : "no CBV moved");
+Measure collisionsPerKilometer(std::size_t collisions, double distance, std::size_t vehicles) {
+  return countPerKilometer(collisions, distance, vehicles, vehicles == 0 ? kNoCbv : "no CBV moved");
 }
 
 }  // namespace cdiff::metrics

@@ -94,9 +94,9 @@ class CbvTravel {
 // Collisions per kilometer (paper's CPK) [1/km]: 1000 x collisions / meters driven.
 
 /// 1000 x `count` / `distance` [m], n = `n`; absent with the reason where nobody moved.
-Measure countPerKilometre(std::size_t count, double distance, std::size_t n, const char* reason);
+Measure countPerKilometer(std::size_t count, double distance, std::size_t n, const char* reason);
 
 /// n = `vehicles` that drove. Absent with a reason when there was none, or none moved.
-Measure collisionsPerKilometre(std::size_t collisions, double distance, std::size_t vehicles);
+Measure collisionsPerKilometer(std::size_t collisions, double distance, std::size_t vehicles);
 
 }  // namespace cdiff::metrics

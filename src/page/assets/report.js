@@ -223,9 +223,9 @@
   });
   view.addEventListener("pointermove", function (event) {
     if (!grip) return;
-    const metre = whole.w / zoom / view.clientWidth;
-    center.x -= (event.clientX - grip.x) * metre;
-    center.y -= (event.clientY - grip.y) * metre;
+    const meter = whole.w / zoom / view.clientWidth;
+    center.x -= (event.clientX - grip.x) * meter;
+    center.y -= (event.clientY - grip.y) * meter;
     grip = { x: event.clientX, y: event.clientY };
     look();
   });

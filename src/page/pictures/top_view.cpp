@@ -264,14 +264,14 @@ Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::Pose2d
 }
 
 Markup scaleBarSvg(const MapCanvas& canvas) {
-  const double metres = niceStep(200.0 / canvas.scale(), 2);
+  const double meters = niceStep(200.0 / canvas.scale(), 2);
   const double y = canvas.height() - 18.0;
-  const std::string length = core::shortNumber(metres * canvas.scale());
+  const std::string length = core::shortNumber(meters * canvas.scale());
   const Markup bar = svgPath("scale", "M18 " + core::shortNumber(y - 5.0) + "v5h" + length + "v-5");
   const Markup north =
       svgPath("north", "M" + core::shortNumber(canvas.width() - 24.0) + " 14l6 16l-6 -4l-6 4Z");
   return element("g", {{"class", "frame"}},
-                 bar + label(24.0, y - 7.0, core::formatNumber(metres) + " m") + north +
+                 bar + label(24.0, y - 7.0, core::formatNumber(meters) + " m") + north +
                      label(canvas.width() - 29.0, 46.0, "N")) +
          "\n";
 }

@@ -153,7 +153,7 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
 }
 
 /// The last plan, seen from here one decision later; it is a warm start if the vehicle is where the
-/// plan said, towards the same goal.
+/// plan said, toward the same goal.
 void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) const {
   const std::optional<LastPlan>& last = situation.memory->plan;
   if (!last || last->tick() + ticksOf(context_) != tick) return;

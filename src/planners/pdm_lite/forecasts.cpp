@@ -83,12 +83,12 @@ class IdmEquation {
         acceleration_(acceleration),
         closing_scale_(2.0 * std::sqrt(acceleration * deceleration)) {}
 
-  /// dv/dt at a time, with `travelled` meters driven since the start and speed `v`.
-  double acceleration(double time, double travelled, double v) const {
+  /// dv/dt at a time, with `traveled` meters driven since the start and speed `v`.
+  double acceleration(double time, double traveled, double v) const {
     const double wanted_gap = obstacle_.minimum_gap + v * obstacle_.time_headway +
                               v * (v - obstacle_.speed) / closing_scale_;
     const double gap =
-        std::max(0.1, obstacle_.distance + time * obstacle_.speed - travelled - obstacle_.length);
+        std::max(0.1, obstacle_.distance + time * obstacle_.speed - traveled - obstacle_.length);
     const double free = std::pow(v / desired_speed_, 4);
     return acceleration_ * (1.0 - free - (wanted_gap / gap) * (wanted_gap / gap));
   }

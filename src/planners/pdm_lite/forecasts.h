@@ -25,7 +25,7 @@ double lookAheadDistance(double speed);
 class LateralController {
  public:
   explicit LateralController(const PdmLiteOptions& options = {});
-  /// Steer towards `aim` (map frame); remembers the error. Output rounded to 3 decimals.
+  /// Steer toward `aim` (map frame); remembers the error. Output rounded to 3 decimals.
   double steer(const geometry::Pose2d& pose, const Eigen::Vector2d& aim);
 
  private:
@@ -101,7 +101,7 @@ std::optional<std::size_t> meet(const std::vector<geometry::OrientedBox>& first,
                                 std::size_t steps);
 
 // What the planned vehicle itself would do if nothing were in its way: its own controllers and
-// dynamics along its route towards the initial target speed; one point per 0.1 s (two simulation
+// dynamics along its route toward the initial target speed; one point per 0.1 s (two simulation
 // steps of dynamics, for which the polynomials hold).
 
 /// Controller state of a vehicle; a copy serves a forecast.
@@ -110,7 +110,7 @@ struct DriverState {
   LateralController lateral;
 };
 
-/// Steer of this decision towards the look-ahead point; updates the driver.
+/// Steer of this decision toward the look-ahead point; updates the driver.
 double steerAlong(const map::Route& route, const traffic::VehicleState& state, DriverState& driver);
 
 std::vector<planning::RolloutPoint> forecastEgo(const traffic::VehicleState& start,

@@ -42,7 +42,7 @@ class RecordedSession {
 
   const ::e2e_cdiff::SessionInfo& info() const { return *info_; }
   const session::SessionSetup& setup() const { return *setup_; }
-  /// Hands the set-up over to the caller; call nothing else afterwards.
+  /// Hands the set-up over to the caller; call nothing else afterward.
   std::unique_ptr<session::SessionSetup> takeSetup() { return std::move(setup_); }
   /// The nodes that took part; for a session that one process drove, those of the same session as
   /// a node graph.

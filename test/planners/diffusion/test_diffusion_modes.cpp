@@ -86,7 +86,7 @@ class DiffusionModes : public testing::ModelCourse {
 };
 
 /// Exact states are float32 in units of about 10 m: within two roundings of 2^-24 at the 30 m that
-/// 3.2 s lead to at most, 4e-6 m. Those of the learned head are centimetres off.
+/// 3.2 s lead to at most, 4e-6 m. Those of the learned head are centimeters off.
 constexpr double kRounding = 1e-5;
 constexpr double kLearned = 0.01;
 

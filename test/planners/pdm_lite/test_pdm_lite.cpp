@@ -41,7 +41,7 @@ TEST(PdmLite, ReachesTheTargetSpeedAndKeepsAStraightLane) {
   RecordProperty("worst_offset_m", std::to_string(worst_offset));
 }
 
-TEST(PdmLite, KeepsItsLaneInATwelveMetreBend) {
+TEST(PdmLite, KeepsItsLaneInATwelveMeterBend) {
   const auto network = makeNetwork({{"bend", leftBend(60.0, 12.0, 60.0)}});
   const map::Route route = routeAlong(network, {"bend"});
   ClosedLoop loop(network);
@@ -53,7 +53,7 @@ TEST(PdmLite, KeepsItsLaneInATwelveMetreBend) {
   RecordProperty("worst_offset_m", std::to_string(worst));
 }
 
-TEST(PdmLite, ComesBackToItsLaneFromTwoMetresBeside) {
+TEST(PdmLite, ComesBackToItsLaneFromTwoMetersBeside) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
   const map::Route route = routeAlong(network, {"road"});
   ClosedLoop loop(network);

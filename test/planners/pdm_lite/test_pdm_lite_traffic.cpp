@@ -312,7 +312,7 @@ class Light : public ::testing::Test {
   map::Route route_ = routeAlong(network_, {"in", "out"});
 };
 
-TEST_F(Light, StopsSixMetresBeforeRedAndGoesOnGreen) {
+TEST_F(Light, StopsSixMetersBeforeRedAndGoesOnGreen) {
   ClosedLoop loop(network_);
   loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
   loop.setSignal("light", "r");

@@ -52,7 +52,7 @@ TEST_F(StraightRoad, TrailerIsNearTheRouteBehindAndAlongIt) {
   EXPECT_TRUE(isTrailing(route_, 0.0, stateAt(-20.0, 1.0, 0.0)));
 }
 
-TEST(RouteRules, JunctionCapCounts30MetresAhead) {
+TEST(RouteRules, JunctionCapCounts30MetersAhead) {
   const auto network = makeNetwork({{"in", straight(0.0, 0.0, 100.0, 0.0), 50.0},
                                     {":j_0", straight(100.0, 0.0, 110.0, 0.0), 50.0, true},
                                     {"out", straight(110.0, 0.0, 200.0, 0.0), 50.0}},
@@ -75,7 +75,7 @@ TEST(RouteRules, SlowerLaneIsAnticipatedWithinTheBrakingDistance) {
   EXPECT_DOUBLE_EQ(initialTargetSpeed({}, route, 93.0, 8.0, 8.0), 3.6);
 }
 
-TEST(RouteRules, LaneChangeIsNear20MetresAheadAnd15Behind) {
+TEST(RouteRules, LaneChangeIsNear20MetersAheadAnd15Behind) {
   const std::string xml =
       "<net><edge id=\"road\"><lane id=\"road_0\" index=\"0\" speed=\"10\" shape=\"0,0 200,0\"/>"
       "<lane id=\"road_1\" index=\"1\" speed=\"10\" shape=\"0,3.2 200,3.2\"/></edge></net>";

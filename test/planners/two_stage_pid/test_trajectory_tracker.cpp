@@ -161,21 +161,21 @@ TEST(TrackerLoop, CutsACurveByTheDerivedAmount) {
   // of the tangent and so 0.1473 rad left of the heading: the vehicle runs (0.1473 - 0.0943) x 6 m
   // = 0.32 m inside, to first order in 6 m / R; the second order is 0.2 of it at most.
   const double radius = 30.0;
-  const Eigen::Vector2d centre(0.0, radius);
+  const Eigen::Vector2d center(0.0, radius);
   TrackerLoop loop(
       [&](const Eigen::Vector2d& place) {
-        const Eigen::Vector2d offset = place - centre;
+        const Eigen::Vector2d offset = place - center;
         return radius * std::atan2(offset.x(), -offset.y());
       },
       [&](double arc) {
         return Eigen::Vector2d(
-            centre + radius * Eigen::Vector2d(std::sin(arc / radius), -std::cos(arc / radius)));
+            center + radius * Eigen::Vector2d(std::sin(arc / radius), -std::cos(arc / radius)));
       });
   loop.state.speed = 6.0;
   double elapsed = 0.0;
   loop.run(30.0, 6.0, [&] {
     elapsed += 0.1;
-    const double inside = radius - (loop.state.position - centre).norm();
+    const double inside = radius - (loop.state.position - center).norm();
     if (elapsed < 10.0) return;
     EXPECT_NEAR(inside, 0.32, 0.064) << elapsed;
   });

@@ -52,7 +52,7 @@ TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
 }
 
 /// Plans of 5.1 m/s and slightly to the left for vehicles of 5 m/s: the normalizer's mean, from
-/// which the random model moves by millimetres. So the tracker's pedals stay within their range,
+/// which the random model moves by millimeters. So the tracker's pedals stay within their range,
 /// and what it remembers shows.
 std::string writeSmoothModel(const std::filesystem::path& folder) {
   diffusion::Model model = cdiff::testing::randomModel();

@@ -91,8 +91,8 @@ TrainingBatch BatchMaker::pack(const std::vector<DrivingSample>& samples,
   std::vector<float> rollouts, routes, speeds, targets, known;
   std::vector<const traffic::CameraImage*> images;
   for (const DrivingSample& sample : samples) {
-    const diffusion::Trajectory normalised = normalizer_.normalize(sample.rollout);
-    rollouts.insert(rollouts.end(), normalised.data(), normalised.data() + normalised.size());
+    const diffusion::Trajectory normalized = normalizer_.normalize(sample.rollout);
+    rollouts.insert(rollouts.end(), normalized.data(), normalized.data() + normalized.size());
     routes.insert(routes.end(), sample.route.begin(), sample.route.end());
     speeds.push_back(static_cast<float>(sample.speed / kSpeedScale));
     for (const float value : sample.auxiliary) {
@@ -252,7 +252,7 @@ at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& 
 }
 
 Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                              const at::Tensor& grey_features) const {
+                              const at::Tensor& gray_features) const {
   const at::NoGradGuard no_gradient;
   const at::Tensor& clean = held_out.rollouts;
   const at::Tensor noise = fixedNoise(clean, "validation noise");
@@ -269,7 +269,7 @@ Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& 
   ContextBatch context = held_out.context;
   context.has_route = at::zeros_like(context.has_route);
   addMeasures("sample_no_route_", sample(denoiser, noise, context, count), clean, measures);
-  context.features = grey_features.view({1, -1}).expand_as(context.features).contiguous();
+  context.features = gray_features.view({1, -1}).expand_as(context.features).contiguous();
   addMeasures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, measures);
   context.has_route = held_out.context.has_route;
   addMeasures("sample_grey_", sample(denoiser, noise, context, count), clean, measures);

@@ -114,7 +114,7 @@ class DiffusionLoss {
   /// One-step predictions at K/2 and K and DDIM samples of held-out samples, the latter also with
   /// the features of a gray image and without route.
   learning::Measures judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
-                           const at::Tensor& grey_features) const;
+                           const at::Tensor& gray_features) const;
   /// Standard deviation of the clean prediction's error at k = K, [T, 7] normalized.
   traffic::Rollout spread(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
 

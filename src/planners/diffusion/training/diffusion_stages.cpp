@@ -169,7 +169,7 @@ class DiffusionStage : public learning::Stage {
 
   Measures judge() override {
     if (cache_ == nullptr) held_out_ = encodeHeldOut(state_);
-    return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.grey_features);
+    return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.gray_features);
   }
 
  private:
@@ -209,12 +209,12 @@ HeldOut encodeHeldOut(const TrainingState& state) {
     features.push_back(state.encoder.forward(learning::imageTensor(views, 1.0, state.run.device)));
   }
   held_out.batch.context.features = at::cat(features);
-  traffic::CameraImage grey;
-  grey.width = static_cast<int>(state.architecture.image_width);
-  grey.height = static_cast<int>(state.architecture.image_height);
-  grey.rgb.assign(static_cast<std::size_t>(grey.width * grey.height * 3), 128);
-  held_out.grey_features =
-      state.encoder.forward(learning::imageTensor({&grey}, 1.0, state.run.device));
+  traffic::CameraImage gray;
+  gray.width = static_cast<int>(state.architecture.image_width);
+  gray.height = static_cast<int>(state.architecture.image_height);
+  gray.rgb.assign(static_cast<std::size_t>(gray.width * gray.height * 3), 128);
+  held_out.gray_features =
+      state.encoder.forward(learning::imageTensor({&gray}, 1.0, state.run.device));
   return held_out;
 }
 

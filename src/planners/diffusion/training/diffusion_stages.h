@@ -57,7 +57,7 @@ std::unique_ptr<learning::Stage> makeDiffusionStage(TrainingState& state, const 
 /// Held-out samples as a batch with features of the present encoder, and features of a gray image.
 struct HeldOut {
   TrainingBatch batch;
-  at::Tensor grey_features;
+  at::Tensor gray_features;
 };
 HeldOut encodeHeldOut(const TrainingState& state);
 

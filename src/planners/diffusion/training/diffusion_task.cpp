@@ -77,9 +77,9 @@ std::string heldOutTable(const Measures& held_out) {
          heldOutRow("one step from k = K/2", "one_step_half_", held_out) +
          heldOutRow("one step from noise, k = K", "one_step_noise_", held_out) +
          heldOutRow("DDIM sample", "sample_", held_out) +
-         heldOutRow("DDIM sample, grey image", "sample_grey_", held_out) +
+         heldOutRow("DDIM sample, gray image", "sample_grey_", held_out) +
          heldOutRow("DDIM sample, no route", "sample_no_route_", held_out) +
-         heldOutRow("DDIM sample, grey image, no route", "sample_grey_no_route_", held_out);
+         heldOutRow("DDIM sample, gray image, no route", "sample_grey_no_route_", held_out);
 }
 
 }  // namespace
@@ -174,7 +174,7 @@ learning::TrainedModel DiffusionTask::finish() {
   trained.files = {
       {diffusion::kEncoderFile, std::move(files.encoder), false, diffusion::kEncoderKey},
       {diffusion::kDenoiserFile, std::move(files.denoiser), true, ""}};
-  trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.grey_features);
+  trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.gray_features);
   trained.settings = {{"balance", settings.balance},
                       {"yielding_share", settings.yielding_share},
                       {"route_drop", settings.route_drop},
