@@ -71,14 +71,6 @@ geometry::OrientedBox Track::box(std::size_t step) const {
   return {state.position, state.heading, length, width};
 }
 
-bool Track::touchesAt(std::size_t step) const {
-  return std::binary_search(contacts.begin(), contacts.end(), step);
-}
-
-void Track::noteContact(std::size_t step) {
-  if (covers(step) && (contacts.empty() || contacts.back() < step)) contacts.push_back(step);
-}
-
 Motion centralMotion(const Track& track) {
   const Series dx = centralDifference(coordinate(track, 0), plainDifference);
   const Series dy = centralDifference(coordinate(track, 1), plainDifference);

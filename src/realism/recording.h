@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,13 +34,15 @@ struct Track {
   double width = 1.8;     ///< [m]
   std::size_t first = 0;  ///< step of the first state
   std::vector<TrackState> states = {};
-  /// Steps at which, or between which and the next, a tick of the simulation shows an overlap with
-  /// another vehicle, in order; none in recorded traffic, where steps are all there is.
-  std::vector<std::size_t> contacts = {};
+  /// Steps at which, or between which and the next, a session had an overlap of this vehicle with
+  /// another; none in recorded traffic, where steps are all there is.
+  std::set<std::size_t> contacts = {};
 
-  bool touchesAt(std::size_t step) const;
-  /// Adds the step to `contacts` where the track covers it; steps must not decrease.
-  void noteContact(std::size_t step);
+  bool touchesAt(std::size_t step) const { return contacts.count(step) != 0; }
+  /// Adds the step to `contacts` where the track covers it.
+  void noteContact(std::size_t step) {
+    if (covers(step)) contacts.insert(step);
+  }
   std::size_t end() const { return first + states.size(); }
   bool covers(std::size_t step) const { return step >= first && step < end(); }
   const TrackState& at(std::size_t step) const { return states[step - first]; }
@@ -121,8 +124,9 @@ std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::pa
 /// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s, with the
 /// contacts of every tick: a CBV leaves the simulation at the tick after one, which need not be a
 /// step. The trace holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m
-/// x 1.8 m, as generated demand and every vehicle of ours is. Throws InputError for a folder
-/// without them and for a simulation step of which 0.1 s is no multiple.
+/// x 1.8 m (generated demand: 4.2 x 1.75 to 5.2 x 1.95), so that contacts of ego and CBVs are taken
+/// from summary.json, too, where it is there. Throws InputError for a folder without trace.csv or
+/// session.yaml, a damaged file, and for a simulation step of which 0.1 s is no multiple.
 Recording readResult(const std::filesystem::path& folder);
 
 }  // namespace cdiff::realism

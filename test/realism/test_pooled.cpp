@@ -40,7 +40,7 @@ TEST(PooledCourses, EndWithTheContactThatATrackEndsWith) {
   Recording recording = steady("a", 5.0, 90, "cbv");
   recording.tracks[0].noteContact(89);
   recording.tracks[0].noteContact(90);  // the vehicle is gone
-  EXPECT_EQ(recording.tracks[0].contacts, std::vector<std::size_t>{89});
+  EXPECT_EQ(recording.tracks[0].contacts, std::set<std::size_t>{89});
   const auto courses = pooledCourses({recording}, "cbv");
   ASSERT_EQ(courses.size(), 1U);
   EXPECT_EQ(courses[0][kCollision].size(), 80U);

@@ -119,10 +119,36 @@ TEST_F(RecordedTraffic, ReadsContactsOfEveryTick) {
                             "4,c,background,6,9,0,1,,,\n");
   const Recording recording = readResult(folder_.path());
   ASSERT_EQ(recording.tracks.size(), 3U);
-  EXPECT_EQ(recording.tracks[0].contacts, std::vector<std::size_t>{1});
-  EXPECT_EQ(recording.tracks[1].contacts, std::vector<std::size_t>{1});
+  EXPECT_EQ(recording.tracks[0].contacts, std::set<std::size_t>{1});
+  EXPECT_EQ(recording.tracks[1].contacts, std::set<std::size_t>{1});
   EXPECT_TRUE(recording.tracks[1].touchesAt(1));
   EXPECT_TRUE(recording.tracks[2].contacts.empty());
+}
+
+/// A box of another size: the trace shows none, the summary knows the contacts. Vehicle a left at
+/// tick 5, its last step is 1.
+TEST_F(RecordedTraffic, ReadsContactsThatTheSessionCounted) {
+  core::writeFileAtomically(folder_.path() / "session.yaml",
+                            "scenario:\n  simulation_step: 0.05\n");
+  core::writeFileAtomically(folder_.path() / "trace.csv",
+                            "tick,id,role,x,y,heading,speed,throttle,steer,brake\n"
+                            "0,ego,ego,0,0,0,1,0,0,0\n"
+                            "0,a,background,9,0,0,1,,,\n"
+                            "2,ego,ego,0,0,0,1,0,0,0\n"
+                            "2,a,cbv,5,0,0,1,0,0,0\n"
+                            "4,ego,ego,0,0,0,1,0,0,0\n");
+  core::writeFileAtomically(folder_.path() / "summary.json",
+                            R"({"ego": {"contacts": [{"tick": 3, "with": "a"}]},
+                                "cbv": {"selections": [
+                                  {"vehicle_id": "a", "contact_with": "ego", "released_tick": 5},
+                                  {"vehicle_id": "a", "contact_with": null, "released_tick": 1}]}})");
+  const Recording recording = readResult(folder_.path());
+  ASSERT_EQ(recording.tracks.size(), 3U);
+  EXPECT_EQ(recording.tracks[0].contacts, std::set<std::size_t>{1});  // the ego
+  EXPECT_TRUE(recording.tracks[1].contacts.empty());                  // a, before it was CBV
+  EXPECT_EQ(recording.tracks[2].contacts, std::set<std::size_t>{1});
+  core::writeFileAtomically(folder_.path() / "summary.json", "{}");
+  EXPECT_THROW(readResult(folder_.path()), core::InputError);
 }
 
 TEST(RecordedFiles, HoldTheVehiclesThatTheirReadmeCounts) {
