@@ -147,6 +147,7 @@ TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffe
   EXPECT_EQ(figure.sheet.notes.back(),
             "The columns differ in conditioning, too (what the network of the CBVs is given): "
             "E2E-CDiff (method default) image_route; E2E-CDiff w/ coll (method default) image.");
+  EXPECT_EQ(figure.sheet.notes[1].find(';'), std::string::npos);  // no cell: one reason for all
   const Figure same = barFigure(collisionFigure(), {ownRun(kNaturalistic, "image", 3.0, 1.0),
                                                     ownRun(kSafetyCritical, "image", 9.0, 7.0)});
   EXPECT_EQ(same.sheet.notes.back().find("conditioning"), std::string::npos);

@@ -151,20 +151,28 @@ std::string conditioningNote(const TableDefinition& definition, const std::vecto
          core::joinText(parts, "; ") + ".";
 }
 
+/// The numbers of a row; one word where no cell has any, all for the same reason.
+std::string rowNote(const Table& table, const std::vector<TableCell>& cells) {
+  const bool nothing = std::all_of(cells.begin(), cells.end(), [&](const TableCell& cell) {
+    return !cell.seeds.mean && !cell.paper.mean && cell.note == cells.front().note;
+  });
+  if (nothing) return cells.front().note;
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string paper = paperText(cells[i].paper);
+    parts.push_back(table.definition.columns[i].name + " " +
+                    cellText(cells[i], showsIntervals(cells)) +
+                    (paper.empty() ? "" : ", paper " + paper));
+  }
+  return core::joinText(parts, "; ");
+}
+
 /// Numbers below the bars, one line a row.
 std::vector<std::string> notesOf(const Table& table) {
   std::vector<std::string> notes;
   for (std::size_t row = 0; row < table.cells.size(); ++row) {
-    std::string text = (namesFit(table) ? "" : std::to_string(row + 1) + ". ") +
-                       table.definition.rows[row].name + ": ";
-    for (std::size_t i = 0; i < table.cells[row].size(); ++i) {
-      const TableCell& cell = table.cells[row][i];
-      const std::string paper = paperText(cell.paper);
-      text += (i > 0 ? "; " : "") + table.definition.columns[i].name + " " +
-              cellText(cell, showsIntervals(table.cells[row])) +
-              (paper.empty() ? "" : ", paper " + paper);
-    }
-    notes.push_back(text);
+    notes.push_back((namesFit(table) ? "" : std::to_string(row + 1) + ". ") +
+                    table.definition.rows[row].name + ": " + rowNote(table, table.cells[row]));
   }
   notes.push_back(table.definition.note);
   if (anyRowWithout(table)) notes.push_back(intervalRule());
