@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "learning/samples/scene.h"
 #include "planners/registry.h"
 
 namespace cdiff::collection {
@@ -211,6 +212,10 @@ fs::path bagFile(const CollectRequest& request, const std::string& name) {
 
 fs::path shardFile(const CollectRequest& request, const std::string& name) {
   return request.results / "shards" / (name + ".shard");
+}
+
+fs::path sceneFile(const CollectRequest& request, const std::string& name) {
+  return request.results / "scenes" / (name + learning::kSceneExtension);
 }
 
 fs::path statisticsFile(const CollectRequest& request, const std::string& name) {

@@ -109,7 +109,8 @@ struct CollectRequest {
   std::filesystem::path results;
   double duration = 60.0;  ///< [s]
   bool keep_bag = false;
-  bool images = true;            ///< without: the bag alone
+  bool images = true;            ///< without: no shard
+  bool scenes = false;           ///< store scenes (learning/samples/scene.h)
   std::vector<std::string> set;  ///< key=value each
 };
 
@@ -127,6 +128,7 @@ CollectSettings resolveCollection(const CollectRequest& request);
 std::string sessionName(const CollectSettings& settings);
 std::filesystem::path bagFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path shardFile(const CollectRequest& request, const std::string& name);
+std::filesystem::path sceneFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path statisticsFile(const CollectRequest& request, const std::string& name);
 
 }  // namespace cdiff::collection

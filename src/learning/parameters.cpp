@@ -117,7 +117,6 @@ std::vector<float> toVector(const at::Tensor& tensor) {
 namespace {
 
 constexpr double kBeta1 = 0.9;
-constexpr double kBeta2 = 0.999;
 constexpr double kEpsilon = 1e-8;
 
 /// Factors of one step; float as the tensors are.
@@ -126,6 +125,7 @@ struct StepFactors {
   float correction;    ///< 1 / sqrt(correction of v)
   float decay;         ///< 1 - learning rate x weight decay
   float average_gain;  ///< 1 - d
+  double second;       ///< b2
 };
 
 struct StepTensors {
@@ -143,11 +143,13 @@ void stepOnCpu(const StepTensors& tensors, const StepFactors& factors) {
   float* first = tensors.first.data_ptr<float>();
   float* second = tensors.second.data_ptr<float>();
   float* average = tensors.average.data_ptr<float>();
+  const auto second_decay = static_cast<float>(factors.second);
+  const auto second_gain = static_cast<float>(1.0 - factors.second);
   at::parallel_for(0, tensors.weight.numel(), 1 << 16, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       const float g = gradient[i];
       first[i] = static_cast<float>(kBeta1) * first[i] + static_cast<float>(1.0 - kBeta1) * g;
-      second[i] = static_cast<float>(kBeta2) * second[i] + static_cast<float>(1.0 - kBeta2) * g * g;
+      second[i] = second_decay * second[i] + second_gain * g * g;
       const float root = std::sqrt(second[i]) * factors.correction + static_cast<float>(kEpsilon);
       weight[i] = factors.decay * weight[i] - factors.rate * first[i] / root;
       average[i] += factors.average_gain * (weight[i] - average[i]);
@@ -157,7 +159,8 @@ void stepOnCpu(const StepTensors& tensors, const StepFactors& factors) {
 
 void stepOnDevice(const StepTensors& tensors, const StepFactors& factors) {
   tensors.first.mul_(kBeta1).add_(tensors.gradient, 1.0 - kBeta1);
-  tensors.second.mul_(kBeta2).addcmul_(tensors.gradient, tensors.gradient, 1.0 - kBeta2);
+  tensors.second.mul_(factors.second)
+      .addcmul_(tensors.gradient, tensors.gradient, 1.0 - factors.second);
   const at::Tensor root = tensors.second.sqrt().mul_(factors.correction).add_(kEpsilon);
   tensors.weight.mul_(factors.decay).addcdiv_(tensors.first, root, -factors.rate);
   tensors.average.add_(tensors.weight - tensors.average, factors.average_gain);
@@ -199,8 +202,10 @@ void Optimizer::step(std::int64_t n, double rate) {
   const double average_decay = std::min(options_.average_decay, (1.0 + count) / (10.0 + count));
   StepFactors factors{};
   factors.rate = static_cast<float>(rate / (1.0 - std::pow(kBeta1, count + 1.0)));
-  factors.correction = static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(kBeta2, count + 1.0)));
+  factors.correction =
+      static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(options_.second_decay, count + 1.0)));
   factors.average_gain = static_cast<float>(1.0 - average_decay);
+  factors.second = options_.second_decay;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     at::Tensor& weight = parameters_[i];
     const double decay = weight.dim() > 1 ? rate * options_.weight_decay : 0.0;

@@ -65,10 +65,11 @@ at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device);
 std::vector<float> toVector(const at::Tensor& tensor);
 
-/// Weight decay, and the decay per step of the moving average of the weights.
+/// Weight decay, the decay per step of the moving average of the weights, and b2 of AdamW.
 struct OptimizerOptions {
   double weight_decay = 1e-4;
   double average_decay = 0.999;
+  double second_decay = 0.999;
 };
 
 /// AdamW with a moving average of the weights: m = b1 m + (1-b1) g, v = b2 v + (1-b2) g^2,

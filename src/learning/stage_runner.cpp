@@ -53,7 +53,8 @@ StageRunner::StageRunner(Stage& stage, const TrainingOptions& options, const jso
       stop_(stop),
       log_(log),
       parts_(stage.parts()),
-      optimizer_(tensorsOf(parts_), {options.weight_decay, options.average_decay}) {}
+      optimizer_(tensorsOf(parts_),
+                 {options.weight_decay, options.average_decay, options.second_decay}) {}
 
 StageResult StageRunner::run() {
   const bool done = options_.resume && resume();

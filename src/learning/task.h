@@ -18,6 +18,7 @@
 #include "learning/curve_log.h"
 #include "learning/parameters.h"
 #include "learning/samples/dataset.h"
+#include "learning/samples/scene.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
@@ -118,7 +119,14 @@ class Task {
   virtual std::vector<std::string> otherFiles() const { return {}; }
   /// Names of the fields that it needs of each sample.
   virtual std::vector<std::string> fields() const = 0;
+  /// The fields of the samples that the task makes of scenes; without any it learns from shards.
+  /// One must be kSessionField, as samplesOf sets it to the hash of the scene's name.
+  virtual SampleSchema sceneFields() const { return {}; }
+  /// The samples of a scene, called scene after scene before `start`.
+  virtual std::vector<Sample> samplesOf(const Scene&) { return {}; }
 
+  /// Defaults of the options of every training that the task has of its own.
+  virtual void setDefaults(TrainingOptions&) const {}
   /// The task's own options; `validate` throws InputError naming the key.
   virtual void describe(core::OptionsVisitor&) {}
   virtual void validate() const {}

@@ -17,6 +17,7 @@
 #include "learning/export.h"
 #include "learning/stage_runner.h"
 #include "learning/task.h"
+#include "learning/task_data.h"
 #include "learning/training_folder.h"
 
 namespace cdiff::learning {
@@ -63,6 +64,7 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
                  {"seed", options.seed},
                  {"learning_rate", options.learning_rate},
                  {"weight_decay", options.weight_decay},
+                 {"second_decay", options.second_decay},
                  {"machine", processorName()},
                  {"threads", options.threads},
                  {"device", run.device.str()},
@@ -129,32 +131,6 @@ std::vector<std::size_t> chooseHeldOut(const Dataset& dataset, std::size_t count
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
   return chosen;
-}
-
-/// Throws InputError naming the task and what to do where the data folder holds no shard.
-void requireShards(const Training& training) {
-  try {
-    findShards(training.options.data);
-  } catch (const InputError& error) {
-    throw InputError("training task '" + training.options.task + "' has no samples: " +
-                     error.what() + "; collect them (cdiff collect) or give another --data");
-  }
-}
-
-void requireFields(const Training& training, const Dataset& dataset) {
-  const std::string who = "training task '" + training.options.task + "'";
-  const std::vector<std::string> fields = training.task->fields();
-  if (fields.empty()) {
-    throw InputError(who +
-                     " learns from no field of the samples; its fields() in "
-                     "planners/NAME/training must name them");
-  }
-  for (const std::string& field : fields) {
-    if (dataset.schema().find(field) != nullptr) continue;
-    throw InputError(who + " needs the field '" + field + "' of the samples, which " +
-                     dataset.name() + " lacks (it holds " + dataset.schema().names() +
-                     "); collect samples with that field, or give another --task");
-  }
 }
 
 class Trainer {
@@ -263,9 +239,7 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   requireFreeOutput(training);
   requireSources(training);
   core::removeTemporaries(options.output);
-  requireShards(training);
-  const Dataset dataset(options.data, options.validation_share);
-  requireFields(training, dataset);
+  const Dataset dataset = readData(training, stop, log);
   log << "data: " << dataset.training().size() << " training samples, "
       << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"
       << std::endl;

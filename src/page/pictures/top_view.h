@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/markup.h"
+#include "geometry/simplified.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {
@@ -26,8 +27,7 @@ struct Region {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// The line without points that lie nearer than `tolerance` [m] to it (Douglas and Peucker 1973).
-Points simplified(const Points& line, double tolerance);
+using geometry::simplified;
 
 /// Stretches of the line whose segments may cross the region (their bounding boxes touch it).
 std::vector<Points> stretchesIn(const Points& line, const Region& region);
