@@ -99,6 +99,17 @@ at::Tensor linear(const ParameterSet& parameters, const std::string& name, const
   return at::conv2d(x.unsqueeze(2).unsqueeze(3), weight, parameters(name + ".bias")).flatten(1);
 }
 
+at::Tensor linearOfRows(const ParameterSet& parameters, const std::string& name,
+                        const at::Tensor& x) {
+  const at::Tensor weight = parameters(name + ".weight")
+                                .unsqueeze(2)
+                                .unsqueeze(3)
+                                .contiguous(at::MemoryFormat::ChannelsLast);
+  const at::Tensor image = x.reshape({1, x.size(0), 1, x.size(1)}).permute({0, 3, 1, 2});
+  const at::Tensor y = at::conv2d(image, weight, parameters(name + ".bias"));
+  return y.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
+}
+
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device) {
   at::Tensor tensor = at::empty(shape, at::kFloat);

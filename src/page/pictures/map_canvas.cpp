@@ -177,7 +177,7 @@ Markup boxItem(const std::string& style, const std::string& text) {
 
 }  // namespace
 
-Markup topViewLegend(const MapCanvas& canvas) {
+Markup topViewLegend(const MapCanvas& canvas, bool gazes) {
   const Markup conflict =
       element("path", {{"class", "conflict"}, {"d", "M9 2l10 10m0 -10l-10 10"}});
   const Markup html = pageLegend(
@@ -186,7 +186,9 @@ Markup topViewLegend(const MapCanvas& canvas) {
       legendLine("trail cbv c0", "driven as CBV") + legendLine("trail bg", "driven by background") +
       legendLine("planned cbv c0", "conflict-aware route") +
       legendItem(conflict, "conflict point as selected") +
-      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact"));
+      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact") +
+      (gazes ? legendLine("gaze", "attention of the planner to a vehicle, by its share")
+             : Markup()));
   const double magnification = vehicleMagnification(canvas);
   if (magnification <= 1.0) return html;
   return html + pageNote("Vehicles are drawn " + core::formatFixed(magnification, 1) +

@@ -161,6 +161,11 @@ msgs::ControlAction toMsg(const planning::PlannedAction& action,
   message.planner = origin.planner;
   message.planner_latency_ms = origin.latency_ms;
   message.fault = origin.fault.empty() ? action.fault : origin.fault;
+  for (const planning::AttendedVehicle& vehicle : action.attended) {
+    message.attended.emplace_back();
+    message.attended.back().vehicle_id = vehicle.vehicle_id;
+    message.attended.back().weight = vehicle.weight;
+  }
   return message;
 }
 
@@ -170,6 +175,8 @@ planning::PlannedAction fromMsg(const msgs::ControlAction& message) {
   action.vehicle_id = message.vehicle_id;
   action.action = {message.throttle, message.steer, message.brake};
   action.fault = message.fault;
+  for (const msgs::AttendedVehicle& vehicle : message.attended)
+    action.attended.push_back({vehicle.vehicle_id, vehicle.weight});
   return action;
 }
 

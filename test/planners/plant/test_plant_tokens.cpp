@@ -47,8 +47,8 @@ TEST_F(PlantTokens, NearVehiclesOnTheLevelNearestFirstThenById) {
   traffic::Vehicle above = vehicleAt("above", 5.0, 0.0, 0.0, 5.0);
   above.state.elevation = 3.0;
   const auto snapshot =
-      snapshotOf({vehicleAt("ego", 0.0, 0.0, 0.0, 5.0), vehicleAt("far", 50.1, 0.0, 0.0, 5.0), above,
-                  vehicleAt("c", 49.9, 0.0, 0.0, 5.0), vehicleAt("b", 0.0, 20.0, 0.0, 5.0),
+      snapshotOf({vehicleAt("ego", 0.0, 0.0, 0.0, 5.0), vehicleAt("far", 50.1, 0.0, 0.0, 5.0),
+                  above, vehicleAt("c", 49.9, 0.0, 0.0, 5.0), vehicleAt("b", 0.0, 20.0, 0.0, 5.0),
                   vehicleAt("a", 20.0, 0.0, 0.0, 5.0)});
   EXPECT_EQ(inputOf(snapshot).ids, (std::vector<std::string>{"a", "b", "c"}));
   architecture_.vehicles = 2;
@@ -144,10 +144,9 @@ TEST_F(PlantTokens, TheTargetPointIsWhereAJunctionBeginsOrEnds) {
 
 // The stop line lies at 100 m; a light counts from 30 m before it on.
 TEST_F(PlantTokens, ARedLightAheadCountsWithinItsDistance) {
-  const map::RoadNetwork network =
-      testing::makeNetwork({{"in", straight(0.0, 0.0, 100.0, 0.0)},
-                            {"out", straight(100.0, 0.0, 200.0, 0.0)}},
-                           {{"in", "out", "light"}});
+  const map::RoadNetwork network = testing::makeNetwork(
+      {{"in", straight(0.0, 0.0, 100.0, 0.0)}, {"out", straight(100.0, 0.0, 200.0, 0.0)}},
+      {{"in", "out", "light"}});
   const map::Route route = testing::routeAlong(network, {"in", "out"});
   const auto red = [&](const char* state, double x) {
     auto snapshot = snapshotOf({vehicleAt("ego", x, 0.0, 0.0, 5.0)});

@@ -9,40 +9,38 @@ namespace cdiff::planners {
 namespace {
 
 using learning::linear;
+using learning::linearOfRows;
 using learning::toTensor;
 
 constexpr double kEpsilon = 1e-5;
 constexpr float kMasked = -1e9F;
 
-std::int64_t countOfTokens(const PlantExample& example) {
-  return static_cast<std::int64_t>(example.input.vehicles.size() + example.input.route.size());
+std::int64_t countOfRows(const PlantExample& example) {
+  return static_cast<std::int64_t>(1 + example.input.vehicles.size() + example.input.route.size());
 }
 
-/// Rows of a batch, padded to its longest moment.
-struct PaddedRows {
-  std::int64_t moments;
-  std::int64_t tokens;
+/// What the tensors of a batch are filled from.
+struct BatchRows {
+  enum Type { kCls, kVehicle, kSegment };
+  explicit BatchRows(std::int64_t longest) : places_of_moment(longest) {}
+
+  std::int64_t places_of_moment;  ///< L
   std::vector<float> values, types, mask, red_light, target, driven;
-  std::vector<std::int64_t> places;
+  std::vector<std::int64_t> padded, unpadded, first, places;
   std::array<std::vector<std::int64_t>, kPlantAttributes> next;
 
-  PaddedRows(std::int64_t moments_count, std::int64_t tokens_count)
-      : moments(moments_count),
-        tokens(tokens_count),
-        values(static_cast<std::size_t>(moments * tokens * kPlantAttributes)),
-        types(static_cast<std::size_t>(moments * tokens * 2)),
-        mask(static_cast<std::size_t>(moments * (tokens + 1)), kMasked) {}
-
-  void add(std::int64_t moment, const PlantExample& example) {
+  void add(const PlantExample& example) {
     const PlantInput& input = example.input;
-    mask[static_cast<std::size_t>(moment * (tokens + 1))] = 0.0F;
-    std::int64_t token = 0;
+    const auto begin = static_cast<std::int64_t>(padded.size());
+    first.push_back(static_cast<std::int64_t>(unpadded.size()));
+    addRow({}, kCls);
     for (std::size_t i = 0; i < input.vehicles.size(); ++i) {
-      addToken(moment, token, input.vehicles[i], 0);
-      addNext(moment * (tokens + 1) + 1 + token, example.next[i]);
-      ++token;
+      addNext(example.next[i]);
+      addRow(input.vehicles[i], kVehicle);
     }
-    for (const PlantToken& segment : input.route) addToken(moment, token++, segment, 1);
+    for (const PlantToken& segment : input.route) addRow(segment, kSegment);
+    padded.resize(static_cast<std::size_t>(begin + places_of_moment), 0);
+    mask.resize(padded.size(), kMasked);
     red_light.push_back(input.red_light ? 1.0F : 0.0F);
     target.insert(target.end(), input.target.begin(), input.target.end());
     for (const Eigen::Vector2d& place : example.driven) {
@@ -52,16 +50,17 @@ struct PaddedRows {
   }
 
  private:
-  void addToken(std::int64_t moment, std::int64_t token, const PlantToken& attributes,
-                std::int64_t type) {
-    const std::int64_t row = moment * tokens + token;
-    std::copy(attributes.begin(), attributes.end(), values.begin() + row * kPlantAttributes);
-    types[static_cast<std::size_t>(2 * row + type)] = 1.0F;
-    mask[static_cast<std::size_t>(moment * (tokens + 1) + 1 + token)] = 0.0F;
+  void addRow(const PlantToken& attributes, Type type) {
+    const auto row = static_cast<std::int64_t>(unpadded.size());
+    unpadded.push_back(static_cast<std::int64_t>(padded.size()));
+    padded.push_back(row);
+    mask.push_back(0.0F);
+    values.insert(values.end(), attributes.begin(), attributes.end());
+    for (const Type one : {kCls, kVehicle, kSegment}) types.push_back(one == type ? 1.0F : 0.0F);
   }
-  void addNext(std::int64_t row, const std::array<std::uint8_t, kPlantAttributes>& bins) {
+  void addNext(const std::array<std::uint8_t, kPlantAttributes>& bins) {
     if (bins[0] == kNoBin) return;
-    places.push_back(row);
+    places.push_back(static_cast<std::int64_t>(unpadded.size()));
     for (std::size_t i = 0; i < next.size(); ++i) next[i].push_back(bins[i]);
   }
 };
@@ -80,14 +79,18 @@ bool endsWith(const std::string& text, const std::string& end) {
 
 PlantBatch plantBatch(const std::vector<const PlantExample*>& examples, const at::Device& device) {
   const auto moments = static_cast<std::int64_t>(examples.size());
-  std::int64_t tokens = 0;
-  for (const PlantExample* example : examples) tokens = std::max(tokens, countOfTokens(*example));
-  PaddedRows rows(moments, tokens);
-  for (std::int64_t i = 0; i < moments; ++i) rows.add(i, *examples[static_cast<std::size_t>(i)]);
+  std::int64_t longest = 0;
+  for (const PlantExample* example : examples) longest = std::max(longest, countOfRows(*example));
+  BatchRows rows(longest);
+  for (const PlantExample* example : examples) rows.add(*example);
+  const auto count = static_cast<std::int64_t>(rows.unpadded.size());
   PlantBatch batch;
-  batch.tokens = toTensor(rows.values, {moments, tokens, kPlantAttributes}, device);
-  batch.types = toTensor(rows.types, {moments, tokens, 2}, device);
-  batch.mask = toTensor(rows.mask, {moments, 1, 1, tokens + 1}, device);
+  batch.tokens = toTensor(rows.values, {count, kPlantAttributes}, device);
+  batch.types = toTensor(rows.types, {count, 3}, device);
+  batch.padded = indexTensor(rows.padded, device);
+  batch.mask = toTensor(rows.mask, {moments, 1, 1, longest}, device);
+  batch.unpadded = indexTensor(rows.unpadded, device);
+  batch.first = indexTensor(rows.first, device);
   batch.red_light = toTensor(rows.red_light, {moments, 1}, device);
   batch.target = toTensor(rows.target, {moments, 2}, device);
   batch.driven = toTensor(rows.driven, {moments, kPlantWaypoints, 2}, device);
@@ -99,8 +102,7 @@ PlantBatch plantBatch(const std::vector<const PlantExample*>& examples, const at
 
 PlantNet::PlantNet(const PlantArchitecture& architecture, std::uint64_t seed)
     : architecture_(architecture), parameters_(core::RandomStream(seed, "plant start")) {
-  constexpr double kLearnedVector = 0.02;      // bound of tokens and types that are learned
-  std::map<std::string, std::int64_t> inputs;  // of layers, by name
+  constexpr double kLearnedVector = 0.02;  // bound of tokens and types that are learned
   for (const inference::TensorShape& tensor : plantTensors(architecture)) {
     const std::string& name = tensor.name;
     if (endsWith(name, ".weight") && tensor.shape.size() == 2) {
@@ -118,46 +120,45 @@ at::Tensor PlantNet::norm(const std::string& name, const at::Tensor& x) const {
                         parameters_(name + ".bias"), kEpsilon);
 }
 
-/// [B, 1 + T, width].
+/// [R, width].
 at::Tensor PlantNet::embed(const PlantBatch& batch) const {
-  const std::int64_t moments = batch.tokens.size(0);
-  const std::int64_t tokens = batch.tokens.size(1);
-  const std::int64_t width = architecture_.width;
-  const at::Tensor cls = parameters_("cls").expand({moments, 1, width});
-  if (tokens == 0) return norm("norm", cls);
-  const at::Tensor embedded =
-      linear(parameters_, "token", batch.tokens.reshape({moments * tokens, kPlantAttributes}));
-  const at::Tensor types = batch.types.select(2, 0).unsqueeze(2) * parameters_("type.vehicle") +
-                           batch.types.select(2, 1).unsqueeze(2) * parameters_("type.route");
-  return norm("norm", at::cat({cls, embedded.reshape({moments, tokens, width}) + types}, 1));
+  const at::Tensor is_token = 1.0 - batch.types.narrow(1, 0, 1);
+  const at::Tensor learned = at::matmul(
+      batch.types,
+      at::stack({parameters_("cls"), parameters_("type.vehicle"), parameters_("type.route")}));
+  return norm("norm", linearOfRows(parameters_, "token", batch.tokens) * is_token + learned);
 }
 
-at::Tensor PlantNet::layer(const std::string& name, const at::Tensor& x, const at::Tensor& mask,
+at::Tensor PlantNet::layer(const std::string& name, const at::Tensor& x, const PlantBatch& batch,
                            at::Tensor& attention) const {
-  const std::int64_t moments = x.size(0);
-  const std::int64_t rows = x.size(1);
+  const std::int64_t moments = batch.mask.size(0);
+  const std::int64_t longest = batch.mask.size(3);
   const std::int64_t width = architecture_.width;
   const std::int64_t heads = architecture_.heads;
   const std::int64_t head_width = width / heads;
-  const auto byHead = [&](const at::Tensor& values) {
-    return values.reshape({moments, rows, heads, head_width}).transpose(1, 2).contiguous();
+  const auto byHead = [&](const at::Tensor& rows) {
+    return rows.index_select(0, batch.padded)
+        .reshape({moments, longest, heads, head_width})
+        .transpose(1, 2)
+        .contiguous();
   };
-  const at::Tensor flat = x.reshape({moments * rows, width});
-  const at::Tensor query = byHead(linear(parameters_, name + ".query", flat));
-  const at::Tensor both = linear(parameters_, name + ".key_value", flat);
+  const at::Tensor query = byHead(linearOfRows(parameters_, name + ".query", x));
+  const at::Tensor both = linearOfRows(parameters_, name + ".key_value", x);
   const at::Tensor key = byHead(both.narrow(1, 0, width));
   const at::Tensor value = byHead(both.narrow(1, width, width));
   const at::Tensor scores =
-      at::matmul(query, key.transpose(2, 3)) / std::sqrt(static_cast<double>(head_width)) + mask;
+      at::matmul(query, key.transpose(2, 3)) / std::sqrt(static_cast<double>(head_width)) +
+      batch.mask;
   const at::Tensor weights = at::softmax(scores, -1);
   attention = weights.select(2, 0).mean(1);
-  const at::Tensor mixed =
-      at::matmul(weights, value).transpose(1, 2).reshape({moments * rows, width});
+  const at::Tensor mixed = at::matmul(weights, value)
+                               .transpose(1, 2)
+                               .reshape({moments * longest, width})
+                               .index_select(0, batch.unpadded);
   const at::Tensor middle =
-      norm(name + ".norm1", flat + linear(parameters_, name + ".output", mixed));
-  const at::Tensor hidden = at::gelu(linear(parameters_, name + ".up", middle));
-  return norm(name + ".norm2", middle + linear(parameters_, name + ".down", hidden))
-      .reshape({moments, rows, width});
+      norm(name + ".norm1", x + linearOfRows(parameters_, name + ".output", mixed));
+  const at::Tensor hidden = at::gelu(linearOfRows(parameters_, name + ".up", middle));
+  return norm(name + ".norm2", middle + linearOfRows(parameters_, name + ".down", hidden));
 }
 
 at::Tensor PlantNet::gru(const at::Tensor& input, const at::Tensor& state) const {
@@ -185,13 +186,13 @@ PlantNet::Result PlantNet::forward(const PlantBatch& batch) const {
   Result result;
   at::Tensor x = embed(batch);
   for (std::int64_t i = 0; i < architecture_.layers; ++i)
-    x = layer("layer." + std::to_string(i), x, batch.mask, result.attention);
-  result.waypoints = decode(batch, x.select(1, 0));
+    x = layer("layer." + std::to_string(i), x, batch, result.attention);
+  result.waypoints = decode(batch, x.index_select(0, batch.first));
   if (batch.places.size(0) == 0) return result;
-  const at::Tensor vehicles =
-      x.reshape({x.size(0) * x.size(1), architecture_.width}).index_select(0, batch.places);
+  const at::Tensor vehicles = x.index_select(0, batch.places);
   for (std::size_t i = 0; i < result.next.size(); ++i)
-    result.next[i] = linear(parameters_, std::string("next.") + kPlantAttributeNames[i], vehicles);
+    result.next[i] =
+        linearOfRows(parameters_, std::string("next.") + kPlantAttributeNames[i], vehicles);
   return result;
 }
 

@@ -10,16 +10,19 @@
 
 namespace cdiff::planners {
 
-/// Several moments as tensors. B moments, T tokens (vehicles, then route segments, then padding).
+/// Several moments as tensors. B moments; R rows: the tokens of all moments one after the other,
+/// each moment's CLS first, then vehicles, then route segments; L: rows of the longest moment.
 struct PlantBatch {
-  at::Tensor tokens;     ///< [B, T, 6]
-  at::Tensor types;      ///< [B, T, 2]: 1 for vehicles, 1 for route segments; 0 in the padding
-  at::Tensor mask;       ///< [B, 1, 1, 1 + T]: 0, or -1e9 on the padding; CLS first
+  at::Tensor tokens;     ///< [R, 6]; 0 for CLS
+  at::Tensor types;      ///< [R, 3]: 1 in the column of CLS, vehicle or route segment
+  at::Tensor padded;     ///< int64 [B x L]: row of each place; 0 where a moment has none
+  at::Tensor mask;       ///< [B, 1, 1, L]: 0, or -1e9 where a moment has no row
+  at::Tensor unpadded;   ///< int64 [R]: place of each row
+  at::Tensor first;      ///< int64 [B]: row of each moment's CLS
   at::Tensor red_light;  ///< [B, 1]
   at::Tensor target;     ///< [B, 2]
   at::Tensor driven;     ///< [B, 4, 2] [m]
-  at::Tensor
-      places;  ///< int64 [N]: rows of the vehicle tokens that are there 0.5 s later, of B x (1 + T)
+  at::Tensor places;     ///< int64 [N]: rows of the vehicles that are still there 0.5 s later
   std::array<at::Tensor, kPlantAttributes> next;  ///< int64 [N]: their bins
 };
 
@@ -35,7 +38,7 @@ class PlantNet {
   struct Result {
     at::Tensor waypoints;                           ///< [B, 4, 2] [m]
     std::array<at::Tensor, kPlantAttributes> next;  ///< logits [N, bins] of the batch's `places`
-    at::Tensor attention;  ///< [B, 1 + T]: the last layer's of CLS, mean over heads
+    at::Tensor attention;  ///< [B, L]: the last layer's of CLS, mean over heads
   };
   Result forward(const PlantBatch& batch) const;
 
@@ -44,7 +47,7 @@ class PlantNet {
 
  private:
   at::Tensor embed(const PlantBatch& batch) const;
-  at::Tensor layer(const std::string& name, const at::Tensor& x, const at::Tensor& mask,
+  at::Tensor layer(const std::string& name, const at::Tensor& x, const PlantBatch& batch,
                    at::Tensor& attention) const;
   at::Tensor norm(const std::string& name, const at::Tensor& x) const;
   at::Tensor decode(const PlantBatch& batch, const at::Tensor& cls) const;
