@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/random.h"
@@ -109,14 +110,14 @@ Matrix attended(const Matrix& q, const Matrix& kv, std::vector<Matrix>& weights)
   weights.assign(static_cast<std::size_t>(kSizes.heads), Matrix(q.size()));
   for (std::size_t h = 0; h < weights.size(); ++h) {
     for (std::size_t i = 0; i < q.size(); ++i) {
-      double sum = 0.0;
       for (const std::vector<double>& key : kv) {
-        double score = 0.0;
+        weights[h][i].push_back(0.0);
         for (std::size_t d = h * head_width; d < (h + 1) * head_width; ++d)
-          score += q[i][d] * key[d];
-        weights[h][i].push_back(std::exp(score / std::sqrt(static_cast<double>(head_width))));
-        sum += weights[h][i].back();
+          weights[h][i].back() += q[i][d] * key[d] / std::sqrt(static_cast<double>(head_width));
       }
+      const double largest = *std::max_element(weights[h][i].begin(), weights[h][i].end());
+      double sum = 0.0;
+      for (double& weight : weights[h][i]) sum += (weight = std::exp(weight - largest));
       for (std::size_t j = 0; j < kv.size(); ++j) {
         weights[h][i][j] /= sum;
         for (std::size_t d = h * head_width; d < (h + 1) * head_width; ++d)

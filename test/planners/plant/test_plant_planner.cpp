@@ -186,11 +186,16 @@ TEST_F(PlantPlannerTest, AStateThatIsNotFiniteIsAFaultAndFullBraking) {
   EXPECT_EQ(planOf(planner, snapshot).fault, "") << "it goes on when all is well again";
 }
 
-TEST_F(PlantPlannerTest, WeightsThatAreNotFiniteInTheirSumAreAFault) {
-  PlantModel model = constantPlant(4.0, 0.0);
-  model.weights.at("step.bias").values[0] = 3e38F;
+// Squares of 3e38 overflow in the first normalization.
+TEST_F(PlantPlannerTest, APlanThatIsNotFiniteIsAFaultAndFullBraking) {
+  PlantModel model = drawnPlant(0.3);
+  model.weights.at("token.bias").values.assign(32, 3e38F);
+  model.weights.at("token.bias").values[0] = -3e38F;
   PlantPlanner planner({}, model);
-  EXPECT_EQ(planOf(planner, snapshotOf(8.0)).action, traffic::ControlAction::failSafe());
+  const auto planned = planOf(planner, snapshotOf(8.0));
+  EXPECT_EQ(planned.fault,
+            "vehicle 'ego': a waypoint of its plan is not finite; full braking instead");
+  EXPECT_EQ(planned.action, traffic::ControlAction::failSafe());
 }
 
 TEST_F(PlantPlannerTest, MissingWeightsAreNamedWithTheCommandThatTrainsThem) {

@@ -95,7 +95,8 @@ TEST(PlantNet, PaddingDoesNotCount) {
   const at::NoGradGuard no_gradient;
   const at::Tensor alone = net.forward(plantBatch({&few}, at::kCPU)).waypoints[0];
   const at::Tensor beside = net.forward(plantBatch({&few, &many}, at::kCPU)).waypoints[0];
-  EXPECT_LT((alone - beside).abs().max().item<double>(), 1e-5);
+  // As near as float32 brings places of some 10 m.
+  EXPECT_LT((alone - beside).abs().max().item<double>(), 1e-4);
 }
 
 TEST(PlantNet, VehiclesAreASet) {
@@ -108,7 +109,7 @@ TEST(PlantNet, VehiclesAreASet) {
   const at::NoGradGuard no_gradient;
   const at::Tensor difference = net.forward(plantBatch({&example}, at::kCPU)).waypoints -
                                 net.forward(plantBatch({&turned}, at::kCPU)).waypoints;
-  EXPECT_LT(difference.abs().max().item<double>(), 1e-5);
+  EXPECT_LT(difference.abs().max().item<double>(), 1e-4);
 }
 
 TEST(PlantNet, VehiclesThatAreGonePredictNothing) {

@@ -16,10 +16,10 @@ std::vector<PlantExample> examplesOf(const Scene& scene, const PlantSampleOption
   return PlantSampler({}, options).examplesOf(scene);
 }
 
-// 60 decisions, of which 39 have 2 s behind them. Every fifth is a sample: the ego's at 0, 5 ... 35
-// (slot -1), those of "a", which is driven from decision 2 on, at 4, 9 ... 34.
+// 60 decisions, of which 40 have 2 s behind them. Every fifth is a sample: the ego's at 0, 5 ... 35
+// (slot -1), those of "a", which is driven from decision 2 on, at 4, 9 ... 39.
 TEST(PlantSamples, EveryHalfSecondAMomentOfEachDrivenVehicle) {
-  EXPECT_EQ(examplesOf(smallScene()).size(), 8U + 7U);
+  EXPECT_EQ(examplesOf(smallScene()).size(), 8U + 8U);
   PlantSampleOptions options;
   options.period = 1.0;  // the ego's at 0, 10, 20, 30, those of "a" at 9, 19, 29, 39
   EXPECT_EQ(examplesOf(smallScene(), options).size(), 4U + 4U);
@@ -63,14 +63,14 @@ TEST(PlantSamples, AVehicleThatIsGoneHalfASecondLaterHasNoBins) {
 TEST(PlantSamples, NoiseContactAndJumpsAreNoExample) {
   Scene noisy = smallScene();
   noisy.disturbed = {{"ego", 24}};
-  EXPECT_EQ(examplesOf(noisy).size(), 15U - 3U);
+  EXPECT_EQ(examplesOf(noisy).size(), 16U - 3U);
   Scene touching = smallScene();
   touching.contacts = {{24, {"b", "ego"}}};
-  EXPECT_EQ(examplesOf(touching).size(), 15U - 3U);
+  EXPECT_EQ(examplesOf(touching).size(), 16U - 3U);
   Scene jumping = smallScene();
   for (std::size_t i = 12; i < jumping.decisions.size(); ++i)
-    jumping.decisions[i].vehicles[0].state.position.y() = 0.6;
-  EXPECT_EQ(examplesOf(jumping).size(), 15U - 3U);
+    jumping.decisions[i].vehicles[0].state.position.y() = 1.5;
+  EXPECT_EQ(examplesOf(jumping).size(), 16U - 3U);
 }
 
 // Taken over at decision 2, "a" has no action of ours at its samples before decision 20: 4, 9, 14
@@ -78,7 +78,7 @@ TEST(PlantSamples, NoiseContactAndJumpsAreNoExample) {
 TEST(PlantSamples, WhatTheSimulatorDroveIsNoExample) {
   Scene scene = smallScene();
   for (std::size_t i = 0; i < 20; ++i) scene.decisions[i].vehicles[1].applied_action.reset();
-  EXPECT_EQ(examplesOf(scene).size(), 15U - 4U);
+  EXPECT_EQ(examplesOf(scene).size(), 16U - 4U);
 }
 
 TEST(PlantSamples, OfMomentsAtWhichItStandsAShareIsKept) {
@@ -92,11 +92,11 @@ TEST(PlantSamples, OfMomentsAtWhichItStandsAShareIsKept) {
   PlantSampleOptions options;
   options.standing_share = 1.0;
   const std::size_t all = examplesOf(scene, options).size();
-  EXPECT_EQ(all, 116U + 115U);
+  EXPECT_EQ(all, 116U + 116U);
   options.standing_share = 0.0;
   EXPECT_EQ(examplesOf(scene, options).size(), 0U);
-  options.standing_share = 0.25;  // 58 of 231 expected, standard deviation 6.6
-  EXPECT_NEAR(static_cast<double>(examplesOf(scene, options).size()), 57.75, 20.0);
+  options.standing_share = 0.25;  // 58 of 232 expected, standard deviation 6.6
+  EXPECT_NEAR(static_cast<double>(examplesOf(scene, options).size()), 58.0, 20.0);
 }
 
 TEST(PlantSamples, DriversWithAnotherTargetSpeedAreLeftOut) {
