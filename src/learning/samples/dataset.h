@@ -103,6 +103,8 @@ class Dataset {
   /// training samples serve for both. Throws InputError when there is no shard, a shard is broken,
   /// two schemas differ, the samples name no session, or a part is empty.
   Dataset(const std::filesystem::path& folder, double validation_share);
+  /// Without samples.
+  Dataset() = default;
 
   const SampleSchema& schema() const { return schema_; }
   std::size_t size() const { return places_.size(); }
