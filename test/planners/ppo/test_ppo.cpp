@@ -75,8 +75,8 @@ TEST_F(PpoTest, DrivesByTanhOfTheMean) {
 }
 
 // Unit 0 of the first layer sees the goal's distance d alone, unit 3 of the second 2 x that + 1; a
-// second unit that ReLU closes adds nothing. Mean acceleration = 0.01 (2 d + 1); the goal of an ego at
-// 10 m is at (16.5, 0), so d = sqrt(13.5^2 + 10^2).
+// second unit that ReLU closes adds nothing. Mean acceleration = 0.01 (2 d + 1); the goal of an ego
+// at 10 m is at (16.5, 0), so d = sqrt(13.5^2 + 10^2).
 TEST_F(PpoTest, NetworkComputesItsLayers) {
   PpoActor::Weights weights = test::constantPpo(0.0F, 0.0F);
   weights.at("actor.first.weight").values[kPpoGoal * kPpoColumns + 5] = 1.0F;
@@ -88,8 +88,8 @@ TEST_F(PpoTest, NetworkComputesItsLayers) {
   weights.at("actor.log_deviation").values = {0.0F, std::log(0.5F)};
   const PpoActor actor(weights);
   const PpoGoal goal = ppoGoal(route_, 10.0);
-  const PpoAction mean = actor.mean(
-      ppoObservation(snapshot_, *snapshot_.ego(), *snapshot_.find("a"), goal));
+  const PpoAction mean =
+      actor.mean(ppoObservation(snapshot_, *snapshot_.ego(), *snapshot_.find("a"), goal));
   EXPECT_NEAR(mean[0], 0.01 * (2.0 * std::hypot(13.5, 10.0) + 1.0), 1e-6);
   EXPECT_EQ(mean[1], 0.0F);
   EXPECT_NEAR(actor.deviation()[0], 1.0, 1e-7);
@@ -106,8 +106,7 @@ TEST_F(PpoTest, StatesThatAreNotFiniteBrakeWithAFault) {
   EXPECT_EQ(planned[1].action, traffic::ControlAction::failSafe());
   snapshot_.vehicles[0].state.speed = std::numeric_limits<double>::infinity();
   planned = planner->plan(snapshot_, tasks());
-  EXPECT_EQ(planned[0].fault,
-            "vehicle 'a': the ego's state is not finite; full braking instead");
+  EXPECT_EQ(planned[0].fault, "vehicle 'a': the ego's state is not finite; full braking instead");
   EXPECT_EQ(planned[0].action, traffic::ControlAction::failSafe());
 }
 
@@ -120,8 +119,8 @@ TEST_F(PpoTest, WithoutAnEgoOrItsRouteItBrakesWithAFault) {
             "vehicle 'a': there is no ego; full braking instead");
 }
 
-// The goal is at (16.5, 0). A CBV 3 m before it has reached it: from then on PDM-Lite drives along the
-// CBV's route, also where the goal has moved away; with after_goal "goal" the network goes on.
+// The goal is at (16.5, 0). A CBV 3 m before it has reached it: from then on PDM-Lite drives along
+// the CBV's route, also where the goal has moved away; with after_goal "goal" the network goes on.
 TEST_F(PpoTest, DrivesOnAlongItsRouteOnceTheGoalIsReached) {
   test::writePpo(folder_.path(), test::constantPpo(0.5F, 0.25F));
   snapshot_.vehicles[1].state.position = {16.5, 3.0};
@@ -151,7 +150,8 @@ TEST_F(PpoTest, SameSnapshotsSameActions) {
     snapshot_.tick += 2;
     snapshot_.vehicles[0].state.position.x() += 0.8;
     snapshot_.vehicles[1].state.position.y() -= 0.1;
-    EXPECT_EQ(first->plan(snapshot_, tasks())[0].action, second->plan(snapshot_, tasks())[0].action);
+    EXPECT_EQ(first->plan(snapshot_, tasks())[0].action,
+              second->plan(snapshot_, tasks())[0].action);
   }
 }
 

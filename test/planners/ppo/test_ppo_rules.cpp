@@ -39,8 +39,9 @@ class PpoRules : public ::testing::Test {
 };
 
 // The CBV at (10, 5) looks north. The ego is 10 m ahead of it and turned by -90 degrees. Of the
-// others (13, 5) is nearest, 3 m to its right; boxes are 4.5 x 1.8 m. The ego at arc length 10 has its
-// goal 6.5 m ahead, at (16.5, 15): 10 m ahead of the CBV, 6.5 m to its right, sqrt(142.25) m away.
+// others (13, 5) is nearest, 3 m to its right; boxes are 4.5 x 1.8 m. The ego at arc length 10 has
+// its goal 6.5 m ahead, at (16.5, 15): 10 m ahead of the CBV, 6.5 m to its right, sqrt(142.25) m
+// away.
 TEST_F(PpoRules, ObservationOfAHandMadeScene) {
   snapshot_.vehicles.push_back(test::vehicle("b", {13.0, 5.0, 90.0, 2.0}));
   snapshot_.vehicles.push_back(test::vehicle("a", {10.0, -20.0, 0.0, 1.0}));
@@ -77,8 +78,8 @@ TEST_F(PpoRules, ValuesThatAreNotFiniteAreNamed) {
   EXPECT_EQ(ppoNotFinite(observe(ppoGoal(route_, 10.0))), "x of the CBV");
 }
 
-// a = 3 * 0.5 = 1.5 m/s^2: throttle 1.5 / 3; a = -3 * 0.8 = -2.4: brake 2.4 / 8; beyond 1 clipped to
-// 3 m/s^2 and 0.3.
+// a = 3 * 0.5 = 1.5 m/s^2: throttle 1.5 / 3; a = -3 * 0.8 = -2.4: brake 2.4 / 8; beyond 1 clipped
+// to 3 m/s^2 and 0.3.
 TEST_F(PpoRules, CommandsOfActions) {
   EXPECT_EQ(ppoCommand({0.5F, -0.5F}), (traffic::ControlAction{0.5, -0.15, 0.0}));
   EXPECT_NEAR(ppoCommand({-0.8F, 0.0F}).brake, 0.3, 1e-7);

@@ -55,8 +55,8 @@ TEST(PpoSession, DrivesTheCbvsOfASessionTheSameEachTime) {
   const ActionRecorder first = drive(options);
   EXPECT_EQ(first.faults, std::vector<std::string>());
   ASSERT_GT(first.actions.size(), 20U);
-  const auto by_network = std::count_if(
-      first.actions.begin(), first.actions.end(), [](const auto& entry) {
+  const auto by_network =
+      std::count_if(first.actions.begin(), first.actions.end(), [](const auto& entry) {
         return std::abs(entry.second.throttle - std::tanh(0.4)) < 1e-6 && entry.second.steer == 0.0;
       });
   EXPECT_GT(by_network, 20);

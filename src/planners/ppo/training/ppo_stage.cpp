@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 #include "planners/ppo/training/advantages.h"
 
@@ -12,10 +13,6 @@ namespace {
 
 constexpr std::int64_t kMinibatch = 256;
 constexpr double kAdamEpsilon = 1e-5;
-
-double secondsNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 at::Tensor toRows(const std::vector<double>& values, const at::Device& device) {
   const std::vector<float> floats(values.begin(), values.end());
@@ -60,6 +57,12 @@ at::Tensor allActions(const std::vector<PpoEpisode>& episodes, const at::Device&
 }
 
 }  // namespace
+
+PpoClocks PpoClocks::now() {
+  const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+  return {std::chrono::duration<double>(wall).count(),
+          static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
+}
 
 PpoEpisodeCounts::PpoEpisodeCounts(const std::vector<PpoEpisode>& all) : episodes(all.size()) {
   for (const PpoEpisode& episode : all) {
@@ -151,22 +154,27 @@ std::vector<std::size_t> PpoStage::samplesOf(std::int64_t step) {
 }
 
 void PpoStage::collect(std::int64_t iteration) {
-  const double begin = secondsNow();
+  const PpoClocks begin = PpoClocks::now();
   const PpoActor actor(training_.networks.weights());
   const std::vector<PpoEpisode> episodes = training_.collector().explore(actor, iteration);
-  const double collected = secondsNow();
   fill(episodes);
   buffer_.iteration = iteration;
   const PpoEpisodeCounts counts(episodes);
   news_ = counts.measures("episode_");
-  news_["collected_per_second"] = static_cast<double>(counts.decisions) / (collected - begin);
-  // The last iteration from its start to that of this one: with its learning.
-  if (begun_ > 0.0)
-    news_["decisions_per_second"] = static_cast<double>(decisions_) / (begin - begun_);
   for (std::size_t i = 0; i < kPpoActions; ++i)
     news_["deviation_" + std::string(i == 0 ? "acceleration" : "steer")] = actor.deviation()[i];
-  begun_ = begin;
+  notePace(begin);
   decisions_ = counts.decisions;
+}
+
+/// Of the last iteration from its start to that of this one, learning included.
+void PpoStage::notePace(const PpoClocks& begin) {
+  if (decisions_ > 0) {
+    const auto decisions = static_cast<double>(decisions_);
+    news_["decisions_per_second"] = decisions / (begin.wall - begun_.wall);
+    news_["decisions_per_processor_second"] = decisions / (begin.processors - begun_.processors);
+  }
+  begun_ = begin;
 }
 
 std::vector<PpoValued> PpoStage::valued(const std::vector<PpoEpisode>& episodes,

@@ -25,6 +25,14 @@ struct PpoSettings {
   std::int64_t held_out_rounds = 1;  ///< sessions on each held-out route
 };
 
+/// Time since some moment [s]: on the wall, and of the processors on this process.
+struct PpoClocks {
+  double wall = 0.0;
+  double processors = 0.0;
+
+  static PpoClocks now();
+};
+
 /// How a set of episodes went.
 struct PpoEpisodeCounts {
   std::size_t episodes = 0;
@@ -80,6 +88,7 @@ class PpoStage : public learning::Stage {
   };
   std::int64_t stepsAnIteration() const;
   void collect(std::int64_t iteration);
+  void notePace(const PpoClocks& begin);
   void fill(const std::vector<PpoEpisode>& episodes);
   std::vector<PpoValued> valued(const std::vector<PpoEpisode>& episodes,
                                 const at::Tensor& observations) const;
@@ -88,8 +97,8 @@ class PpoStage : public learning::Stage {
   PpoTraining& training_;
   Buffer buffer_;
   learning::Measures news_;
-  double begun_ = 0.0;         ///< when the last iteration was [s]; 0: there was none
-  std::size_t decisions_ = 0;  ///< of it
+  PpoClocks begun_;            ///< when the last iteration was begun
+  std::size_t decisions_ = 0;  ///< of it; 0: there was none
 
  public:
   static constexpr const char* kStage = "policy";

@@ -9,9 +9,9 @@
 namespace cdiff::planners {
 namespace {
 
-// discount = decay = 0.5. First episode: delta_2 = 2 - 3 = -1 (terminal), A_2 = -1; delta_1 = 1 + 0.5 * 3 -
-// 2 = 0.5, A_1 = 0.5 + 0.25 * -1 = 0.25. Second episode, cut: delta = 0 + 0.5 * 4 - 1 = 1, and nothing of
-// it reaches the first.
+// discount = decay = 0.5. First episode: delta_2 = 2 - 3 = -1 (terminal), A_2 = -1; delta_1 = 1 +
+// 0.5 * 3 - 2 = 0.5, A_1 = 0.5 + 0.25 * -1 = 0.25. Second episode, cut: delta = 0 + 0.5 * 4 - 1 =
+// 1, and nothing of it reaches the first.
 TEST(PpoAdvantages, HandDerived) {
   const std::vector<double> found = ppoAdvantages(
       {{1.0, 2.0, 3.0, false, false}, {2.0, 3.0, 99.0, true, true}, {0.0, 1.0, 4.0, false, true}},
