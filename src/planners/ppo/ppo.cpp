@@ -23,7 +23,7 @@ void PpoOptions::describe(core::OptionsVisitor& visitor) {
       weights, {});
   visitor.text(
       {"after_goal", "",
-       "Once a CBV has reached its goal: PDM-Lite along its route, or on towards the goal."},
+       "Once a CBV has reached its goal: PDM-Lite along its route, or on toward the goal."},
       after_goal, {"route", "goal"});
 }
 
@@ -57,12 +57,12 @@ std::vector<planning::PlannedAction> Ppo::plan(const traffic::TrafficSnapshot& s
   ego_.update(*ego_route_, snapshot.ego()->state.position);
   const PpoGoal goal = ppoGoal(*ego_route_, ego_.arcLength());
   for (const planning::PlanningTask& task : tasks)
-    actions.push_back(towardsGoal(snapshot, task, goal));
+    actions.push_back(towardGoal(snapshot, task, goal));
   if (options_.after_goal == "route") driveOn(snapshot, tasks, actions);
   return actions;
 }
 
-planning::PlannedAction Ppo::towardsGoal(const traffic::TrafficSnapshot& snapshot,
+planning::PlannedAction Ppo::towardGoal(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, const PpoGoal& goal) {
   const PpoObservation observation = ppoObservation(snapshot, *snapshot.ego(), *task.vehicle, goal);
   const std::string unusable = ppoNotFinite(observation);

@@ -31,7 +31,7 @@ struct PpoOptions {
 ///
 /// RIFT gives a CBV that has reached its goal back to the traffic manager. Here it stays a CBV:
 /// with after_goal "route" PDM-Lite drives it on along its conflict-aware route from then on, with
-/// "goal" the network goes on towards the goal, which moves with the ego.
+/// "goal" the network goes on toward the goal, which moves with the ego.
 class Ppo : public planning::Planner {
  public:
   /// Throws InputError for weights that are missing or of another planner.
@@ -48,7 +48,7 @@ class Ppo : public planning::Planner {
  private:
   /// Why no vehicle can be driven at this snapshot; empty where they can.
   std::string faultOf(const traffic::Vehicle* ego) const;
-  planning::PlannedAction towardsGoal(const traffic::TrafficSnapshot& snapshot,
+  planning::PlannedAction towardGoal(const traffic::TrafficSnapshot& snapshot,
                                       const planning::PlanningTask& task, const PpoGoal& goal);
   void driveOn(const traffic::TrafficSnapshot& snapshot,
                const std::vector<planning::PlanningTask>& tasks,

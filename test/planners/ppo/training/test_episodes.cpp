@@ -50,7 +50,7 @@ class PpoEpisodes : public ::testing::Test {
   PpoEpisodeLog log_;
 };
 
-// Along y towards the goal: 12, 11.5, 10 (clipped), then within 4 m: 6.5 - 3.5 clipped to 1, + 15.
+// Along y toward the goal: 12, 11.5, 10 (clipped), then within 4 m: 6.5 - 3.5 clipped to 1, + 15.
 TEST_F(PpoEpisodes, EndsAtTheGoal) {
   decide(at(0, 16.5, 12.0));
   log_.look(at(1, 16.5, 11.8));
