@@ -128,7 +128,6 @@ std::vector<float> toVector(const at::Tensor& tensor) {
 namespace {
 
 constexpr double kBeta1 = 0.9;
-constexpr double kEpsilon = 1e-8;
 
 /// Factors of one step; float as the tensors are.
 struct StepFactors {
@@ -137,6 +136,7 @@ struct StepFactors {
   float decay;         ///< 1 - learning rate x weight decay
   float average_gain;  ///< 1 - d
   double second;       ///< b2
+  float epsilon;       ///< added to the root of v
 };
 
 struct StepTensors {
@@ -161,7 +161,7 @@ void stepOnCpu(const StepTensors& tensors, const StepFactors& factors) {
       const float g = gradient[i];
       first[i] = static_cast<float>(kBeta1) * first[i] + static_cast<float>(1.0 - kBeta1) * g;
       second[i] = second_decay * second[i] + second_gain * g * g;
-      const float root = std::sqrt(second[i]) * factors.correction + static_cast<float>(kEpsilon);
+      const float root = std::sqrt(second[i]) * factors.correction + factors.epsilon;
       weight[i] = factors.decay * weight[i] - factors.rate * first[i] / root;
       average[i] += factors.average_gain * (weight[i] - average[i]);
     }
@@ -172,7 +172,7 @@ void stepOnDevice(const StepTensors& tensors, const StepFactors& factors) {
   tensors.first.mul_(kBeta1).add_(tensors.gradient, 1.0 - kBeta1);
   tensors.second.mul_(factors.second)
       .addcmul_(tensors.gradient, tensors.gradient, 1.0 - factors.second);
-  const at::Tensor root = tensors.second.sqrt().mul_(factors.correction).add_(kEpsilon);
+  const at::Tensor root = tensors.second.sqrt().mul_(factors.correction).add_(factors.epsilon);
   tensors.weight.mul_(factors.decay).addcdiv_(tensors.first, root, -factors.rate);
   tensors.average.add_(tensors.weight - tensors.average, factors.average_gain);
 }
@@ -194,16 +194,22 @@ void Optimizer::clearGradients() {
 }
 
 double Optimizer::clipGradients(double limit) {
+  return clipGradients(limit, 0, parameters_.size());
+}
+
+double Optimizer::clipGradients(double limit, std::size_t first, std::size_t count) {
   const at::NoGradGuard no_gradient;
+  std::vector<at::Tensor> gradients;
   std::vector<at::Tensor> norms;
-  for (const at::Tensor& parameter : parameters_) {
-    if (parameter.grad().defined()) norms.push_back(parameter.grad().norm());
+  for (std::size_t i = first; i < first + count; ++i) {
+    const at::Tensor& gradient = parameters_.at(i).grad();
+    if (!gradient.defined()) continue;
+    gradients.push_back(gradient);
+    norms.push_back(gradient.norm());
   }
   const double norm = at::stack(norms).norm().item<double>();
   if (norm <= limit || !std::isfinite(norm)) return norm;
-  for (const at::Tensor& parameter : parameters_) {
-    if (parameter.grad().defined()) parameter.grad().mul_(limit / norm);
-  }
+  for (at::Tensor& gradient : gradients) gradient.mul_(limit / norm);
   return norm;
 }
 
@@ -217,6 +223,7 @@ void Optimizer::step(std::int64_t n, double rate) {
       static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(options_.second_decay, count + 1.0)));
   factors.average_gain = static_cast<float>(1.0 - average_decay);
   factors.second = options_.second_decay;
+  factors.epsilon = static_cast<float>(options_.epsilon);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     at::Tensor& weight = parameters_[i];
     const double decay = weight.dim() > 1 ? rate * options_.weight_decay : 0.0;

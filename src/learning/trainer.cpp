@@ -73,15 +73,21 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
   return record;
 }
 
+std::string dataSentence(const json& data) {
+  std::ostringstream text;
+  text << data["training_samples"] << " samples of "
+       << data["sessions"].get<int>() - data["validation_sessions"].get<int>()
+       << " sessions; judged on " << data["judged_samples"] << " samples of "
+       << data["validation_sessions"]
+       << " sessions that it was not trained on (0 sessions: on the training samples)";
+  return text.str();
+}
+
 std::string modelCard(const json& facts, const TrainedModel& model) {
   std::ostringstream card;
   card << "# " << model.title << "\n\nTrained by `cdiff train` on "
-       << facts["data"]["training_samples"] << " samples of "
-       << facts["data"]["sessions"].get<int>() - facts["data"]["validation_sessions"].get<int>()
-       << " sessions; judged on " << facts["data"]["judged_samples"] << " samples of "
-       << facts["data"]["validation_sessions"]
-       << " sessions that it was not trained on (0 sessions: on the training samples).\n\n"
-          "| Stage | Steps | Seconds | Loss |\n|---|---|---|---|\n";
+       << (model.trained_on.empty() ? dataSentence(facts["data"]) : model.trained_on)
+       << ".\n\n| Stage | Steps | Seconds | Loss |\n|---|---|---|---|\n";
   for (const auto& [name, stage] : facts["stages"].items()) {
     card << "| " << name << " | " << stage["steps"] << " | "
          << formatFixed(stage["seconds"].get<double>(), 0) << " | "
@@ -239,6 +245,11 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   requireFreeOutput(training);
   requireSources(training);
   core::removeTemporaries(options.output);
+  if (!training.needsSamples()) {
+    const Dataset none;
+    Trainer(training, none, stop, log).run();
+    return;
+  }
   const Dataset dataset = readData(training, stop, log);
   log << "data: " << dataset.training().size() << " training samples, "
       << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"

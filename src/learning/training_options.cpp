@@ -105,8 +105,12 @@ void Training::describe(OptionsVisitor& visitor) {
 void Training::validate() const {
   Training checked = *this;
   core::loadOptions({"training options", core::dumpOptions(*this)}, checked);
-  if (options.data.empty())
+  if (options.data.empty() && needsSamples())
     throw InputError("training: data, the folder of the samples, is not given");
+  if (!options.data.empty() && !needsSamples()) {
+    throw InputError("training: data is '" + options.data + "', but task '" + options.task +
+                     "' makes its samples itself; leave --data out");
+  }
   if (options.output.empty())
     throw InputError("training: output, the folder to write to, is not given");
   if (options.resume && options.overwrite) {
@@ -118,6 +122,8 @@ void Training::validate() const {
     throw InputError("training: anneal_by_time needs a time_limit");
   task->validate();
 }
+
+bool Training::needsSamples() const { return task->needsSamples(); }
 
 namespace {
 

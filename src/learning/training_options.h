@@ -55,6 +55,8 @@ struct Training {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError naming the key.
   void validate() const;
+  /// Whether a data folder must be given.
+  bool needsSamples() const;
 };
 
 // The options of an options struct on the command line: `--steps 10` for the key `steps`, a flag

@@ -124,6 +124,8 @@ class Dataset {
   Dataset(const std::filesystem::path& folder, double validation_share);
   /// The same of shards in memory; `name` stands for the data in messages.
   Dataset(std::vector<ShardReader> shards, std::string name, double validation_share);
+  /// Without samples.
+  Dataset() = default;
 
   const SampleSchema& schema() const { return schema_; }
   std::size_t size() const { return places_.size(); }
