@@ -54,6 +54,7 @@ void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 void benchmarkMetrics(Figures& figures);
 void benchmarkPlanner(Figures& figures);
+void benchmarkPluto(Figures& figures);
 /// Where the benchmarks are built with ROS.
 void benchmarkReplay(Figures& figures);
 

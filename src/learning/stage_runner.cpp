@@ -137,7 +137,7 @@ void StageRunner::checkFinite(double value) {
                      "; the samples of its batch are";
   for (const std::size_t sample : stage_.samplesOf(result_.steps))
     text += " " + std::to_string(sample);
-  if (optimizer_.parametersFinite()) {
+  if (optimizer_.parametersFinite() && betweenPeriods()) {
     save(false);
     text += "; the weights before that step are in ";
   } else {
@@ -159,6 +159,7 @@ double StageRunner::progress() const {
 }
 
 double StageRunner::rate() const {
+  if (const auto own = stage_.learningRate(result_.steps)) return *own;
   const double start = options_.warm_up == 0
                            ? 1.0
                            : std::min(1.0, static_cast<double>(result_.steps + 1) /

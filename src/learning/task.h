@@ -9,6 +9,7 @@
 #include <iosfwd>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,9 @@ class Stage {
   virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
   /// Measures on held-out samples.
   virtual Measures judge() = 0;
+  /// The learning rate of a step where the stage has a course of its own; nullopt: warm-up and
+  /// cosine of the options.
+  virtual std::optional<double> learningRate(std::int64_t) const { return std::nullopt; }
 };
 
 /// Which checkpoints give a part of the weights.

@@ -194,6 +194,15 @@ msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
     message.points.back().steer = point.action.steer;
     message.points.back().brake = point.action.brake;
   }
+  for (const planning::PlannedCandidate& candidate : action.candidates) {
+    message.candidates.emplace_back();
+    message.candidates.back().score = candidate.score;
+    message.candidates.back().chosen = candidate.chosen ? 1 : 0;
+    for (const Eigen::Vector2d& place : candidate.places) {
+      message.candidates.back().x.push_back(place.x());
+      message.candidates.back().y.push_back(place.y());
+    }
+  }
   return message;
 }
 
@@ -203,6 +212,18 @@ std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message) {
     points.push_back({fromMsg(point.state), {point.throttle, point.steer, point.brake}});
   }
   return points;
+}
+
+std::vector<planning::PlannedCandidate> candidatesFromMsg(const msgs::Rollout& message) {
+  std::vector<planning::PlannedCandidate> candidates;
+  for (const msgs::PlannedCandidate& from : message.candidates) {
+    planning::PlannedCandidate& candidate = candidates.emplace_back();
+    candidate.score = from.score;
+    candidate.chosen = from.chosen != 0;
+    for (std::size_t i = 0; i < std::min(from.x.size(), from.y.size()); ++i)
+      candidate.places.emplace_back(from.x[i], from.y[i]);
+  }
+  return candidates;
 }
 
 }  // namespace cdiff::ros
