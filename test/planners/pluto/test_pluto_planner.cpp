@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/pluto/pluto_course.h"
 #include "planners/registry.h"
 
