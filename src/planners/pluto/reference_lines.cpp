@@ -126,7 +126,7 @@ class LaneDepthSearch {
     if (line.poses.size() > 1) lines_.push_back(std::move(line));
   }
 
-  /// Towards the next edge of the route; from its last one straight on.
+  /// Toward the next edge of the route; from its last one straight on.
   Lanes successors(std::size_t edge) const {
     const map::LaneIndex here = path_.back();
     if (edge + 1 >= edges_.size()) {
