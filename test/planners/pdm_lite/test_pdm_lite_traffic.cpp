@@ -304,38 +304,6 @@ TEST_F(CrossRoads, CbvThatGaveWayRestartsByItsSlot) {
   }
 }
 
-class Light : public ::testing::Test {
- protected:
-  map::RoadNetwork network_ =
-      makeNetwork({{"in", straight(0.0, 0.0, 80.0, 0.0)}, {"out", straight(80.0, 0.0, 200.0, 0.0)}},
-                  {{"in", "out", "light"}});
-  map::Route route_ = routeAlong(network_, {"in", "out"});
-};
-
-TEST_F(Light, StopsSixMetersBeforeRedAndGoesOnGreen) {
-  ClosedLoop loop(network_);
-  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
-  loop.setSignal("light", "r");
-  loop.run(15.0);
-  // s0 = 6 m from the center to the stop line.
-  EXPECT_NEAR(80.0 - loop.vehicle(0).state.position.x(), 6.0, 1.5);
-  EXPECT_LT(loop.vehicle(0).state.speed, 0.1);
-  RecordProperty("stop_distance_m", std::to_string(80.0 - loop.vehicle(0).state.position.x()));
-  loop.setSignal("light", "G");
-  loop.run(5.0);
-  EXPECT_GT(loop.vehicle(0).state.position.x(), 90.0);
-}
-
-TEST_F(Light, IsIgnoredWhereTheOptionSaysSo) {
-  PdmLiteOptions options;
-  options.obey_lights = false;
-  ClosedLoop loop(network_, options);
-  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
-  loop.setSignal("light", "r");
-  loop.run(15.0);
-  EXPECT_GT(loop.vehicle(0).state.position.x(), 90.0);
-}
-
 std::string bytesOf(const std::vector<planning::PlannedAction>& actions) {
   std::string bytes;
   const auto append = [&](double value) {
