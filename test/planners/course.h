@@ -19,6 +19,8 @@ namespace cdiff::planners::testing {
 
 using Points = std::vector<Eigen::Vector3d>;
 
+inline constexpr double kNorth = 0.5 * core::kPi;  ///< heading [rad]
+
 /// A lane of its own edge; the edge has the name of the lane without "_0".
 struct LaneSpec {
   std::string edge;

@@ -116,7 +116,7 @@ TEST(EgoForecast, DecidesAsOftenAsTheSession) {
   const map::Route route = routeAlong(network, {"road"});
   planners::DriverState driver{RouteFollower(),
                                planners::LateralController(planners::PdmLiteOptions())};
-  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.3, 0.0, 7.6);
+  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.3, 0.0, 7.95);
   driver.follower.update(route, ego.state.position);
   const dynamics::BicycleModel model;
   const auto rollout = planners::forecastEgo(ego.state, route, driver, 8.0, model, {1, 2});

@@ -64,7 +64,7 @@ class PdmLite : public planning::Planner {
     bool gave_way = false;       ///< the box rule made it brake and it has not driven on since
     double clear_time = 0.0;     ///< since no box is met [s]
     double waiting = 0.0;        ///< deceleration of an even style that gives way [m/s^2]
-    StopSignRule stop_signs;
+    StopSignRule stop_signs = {};
   };
   using Memories = std::map<std::string, Memory>;
   /// Forecasts of the snapshot's vehicles, made when first asked for.

@@ -12,12 +12,11 @@ namespace cdiff::planners {
 namespace {
 
 using testing::ClosedLoop;
+using testing::kNorth;
 using testing::makeNetwork;
 using testing::routeAlong;
 using testing::straight;
 using testing::vehicleAt;
-
-constexpr double kNorth = 0.5 * core::kPi;
 
 /// A road along +x and one across it at x = 100, without a junction.
 class CrossRoads : public ::testing::Test {
