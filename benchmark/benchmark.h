@@ -53,6 +53,7 @@ void benchmarkDenoiser(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 void benchmarkMetrics(Figures& figures);
+void benchmarkPdmLite(Figures& figures);
 void benchmarkPlanner(Figures& figures);
 void benchmarkPluto(Figures& figures);
 /// Where the benchmarks are built with ROS.

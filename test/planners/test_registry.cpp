@@ -171,7 +171,21 @@ TEST(PdmLiteOptions, ReadBackFromTheirOwnText) {
 TEST(PdmLiteOptions, UnknownKeysAndValuesOutOfRangeAreErrors) {
   PdmLiteOptions options;
   EXPECT_THROW(core::loadOptions({"text", "lateral_pk: 2.0"}, options), core::InputError);
-  EXPECT_THROW(core::loadOptions({"text", "lateral_window: 0"}, options), core::InputError);
+  EXPECT_THROW(core::loadOptions({"text", "lateral_window: -1"}, options), core::InputError);
+  EXPECT_THROW(core::loadOptions({"text", "configuration: rfit"}, options), core::InputError);
+  options.configuration = "rfit";
+  EXPECT_THROW(options.validate(), core::InputError);
+}
+
+TEST(PdmLiteOptions, AConfigurationLiesBelowItsKeys) {
+  PdmLiteOptions options;
+  EXPECT_EQ(options.resolved().lateral_kp, 2.0);
+  EXPECT_EQ(options.resolved().lateral_window, 20);
+  EXPECT_EQ(options.resolved().top_speed, 0.0);
+  core::loadOptions({"text", "configuration: original\nlateral_window: 12"}, options);
+  EXPECT_EQ(options.resolved().lateral_kp, 3.118357247806046);
+  EXPECT_EQ(options.resolved().lateral_window, 12);
+  EXPECT_EQ(options.resolved().top_speed, 20.0);
 }
 
 /// Plans throttle `throttle` for all its vehicles, or throws; notes the slots of each batch.
