@@ -117,7 +117,7 @@ Markup shownCell(const TableCell& cell, bool with_interval) {
   const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
   Markup html = cellText(cell, with_interval);
-  if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
+  if (!rift.empty()) html += element("span", {{"class", "by_rift"}}, "RIFT: " + rift);
   if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
   const std::string repository = paperText(cell.repository);
   if (!repository.empty())

@@ -138,7 +138,6 @@ TEST(Plan, IsTheProductOfItsFactors) {
   EXPECT_NE(plan[0].scenario_sha256, plan[2].scenario_sha256);
 }
 
-// In a baseline of its own name nothing but the constant planner and its speed differs.
 TEST(Plan, BaselinesAreTheConstantPlannerAtTwoSpeeds) {
   for (const std::string role : {"cbv", "ego"}) {
     MatrixOptions matrix = oneScenario();
