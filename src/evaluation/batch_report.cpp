@@ -118,8 +118,11 @@ Markup shownCell(const TableCell& cell, bool with_interval) {
   const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
   Markup html = cellText(cell, with_interval);
-  if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
+  if (!rift.empty()) html += element("span", {{"class", "by_rift"}}, "RIFT: " + rift);
   if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
+  const std::string repository = paperText(cell.repository);
+  if (!repository.empty())
+    html += element("span", {{"class", "paper"}}, "RIFT's repository: " + repository);
   return html;
 }
 
@@ -138,6 +141,7 @@ Markup paperTable(const Table& table) {
   Markup html = rows.html();
   if (anyRowWithout(table)) html += page::pageNote(intervalRule());
   if (!definition.note.empty()) html += page::pageNote(definition.note);
+  for (const std::string& footnote : definition.footnotes) html += page::pageNote(footnote);
   for (const std::string& line : settingsLines(table)) html += page::pageNote(line);
   return html;
 }
@@ -193,8 +197,10 @@ std::string row(const std::vector<std::string>& cells) {
 std::string markdownCell(const TableCell& cell, bool with_interval) {
   const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
+  const std::string repository = paperText(cell.repository);
   return cellText(cell, with_interval) + (rift.empty() ? "" : "<br>RIFT: " + rift) +
-         (paper.empty() ? "" : "<br>paper: " + paper);
+         (paper.empty() ? "" : "<br>paper: " + paper) +
+         (repository.empty() ? "" : "<br>RIFT's repository: " + repository);
 }
 
 }  // namespace
@@ -207,7 +213,8 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
   std::string text = "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " +
                      intervals +
                      "(routes, seeds, runs that have the measure). "
-                     "RIFT: the same by RIFT's definition. paper: as printed there. "
+                     "RIFT: the same by RIFT's definition. paper: as printed there. RIFT's "
+                     "repository: as printed there. "
                      "In parentheses alone: why a cell is empty.\n";
   for (const Table& table : tables) {
     const TableDefinition& definition = table.definition;
@@ -225,6 +232,7 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
     }
     text += "\n";
     if (anyRowWithout(table)) text += intervalRule() + "\n\n";
+    for (const std::string& footnote : definition.footnotes) text += "- " + footnote + "\n";
     for (const std::string& line : settingsLines(table)) text += "- " + line + "\n";
   }
   return text;
