@@ -50,12 +50,11 @@ std::filesystem::path dataFolder();
 void benchmarkCamera(Figures& figures);
 void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
+void benchmarkLatency(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 void benchmarkMetrics(Figures& figures);
-void benchmarkPdmLite(Figures& figures);
 void benchmarkPlanner(Figures& figures);
-void benchmarkPluto(Figures& figures);
 /// Where the benchmarks are built with ROS.
 void benchmarkReplay(Figures& figures);
 

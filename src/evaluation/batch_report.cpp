@@ -13,6 +13,7 @@
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/system_summary.h"
+#include "evaluation/trail_figure.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 
@@ -243,7 +244,8 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   std::vector<Table> tables;
   for (const TableDefinition& definition : paperTables())
     tables.push_back(fillTable(definition, pooled));
-  const std::vector<Figure> figures = paperFigures(pooled);
+  std::vector<Figure> figures = paperFigures(pooled);
+  if (auto trails = trailFigure(runs)) figures.push_back(std::move(*trails));
   makeFolder(results / "tables");
   for (const Table& table : tables) {
     core::writeFileAtomically(results / "tables" / (table.definition.id + ".csv"), tableCsv(table));

@@ -2,12 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
+#include "planners/registry.h"
 #include "session/scenario_options.h"
 #include "support/temporary_folder.h"
 
@@ -118,6 +120,33 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("cbv_choice"), "").size(), 10U * 3U * 2U * 3U);
   EXPECT_EQ(planRuns(loadMatrix("attack_effect"), "").size(), 10U * 5U * 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("realism_matched"), "").size(), 10U * 4U * 2U);
+}
+
+TEST(ShippedMatrices, CbvPlannersHasEveryPlannerThatDrivesCbvs) {
+  std::vector<std::string> names;
+  for (const planning::PlannerDescriptor& planner : planners::packagePlanners()) {
+    if (planner.drives_cbv) names.push_back(planner.name);
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(loadMatrix("cbv_planners").cbv_planners, names);
+}
+
+/// What a matrix with this planner in a role is told, for planners of one role alone.
+TEST(Plan, RefusesAPlannerInARoleThatItDoesNotHave) {
+  std::size_t refused = 0;
+  for (const planning::PlannerDescriptor& planner : planners::packagePlanners()) {
+    MatrixOptions matrix = oneScenario();
+    if (!planner.drives_ego) matrix.ego_planners = {"pdm_lite", planner.name};
+    if (!planner.drives_cbv) matrix.cbv_planners = {"pdm_lite", planner.name};
+    if (planner.drives_ego && planner.drives_cbv) continue;
+    ++refused;
+    const std::string role = planner.drives_cbv ? "the ego" : "CBVs";
+    expectIn("matrix.yaml, scenario arterial_exit: ", errorOf(matrix));
+    expectIn("'" + planner.name + "', a planner that does not drive " + role +
+                 "; expected one of constant, diffusion, pdm_lite, ",
+             errorOf(matrix));
+  }
+  EXPECT_GT(refused, 0U);
 }
 
 TEST(Plan, IsTheProductOfItsFactors) {

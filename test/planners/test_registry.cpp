@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/course.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
@@ -69,6 +70,15 @@ TEST_F(PlannerRegistry, MakesEveryPlannerThatItNames) {
     const auto planner = make(name);
     ASSERT_NE(planner, nullptr) << name;
     EXPECT_EQ(planner->needsImages(), seesImages(name)) << name;
+  }
+}
+
+TEST(PlannersPage, HasARowOfEveryPlannerWithTitleAndRoles) {
+  const std::string page = core::readFile(E2E_CDIFF_DOCS "/planners.md", "documentation");
+  for (const planning::PlannerDescriptor& planner : packagePlanners()) {
+    const char* roles = !planner.drives_ego ? "CBVs" : !planner.drives_cbv ? "ego" : "ego, CBVs";
+    const std::string row = "\n| `" + planner.name + "` | " + planner.title + " | " + roles + " | ";
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/planners.md must hold" << row;
   }
 }
 

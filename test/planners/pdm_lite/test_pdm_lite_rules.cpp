@@ -30,7 +30,7 @@ class StopLineScene : public ::testing::Test {
   static double toLine(const ClosedLoop& loop) { return 80.0 - loop.vehicle(0).state.position.x(); }
 };
 
-TEST_F(StopLineScene, StopsSixMetresBeforeRedAndYellowAndGoesOnGreen) {
+TEST_F(StopLineScene, StopsSixMetersBeforeRedAndYellowAndGoesOnGreen) {
   const map::RoadNetwork lit = network("light", "o");
   const map::Route route = routeAlong(lit, {"in", "out"});
   for (const std::string letter : {"r", "y"}) {
@@ -269,7 +269,7 @@ TEST_F(OpenRoad, FollowsABicycleAtItsSpeed) {
 
 // IDM knows leaders along 80 m: v = 7.9 m/s, s* = 4 + 1.98 + 7.9^2 / (2 sqrt(24 x 3.72)) = 9.28 m,
 // s = 74 m: 24 m/s^2 (1 - (7.9 / 8)^4 - (9.28 / 74)^2) x 0.05 s = 0.04 m/s in place of 0.1.
-TEST_F(OpenRoad, LeadersCountUpTo80MetresAhead) {
+TEST_F(OpenRoad, LeadersCountUpTo80MetersAhead) {
   std::vector<double> throttles;
   for (const double distance : {78.5, 84.0}) {
     ClosedLoop loop(network_);

@@ -34,7 +34,7 @@ TEST_F(StraightRoad, InitialSpeedIsTheSmallestOfThree) {
   EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route_, 10.0, 5.0, 20.0), 10.0);
 }
 
-TEST(RouteRules, OriginalConfigurationDrivesAtMost20MetresPerSecond) {
+TEST(RouteRules, OriginalConfigurationDrivesAtMost20MetersPerSecond) {
   const auto network = makeNetwork({{"fast", straight(0.0, 0.0, 200.0, 0.0), 40.0}});
   const map::Route route = routeAlong(network, {"fast"});
   PdmLiteOptions options;
@@ -152,7 +152,7 @@ class StopSigns : public ::testing::Test {
   StopSignRule rule_;
 };
 
-TEST_F(StopSigns, AreClearedByStandingLessThan3MetresBeforeTheLine) {
+TEST_F(StopSigns, AreClearedByStandingLessThan3MetersBeforeTheLine) {
   EXPECT_DOUBLE_EQ(before(50.0, 40.0, 8.0).value(), 40.0);
   EXPECT_DOUBLE_EQ(before(50.0, 3.1, 0.0).value(), 3.1);
   EXPECT_DOUBLE_EQ(before(50.0, 2.9, 0.11).value(), 2.9);
@@ -160,7 +160,7 @@ TEST_F(StopSigns, AreClearedByStandingLessThan3MetresBeforeTheLine) {
   EXPECT_FALSE(before(50.0, 1.0, 5.0)) << "it stays cleared";
 }
 
-TEST_F(StopSigns, CountAgainOnceTheNextIsFartherThan10Metres) {
+TEST_F(StopSigns, CountAgainOnceTheNextIsFartherThan10Meters) {
   ASSERT_FALSE(before(50.0, 2.0, 0.0));
   EXPECT_DOUBLE_EQ(before(75.0, 24.0, 3.0).value(), 24.0);
   EXPECT_DOUBLE_EQ(before(75.0, 9.0, 3.0).value(), 9.0);
