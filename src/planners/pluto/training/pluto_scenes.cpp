@@ -53,15 +53,17 @@ void PlutoScene::addDrives(const learning::Scene& scene) {
   }
 }
 
-/// Along each route, decision by decision, as a planner follows it.
+/// Along each route, decision by decision, as a planner follows it. Where a vehicle is taken over
+/// collection puts it elsewhere: its places begin at the decision after.
 void PlutoScene::follow(const learning::Scene& scene) {
   std::vector<planning::RouteFollower> followers(drives_.size());
   for (std::size_t i = 0; i < scene.decisions.size(); ++i) {
     for (const auto& [slot, number] : scene.driven[i]) {
       PlutoDrive& drive = drives_[number];
-      const TrackPoint* point = frames_[i].find(drive.vehicle);
-      if (point == nullptr) continue;
-      followers[number].update(drive.route, point->state.position);
+      const traffic::Vehicle* vehicle = scene.decisions[i].find(scene.drives[number].vehicle_id);
+      if (vehicle == nullptr) continue;
+      followers[number].update(drive.route, vehicle->state.position);
+      if (!vehicle->applied_action) continue;
       drive.places[i] = followers[number].arcLength();
       const auto key = std::make_pair(scene.drives[number].vehicle_id, scene.decisions[i].tick);
       if (scene.disturbed.count(key) != 0) drive.disturbed.insert(i);

@@ -42,6 +42,20 @@ TEST_F(PlutoSamples, AreTakenWhileEnoughFollows) {
   EXPECT_EQ(places.back().steps, 30U);
 }
 
+// Samples of "a" are at decisions 4, 9, ... Taken over at 4, it is put 0.4 m to the side, which no
+// future may hold: the first is at 9.
+TEST_F(PlutoSamples, BeginAfterTheTakeOver) {
+  for (std::size_t i = 0; i < 5; ++i)
+    recorded_.decisions[i].vehicles[1].applied_action.reset();  // of "a"
+  for (std::size_t i = 5; i < recorded_.decisions.size(); ++i)
+    recorded_.decisions[i].vehicles[1].state.position.y() += 0.4;
+  const PlutoScene scene = sceneOf();
+  const auto places = ofDrive(placesOf(scene), 1);
+  ASSERT_FALSE(places.empty());
+  EXPECT_EQ(places.front().decision, 9U);
+  EXPECT_EQ(places.front().steps, 80U);
+}
+
 // A contact of "a" at decision 100: what comes before ends at 99; no sample from 70 to 100 has 30.
 TEST_F(PlutoSamples, EndBeforeAContact) {
   recorded_.contacts.push_back({200, {"a", "ego"}});
@@ -63,7 +77,9 @@ TEST_F(PlutoSamples, NoiseIsNoneInTheFirstSecondAndNeverLong) {
   const PlutoScene scene = sceneOf();
   for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
     EXPECT_FALSE(place.decision > 40 && place.decision < 54) << place.decision;
-    if (place.decision < 100) EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
+    if (place.decision < 100) {
+      EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
+    }
   }
 }
 
