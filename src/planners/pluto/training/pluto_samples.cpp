@@ -76,6 +76,30 @@ void PlutoSampleOptions::describe(core::OptionsVisitor& visitor) {
                  highest_speed, 0.0, 100.0);
 }
 
+namespace {
+
+/// The line and the mode of a target, given its last known state. What is missing of a cut future
+/// is driven along the line; lines that part only later are as near then, so the first of them, the
+/// route, is taken.
+void choosePlace(const std::vector<ReferenceLine>& lines, const traffic::VehicleState& last,
+                 PlutoTarget& target) {
+  constexpr double kAsNear = 0.5;  // [m]
+  const double missing = kPlutoPeriod * static_cast<double>(kPlutoSteps - target.steps);
+  const double least_gain = missing > 0.0 ? kAsNear : 0.0;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const LinePlace found = placeOn(lines[i], last.position);
+    if (i > 0 && found.distance + least_gain >= nearest) continue;
+    nearest = found.distance;
+    target.line = i;
+    const double end = found.arc_length + missing * last.speed;
+    target.mode = std::min(static_cast<std::size_t>(kPlutoModes) - 1,
+                           static_cast<std::size_t>(end / kModeLength));
+  }
+}
+
+}  // namespace
+
 std::vector<PlutoPlace> plutoPlaces(const PlutoScene& scene, std::uint32_t number,
                                     const PlutoSampleOptions& options) {
   const auto stride =
@@ -113,17 +137,7 @@ PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
     last = &scene.frames()[i].find(vehicle)->state;
     target.future.row(step) = rowOf(frame, *last);
   }
-  const double missing = kPlutoPeriod * static_cast<double>(kPlutoSteps - target.steps);
-  const Eigen::Vector2d end = last->position + missing * last->velocity();
-  double nearest = 0.0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const LinePlace found = placeOn(lines[i], end);
-    if (i > 0 && found.distance >= nearest) continue;
-    nearest = found.distance;
-    target.line = i;
-    target.mode = std::min(static_cast<std::size_t>(kPlutoModes) - 1,
-                           static_cast<std::size_t>(found.arc_length / kModeLength));
-  }
+  choosePlace(lines, *last, target);
   return target;
 }
 

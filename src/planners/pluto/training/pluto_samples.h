@@ -47,7 +47,7 @@ struct PlutoTarget {
 };
 
 /// `frame`: pose that the network is to plan from, the vehicle's own or a changed one. Where the
-/// future is cut, the end is where its last speed leads straight on.
+/// future is cut, the end is where its last speed leads along the line.
 PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
                         const geometry::Pose2d& frame, const std::vector<ReferenceLine>& lines);
 

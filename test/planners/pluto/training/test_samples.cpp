@@ -111,6 +111,27 @@ TEST_F(PlutoSamples, ACutFutureIsLedOnForItsMode) {
   EXPECT_EQ(target.future(30, 0), 0.0F);
 }
 
+// 79 m along a road that bends left at 100 m, "a" is known for 3 s, up to 97 m; 5 s more at 6 m/s
+// are 30 m along the road: 48 m, mode 4. Straight on they would end 27 m beside it, abreast of the
+// bend, in mode 2.
+TEST_F(PlutoSamples, ACutFutureIsLedOnAlongTheRoad) {
+  const std::string bend = testing::pointText({{0, 0, 0}, {100, 0, 0}, {100, 300, 0}});
+  recorded_.network_text =
+      "<net><edge id=\"road\"><lane id=\"road_0\" index=\"0\" speed=\"13.89\" shape=\"" + bend +
+      "\"/></edge></net>";
+  for (learning::SceneDrive& drive : recorded_.drives) {
+    for (std::size_t i = 100; i < drive.route_points.size(); ++i)
+      drive.route_points[i] = {100.0, static_cast<double>(i) - 100.0, 0.0};
+  }
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 40, 1, 30};
+  const PlutoMoment moment = scene.moment(place.decision, place.drive);
+  const PlutoTarget target =
+      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  EXPECT_EQ(target.line, 0U);
+  EXPECT_EQ(target.mode, 4U);
+}
+
 TEST_F(PlutoSamples, OfferedFuturesOfOthersAreInTheirOwnFrames) {
   const PlutoScene scene = sceneOf();
   const AgentFuture future = agentFuture(scene, 100, scene.drives()[2].vehicle);
