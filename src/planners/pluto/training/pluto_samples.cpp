@@ -24,21 +24,27 @@ bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& 
   return std::abs(moved - expected) <= kJump;
 }
 
+/// Whether the noise at a decision lasts longer than 1 s from there on.
+bool stopIsForced(const PlutoDrive& drive, std::size_t decision) {
+  for (std::size_t i = 0; i <= kLongNoise; ++i) {
+    if (drive.disturbed.count(decision + i) == 0) return false;
+  }
+  return true;
+}
+
 /// How many decisions of the future count.
 std::size_t stepsOf(const PlutoScene& scene, const PlutoDrive& drive, std::size_t begin) {
-  std::size_t noisy = 0;
   const TrackPoint* before = scene.frames()[begin].find(drive.vehicle);
   for (std::size_t step = 0; step <= kFutureSteps; ++step) {
     const std::size_t i = begin + step;
-    noisy = drive.disturbed.count(i) != 0 ? noisy + 1 : 0;
-    if (noisy > 0 && step < kFreeOfNoise) return 0;
-    if (noisy > kLongNoise) return step - noisy + 1;
+    if (step < kFreeOfNoise && drive.disturbed.count(i) != 0) return 0;
     if (step == 0) continue;
     const bool there = i < scene.frames().size() && drive.places.count(i) != 0;
     const TrackPoint* after = there ? scene.frames()[i].find(drive.vehicle) : nullptr;
     if (after == nullptr || before == nullptr || !drivesOn(before->state, after->state) ||
         scene.touches(drive.vehicle, i, i))
       return step - 1;
+    if (stopIsForced(drive, i)) return step;
     before = after;
   }
   return kFutureSteps;

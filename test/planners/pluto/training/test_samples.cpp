@@ -83,6 +83,19 @@ TEST_F(PlutoSamples, NoiseIsNoneInTheFirstSecondAndNeverLong) {
   }
 }
 
+// A stop from decision 110 on begins within the last second of the futures of samples at 35: they
+// end where it begins, though only 6 of its decisions lie in them.
+TEST_F(PlutoSamples, AStopThatBeginsInTheLastSecondCutsAFuture) {
+  for (std::uint64_t i = 110; i < 130; ++i) recorded_.disturbed.insert({"ego", 2 * i});
+  const PlutoScene scene = sceneOf();
+  for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
+    if (place.decision == 35) {
+      EXPECT_EQ(place.steps, 75U);
+    }
+  }
+  EXPECT_EQ(ofDrive(placesOf(scene), 0).front().steps, 80U);
+}
+
 // "a" drives 0.6 m in 0.1 s: 48 m in 8 s, so mode 4 of the route's line.
 TEST_F(PlutoSamples, TheTargetIsWhereTheVehicleWas) {
   const PlutoScene scene = sceneOf();
