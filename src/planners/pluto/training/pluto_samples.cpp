@@ -142,6 +142,7 @@ PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
     const std::size_t i = place.decision + 1 + static_cast<std::size_t>(step);
     last = &scene.frames()[i].find(vehicle)->state;
     target.future.row(step) = rowOf(frame, *last);
+    target.elevations[static_cast<std::size_t>(step)] = last->elevation;
   }
   choosePlace(lines, *last, target);
   return target;
