@@ -41,6 +41,7 @@ struct PlutoDrive {
 /// A scene small enough to keep many: tracks, lights and drives (map frame, SI units).
 class PlutoScene {
  public:
+  /// Throws InputError naming decisions that are not 0.1 s apart.
   PlutoScene(const learning::Scene& scene, std::shared_ptr<const PlutoWorld> world);
 
   const std::string& name() const { return name_; }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/pluto/training/pluto_examples.h"
 #include "planners/pluto/training/small_scene.h"
 
@@ -54,6 +55,12 @@ TEST_F(PlutoSamples, BeginAfterTheTakeOver) {
   ASSERT_FALSE(places.empty());
   EXPECT_EQ(places.front().decision, 9U);
   EXPECT_EQ(places.front().steps, 80U);
+}
+
+TEST_F(PlutoSamples, DecisionsThatAreNotATenthApartAreNamed) {
+  recorded_.decisions.erase(recorded_.decisions.begin() + 20);
+  recorded_.driven.pop_back();
+  EXPECT_THROW(sceneOf(), core::InputError);
 }
 
 // A contact of "a" at decision 100: what comes before ends at 99; no sample from 70 to 100 has 30.
