@@ -149,8 +149,8 @@ bool LaneTraffic::addBackground(const std::string& id, const std::vector<std::st
 }
 
 void LaneTraffic::remove(const std::string& id) {
-  if (cars_.erase(id) == 0)
-    throw core::SimulatorError("lane traffic: there is no vehicle '" + id + "' to remove");
+  if (cars_.erase(id) != 0 || findVehicle(reported_, id) != nullptr) return;
+  throw core::SimulatorError("lane traffic: there is no vehicle '" + id + "' to remove");
 }
 
 /// State of a car where its route has it.

@@ -164,6 +164,21 @@ TEST_F(LaneTrafficTest, VehiclesFarOffTheirRouteAreNotReleased) {
   }
 }
 
+// The world removes whoever it finds in the last report: also one that was not released, or that
+// was in contact, in the same tick.
+TEST_F(LaneTrafficTest, WhoWentSinceTheLastStepMayBeRemovedAgain) {
+  ASSERT_TRUE(add("a", {"west", "east"}, 100.0, 8.0));
+  run(kStep);
+  traffic_.takeOver("a");
+  const DrivenVehicle away = ours("a", -50.0, kEastward + 2.5, 8.0);
+  run(kStep, {away});
+  EXPECT_FALSE(traffic_.release(away));
+  ASSERT_NE(find("a"), nullptr);
+  EXPECT_NO_THROW(traffic_.remove("a"));
+  run(kStep);
+  EXPECT_THROW(traffic_.remove("a"), core::SimulatorError);
+}
+
 TEST_F(LaneTrafficTest, VehiclesLeaveAtTheEndOfTheirRoute) {
   ASSERT_TRUE(add("a", {"west"}, 150.0, 12.0));
   run(1.0);
