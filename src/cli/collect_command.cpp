@@ -73,7 +73,12 @@ std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
            {"collection.minimum_density=" + density, "collection.maximum_density=" + density}});
     }
   }
-  for (const CollectScenario& scenario : scenarios) suite::requireNotSealed(scenario.name);
+  std::vector<std::string> files;
+  for (const CollectScenario& scenario : scenarios) {
+    suite::requireNotSealed(scenario.name);
+    files.push_back(scenario.name);
+  }
+  suite::requireForTraining(files);
   if (!scenarios.empty()) return scenarios;
   for (const std::string& name : session::shippedScenarios()) scenarios.push_back({name, {}});
   return scenarios;

@@ -197,6 +197,11 @@ CollectSettings resolveCollection(const CollectRequest& request) {
   override(settings, request.set);
   settings.scenario = collectionScenario(settings.scenario, settings.collection);
   override(settings, request.set);
+  if (!settings.scenario.route.bench2drive_file.empty()) {
+    throw core::InputError("scenario '" + request.scenario +
+                           "': key 'route.bench2drive_file' is set; routes of Bench2Drive are for "
+                           "evaluation, and no training data may come from them");
+  }
   settings.scenario.validate();
   settings.collection.validate();
   return settings;

@@ -122,7 +122,7 @@ struct CollectSettings {
   void describe(core::OptionsVisitor& visitor);
 };
 
-/// Throws InputError for an unknown scenario, key or value.
+/// Throws InputError for an unknown scenario, key or value, and for a route of Bench2Drive.
 CollectSettings resolveCollection(const CollectRequest& request);
 /// "SCENARIO_seedN": the name of its files.
 std::string sessionName(const CollectSettings& settings);

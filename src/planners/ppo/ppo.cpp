@@ -54,6 +54,7 @@ std::vector<planning::PlannedAction> Ppo::plan(const traffic::TrafficSnapshot& s
     for (const planning::PlanningTask& task : tasks) actions.push_back(stoppedFor(task, fault));
     return actions;
   }
+  forgetOthers(tasks);
   ego_.update(*ego_route_, snapshot.ego()->state.position);
   const PpoGoal goal = ppoGoal(*ego_route_, ego_.arcLength());
   for (const planning::PlanningTask& task : tasks)
@@ -63,13 +64,22 @@ std::vector<planning::PlannedAction> Ppo::plan(const traffic::TrafficSnapshot& s
 }
 
 planning::PlannedAction Ppo::towardGoal(const traffic::TrafficSnapshot& snapshot,
-                                         const planning::PlanningTask& task, const PpoGoal& goal) {
+                                        const planning::PlanningTask& task, const PpoGoal& goal) {
   const PpoObservation observation = ppoObservation(snapshot, *snapshot.ego(), *task.vehicle, goal);
   const std::string unusable = ppoNotFinite(observation);
   if (!unusable.empty()) return stoppedFor(task, "the " + unusable + " is not finite");
   if (ppoGoalDistance(goal, task.vehicle->state) < kPpoGoalRadius)
     arrived_.insert(task.vehicle->id);
   return {task.slot, task.vehicle->id, ppoCommand(actor_.act(observation)), {}};
+}
+
+/// A vehicle that is given back and selected anew has a goal again.
+void Ppo::forgetOthers(const std::vector<planning::PlanningTask>& tasks) {
+  std::set<std::string> kept;
+  for (const planning::PlanningTask& task : tasks) {
+    if (arrived_.count(task.vehicle->id) != 0) kept.insert(task.vehicle->id);
+  }
+  arrived_ = std::move(kept);
 }
 
 void Ppo::driveOn(const traffic::TrafficSnapshot& snapshot,

@@ -39,8 +39,8 @@ class Ppo : public planning::Planner {
       const dynamics::BicycleModelOptions& vehicle, const planning::PlanningContext& context);
 
   /// A vehicle whose observation is not finite, or that has no ego to look at, gets the fail-safe
-  /// action and a fault. Deterministic; remembers how far the ego has come and who has reached the
-  /// goal.
+  /// action and a fault. Deterministic; remembers how far the ego has come and, as long as it is
+  /// among the tasks, who has reached the goal.
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
@@ -49,7 +49,8 @@ class Ppo : public planning::Planner {
   /// Why no vehicle can be driven at this snapshot; empty where they can.
   std::string faultOf(const traffic::Vehicle* ego) const;
   planning::PlannedAction towardGoal(const traffic::TrafficSnapshot& snapshot,
-                                      const planning::PlanningTask& task, const PpoGoal& goal);
+                                     const planning::PlanningTask& task, const PpoGoal& goal);
+  void forgetOthers(const std::vector<planning::PlanningTask>& tasks);
   void driveOn(const traffic::TrafficSnapshot& snapshot,
                const std::vector<planning::PlanningTask>& tasks,
                std::vector<planning::PlannedAction>& actions);
@@ -59,7 +60,7 @@ class Ppo : public planning::Planner {
   PdmLite on_route_;
   const map::Route* ego_route_;
   planning::RouteFollower ego_;
-  std::set<std::string> arrived_;  ///< ids of those that have reached their goal
+  std::set<std::string> arrived_;  ///< ids of those of the last call that have reached their goal
 };
 
 }  // namespace cdiff::planners

@@ -135,6 +135,20 @@ TEST_F(PpoTest, DrivesOnAlongItsRouteOnceTheGoalIsReached) {
   EXPECT_EQ(planned.fault, "");
 }
 
+// Given back to the traffic for a decision and selected again, it is far from the goal: the network
+// drives it.
+TEST_F(PpoTest, WhoIsSelectedAgainHasAGoalAgain) {
+  test::writePpo(folder_.path(), test::constantPpo(0.5F, 0.25F));
+  addCbv("b", {30.0, 40.0, -90.0, 5.0});
+  snapshot_.vehicles[1].state.position = {16.5, 3.0};
+  const auto planner = make(&route_);
+  const traffic::ControlAction network = ppoCommand({std::tanh(0.5F), std::tanh(0.25F)});
+  EXPECT_FALSE(planner->plan(snapshot_, tasks())[0].action == network);
+  planner->plan(snapshot_, {tasks()[1]});
+  snapshot_.vehicles[1].state.position = {30.0, 20.0};
+  EXPECT_EQ(planner->plan(snapshot_, tasks())[0].action, network);
+}
+
 TEST_F(PpoTest, SameSnapshotsSameActions) {
   PpoActor::Weights weights = test::constantPpo(0.1F, 0.2F);
   for (auto& [name, tensor] : weights) {

@@ -171,7 +171,6 @@ PlutoExample plutoExample(const PlutoScene& scene, const PlutoPlace& place,
   }
   example.world = &scene.world();
   example.frame = own.pose();
-  example.elevation = own.elevation;
   example.size = moment.vehicles->size(moment.own);
   example.imitates = imitates;
   return example;

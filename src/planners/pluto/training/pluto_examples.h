@@ -18,7 +18,6 @@ struct PlutoExample {
   std::vector<AgentFuture> futures;  ///< of input.agents, in their order
   const PlutoWorld* world = nullptr;
   geometry::Pose2d frame;  ///< that the input is in (map frame)
-  double elevation = 0.0;  ///< [m]
   traffic::VehicleDimensions size;
   bool imitates = true;  ///< false: a negative, which has no target
 };

@@ -30,9 +30,10 @@ double circleRadius(const traffic::VehicleDimensions& size) {
   return 0.5 * std::hypot(size.width, size.length / 3.0) - kMargin;
 }
 
-void addCircle(const PlutoExample& example, const Eigen::Vector2d& center, AreaRows& rows) {
+void addCircle(const PlutoExample& example, std::size_t step, const Eigen::Vector2d& center,
+               AreaRows& rows) {
   const map::SignedDistance found = example.world->area.signedDistanceWithGradient(
-      example.frame.toMap(center), example.elevation);
+      example.frame.toMap(center), example.target.elevations[step]);
   const double excess = circleRadius(example.size) - found.distance;
   const bool outside = excess > 0.0;
   const Eigen::Vector2d forward = geometry::direction(example.frame.heading);
@@ -67,10 +68,11 @@ at::Tensor areaLoss(const at::Tensor& plans, const at::Tensor& weights,
                     const std::vector<const PlutoExample*>& examples) {
   const at::Tensor places = circlePlaces(plans, examples);
   const std::vector<float> centers = learning::toVector(places);
-  const auto per_example = static_cast<std::size_t>(kPlutoSteps) * kCircles * 2;
+  const std::size_t per_step = kCircles * 2;
+  const auto per_example = static_cast<std::size_t>(kPlutoSteps) * per_step;
   AreaRows rows;
   for (std::size_t i = 0; i < centers.size(); i += 2) {
-    addCircle(*examples[i / per_example],
+    addCircle(*examples[i / per_example], i % per_example / per_step,
               Eigen::Vector2d(static_cast<double>(centers[i]), static_cast<double>(centers[i + 1])),
               rows);
   }

@@ -14,8 +14,8 @@ namespace cdiff::planners {
 
 /// How far the body lies outside the drivable area, on plans [B, 80, 6] of the examples: three
 /// circles along the body, of radius sqrt(width^2 + (length / 3)^2) / 2 - 0.2 m, its excess over
-/// the signed distance to the border, mean over circles and `weights` [B, 80, 1]. Its gradient
-/// follows that of the signed distance.
+/// the signed distance to the border on the level where the vehicle then was, mean over circles and
+/// `weights` [B, 80, 1]. Its gradient follows that of the signed distance.
 at::Tensor areaLoss(const at::Tensor& plans, const at::Tensor& weights,
                     const std::vector<const PlutoExample*>& examples);
 

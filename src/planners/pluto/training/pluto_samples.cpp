@@ -24,21 +24,27 @@ bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& 
   return std::abs(moved - expected) <= kJump;
 }
 
+/// Whether the noise at a decision lasts longer than 1 s from there on.
+bool stopIsForced(const PlutoDrive& drive, std::size_t decision) {
+  for (std::size_t i = 0; i <= kLongNoise; ++i) {
+    if (drive.disturbed.count(decision + i) == 0) return false;
+  }
+  return true;
+}
+
 /// How many decisions of the future count.
 std::size_t stepsOf(const PlutoScene& scene, const PlutoDrive& drive, std::size_t begin) {
-  std::size_t noisy = 0;
   const TrackPoint* before = scene.frames()[begin].find(drive.vehicle);
   for (std::size_t step = 0; step <= kFutureSteps; ++step) {
     const std::size_t i = begin + step;
-    noisy = drive.disturbed.count(i) != 0 ? noisy + 1 : 0;
-    if (noisy > 0 && step < kFreeOfNoise) return 0;
-    if (noisy > kLongNoise) return step - noisy + 1;
+    if (step < kFreeOfNoise && drive.disturbed.count(i) != 0) return 0;
     if (step == 0) continue;
     const bool there = i < scene.frames().size() && drive.places.count(i) != 0;
     const TrackPoint* after = there ? scene.frames()[i].find(drive.vehicle) : nullptr;
     if (after == nullptr || before == nullptr || !drivesOn(before->state, after->state) ||
         scene.touches(drive.vehicle, i, i))
       return step - 1;
+    if (stopIsForced(drive, i)) return step;
     before = after;
   }
   return kFutureSteps;
@@ -76,6 +82,30 @@ void PlutoSampleOptions::describe(core::OptionsVisitor& visitor) {
                  highest_speed, 0.0, 100.0);
 }
 
+namespace {
+
+/// The line and the mode of a target, given its last known state. What is missing of a cut future
+/// is driven along the line; lines that part only later are as near then, so the first of them, the
+/// route, is taken.
+void choosePlace(const std::vector<ReferenceLine>& lines, const traffic::VehicleState& last,
+                 PlutoTarget& target) {
+  constexpr double kAsNear = 0.5;  // [m]
+  const double missing = kPlutoPeriod * static_cast<double>(kPlutoSteps - target.steps);
+  const double least_gain = missing > 0.0 ? kAsNear : 0.0;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const LinePlace found = placeOn(lines[i], last.position);
+    if (i > 0 && found.distance + least_gain >= nearest) continue;
+    nearest = found.distance;
+    target.line = i;
+    const double end = found.arc_length + missing * last.speed;
+    target.mode = std::min(static_cast<std::size_t>(kPlutoModes) - 1,
+                           static_cast<std::size_t>(end / kModeLength));
+  }
+}
+
+}  // namespace
+
 std::vector<PlutoPlace> plutoPlaces(const PlutoScene& scene, std::uint32_t number,
                                     const PlutoSampleOptions& options) {
   const auto stride =
@@ -112,18 +142,9 @@ PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
     const std::size_t i = place.decision + 1 + static_cast<std::size_t>(step);
     last = &scene.frames()[i].find(vehicle)->state;
     target.future.row(step) = rowOf(frame, *last);
+    target.elevations[static_cast<std::size_t>(step)] = last->elevation;
   }
-  const double missing = kPlutoPeriod * static_cast<double>(kPlutoSteps - target.steps);
-  const Eigen::Vector2d end = last->position + missing * last->velocity();
-  double nearest = 0.0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const LinePlace found = placeOn(lines[i], end);
-    if (i > 0 && found.distance >= nearest) continue;
-    nearest = found.distance;
-    target.line = i;
-    target.mode = std::min(static_cast<std::size_t>(kPlutoModes) - 1,
-                           static_cast<std::size_t>(found.arc_length / kModeLength));
-  }
+  choosePlace(lines, *last, target);
   return target;
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -41,13 +42,14 @@ std::vector<PlutoPlace> plutoPlaces(const PlutoScene& scene, std::uint32_t numbe
 /// Where a vehicle then was, in the frame of its pose at the moment. Rows from `steps` on are 0.
 struct PlutoTarget {
   PlutoTrajectory future = PlutoTrajectory::Zero();
+  std::array<double, kPlutoSteps> elevations{};  ///< by row, z of the road [m]
   std::int64_t steps = 0;
   std::size_t line = 0;  ///< reference line nearest to the end
   std::size_t mode = 0;  ///< of it: 10 m of arc length each, up to where the end lies
 };
 
 /// `frame`: pose that the network is to plan from, the vehicle's own or a changed one. Where the
-/// future is cut, the end is where its last speed leads straight on.
+/// future is cut, the end is where its last speed leads along the line.
 PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
                         const geometry::Pose2d& frame, const std::vector<ReferenceLine>& lines);
 

@@ -3,12 +3,26 @@
 #include "planners/pluto/training/pluto_scenes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
 namespace {
+
+void requirePeriod(const learning::Scene& scene) {
+  for (std::size_t i = 1; i < scene.decisions.size(); ++i) {
+    const double step = scene.decisions[i].time - scene.decisions[i - 1].time;
+    if (std::abs(step - kPlutoPeriod) < 1e-6) continue;
+    throw core::InputError("scene '" + scene.name + "': decisions " + std::to_string(i - 1) +
+                           " and " + std::to_string(i) + " are " + core::formatNumber(step) +
+                           " s apart; Pluto and RIFT learn from decisions 0.1 s apart: collect it "
+                           "with decision_period 0.1");
+  }
+}
 
 bool sameSignals(const std::vector<traffic::SignalState>& left,
                  const std::vector<traffic::SignalState>& right) {
@@ -21,6 +35,7 @@ bool sameSignals(const std::vector<traffic::SignalState>& left,
 
 PlutoScene::PlutoScene(const learning::Scene& scene, std::shared_ptr<const PlutoWorld> world)
     : name_(scene.name), world_(std::move(world)) {
+  requirePeriod(scene);
   for (const traffic::TrafficSnapshot& snapshot : scene.decisions) {
     frames_.push_back(frameOf(snapshot, vehicles_));
     if (signals_.empty() || !sameSignals(signals_.back(), snapshot.signals))
@@ -53,15 +68,17 @@ void PlutoScene::addDrives(const learning::Scene& scene) {
   }
 }
 
-/// Along each route, decision by decision, as a planner follows it.
+/// Along each route, decision by decision, as a planner follows it. Where a vehicle is taken over
+/// collection puts it elsewhere: its places begin at the decision after.
 void PlutoScene::follow(const learning::Scene& scene) {
   std::vector<planning::RouteFollower> followers(drives_.size());
   for (std::size_t i = 0; i < scene.decisions.size(); ++i) {
     for (const auto& [slot, number] : scene.driven[i]) {
       PlutoDrive& drive = drives_[number];
-      const TrackPoint* point = frames_[i].find(drive.vehicle);
-      if (point == nullptr) continue;
-      followers[number].update(drive.route, point->state.position);
+      const traffic::Vehicle* vehicle = scene.decisions[i].find(scene.drives[number].vehicle_id);
+      if (vehicle == nullptr) continue;
+      followers[number].update(drive.route, vehicle->state.position);
+      if (!vehicle->applied_action) continue;
       drive.places[i] = followers[number].arcLength();
       const auto key = std::make_pair(scene.drives[number].vehicle_id, scene.decisions[i].tick);
       if (scene.disturbed.count(key) != 0) drive.disturbed.insert(i);

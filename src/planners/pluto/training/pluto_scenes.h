@@ -32,14 +32,16 @@ struct PlutoWorld {
 struct PlutoDrive {
   std::uint32_t vehicle = 0;
   map::Route route;
-  double target_speed = 8.0;             ///< [m/s]
-  std::map<std::size_t, double> places;  ///< decision -> arc length on the route [m]
-  std::set<std::size_t> disturbed;       ///< decisions with noise or a fault
+  double target_speed = 8.0;  ///< [m/s]
+  /// Decision -> arc length on the route [m], where an action of ours was applied before it.
+  std::map<std::size_t, double> places;
+  std::set<std::size_t> disturbed;  ///< decisions with noise or a fault
 };
 
 /// A scene small enough to keep many: tracks, lights and drives (map frame, SI units).
 class PlutoScene {
  public:
+  /// Throws InputError naming decisions that are not 0.1 s apart.
   PlutoScene(const learning::Scene& scene, std::shared_ptr<const PlutoWorld> world);
 
   const std::string& name() const { return name_; }

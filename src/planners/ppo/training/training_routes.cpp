@@ -23,16 +23,6 @@ constexpr double kTrainingRouteLength = 320.0;  // [m] 80 points, 4 m apart
 
 constexpr double kTrainingWarmUp = 10.0;  // [s]
 
-void requireOwn(const suite::Suite& suite) {
-  const fs::path shipped = core::shareFolder() / "config" / "suites";
-  const bool ships =
-      fs::weakly_canonical(suite.folder).parent_path() == fs::weakly_canonical(shipped);
-  if (!ships && !suite.sealed) return;
-  throw InputError("suite '" + suite.name +
-                   "' is for evaluation, nothing is trained on it; make one of your own (cdiff "
-                   "suite train --results FOLDER)");
-}
-
 /// The networks whose draw lies below the share; at least one and not all.
 std::set<std::string> drawNetworks(const std::set<std::string>& networks, double share) {
   const core::RandomStream stream(0, "ppo held-out networks");
@@ -51,7 +41,7 @@ std::set<std::string> drawNetworks(const std::set<std::string>& networks, double
 
 PpoRoutes::PpoRoutes(const std::string& suite, double held_out_share, std::int64_t cbvs)
     : suite_(suite::loadSuite(suite)) {
-  requireOwn(suite_);
+  suite::requireForTraining(suite_);
   divide(held_out_share);
   hash();
   for (const suite::SuiteRoute& route : suite_.routes)

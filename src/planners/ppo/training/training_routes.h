@@ -17,8 +17,8 @@ class PpoRoutes {
  public:
   /// `held_out_share` of the networks is held out (by their names, whatever the seed): one at
   /// least, never all; 0: none, and the training routes judge. `cbvs` are driven at a time. Throws
-  /// InputError for a suite that cannot be read, for those that ship with the package, which are
-  /// for evaluation, and where all routes lie on one network.
+  /// InputError for a suite that cannot be read or is for evaluation (suite::requireForTraining),
+  /// and where all routes lie on one network.
   PpoRoutes(const std::string& suite, double held_out_share, std::int64_t cbvs);
 
   /// Indices of the routes.

@@ -44,6 +44,25 @@ TEST_F(PlutoLosses, AreaIsTheExcessOfTheCirclesOverTheBorder) {
   EXPECT_NEAR(areaOf(standingPlan(-2.0)), radius + 0.4, 1e-4);
 }
 
+// On a road that climbs 1 m in 10 m, "a" drives 48 m and comes 4.8 m higher. The area of a level
+// holds what is within 3 m of its height: that of the start ends before.
+TEST_F(PlutoLosses, AreaIsThatOfTheLevelToWhichThePlanClimbs) {
+  recorded_.network_text =
+      "<net><edge id=\"road\"><lane id=\"road_0\" index=\"0\" speed=\"13.89\" shape=\"" +
+      testing::pointText({{0, 0, 0}, {400, 0, 40}}) + "\"/></edge></net>";
+  for (traffic::TrafficSnapshot& snapshot : recorded_.decisions) {
+    for (traffic::Vehicle& vehicle : snapshot.vehicles)
+      vehicle.state.elevation = 0.1 * vehicle.state.position.x();
+  }
+  const PlutoScene scene(recorded_, worlds_.of(recorded_));
+  example_ = plutoExample(scene, place_, scene.moment(place_.decision, place_.drive), true);
+  at::Tensor plan = at::zeros({1, kPlutoSteps, kPlutoChannels});
+  for (std::int64_t i = 0; i < kPlutoSteps; ++i) {
+    for (std::int64_t c = 0; c < kPlutoChannels; ++c) plan[0][i][c] = example_.target.future(i, c);
+  }
+  EXPECT_EQ(areaOf(plan), 0.0);
+}
+
 TEST_F(PlutoLosses, TheGradientOfTheAreaLeadsBackToTheRoad) {
   at::Tensor plan = standingPlan(1.2).set_requires_grad(true);
   areaLoss(plan, at::ones({1, kPlutoSteps, 1}), {&example_}).backward();

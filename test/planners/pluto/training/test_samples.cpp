@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/pluto/training/pluto_examples.h"
 #include "planners/pluto/training/small_scene.h"
 
@@ -42,6 +43,26 @@ TEST_F(PlutoSamples, AreTakenWhileEnoughFollows) {
   EXPECT_EQ(places.back().steps, 30U);
 }
 
+// Samples of "a" are at decisions 4, 9, ... Taken over at 4, it is put 0.4 m to the side, which no
+// future may hold: the first is at 9.
+TEST_F(PlutoSamples, BeginAfterTheTakeOver) {
+  for (std::size_t i = 0; i < 5; ++i)
+    recorded_.decisions[i].vehicles[1].applied_action.reset();  // of "a"
+  for (std::size_t i = 5; i < recorded_.decisions.size(); ++i)
+    recorded_.decisions[i].vehicles[1].state.position.y() += 0.4;
+  const PlutoScene scene = sceneOf();
+  const auto places = ofDrive(placesOf(scene), 1);
+  ASSERT_FALSE(places.empty());
+  EXPECT_EQ(places.front().decision, 9U);
+  EXPECT_EQ(places.front().steps, 80U);
+}
+
+TEST_F(PlutoSamples, DecisionsThatAreNotATenthApartAreNamed) {
+  recorded_.decisions.erase(recorded_.decisions.begin() + 20);
+  recorded_.driven.pop_back();
+  EXPECT_THROW(sceneOf(), core::InputError);
+}
+
 // A contact of "a" at decision 100: what comes before ends at 99; no sample from 70 to 100 has 30.
 TEST_F(PlutoSamples, EndBeforeAContact) {
   recorded_.contacts.push_back({200, {"a", "ego"}});
@@ -63,8 +84,23 @@ TEST_F(PlutoSamples, NoiseIsNoneInTheFirstSecondAndNeverLong) {
   const PlutoScene scene = sceneOf();
   for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
     EXPECT_FALSE(place.decision > 40 && place.decision < 54) << place.decision;
-    if (place.decision < 100) EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
+    if (place.decision < 100) {
+      EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
+    }
   }
+}
+
+// A stop from decision 110 on begins within the last second of the futures of samples at 35: they
+// end where it begins, though only 6 of its decisions lie in them.
+TEST_F(PlutoSamples, AStopThatBeginsInTheLastSecondCutsAFuture) {
+  for (std::uint64_t i = 110; i < 130; ++i) recorded_.disturbed.insert({"ego", 2 * i});
+  const PlutoScene scene = sceneOf();
+  for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
+    if (place.decision == 35) {
+      EXPECT_EQ(place.steps, 75U);
+    }
+  }
+  EXPECT_EQ(ofDrive(placesOf(scene), 0).front().steps, 80U);
 }
 
 // "a" drives 0.6 m in 0.1 s: 48 m in 8 s, so mode 4 of the route's line.
@@ -93,6 +129,27 @@ TEST_F(PlutoSamples, ACutFutureIsLedOnForItsMode) {
   EXPECT_EQ(target.mode, 4U);
   EXPECT_EQ(target.steps, 30);
   EXPECT_EQ(target.future(30, 0), 0.0F);
+}
+
+// 79 m along a road that bends left at 100 m, "a" is known for 3 s, up to 97 m; 5 s more at 6 m/s
+// are 30 m along the road: 48 m, mode 4. Straight on they would end 27 m beside it, abreast of the
+// bend, in mode 2.
+TEST_F(PlutoSamples, ACutFutureIsLedOnAlongTheRoad) {
+  const std::string bend = testing::pointText({{0, 0, 0}, {100, 0, 0}, {100, 300, 0}});
+  recorded_.network_text =
+      "<net><edge id=\"road\"><lane id=\"road_0\" index=\"0\" speed=\"13.89\" shape=\"" + bend +
+      "\"/></edge></net>";
+  for (learning::SceneDrive& drive : recorded_.drives) {
+    for (std::size_t i = 100; i < drive.route_points.size(); ++i)
+      drive.route_points[i] = {100.0, static_cast<double>(i) - 100.0, 0.0};
+  }
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 40, 1, 30};
+  const PlutoMoment moment = scene.moment(place.decision, place.drive);
+  const PlutoTarget target =
+      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  EXPECT_EQ(target.line, 0U);
+  EXPECT_EQ(target.mode, 4U);
 }
 
 TEST_F(PlutoSamples, OfferedFuturesOfOthersAreInTheirOwnFrames) {
