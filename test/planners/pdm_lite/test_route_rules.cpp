@@ -160,7 +160,7 @@ TEST_F(StopSigns, AreClearedByStandingLessThan3MetresBeforeTheLine) {
   EXPECT_FALSE(before(50.0, 1.0, 5.0)) << "it stays cleared";
 }
 
-TEST_F(StopSigns, CountAgainOnceTheNextIsFartherThan10Metres) {
+TEST_F(StopSigns, CountAgainOnceTheNextIsFartherThan10Meters) {
   ASSERT_FALSE(before(50.0, 2.0, 0.0));
   EXPECT_DOUBLE_EQ(before(75.0, 24.0, 3.0).value(), 24.0);
   EXPECT_DOUBLE_EQ(before(75.0, 9.0, 3.0).value(), 9.0);
