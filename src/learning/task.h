@@ -140,7 +140,8 @@ class Task {
   /// Names of the fields that it needs of each sample.
   virtual std::vector<std::string> fields() const = 0;
   /// The fields of the samples that the task makes of scenes; without any it learns from shards.
-  /// One must be kSessionField, as samplesOf sets it to the hash of the scene's name.
+  /// One must be kSessionField, which the trainer sets to a hash of the scene's network file: whole
+  /// networks are held out.
   virtual SampleSchema sceneFields() const { return {}; }
   /// The samples of a scene, called scene after scene before `start`.
   virtual std::vector<Sample> samplesOf(const Scene&) { return {}; }

@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/task.h"
 
@@ -35,7 +36,11 @@ std::vector<ShardReader> shardsOfScenes(const Training& training,
     if (stop) throw core::Interrupted("stopped while samples were made of the scenes");
     const Scene scene = readScene(file);
     ShardWriter writer(training.task->sceneFields());
-    for (const Sample& sample : training.task->samplesOf(scene)) writer.append(sample);
+    const std::vector<std::uint64_t> network = {core::hashText(scene.network_source_sha256)};
+    for (Sample& sample : training.task->samplesOf(scene)) {
+      sample.fields[kSessionField] = network;
+      writer.append(sample);
+    }
     samples += writer.size();
     shards.emplace_back(writer.take({{"scene", scene.name}}), "samples of '" + file.string() + "'");
   }
@@ -65,9 +70,10 @@ Dataset readData(const Training& training, const std::atomic<bool>& stop, std::o
   const TrainingOptions& options = training.options;
   const bool scenes = !training.task->sceneFields().fields.empty();
   const std::vector<fs::path> files = dataFiles(training, scenes);
-  Dataset dataset = scenes ? Dataset(shardsOfScenes(training, files, stop, log),
-                                     "data folder '" + options.data + "'", options.validation_share)
-                           : Dataset(options.data, options.validation_share);
+  Dataset dataset =
+      scenes ? Dataset(shardsOfScenes(training, files, stop, log),
+                       "data folder '" + options.data + "'", options.validation_share, "networks")
+             : Dataset(options.data, options.validation_share);
   requireFields(training, dataset);
   return dataset;
 }

@@ -56,8 +56,8 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
                    {"training_samples", dataset.training().size()},
                    {"validation_samples", dataset.validation().size()},
                    {"judged_samples", run.held_out.size()},
-                   {"sessions", dataset.sessions()},
-                   {"validation_sessions", dataset.validationSessions()}}},
+                   {dataset.unit(), dataset.sessions()},
+                   {"validation_" + dataset.unit(), dataset.validationSessions()}}},
                  {"stages", stages},
                  {"held_out", model.held_out},
                  {"init", options.init},
@@ -74,12 +74,12 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
 }
 
 std::string dataSentence(const json& data) {
+  const std::string unit = data.contains("networks") ? "networks" : "sessions";
+  const json& held_out = data["validation_" + unit];
   std::ostringstream text;
-  text << data["training_samples"] << " samples of "
-       << data["sessions"].get<int>() - data["validation_sessions"].get<int>()
-       << " sessions; judged on " << data["judged_samples"] << " samples of "
-       << data["validation_sessions"]
-       << " sessions that it was not trained on (0 sessions: on the training samples)";
+  text << data["training_samples"] << " samples of " << data[unit].get<int>() - held_out.get<int>()
+       << " " << unit << "; judged on " << data["judged_samples"] << " samples of " << held_out
+       << " " << unit << " that it was not trained on (0 " << unit << ": on the training samples)";
   return text.str();
 }
 
@@ -252,8 +252,8 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   }
   const Dataset dataset = readData(training, stop, log);
   log << "data: " << dataset.training().size() << " training samples, "
-      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"
-      << std::endl;
+      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " "
+      << dataset.unit() << std::endl;
   Trainer(training, dataset, stop, log).run();
 }
 

@@ -148,10 +148,7 @@ bool LaneTraffic::addBackground(const std::string& id, const std::vector<std::st
   return true;
 }
 
-void LaneTraffic::remove(const std::string& id) {
-  if (cars_.erase(id) != 0 || findVehicle(reported_, id) != nullptr) return;
-  throw core::SimulatorError("lane traffic: there is no vehicle '" + id + "' to remove");
-}
+void LaneTraffic::remove(const std::string& id) { cars_.erase(id); }
 
 /// State of a car where its route has it.
 void LaneTraffic::place(Car& car) const {

@@ -181,8 +181,9 @@ std::vector<ShardReader> readShards(const fs::path& folder) {
 Dataset::Dataset(const fs::path& folder, double validation_share)
     : Dataset(readShards(folder), "data folder '" + folder.string() + "'", validation_share) {}
 
-Dataset::Dataset(std::vector<ShardReader> shards, std::string name, double validation_share)
-    : name_(std::move(name)), shards_(std::move(shards)) {
+Dataset::Dataset(std::vector<ShardReader> shards, std::string name, double validation_share,
+                 std::string unit)
+    : name_(std::move(name)), unit_(std::move(unit)), shards_(std::move(shards)) {
   addShards();
   split(validation_share);
 }
@@ -233,10 +234,10 @@ void Dataset::split(double validation_share) {
   validation_sessions_ = held_out.size();
   if (validation_share <= 0.0) validation_ = training_;
   if (!training_.empty() && !validation_.empty()) return;
-  throw InputError("data: of " + std::to_string(sessions_) + " sessions with " +
-                   std::to_string(places_.size()) + " samples, " +
-                   std::to_string(validation_sessions_) +
-                   " are held out; both parts need one (more sessions, or validation share 0)");
+  throw InputError(
+      "data: of " + std::to_string(sessions_) + " " + unit_ + " with " +
+      std::to_string(places_.size()) + " samples, " + std::to_string(validation_sessions_) +
+      " are held out; both parts need one (more " + unit_ + ", or validation share 0)");
 }
 
 Sample Dataset::sample(std::size_t index, const FieldNames& left_out) const {

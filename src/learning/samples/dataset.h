@@ -122,8 +122,10 @@ class Dataset {
   /// training samples serve for both. Throws InputError when there is no shard, a shard is broken,
   /// two schemas differ, the samples name no session, or a part is empty.
   Dataset(const std::filesystem::path& folder, double validation_share);
-  /// The same of shards in memory; `name` stands for the data in messages.
-  Dataset(std::vector<ShardReader> shards, std::string name, double validation_share);
+  /// The same of shards in memory; `name` stands for the data in messages, `unit` for what a value
+  /// of kSessionField is ("networks"), of which a share is held out.
+  Dataset(std::vector<ShardReader> shards, std::string name, double validation_share,
+          std::string unit = "sessions");
   /// Without samples.
   Dataset() = default;
 
@@ -139,6 +141,8 @@ class Dataset {
   const std::string& sha256() const { return sha256_; }
   /// "data folder 'FOLDER'", for messages.
   const std::string& name() const { return name_; }
+  /// "sessions" or "networks".
+  const std::string& unit() const { return unit_; }
 
  private:
   struct Place {
@@ -151,6 +155,7 @@ class Dataset {
   void split(double validation_share);
 
   std::string name_;
+  std::string unit_;
   std::vector<ShardReader> shards_;
   SampleSchema schema_;
   std::vector<Place> places_;
