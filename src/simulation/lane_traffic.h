@@ -48,7 +48,6 @@ class LaneTraffic : public TrafficSimulator {
   bool addBackground(const std::string& id, const std::vector<std::string>& edges,
                      double depart_position, int depart_lane, double depart_speed,
                      const traffic::VehicleDimensions& dimensions) override;
-  /// One that went since the last step, whose report still has it, may be removed again.
   void remove(const std::string& id) override;
   void step(const std::vector<DrivenVehicle>& driven) override;
   const std::vector<SimulatedVehicle>& vehicles() const override { return reported_; }

@@ -124,6 +124,7 @@ std::string plutoFault(const traffic::TrafficSnapshot& snapshot,
     if (!planning::isFinite(other.state)) return "the state of '" + other.id + "' is not finite";
   }
   if (snapshot.find(task.vehicle->id) == nullptr) return "it is not in the snapshot";
+  if (!std::isfinite(task.vehicle->acceleration)) return "its acceleration is not finite";
   if (task.route == nullptr || task.route->empty()) return "it has no route";
   return {};
 }

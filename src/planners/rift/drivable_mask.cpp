@@ -14,8 +14,11 @@ int tileOf(double coordinate) { return static_cast<int>(std::floor(coordinate / 
 
 }  // namespace
 
-const DrivableMask::Tile& DrivableMask::tile(int x, int y, double elevation) {
-  const int level = static_cast<int>(std::lround(elevation / kLevelStep));
+int DrivableMask::levelOf(double elevation) {
+  return static_cast<int>(std::lround(elevation / kLevelStep));
+}
+
+const DrivableMask::Tile& DrivableMask::tile(int x, int y, int level) {
   std::unique_ptr<Tile>& tile = tiles_[{x, y, level}];
   if (tile) return *tile;
   tile = std::make_unique<Tile>();
@@ -30,13 +33,20 @@ const DrivableMask::Tile& DrivableMask::tile(int x, int y, double elevation) {
   return *tile;
 }
 
-MaskWindow::MaskWindow(DrivableMask& mask, const Eigen::Vector2d& center, double elevation)
+MaskWindow::MaskWindow(DrivableMask& mask, const Eigen::Vector2d& center)
     : mask_(mask),
-      elevation_(elevation),
       first_x_(tileOf(center.x()) - kReach),
       first_y_(tileOf(center.y()) - kReach),
       offset_x_(center.x() - first_x_ * kTileLength),
-      offset_y_(center.y() - first_y_ * kTileLength) {}
+      offset_y_(center.y() - first_y_ * kTileLength),
+      tiles_(&known_[level_]) {}
+
+void MaskWindow::moveTo(double elevation) {
+  const int level = DrivableMask::levelOf(elevation);
+  if (level == level_) return;
+  level_ = level;
+  tiles_ = &known_[level];
+}
 
 bool MaskWindow::drivable(double x, double y) {
   constexpr double kCells = kWide * DrivableMask::kTileCells;
@@ -48,10 +58,10 @@ bool MaskWindow::drivable(double x, double y) {
   constexpr unsigned kTile = DrivableMask::kTileCells;
   const unsigned tile_x = c / kTile;
   const unsigned tile_y = r / kTile;
-  const DrivableMask::Tile*& tile = tiles_[tile_y * kWide + tile_x];
+  const DrivableMask::Tile*& tile = (*tiles_)[tile_y * kWide + tile_x];
   if (tile == nullptr) {
     tile = &mask_.tile(first_x_ + static_cast<int>(tile_x), first_y_ + static_cast<int>(tile_y),
-                       elevation_);
+                       level_);
   }
   return (*tile)[(r % kTile) * kTile + c % kTile];
 }

@@ -24,9 +24,10 @@ class DrivableMask {
 
   /// `area` must outlive the mask.
   explicit DrivableMask(const map::DrivableArea& area) : area_(&area) {}
-  /// The tile of these numbers (its cells begin at number x 16 m) on the level of an elevation [m],
-  /// which counts in steps of 2 m. The reference stays.
-  const Tile& tile(int x, int y, double elevation);
+  /// The tile of these numbers (its cells begin at number x 16 m) on a level. The reference stays.
+  const Tile& tile(int x, int y, int level);
+  /// The level of an elevation [m]: they are 2 m apart.
+  static int levelOf(double elevation);
 
  private:
   const map::DrivableArea* area_;
@@ -36,21 +37,25 @@ class DrivableMask {
 /// The mask around a place, for many questions there.
 class MaskWindow {
  public:
-  MaskWindow(DrivableMask& mask, const Eigen::Vector2d& center, double elevation);
+  MaskWindow(DrivableMask& mask, const Eigen::Vector2d& center);
+  /// Goes to the level of an elevation [m]; it begins on that of 0.
+  void moveTo(double elevation);
   /// Whether the cell of a place relative to the center [m] is drivable; false beyond 100 m.
   bool drivable(double x, double y);
 
  private:
   static constexpr int kReach = 6;  // tiles to each side, beyond that of the center
   static constexpr int kWide = 2 * kReach + 1;
+  using Tiles = std::array<const DrivableMask::Tile*, kWide * kWide>;
 
   DrivableMask& mask_;
-  double elevation_;
+  int level_ = 0;
   int first_x_;  ///< number of the first tile
   int first_y_;
   double offset_x_;  ///< from the first tile's corner to the center [m]
   double offset_y_;
-  std::array<const DrivableMask::Tile*, kWide * kWide> tiles_{};
+  std::map<int, Tiles> known_;  ///< by level; those that were asked for
+  Tiles* tiles_;                ///< of the present level
 };
 
 }  // namespace cdiff::planners

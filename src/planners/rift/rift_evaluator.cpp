@@ -64,6 +64,17 @@ class LineFollower {
   std::vector<std::size_t> places_;
 };
 
+geometry::OrientedBox boxAt(const RiftRollout& rollout, std::size_t i,
+                            const traffic::VehicleDimensions& size) {
+  return {{rollout.x[i], rollout.y[i]}, rollout.heading[i], size.length, size.width};
+}
+
+/// z of the route after a way driven.
+double elevationAfter(const RiftState& state, double way) {
+  const auto last = static_cast<double>(state.elevations.size() - 1);
+  return state.elevations[static_cast<std::size_t>(std::min(last, way + 0.5))];
+}
+
 bool offRoad(const geometry::OrientedBox& box, MaskWindow& window) {
   const auto corners = box.corners();
   return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
@@ -116,7 +127,7 @@ std::vector<double> RiftEvaluator::returnsOf(const RiftState& state,
                                              DrivableMask& mask) const {
   const RiftObstacles obstacles(state.neighbors, state.pose.position);
   LineFollower lines(state.lines, state.pose.position);
-  MaskWindow window(mask, state.pose.position, state.elevation);
+  MaskWindow window(mask, state.pose.position);
   std::vector<double> returns;
   for (const PlutoTrajectory& candidate : candidates) {
     const RiftPlan plan(candidate, state.pose.heading);
@@ -126,12 +137,12 @@ std::vector<double> RiftEvaluator::returnsOf(const RiftState& state,
     const RiftSeries turn = rateOf(rateOf(rollout.heading));
     std::array<RiftStep, kRiftSteps> steps{};
     lines.restart();
+    double way = 0.0;  // [m]
     for (std::size_t i = 0; i < kRiftSteps; ++i) {
       RiftStep& step = steps[i];
-      const geometry::OrientedBox box{{rollout.x[i + 1], rollout.y[i + 1]},
-                                      rollout.heading[i + 1],
-                                      state.size.length,
-                                      state.size.width};
+      const geometry::OrientedBox box = boxAt(rollout, i + 1, state.size);
+      way += rollout.speed[i] * kPlutoPeriod;
+      window.moveTo(elevationAfter(state, way));
       step.speed = speed[i + 1];
       step.acceleration = acceleration[i + 1];
       step.yaw_acceleration = turn[i + 1];

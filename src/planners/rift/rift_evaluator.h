@@ -40,7 +40,7 @@ class RiftObstacles {
 /// A moment whose candidates are to be judged (map frame, SI units).
 struct RiftState {
   geometry::Pose2d pose;
-  double elevation = 0.0;
+  std::vector<double> elevations = {0.0};  ///< z of the route, by meter ahead; then the last
   double speed = 0.0;
   traffic::VehicleDimensions size;
   std::vector<ReferenceLine> lines;

@@ -102,6 +102,19 @@ TEST_F(PlutoCourse, BrakesWhereAStateIsNotFinite) {
   EXPECT_TRUE(planner.plan(snapshot_, tasks())[0].fault.empty()) << "goes on";
 }
 
+// max(0, x) would make numbers of it again, and a plan of those.
+TEST_F(PlutoCourse, BrakesWhereItsAccelerationIsNotFinite) {
+  PlutoPlanner planner = makePlanner();
+  const std::string driven = tasks()[0].vehicle->id;
+  for (traffic::Vehicle& vehicle : snapshot_.vehicles) {
+    if (vehicle.id == driven) vehicle.acceleration = std::numeric_limits<double>::quiet_NaN();
+  }
+  const planning::PlannedAction planned = planner.plan(snapshot_, tasks())[0];
+  EXPECT_EQ(planned.action, traffic::ControlAction::failSafe());
+  EXPECT_EQ(planned.fault,
+            "vehicle '" + driven + "': its acceleration is not finite; full braking instead");
+}
+
 TEST_F(PlutoCourse, BrakesWithoutARoute) {
   PlutoPlanner planner = makePlanner();
   auto asked = tasks();

@@ -151,7 +151,7 @@ class RiftEvaluatorTest : public ::testing::Test {
 };
 
 TEST_F(RiftEvaluatorTest, CellsAreThoseOfTheArea) {
-  MaskWindow window(mask_, {20.0, 0.0}, 0.0);
+  MaskWindow window(mask_, {20.0, 0.0});
   for (double y = -3.9; y < 4.0; y += 0.1) {
     // The cell's own center decides.
     const double center = 0.5 * std::floor(y / 0.5) + 0.25;
@@ -177,6 +177,19 @@ TEST_F(RiftEvaluatorTest, LeavingTheRoadIsWorthLessThanStayingOnIt) {
   const double right = returnOf(arc(6.0, -0.1));
   EXPECT_LT(left, straight_on - 20.0);
   EXPECT_NEAR(left, right, 1e-3) << "the road is as wide to both sides";
+}
+
+// A road that climbs 1 m in 5 m: 8 m/s are some 30 m or 6 m of height in 4 s, while the area of a
+// level holds what is within 3 m of it. The return must be that on the flat road.
+TEST_F(RiftEvaluatorTest, ARoadThatClimbsIsNotLeft) {
+  const double flat = returnOf(arc(8.0, 0.0));
+  const map::RoadNetwork hill =
+      testing::makeNetwork({{"road", {{-50.0, 0.0, -10.0}, {300.0, 0.0, 60.0}}}});
+  const map::DrivableArea area(hill);
+  DrivableMask mask(area);
+  state_.elevations.clear();
+  for (int i = 0; i <= 100; ++i) state_.elevations.push_back(0.2 * (20.0 + i));
+  EXPECT_NEAR(evaluator_.returnsOf(state_, {arc(8.0, 0.0)}, mask).front(), flat, 1e-9);
 }
 
 TEST_F(RiftEvaluatorTest, CandidatesAreJudgedEachByItself) {

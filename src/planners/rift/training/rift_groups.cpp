@@ -12,8 +12,9 @@
 namespace cdiff::planners {
 namespace {
 
-constexpr double kNeighborRadius = 60.0;  // [m]
-constexpr double kRiftStanding = 0.3;     // [m/s]
+constexpr double kNeighborRadius = 60.0;     // [m]
+constexpr double kRiftStanding = 0.3;        // [m/s]
+constexpr std::size_t kProfileLength = 100;  // [m]
 
 std::vector<traffic::Vehicle> neighborsOf(const traffic::TrafficSnapshot& snapshot,
                                           const traffic::Vehicle& own) {
@@ -79,7 +80,10 @@ RiftGroup RiftGroups::of(const PlutoScene& scene, const RiftMoment& moment) {
   RiftState state;
   state.lines = tools.builder.linesOf(view);
   state.pose = view.point().state.pose();
-  state.elevation = view.point().state.elevation;
+  state.elevations.clear();
+  for (std::size_t i = 0; i <= kProfileLength; ++i)
+    state.elevations.push_back(
+        view.route->path().pointAt(view.arc_length + static_cast<double>(i)).z());
   state.speed = view.point().state.speed;
   state.size = view.vehicles->size(view.own);
   for (const traffic::Vehicle& other : moment.neighbors) {

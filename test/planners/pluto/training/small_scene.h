@@ -21,6 +21,7 @@ inline learning::Scene smallScene(const std::string& name, double seconds) {
   scene.name = name;
   scene.scenario_yaml = "name: " + name + "\n";
   scene.network_source = "small";
+  scene.network_source_sha256 = "of " + name;  // networks are held out, so each scene has its own
   scene.network_text = smallNetworkText();
   const std::vector<std::string> ids = {"ego", "a", "b", "tail"};
   for (std::size_t i = 0; i < 3; ++i) {
