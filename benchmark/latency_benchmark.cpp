@@ -19,7 +19,7 @@ namespace cdiff::benchmark {
 namespace {
 
 constexpr std::size_t kTraffic = 60;  // vehicles around
-constexpr int kCbv = 3;               // that is planned; the first ones are where PPO goes
+constexpr int kCbv = 3;               // that is planned; the first one is at PPO's goal
 constexpr int kWarmUp = 20;           // decisions until the histories of vehicles are full
 constexpr int kDecisions = 120;
 constexpr int kEvaluations = 200;       // of a state's candidates
@@ -73,6 +73,18 @@ std::vector<double> decisionTimes(const std::string& planner_name) {
   }
   std::sort(times.begin(), times.end());
   return times;
+}
+
+/// How dense the scene is around the planned CBV.
+double vehiclesNear() {
+  constexpr double kNear = 50.0;  // [m]
+  const DecisionScene scene("", kTraffic);
+  const auto& vehicles = scene.snapshot().vehicles;
+  const Eigen::Vector2d own = vehicles[kCbv + 1].state.position;
+  const auto near = [&](const traffic::Vehicle& vehicle) {
+    return (vehicle.state.position - own).norm() <= kNear;
+  };
+  return static_cast<double>(std::count_if(vehicles.begin(), vehicles.end(), near) - 1);
 }
 
 void addDecisions(Figures& figures) {
@@ -176,6 +188,7 @@ void addEvaluations(Figures& figures) {
 
 void benchmarkLatency(Figures& figures) {
   const OneCore one_core;
+  figures.push_back({"latency_vehicles_within_50_m", vehiclesNear(), "", ""});
   addDecisions(figures);
   addEvaluations(figures);
 }

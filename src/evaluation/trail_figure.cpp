@@ -20,9 +20,10 @@ using record::TraceRow;
 using traffic::VehicleRole;
 
 constexpr std::size_t kShades = 6;        // of a trail, from light to dark
-constexpr std::size_t kScenesInRow = 3;   // panels
-constexpr double kSceneWidth = 380.0;     // [pixels]
-constexpr double kSceneHeight = 300.0;    // [pixels]
+constexpr std::size_t kScenesInRow = 2;   // panels
+constexpr double kSceneWidth = 560.0;     // [pixels]
+constexpr double kLeastHeight = 160.0;    // [pixels]
+constexpr double kMostHeight = 420.0;     // [pixels]
 constexpr double kTextHeight = 20.0;      // below a panel [pixels]
 constexpr double kSceneMargin = 12.0;     // around all trails [m]
 constexpr double kContactRadius = 9.0;    // of a mark [pixels]
@@ -46,7 +47,10 @@ SceneView viewOf(const std::vector<DrivenScene>& scenes) {
       region.high = region.high.cwiseMax(row.position);
     }
   }
-  return {page::MapCanvas(region.grown(kSceneMargin), {kSceneWidth, kSceneHeight}), end};
+  region = region.grown(kSceneMargin);
+  const Eigen::Vector2d size = region.high - region.low;
+  const double height = std::clamp(kSceneWidth * size.y() / size.x(), kLeastHeight, kMostHeight);
+  return {page::MapCanvas(region, {kSceneWidth, height}), end};
 }
 
 /// Path data by shade of the trails that vehicles drove in a role.
@@ -80,12 +84,17 @@ std::string styleOfTrail(VehicleRole role, std::size_t shade) {
   return std::string("trail ") + traffic::toText(role) + " t" + std::to_string(shade);
 }
 
-/// Trails of a role with the vehicles where it was theirs last.
-Markup roleSvg(const DrivenScene& scene, VehicleRole role, const SceneView& view) {
+Markup trailsSvg(const DrivenScene& scene, VehicleRole role, const SceneView& view) {
   Markup svg;
   const auto paths = shadedTrails(scene.rows, role, view);
   for (std::size_t shade = 0; shade < kShades; ++shade)
     svg += page::svgPath(styleOfTrail(role, shade), paths[shade]);
+  return svg;
+}
+
+/// The vehicles where the role was theirs last.
+Markup endsSvg(const DrivenScene& scene, VehicleRole role, const SceneView& view) {
+  Markup svg;
   std::map<std::string, const TraceRow*> last;
   for (const TraceRow& row : scene.rows) {
     if (row.role == role) last[row.id] = &row;
@@ -112,16 +121,17 @@ Markup touchesSvg(const DrivenScene& scene, const SceneView& view) {
   return svg;
 }
 
-/// "2 contacts (1 with the ego), nearest 4.1 m", of CBVs.
+/// "2 contacts (1 with the ego), nearest 4.1 m" or "no contact, nearest 4.1 m", of CBVs.
 std::string countsOf(const BatchRun& run) {
   namespace known = metrics::known;
   const auto nearest = run.number(known::kCbvMinimumDistance.place);
   if (!nearest) return "no CBV was driven";
   const double contacts = run.number(known::kCbvCollisions.place).value_or(0.0);
   const double with_ego = run.number(known::kCbvEgoCollisions.place).value_or(0.0);
+  const std::string distance = ", nearest " + core::formatFixed(*nearest, 1) + " m";
+  if (contacts == 0.0) return "no contact" + distance;
   return core::formatFixed(contacts, 0) + (contacts == 1.0 ? " contact" : " contacts") + " (" +
-         core::formatFixed(with_ego, 0) + " with the ego), nearest " +
-         core::formatFixed(*nearest, 1) + " m";
+         core::formatFixed(with_ego, 0) + " with the ego)" + distance;
 }
 
 std::string titleOf(const std::string& planner) {
@@ -133,14 +143,17 @@ page::Panel scenePanel(const DrivenScene& scene, const SceneView& view,
                        const session::SessionSetup* setup) {
   page::Panel panel;
   panel.title = titleOf(scene.planner);
+  const double height = view.canvas.height();
   panel.width = kSceneWidth;
-  panel.height = kSceneHeight + kTextHeight;
-  const Markup map = groundSvg(setup, view.canvas) + roleSvg(scene, VehicleRole::kCbv, view) +
-                     roleSvg(scene, VehicleRole::kEgo, view) + touchesSvg(scene, view) +
-                     page::scaleBarSvg(view.canvas);
-  panel.content =
-      core::element("svg", {{"width", kSceneWidth}, {"height", kSceneHeight}}, "\n" + map) + "\n" +
-      page::chartText("note", 0.0, kSceneHeight + 15.0, countsOf(*scene.run));
+  panel.height = height + kTextHeight;
+  Markup map = groundSvg(setup, view.canvas);
+  for (const VehicleRole role : {VehicleRole::kEgo, VehicleRole::kCbv})
+    map += trailsSvg(scene, role, view);
+  for (const VehicleRole role : {VehicleRole::kCbv, VehicleRole::kEgo})
+    map += endsSvg(scene, role, view);
+  map += touchesSvg(scene, view) + page::scaleBarSvg(view.canvas);
+  panel.content = core::element("svg", {{"width", kSceneWidth}, {"height", height}}, "\n" + map) +
+                  "\n" + page::chartText("note", 0.0, height + 15.0, countsOf(*scene.run));
   return panel;
 }
 
@@ -166,8 +179,11 @@ std::string placesOf(const DrivenScene& scene) {
 void addNotes(const std::vector<BatchRun>& runs, const DrivenScene& first, const SceneView& view,
               page::PanelSheet& sheet) {
   std::vector<std::string> levels;
-  for (const auto& [factor, level] : sceneOf(*first.run)) {
-    if (!level.empty()) levels.push_back(factor + " " + level);
+  const Factors scene = sceneOf(*first.run);
+  for (const std::string& factor : factorNames()) {
+    const auto level = scene.find(factor);
+    if (level != scene.end() && !level->second.empty())
+      levels.push_back(factor + " " + level->second);
   }
   const double shade = static_cast<double>(view.end) * first.step / static_cast<double>(kShades);
   sheet.legend = {{styleOfTrail(VehicleRole::kEgo, kShades - 1), "ego"},
@@ -178,7 +194,7 @@ void addNotes(const std::vector<BatchRun>& runs, const DrivenScene& first, const
                         "ego and CBVs. Below each picture contacts of CBVs, and the smallest "
                         "distance of their centers to that of the ego.");
   for (const BatchRun& run : runs) {
-    if (run.record.complete() || sceneOf(run) != sceneOf(*first.run)) continue;
+    if (run.record.complete() || sceneOf(run) != scene) continue;
     sheet.notes.push_back(titleOf(run.record.factors.at("cbv_planner")) + ": " + run.record.status +
                           (run.record.cause.empty() ? "" : ", " + run.record.cause));
   }

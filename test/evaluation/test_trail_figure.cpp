@@ -97,25 +97,25 @@ TEST_F(TrailFigure, ShowsTheSceneInWhichMostPlannersDroveACbvAndCameNearest) {
   EXPECT_TRUE(has(svg(), "scenario u")) << svg();
 }
 
-// Shown are x from 0 to 23 and y from -12 to 0 with 12 m around them: 47 m x 36 m in 380 x 300
-// pixels. So 380 / 47 = 8.0851 pixels are a meter, and (11.5, -6) lies at (190, 150).
+// Shown are x from 0 to 23 and y from -12 to 0 with 12 m around them: 47 m x 36 m in 560 x 420
+// pixels. So 420 / 36 = 11.667 pixels are a meter, and (11.5, -6) lies at (280, 210).
 TEST_F(TrailFigure, TrailsDarkenAndContactsAreMarkedWhereTheyWere) {
   add("s", "pdm_lite", 4.44);
   add("s", "ppo", std::nullopt);
   const std::string text = svg();
   EXPECT_GT(test::xmlElementsOf(text).size(), 1U) << test::xmlElementsOf(text).front();
   // A shade is 4 of 24 ticks: the first from x = 0 to x = 4.
-  EXPECT_TRUE(has(text, "class=\"trail ego t0\" d=\"M97 101.5L129.4 101.5\"")) << text;
+  EXPECT_TRUE(has(text, "class=\"trail ego t0\" d=\"M145.8 140L192.5 140\"")) << text;
   EXPECT_TRUE(has(text, "class=\"trail ego t5\"")) << text;
   // As a CBV from y = -12 on: ticks 8 to 12 are the third shade, 12 to 15 the fourth.
-  EXPECT_TRUE(has(text, "class=\"trail cbv t2\" d=\"M177.9 198.5L177.9 166.2\"")) << text;
-  EXPECT_TRUE(has(text, "class=\"trail cbv t3\" d=\"M177.9 166.2L177.9 141.9\"")) << text;
+  EXPECT_TRUE(has(text, "class=\"trail cbv t2\" d=\"M262.5 280L262.5 233.3\"")) << text;
+  EXPECT_TRUE(has(text, "class=\"trail cbv t3\" d=\"M262.5 233.3L262.5 198.3\"")) << text;
   EXPECT_FALSE(has(text, "class=\"trail cbv t1\""));
   EXPECT_FALSE(has(text, "class=\"trail cbv t4\""));
   // At tick 15 between (10, -5) and (12, -5); that of the ego at (20, 0).
-  EXPECT_TRUE(has(text, "cx=\"186\" cy=\"141.9\"")) << text;
+  EXPECT_TRUE(has(text, "cx=\"274.2\" cy=\"198.3\"")) << text;
   EXPECT_TRUE(has(text, "contact of bg_1 and bg_2 at 0.75 s")) << text;
-  EXPECT_TRUE(has(text, "cx=\"258.7\" cy=\"101.5\"")) << text;
+  EXPECT_TRUE(has(text, "cx=\"379.2\" cy=\"140\"")) << text;
   EXPECT_FALSE(has(text, "bg_4"));  // its contact is the ego's
   EXPECT_TRUE(has(text, ">PDM-Lite</text>")) << text;
   EXPECT_TRUE(has(text, ">2 contacts (1 with the ego), nearest 4.4 m</text>")) << text;
