@@ -20,6 +20,8 @@ struct PlannerRole {
   std::string name() const { return planner + (ego ? "_as_ego" : "_as_cbv"); }
 };
 
+void PrintTo(const PlannerRole& role, std::ostream* stream) { *stream << role.name(); }
+
 std::vector<PlannerRole> rolesThatAre(bool possible) {
   std::vector<PlannerRole> roles;
   for (const planning::PlannerDescriptor& planner : planners::packagePlanners()) {
