@@ -34,7 +34,7 @@ class PlutoTraining : public ::testing::Test {
     training.options.data = (folder_.path() / "data").string();
     training.options.output = (folder_.path() / output).string();
     training.options.device = "cpu";
-    training.options.steps = 60;
+    training.options.steps = 120;
     training.options.batch = 4;
     training.options.warm_up = 5;
     training.options.validation_share = 0.5;

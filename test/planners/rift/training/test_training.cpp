@@ -91,14 +91,14 @@ TEST_F(RiftTraining, TheOtherObjectiveTrainsToo) {
             std::string::npos);
 }
 
-// Interrupted at step 9, in the middle of the second buffer: it goes on from step 6.
+// Interrupted at step 9, in the middle of the second buffer: it stops at that buffer's end.
 TEST_F(RiftTraining, AResumedTrainingGoesOnFromTheLastWholeBuffer) {
   learning::train(start("whole"), stop_, log_);
   test::StoppingBuffer buffer(stop_, "fine_tune step 9/18");
   std::ostream log(&buffer);
   EXPECT_THROW(learning::train(start("parted"), stop_, log), core::Interrupted);
   const auto path = learning::checkpointPath((folder_.path() / "parted").string(), kRiftStage);
-  EXPECT_EQ(learning::readCheckpoint(path).facts.at("steps"), 6);
+  EXPECT_EQ(learning::readCheckpoint(path).facts.at("steps"), 12);
   stop_ = false;
   learning::Training again = start("parted");
   again.options.resume = true;
