@@ -111,7 +111,7 @@ TEST_F(PlantTaskTest, OtherSizesAreNoResumption) {
   learning::Training other = start("model");
   other.options.resume = true;
   dynamic_cast<PlantTask&>(*other.task).settings.architecture.hidden = 128;
-  EXPECT_NE(trainingText(other).find("was trained with architecture"), std::string::npos)
+  EXPECT_NE(trainingText(other).find("was trained with another architecture"), std::string::npos)
       << trainingText(other);
 }
 
