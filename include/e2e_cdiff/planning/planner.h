@@ -86,7 +86,8 @@ struct PlannedAction {
   guidance::GuidanceReport guidance{};  ///< what guidance did; set by planners that are guided
   double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
                                 ///< with the planned actions [m]
-  std::vector<PlannedCandidate> candidates{};  ///< in the planner's own order; empty: it weighs none
+  std::vector<PlannedCandidate>
+      candidates{};                         ///< in the planner's own order; empty: it weighs none
   std::vector<AttendedVehicle> attended{};  ///< in the planner's own order; empty: it does not say
 };
 

@@ -165,8 +165,8 @@ TEST_F(RiftEvaluatorTest, DrivingOnAFreeRoadIsWorthMoreThanStopping) {
   EXPECT_GT(returnOf(arc(8.0, 0.0)), returnOf(stop()));
 }
 
-// A car stands 15 m ahead, some 10 m between the boxes: at 8 m/s it is hit after 1.5 s. (One that is
-// hit after 3 s costs less than the way until then is worth: RIFT's reward.)
+// A car stands 15 m ahead, some 10 m between the boxes: at 8 m/s it is hit after 1.5 s. (One that
+// is hit after 3 s costs less than the way until then is worth: RIFT's reward.)
 TEST_F(RiftEvaluatorTest, ACollisionIsWorthLessThanStopping) {
   state_.neighbors = {standing(35.0, 0.0)};
   EXPECT_LT(returnOf(arc(8.0, 0.0)), returnOf(stop()) - 5.0);
