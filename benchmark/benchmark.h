@@ -50,6 +50,7 @@ std::filesystem::path dataFolder();
 void benchmarkCamera(Figures& figures);
 void benchmarkEncoder(Figures& figures);
 void benchmarkDenoiser(Figures& figures);
+void benchmarkLatency(Figures& figures);
 void benchmarkLoop(Figures& figures);
 void benchmarkMap(Figures& figures);
 void benchmarkMetrics(Figures& figures);

@@ -4,12 +4,10 @@
 
 #include "benchmark.h"
 #include "core/text.h"
-#include "e2e_cdiff/core/random.h"
+#include "decision_scene.h"
 #include "fma_peak.h"
 #include "network_times.h"
 #include "planners/diffusion/diffusion_planner.h"
-#include "session/session_request.h"
-#include "session/session_setup.h"
 #ifdef E2E_CDIFF_EAGER
 #include "eager_planner.h"
 #endif
@@ -18,70 +16,8 @@ namespace cdiff::benchmark {
 namespace {
 
 constexpr int kDecisions = 60;
-constexpr int kVehicles = 8;
+constexpr int kVehicles = DecisionScene::kCbvs;
 constexpr int kRounds = 12;
-
-/// CBVs that stand one behind the other on the ego route of a shipped scenario, each with an image
-/// of its own.
-class Scene {
- public:
-  Scene() : setup_(session::resolveRequest(request())) {
-    for (int i = 0; i <= kVehicles; ++i) {
-      traffic::Vehicle vehicle;
-      const double s = 5.0 + 8.0 * i;
-      vehicle.id = i == 0 ? "ego" : "cbv" + std::to_string(i);
-      vehicle.role = i == 0 ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kCbv;
-      vehicle.cbv_slot = i - 1;
-      vehicle.state.position = setup_.egoRoute().path().pointAt(s).head<2>();
-      vehicle.state.heading = setup_.egoRoute().path().headingAt(s);
-      vehicle.state.speed = 5.0;
-      snapshot_.vehicles.push_back(vehicle);
-    }
-    images_.resize(kVehicles);
-    renewImages();
-  }
-
-  /// A decision later; every vehicle sees something new if asked.
-  void advance(bool new_images) {
-    snapshot_.tick += 2;
-    if (new_images) renewImages();
-    for (traffic::CameraImage& image : images_) image.tick = snapshot_.tick;
-  }
-  std::vector<planning::PlanningTask> tasks(int first, int count) {
-    std::vector<planning::PlanningTask> tasks;
-    for (int i = first; i < first + count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      tasks.push_back(
-          {i, &snapshot_.vehicles[index + 1], &setup_.egoRoute(), 8.0, &images_[index]});
-    }
-    return tasks;
-  }
-  const session::SessionSetup& setup() const { return setup_; }
-  const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
-
- private:
-  static session::SessionRequest request() {
-    session::SessionRequest request;
-    request.scenario = "crossing_straight";
-    return request;
-  }
-  void renewImages() {
-    const core::RandomStream random(snapshot_.tick + 1, "benchmark");
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      images_[i].width = 160;
-      images_[i].height = 96;
-      images_[i].rgb.resize(160 * 96 * 3);
-      for (std::size_t j = 0; j < images_[i].rgb.size(); ++j) {
-        images_[i].rgb[j] =
-            static_cast<std::uint8_t>(random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
-      }
-    }
-  }
-
-  session::SessionSetup setup_;
-  traffic::TrafficSnapshot snapshot_;
-  std::vector<traffic::CameraImage> images_;
-};
 
 /// What is planned with: sampler mode and guidance profile.
 struct Setting {
@@ -93,7 +29,7 @@ struct Setting {
 constexpr const char* kThreeObjectives = "ablation_all";
 constexpr const char* kDefaultProfile = "naturalistic";
 
-std::unique_ptr<planners::DiffusionPlanner> makePlanner(const Scene& scene,
+std::unique_ptr<planners::DiffusionPlanner> makePlanner(const DecisionScene& scene,
                                                         const Setting& setting) {
   planners::DiffusionOptions options;
   options.sampler.mode = setting.mode;
@@ -103,7 +39,8 @@ std::unique_ptr<planners::DiffusionPlanner> makePlanner(const Scene& scene,
 }
 
 /// Milliseconds of planning `count` vehicles in one call, ascending.
-std::vector<double> planTimes(Scene& scene, const Setting& setting, int count, bool new_images) {
+std::vector<double> planTimes(DecisionScene& scene, const Setting& setting, int count,
+                              bool new_images) {
   const auto planner = makePlanner(scene, setting);
   std::vector<double> times;
   for (int i = 0; i < kDecisions; ++i) {
@@ -119,7 +56,7 @@ std::vector<double> planTimes(Scene& scene, const Setting& setting, int count, b
 /// The same vehicles one call each, by one planner with one copy of the model [ms]. It forgets a
 /// vehicle that it is not asked about, so each is planned once to have its features at hand, and
 /// then timed.
-double singlesTime(Scene& scene, const Setting& setting) {
+double singlesTime(DecisionScene& scene, const Setting& setting) {
   const auto planner = makePlanner(scene, setting);
   std::vector<double> times;
   for (int round = 0; round < kRounds; ++round) {
@@ -166,7 +103,7 @@ void addEager(Figures& figures) {
 }
 
 /// Image to command, one vehicle.
-void addSingles(Figures& figures, Scene& scene, double encoder_p95) {
+void addSingles(Figures& figures, DecisionScene& scene, double encoder_p95) {
   const std::vector<double> paper = planTimes(scene, {"paper", kThreeObjectives}, 1, true);
   const std::vector<double> paper_default = planTimes(scene, {"paper", kDefaultProfile}, 1, true);
   const std::vector<double> real_time = planTimes(scene, {"real_time", kThreeObjectives}, 1, true);
@@ -189,7 +126,7 @@ void addSingles(Figures& figures, Scene& scene, double encoder_p95) {
 }
 
 /// Eight vehicles, image features at hand.
-void addBatch(Figures& figures, Scene& scene) {
+void addBatch(Figures& figures, DecisionScene& scene) {
   const Setting three{"real_time", kThreeObjectives};
   const Setting standard{"real_time", kDefaultProfile};
   const double batch = median(planTimes(scene, three, kVehicles, false));
@@ -204,7 +141,7 @@ void addBatch(Figures& figures, Scene& scene) {
 }  // namespace
 
 void benchmarkPlanner(Figures& figures) {
-  Scene scene;
+  DecisionScene scene;
   const double encoder_p95 = addNetworks(figures);
   addSingles(figures, scene, encoder_p95);
   addBatch(figures, scene);

@@ -45,6 +45,7 @@ std::vector<std::string> wordsOf(const CollectRequest& request) {
                                     "--duration",    core::formatNumber(request.duration)};
   if (request.keep_bag) words.push_back("--keep-bags");
   if (!request.images) words.push_back("--no-images");
+  if (request.scenes) words.push_back("--scenes");
   for (const std::string& assignment : request.set) {
     words.push_back("--set");
     words.push_back(assignment);
@@ -72,7 +73,12 @@ std::vector<CollectScenario> scenariosOf(const CollectArguments& arguments) {
            {"collection.minimum_density=" + density, "collection.maximum_density=" + density}});
     }
   }
-  for (const CollectScenario& scenario : scenarios) suite::requireNotSealed(scenario.name);
+  std::vector<std::string> files;
+  for (const CollectScenario& scenario : scenarios) {
+    suite::requireNotSealed(scenario.name);
+    files.push_back(scenario.name);
+  }
+  suite::requireForTraining(files);
   if (!scenarios.empty()) return scenarios;
   for (const std::string& name : session::shippedScenarios()) scenarios.push_back({name, {}});
   return scenarios;
@@ -125,7 +131,8 @@ int exitCode(const std::vector<SessionJob>& jobs) {
 
 /// What an earlier collection that was killed left half written.
 void removeHalves(const fs::path& results) {
-  for (const char* name : {"bags", "shards", "sessions"}) core::removeTemporaries(results / name);
+  for (const char* name : {"bags", "shards", "scenes", "sessions"})
+    core::removeTemporaries(results / name);
   std::error_code ignored;
   std::vector<fs::path> halves;
   for (const auto& entry : fs::directory_iterator(results / "bags", ignored)) {
@@ -144,13 +151,20 @@ int convertBags(const CollectArguments& arguments) {
   return ExitCode::kPassed;
 }
 
+/// Whether everything that the request asks of the session lies there; a bag alone is made anew.
+bool isDone(const CollectRequest& request, const std::string& name) {
+  if (!request.images && !request.scenes) return false;
+  const bool samples = fs::exists(collection::shardFile(request, name)) &&
+                       fs::exists(collection::statisticsFile(request, name));
+  const bool scene = fs::exists(collection::sceneFile(request, name));
+  return (samples || !request.images) && (scene || !request.scenes);
+}
+
 std::vector<SessionJob> jobsOf(const std::vector<CollectRequest>& sessions) {
   std::vector<SessionJob> jobs;
   for (const CollectRequest& request : sessions) {
     const std::string name = collection::sessionName(collection::resolveCollection(request));
-    const bool done = fs::exists(collection::shardFile(request, name)) &&
-                      fs::exists(collection::statisticsFile(request, name));
-    if (!done) jobs.push_back({name, wordsOf(request)});
+    if (!isDone(request, name)) jobs.push_back({name, wordsOf(request)});
   }
   std::cerr << sessions.size() << " sessions, " << sessions.size() - jobs.size()
             << " of them already there\n";
@@ -175,6 +189,22 @@ void driveSessions(std::vector<SessionJob>& jobs, int at_a_time, const std::atom
   core::runProcesses(std::move(numbers), limits, stop, calls);
 }
 
+/// How many of the sessions have their scene, and how much room these take.
+void describeScenes(const std::vector<CollectRequest>& sessions) {
+  std::size_t count = 0;
+  double bytes = 0.0;
+  for (const CollectRequest& request : sessions) {
+    const std::string name = collection::sessionName(collection::resolveCollection(request));
+    const fs::path file = collection::sceneFile(request, name);
+    std::error_code absent;
+    const auto size = fs::file_size(file, absent);
+    if (absent) continue;
+    ++count;
+    bytes += static_cast<double>(size);
+  }
+  std::cerr << count << " scenes, " << core::formatFixed(1e-6 * bytes, 1) << " MB\n";
+}
+
 int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
@@ -185,6 +215,7 @@ int collect(const CollectArguments& arguments) {
   const std::atomic<bool>& stop = core::catchStopSignals();
   driveSessions(jobs, arguments.jobs, stop);
   const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);
+  if (arguments.request.scenes) describeScenes(sessions);
   if (!arguments.request.images) return code;
   const auto statistics = conclude(arguments, sessions);
   if (code == ExitCode::kPassed)
@@ -198,7 +229,11 @@ void addCommonOptions(CLI::App& command, CollectRequest& request) {
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0));
   command.add_flag("--keep-bags", request.keep_bag, "Keep the bags that the shards are made of");
-  command.add_flag("!--no-images", request.images, "Record bags without images, and no shards");
+  command.add_flag("--scenes", request.scenes,
+                   "Store each session as a scene: all but its images, which it gives again");
+  command.add_flag("!--no-images", request.images,
+                   "Render no images and make no shards: scenes, or bags where no scenes are asked "
+                   "for");
   command
       .add_option("--set", request.set,
                   "Any key of the scenario or of the group collection as key=value")
@@ -215,7 +250,7 @@ void addBagOptions(CLI::App& command, ros::BagRequest& request) {
                   "YAML file that names the bags' topics: image, odometry, control, path")
       ->needs(bags);
   for (const char* name : {"--scenarios", "--suite", "--seeds", "--first-seed", "--jobs",
-                           "--duration", "--keep-bags", "--no-images", "--set"})
+                           "--duration", "--keep-bags", "--no-images", "--scenes", "--set"})
     bags->excludes(command.get_option(name));
 }
 

@@ -34,7 +34,8 @@ int trainAsAsked(int argc, char** argv) {
   CLI::App program{tasks.descriptor(training.options.task).help, kCommand};
   program.get_formatter()->column_width(kNameColumn);
   cdiff::learning::addOptions(program, training);
-  for (const char* name : {"--data", "--output"}) program.get_option(name)->required();
+  program.get_option("--output")->required();
+  program.get_option("--data")->required(training.needsSamples());
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -134,14 +134,19 @@ planning::DrivingStyle PerturbedPlanner::styleOf(const core::RandomKey& key) con
   return style;
 }
 
+PerturbedPlanner::Driver PerturbedPlanner::driverOf(const std::string& vehicle_id) const {
+  const core::RandomKey key{core::hashText(vehicle_id), 0, 0};
+  return {styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed),
+          styleOf(key)};
+}
+
 std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlanningTask> asked = tasks;
   for (planning::PlanningTask& task : asked) {
-    const core::RandomKey key{core::hashText(task.vehicle->id), 0, 0};
-    task.target_speed =
-        styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed);
-    task.style = styleOf(key);
+    const Driver driver = driverOf(task.vehicle->id);
+    task.target_speed = driver.target_speed;
+    task.style = driver.style;
   }
   std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
   if (snapshot.time > last_time_ + 1.5 * decision_period_) bursts_.clear();

@@ -33,6 +33,13 @@ class PerturbedPlanner : public planning::Planner {
       const std::vector<planning::PlanningTask>& tasks) override;
   bool needsImages() const override { return planner_->needsImages(); }
 
+  /// Who drives a vehicle: its target speed [m/s] and its style.
+  struct Driver {
+    double target_speed;
+    planning::DrivingStyle style;
+  };
+  Driver driverOf(const std::string& vehicle_id) const;
+
   /// Vehicles whose actions of the last call carry noise.
   const std::set<std::string>& perturbed() const { return perturbed_; }
 
@@ -102,6 +109,9 @@ class CollectionLoop {
   const session::World& world() const { return loop_.world(); }
   /// Whether the last action decided for a vehicle carries noise.
   bool perturbed(const std::string& vehicle_id) const;
+  PerturbedPlanner::Driver driverOf(const std::string& vehicle_id) const {
+    return cbv_planner_->driverOf(vehicle_id);
+  }
 
  private:
   session::LoopParts makeParts(const session::SessionSetup& setup, const CollectionOptions& options,

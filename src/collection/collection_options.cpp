@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "learning/samples/scene.h"
 #include "planners/registry.h"
 
 namespace cdiff::collection {
@@ -196,6 +197,11 @@ CollectSettings resolveCollection(const CollectRequest& request) {
   override(settings, request.set);
   settings.scenario = collectionScenario(settings.scenario, settings.collection);
   override(settings, request.set);
+  if (!settings.scenario.route.bench2drive_file.empty()) {
+    throw core::InputError("scenario '" + request.scenario +
+                           "': key 'route.bench2drive_file' is set; routes of Bench2Drive are for "
+                           "evaluation, and no training data may come from them");
+  }
   settings.scenario.validate();
   settings.collection.validate();
   return settings;
@@ -211,6 +217,10 @@ fs::path bagFile(const CollectRequest& request, const std::string& name) {
 
 fs::path shardFile(const CollectRequest& request, const std::string& name) {
   return request.results / "shards" / (name + ".shard");
+}
+
+fs::path sceneFile(const CollectRequest& request, const std::string& name) {
+  return request.results / "scenes" / (name + learning::kSceneExtension);
 }
 
 fs::path statisticsFile(const CollectRequest& request, const std::string& name) {

@@ -109,7 +109,8 @@ struct CollectRequest {
   std::filesystem::path results;
   double duration = 60.0;  ///< [s]
   bool keep_bag = false;
-  bool images = true;            ///< without: the bag alone
+  bool images = true;            ///< without: no shard
+  bool scenes = false;           ///< store scenes (learning/samples/scene.h)
   std::vector<std::string> set;  ///< key=value each
 };
 
@@ -121,12 +122,13 @@ struct CollectSettings {
   void describe(core::OptionsVisitor& visitor);
 };
 
-/// Throws InputError for an unknown scenario, key or value.
+/// Throws InputError for an unknown scenario, key or value, and for a route of Bench2Drive.
 CollectSettings resolveCollection(const CollectRequest& request);
 /// "SCENARIO_seedN": the name of its files.
 std::string sessionName(const CollectSettings& settings);
 std::filesystem::path bagFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path shardFile(const CollectRequest& request, const std::string& name);
+std::filesystem::path sceneFile(const CollectRequest& request, const std::string& name);
 std::filesystem::path statisticsFile(const CollectRequest& request, const std::string& name);
 
 }  // namespace cdiff::collection

@@ -13,6 +13,7 @@
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/system_summary.h"
+#include "evaluation/trail_figure.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 
@@ -117,8 +118,11 @@ Markup shownCell(const TableCell& cell, bool with_interval) {
   const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
   Markup html = cellText(cell, with_interval);
-  if (!rift.empty()) html += element("span", {{"class", "rift"}}, "RIFT: " + rift);
+  if (!rift.empty()) html += element("span", {{"class", "by_rift"}}, "RIFT: " + rift);
   if (!paper.empty()) html += element("span", {{"class", "paper"}}, "paper: " + paper);
+  const std::string repository = paperText(cell.repository);
+  if (!repository.empty())
+    html += element("span", {{"class", "paper"}}, "RIFT's repository: " + repository);
   return html;
 }
 
@@ -137,6 +141,7 @@ Markup paperTable(const Table& table) {
   Markup html = rows.html();
   if (anyRowWithout(table)) html += page::pageNote(intervalRule());
   if (!definition.note.empty()) html += page::pageNote(definition.note);
+  for (const std::string& footnote : definition.footnotes) html += page::pageNote(footnote);
   for (const std::string& line : settingsLines(table)) html += page::pageNote(line);
   return html;
 }
@@ -192,8 +197,10 @@ std::string row(const std::vector<std::string>& cells) {
 std::string markdownCell(const TableCell& cell, bool with_interval) {
   const std::string rift = riftText(cell, with_interval);
   const std::string paper = paperText(cell.paper);
+  const std::string repository = paperText(cell.repository);
   return cellText(cell, with_interval) + (rift.empty() ? "" : "<br>RIFT: " + rift) +
-         (paper.empty() ? "" : "<br>paper: " + paper);
+         (paper.empty() ? "" : "<br>paper: " + paper) +
+         (repository.empty() ? "" : "<br>RIFT's repository: " + repository);
 }
 
 }  // namespace
@@ -206,7 +213,8 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
   std::string text = "# Tables of the paper\n\nOurs: mean ± standard deviation over seeds " +
                      intervals +
                      "(routes, seeds, runs that have the measure). "
-                     "RIFT: the same by RIFT's definition. paper: as printed there. "
+                     "RIFT: the same by RIFT's definition. paper: as printed there. RIFT's "
+                     "repository: as printed there. "
                      "In parentheses alone: why a cell is empty.\n";
   for (const Table& table : tables) {
     const TableDefinition& definition = table.definition;
@@ -224,6 +232,7 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
     }
     text += "\n";
     if (anyRowWithout(table)) text += intervalRule() + "\n\n";
+    for (const std::string& footnote : definition.footnotes) text += "- " + footnote + "\n";
     for (const std::string& line : settingsLines(table)) text += "- " + line + "\n";
   }
   return text;
@@ -235,7 +244,8 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   std::vector<Table> tables;
   for (const TableDefinition& definition : paperTables())
     tables.push_back(fillTable(definition, pooled));
-  const std::vector<Figure> figures = paperFigures(pooled);
+  std::vector<Figure> figures = paperFigures(pooled);
+  if (auto trails = trailFigure(runs)) figures.push_back(std::move(*trails));
   makeFolder(results / "tables");
   for (const Table& table : tables) {
     core::writeFileAtomically(results / "tables" / (table.definition.id + ".csv"), tableCsv(table));

@@ -13,7 +13,8 @@
 namespace cdiff::evaluation {
 
 // What a finished batch is read by: tables/table_N.csv, tables/tables.md, figures/figure_N.csv and
-// .svg, index.html. All are functions of the folder's records and runs, and need nothing to run.
+// .svg, figures/trails.csv and .svg, index.html. All are functions of the folder's records and
+// runs, and need nothing to run.
 
 /// Writes them all, each file whole. Throws InputError naming the file for a folder without
 /// records, a damaged record, summary or trace, and a file that cannot be written.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels with AVX2 and FMA; this file alone is compiled for it.
-#include "inference/denoiser_kernels.h"
+#include "inference/transformer_kernels.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
 
 #include <immintrin.h>
 
-#include "inference/kernel_templates.h"
+#include "inference/transformer_templates.h"
 
 namespace cdiff::inference {
 namespace {
@@ -39,10 +39,12 @@ struct Vector {
 };
 
 constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
+constexpr TransformerKernels kTransformerKernels = transformerKernelsOf<Vector>();
 
 }  // namespace
 
 const DenoiserKernels* avx2Kernels() { return &kKernels; }
+const TransformerKernels* avx2TransformerKernels() { return &kTransformerKernels; }
 
 }  // namespace cdiff::inference
 
@@ -50,6 +52,7 @@ const DenoiserKernels* avx2Kernels() { return &kKernels; }
 
 namespace cdiff::inference {
 const DenoiserKernels* avx2Kernels() { return nullptr; }
+const TransformerKernels* avx2TransformerKernels() { return nullptr; }
 }  // namespace cdiff::inference
 
 #endif

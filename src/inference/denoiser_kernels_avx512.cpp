@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels with AVX-512F; this file alone is compiled for it.
-#include "inference/denoiser_kernels.h"
+#include "inference/transformer_kernels.h"
 
 #ifdef __AVX512F__
 
@@ -12,7 +12,7 @@
 
 #include <immintrin.h>
 
-#include "inference/kernel_templates.h"
+#include "inference/transformer_templates.h"
 
 namespace cdiff::inference {
 namespace {
@@ -44,10 +44,12 @@ struct Vector {
 };
 
 constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
+constexpr TransformerKernels kTransformerKernels = transformerKernelsOf<Vector>();
 
 }  // namespace
 
 const DenoiserKernels* avx512Kernels() { return &kKernels; }
+const TransformerKernels* avx512TransformerKernels() { return &kTransformerKernels; }
 
 }  // namespace cdiff::inference
 
@@ -55,6 +57,7 @@ const DenoiserKernels* avx512Kernels() { return &kKernels; }
 
 namespace cdiff::inference {
 const DenoiserKernels* avx512Kernels() { return nullptr; }
+const TransformerKernels* avx512TransformerKernels() { return nullptr; }
 }  // namespace cdiff::inference
 
 #endif

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels for any CPU, on the compiler's generic vectors; a multiplication and an addition
 /// take the place of the fused ones.
-#include "inference/kernel_templates.h"
+#include "inference/transformer_templates.h"
 
 namespace cdiff::inference {
 namespace {
@@ -37,9 +37,11 @@ struct Vector {
 };
 
 constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
+constexpr TransformerKernels kTransformerKernels = transformerKernelsOf<Vector>();
 
 }  // namespace
 
 const DenoiserKernels* plainKernels() { return &kKernels; }
+const TransformerKernels* plainTransformerKernels() { return &kTransformerKernels; }
 
 }  // namespace cdiff::inference

@@ -99,6 +99,17 @@ at::Tensor linear(const ParameterSet& parameters, const std::string& name, const
   return at::conv2d(x.unsqueeze(2).unsqueeze(3), weight, parameters(name + ".bias")).flatten(1);
 }
 
+at::Tensor linearOfRows(const ParameterSet& parameters, const std::string& name,
+                        const at::Tensor& x) {
+  const at::Tensor weight = parameters(name + ".weight")
+                                .unsqueeze(2)
+                                .unsqueeze(3)
+                                .contiguous(at::MemoryFormat::ChannelsLast);
+  const at::Tensor image = x.reshape({1, x.size(0), 1, x.size(1)}).permute({0, 3, 1, 2});
+  const at::Tensor y = at::conv2d(image, weight, parameters(name + ".bias"));
+  return y.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
+}
+
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device) {
   at::Tensor tensor = at::empty(shape, at::kFloat);
@@ -117,8 +128,6 @@ std::vector<float> toVector(const at::Tensor& tensor) {
 namespace {
 
 constexpr double kBeta1 = 0.9;
-constexpr double kBeta2 = 0.999;
-constexpr double kEpsilon = 1e-8;
 
 /// Factors of one step; float as the tensors are.
 struct StepFactors {
@@ -126,6 +135,8 @@ struct StepFactors {
   float correction;    ///< 1 / sqrt(correction of v)
   float decay;         ///< 1 - learning rate x weight decay
   float average_gain;  ///< 1 - d
+  double second;       ///< b2
+  float epsilon;       ///< added to the root of v
 };
 
 struct StepTensors {
@@ -143,12 +154,14 @@ void stepOnCpu(const StepTensors& tensors, const StepFactors& factors) {
   float* first = tensors.first.data_ptr<float>();
   float* second = tensors.second.data_ptr<float>();
   float* average = tensors.average.data_ptr<float>();
+  const auto second_decay = static_cast<float>(factors.second);
+  const auto second_gain = static_cast<float>(1.0 - factors.second);
   at::parallel_for(0, tensors.weight.numel(), 1 << 16, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       const float g = gradient[i];
       first[i] = static_cast<float>(kBeta1) * first[i] + static_cast<float>(1.0 - kBeta1) * g;
-      second[i] = static_cast<float>(kBeta2) * second[i] + static_cast<float>(1.0 - kBeta2) * g * g;
-      const float root = std::sqrt(second[i]) * factors.correction + static_cast<float>(kEpsilon);
+      second[i] = second_decay * second[i] + second_gain * g * g;
+      const float root = std::sqrt(second[i]) * factors.correction + factors.epsilon;
       weight[i] = factors.decay * weight[i] - factors.rate * first[i] / root;
       average[i] += factors.average_gain * (weight[i] - average[i]);
     }
@@ -157,8 +170,9 @@ void stepOnCpu(const StepTensors& tensors, const StepFactors& factors) {
 
 void stepOnDevice(const StepTensors& tensors, const StepFactors& factors) {
   tensors.first.mul_(kBeta1).add_(tensors.gradient, 1.0 - kBeta1);
-  tensors.second.mul_(kBeta2).addcmul_(tensors.gradient, tensors.gradient, 1.0 - kBeta2);
-  const at::Tensor root = tensors.second.sqrt().mul_(factors.correction).add_(kEpsilon);
+  tensors.second.mul_(factors.second)
+      .addcmul_(tensors.gradient, tensors.gradient, 1.0 - factors.second);
+  const at::Tensor root = tensors.second.sqrt().mul_(factors.correction).add_(factors.epsilon);
   tensors.weight.mul_(factors.decay).addcdiv_(tensors.first, root, -factors.rate);
   tensors.average.add_(tensors.weight - tensors.average, factors.average_gain);
 }
@@ -180,16 +194,22 @@ void Optimizer::clearGradients() {
 }
 
 double Optimizer::clipGradients(double limit) {
+  return clipGradients(limit, 0, parameters_.size());
+}
+
+double Optimizer::clipGradients(double limit, std::size_t first, std::size_t count) {
   const at::NoGradGuard no_gradient;
+  std::vector<at::Tensor> gradients;
   std::vector<at::Tensor> norms;
-  for (const at::Tensor& parameter : parameters_) {
-    if (parameter.grad().defined()) norms.push_back(parameter.grad().norm());
+  for (std::size_t i = first; i < first + count; ++i) {
+    const at::Tensor& gradient = parameters_.at(i).grad();
+    if (!gradient.defined()) continue;
+    gradients.push_back(gradient);
+    norms.push_back(gradient.norm());
   }
   const double norm = at::stack(norms).norm().item<double>();
   if (norm <= limit || !std::isfinite(norm)) return norm;
-  for (const at::Tensor& parameter : parameters_) {
-    if (parameter.grad().defined()) parameter.grad().mul_(limit / norm);
-  }
+  for (at::Tensor& gradient : gradients) gradient.mul_(limit / norm);
   return norm;
 }
 
@@ -199,8 +219,11 @@ void Optimizer::step(std::int64_t n, double rate) {
   const double average_decay = std::min(options_.average_decay, (1.0 + count) / (10.0 + count));
   StepFactors factors{};
   factors.rate = static_cast<float>(rate / (1.0 - std::pow(kBeta1, count + 1.0)));
-  factors.correction = static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(kBeta2, count + 1.0)));
+  factors.correction =
+      static_cast<float>(1.0 / std::sqrt(1.0 - std::pow(options_.second_decay, count + 1.0)));
   factors.average_gain = static_cast<float>(1.0 - average_decay);
+  factors.second = options_.second_decay;
+  factors.epsilon = static_cast<float>(options_.epsilon);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     at::Tensor& weight = parameters_[i];
     const double decay = weight.dim() > 1 ? rate * options_.weight_decay : 0.0;

@@ -61,18 +61,26 @@ class ParameterSet {
 /// x [B, in] -> [B, out], as a convolution: Debian's libtorch has fast code for those only.
 at::Tensor linear(const ParameterSet& parameters, const std::string& name, const at::Tensor& x);
 
+/// The same for many rows, several times as fast: the rows are the pixels of one image, channels
+/// last.
+at::Tensor linearOfRows(const ParameterSet& parameters, const std::string& name,
+                        const at::Tensor& x);
+
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device);
 std::vector<float> toVector(const at::Tensor& tensor);
 
-/// Weight decay, and the decay per step of the moving average of the weights.
+/// Weight decay, the decay per step of the moving average of the weights, b2 of AdamW, and what is
+/// added to the root of the second moment.
 struct OptimizerOptions {
   double weight_decay = 1e-4;
   double average_decay = 0.999;
+  double second_decay = 0.999;
+  double epsilon = 1e-8;
 };
 
 /// AdamW with a moving average of the weights: m = b1 m + (1-b1) g, v = b2 v + (1-b2) g^2,
-/// w -= r (m' / (sqrt(v') + 1e-8) + decay w), m', v' corrected for their start; average += (1-d)
+/// w -= r (m' / (sqrt(v') + epsilon) + decay w), m', v' corrected for their start; average += (1-d)
 /// (w - average), d = min(average_decay, (1+n)/(10+n)). Decay acts on tensors of two dimensions and
 /// more.
 class Optimizer {
@@ -82,6 +90,8 @@ class Optimizer {
   void clearGradients();
   /// Scales the gradients down to the norm `limit`; returns their norm before.
   double clipGradients(double limit);
+  /// The same for `count` parameters from the one of number `first`.
+  double clipGradients(double limit, std::size_t first, std::size_t count);
   /// Step `n` = 0, 1, ...
   void step(std::int64_t n, double rate);
   /// Exchanges weights and their average.

@@ -49,11 +49,13 @@ StageRunner::StageRunner(Stage& stage, const TrainingOptions& options, const jso
                          const std::atomic<bool>& stop, std::ostream& log)
     : stage_(stage),
       options_(options),
+      rules_(stage.rules()),
       facts_(facts),
       stop_(stop),
       log_(log),
       parts_(stage.parts()),
-      optimizer_(tensorsOf(parts_), {options.weight_decay, options.average_decay}) {}
+      optimizer_(tensorsOf(parts_), {options.weight_decay, options.average_decay,
+                                     options.second_decay, rules_.epsilon}) {}
 
 StageResult StageRunner::run() {
   const bool done = options_.resume && resume();
@@ -61,13 +63,13 @@ StageResult StageRunner::run() {
   started_ = last_report_ = last_checkpoint_ = now();
   last_report_step_ = result_.steps;
   while (!done && !finished()) {
-    if (stop_) {
+    if (stop_ && betweenPeriods()) {
       save(false);
       throw core::Interrupted("stopped at step " + std::to_string(result_.steps) + " of stage " +
                               stage_.name() + "; --resume goes on from there");
     }
-    step();
-    if (now() - last_checkpoint_ >= options_.checkpoint_every) save(false);
+    stepOrStop();
+    if (betweenPeriods() && now() - last_checkpoint_ >= options_.checkpoint_every) save(false);
     if (result_.steps % options_.validation_every == 0 && !finished()) judge();
   }
   if (!done) {
@@ -80,19 +82,52 @@ StageResult StageRunner::run() {
   return result_;
 }
 
+/// A stage that stops by itself before it has a loss leaves everything as it was.
+void StageRunner::stepOrStop() {
+  try {
+    step();
+  } catch (const core::Interrupted&) {
+    if (betweenPeriods()) save(false);
+    throw;
+  }
+}
+
 void StageRunner::step() {
   optimizer_.clearGradients();
   const Loss loss = stage_.loss(result_.steps);
   const double value = loss.total.item<double>();
   checkFinite(value);
   loss.total.backward();
-  const double norm = optimizer_.clipGradients(options_.clip);
+  const double norm = clip();
   checkFinite(norm);
   optimizer_.step(result_.steps, rate());
   ++result_.steps;
   result_.loss =
       result_.steps == 1 ? value : kLossMemory * result_.loss + (1.0 - kLossMemory) * value;
+  noteNews();
   if (now() - last_report_ >= options_.report_every || finished()) logProgress(loss, norm);
+}
+
+/// Returns the norm before, of all parts together.
+double StageRunner::clip() {
+  if (!rules_.clip_apart) return optimizer_.clipGradients(options_.clip);
+  double square = 0.0;
+  std::size_t first = 0;
+  for (const TrainedPart& part : parts_) {
+    const std::size_t count = part.parameters->tensors().size();
+    const double norm = optimizer_.clipGradients(options_.clip, first, count);
+    square += norm * norm;
+    first += count;
+  }
+  return std::sqrt(square);
+}
+
+/// After the step: a run that is resumed at its begin makes it again.
+void StageRunner::noteNews() {
+  const Measures fresh = stage_.news();
+  if (fresh.empty()) return;
+  curves_->add(result_.steps, seconds(), fresh);
+  news_ = fresh;
 }
 
 void StageRunner::checkFinite(double value) {
@@ -102,7 +137,7 @@ void StageRunner::checkFinite(double value) {
                      "; the samples of its batch are";
   for (const std::size_t sample : stage_.samplesOf(result_.steps))
     text += " " + std::to_string(sample);
-  if (optimizer_.parametersFinite()) {
+  if (optimizer_.parametersFinite() && betweenPeriods()) {
     save(false);
     text += "; the weights before that step are in ";
   } else {
@@ -114,8 +149,8 @@ void StageRunner::checkFinite(double value) {
 double StageRunner::seconds() const { return seconds_before_ + (now() - started_); }
 
 bool StageRunner::finished() const {
-  return result_.steps >= options_.steps ||
-         (options_.time_limit > 0.0 && seconds() >= options_.time_limit);
+  return betweenPeriods() && (result_.steps >= options_.steps ||
+                              (options_.time_limit > 0.0 && seconds() >= options_.time_limit));
 }
 
 double StageRunner::progress() const {
@@ -124,11 +159,13 @@ double StageRunner::progress() const {
 }
 
 double StageRunner::rate() const {
+  if (const auto own = stage_.learningRate(result_.steps)) return *own;
   const double start = options_.warm_up == 0
                            ? 1.0
                            : std::min(1.0, static_cast<double>(result_.steps + 1) /
                                                static_cast<double>(options_.warm_up));
-  const double fall = 0.5 * (1.0 + std::cos(core::kPi * std::min(1.0, progress())));
+  const double done = std::min(1.0, progress());
+  const double fall = rules_.linear ? 1.0 - done : 0.5 * (1.0 + std::cos(core::kPi * done));
   return options_.learning_rate * start * fall;
 }
 
@@ -160,6 +197,7 @@ void StageRunner::logProgress(const Loss& loss, double norm) {
   log_ << stage_.name() << " " << progressText() << " loss " << formatFixed(result_.loss, 4);
   for (const auto& [name, term] : loss.terms)
     log_ << " " << name << " " << formatFixed(term.item<double>(), 4);
+  for (const auto& [name, value] : news_) log_ << " " << name << " " << formatFixed(value, 3);
   log_ << " gradient " << formatFixed(norm, 2) << " rate " << formatFixed(rate() * 1e6, 1)
        << "e-6, " << formatFixed(samples_per_second, 1) << " samples/s, left " << clockText(left)
        << std::endl;

@@ -48,7 +48,10 @@ class StageRunner {
  private:
   void save(bool done);
   bool resume();
+  void stepOrStop();
   void step();
+  double clip();
+  void noteNews();
   void checkFinite(double value);
   void logProgress(const Loss& loss, double norm);
   void record(const Loss& loss, double norm, double samples_per_second);
@@ -57,6 +60,7 @@ class StageRunner {
   std::string progressText() const;
   double rate() const;
   double seconds() const;
+  bool betweenPeriods() const { return result_.steps % rules_.period == 0; }
   bool finished() const;
   void readFacts(const nlohmann::json& facts, const std::string& source);
   template <class Visit>
@@ -64,6 +68,7 @@ class StageRunner {
 
   Stage& stage_;
   const TrainingOptions& options_;
+  StageRules rules_;
   nlohmann::json facts_;
   const std::atomic<bool>& stop_;
   std::ostream& log_;
@@ -71,6 +76,7 @@ class StageRunner {
   Optimizer optimizer_;
   std::optional<CurveLog> curves_;
   StageResult result_;
+  Measures news_;                ///< the last of the stage
   double seconds_before_ = 0.0;  ///< of earlier runs
   double started_ = 0.0;
   double last_report_ = 0.0;

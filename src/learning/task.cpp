@@ -52,6 +52,7 @@ Training TaskRegistry::training(const std::string& name) const {
   Training training;
   training.options.task = task.name;
   training.task = task.make();
+  training.task->setDefaults(training.options);
   training.tasks = names();
   return training;
 }

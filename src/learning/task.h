@@ -9,6 +9,7 @@
 #include <iosfwd>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "learning/curve_log.h"
 #include "learning/parameters.h"
 #include "learning/samples/dataset.h"
+#include "learning/samples/scene.h"
 #include "learning/training_options.h"
 
 namespace cdiff::learning {
@@ -26,6 +28,15 @@ namespace cdiff::learning {
 struct Loss {
   at::Tensor total;
   std::vector<std::pair<std::string, at::Tensor>> terms;
+};
+
+/// How the steps of a stage are made where it is not as usual.
+struct StageRules {
+  double epsilon = 1e-8;    ///< of AdamW, added to the root of the second moment
+  bool linear = false;      ///< the learning rate falls linearly to 0, not along a cosine
+  bool clip_apart = false;  ///< the gradient of each part is clipped by its own norm
+  std::int64_t period = 1;  ///< steps that belong together: a stage ends, stops and leaves
+                            ///< checkpoints at multiples of it only
 };
 
 /// Weights that a stage trains; their names in checkpoints start with `name`.
@@ -44,10 +55,16 @@ class Stage {
   /// The loss on the batch of a step, which is a function of seed, stage and step alone: so a
   /// resumed run goes on as if it had never stopped.
   virtual Loss loss(std::int64_t step) = 0;
+  virtual StageRules rules() const { return {}; }
+  /// What the last call of `loss` found out besides, for the curves; empty when nothing.
+  virtual Measures news() { return {}; }
   /// Samples of a step, for messages.
   virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
   /// Measures on held-out samples.
   virtual Measures judge() = 0;
+  /// The learning rate of a step where the stage has a course of its own; nullopt: warm-up and
+  /// cosine of the options.
+  virtual std::optional<double> learningRate(std::int64_t) const { return std::nullopt; }
 };
 
 /// Which checkpoints give a part of the weights.
@@ -91,7 +108,8 @@ struct TrainedModel {
   Measures held_out;
   nlohmann::json settings = nlohmann::json::object();  ///< settings of the task, for the record
   std::string title;                                   ///< title of the model card
-  std::string measures;                                ///< measures in the model card, Markdown
+  std::string trained_on;  ///< what it learned from, for the model card; empty: the data set
+  std::string measures;    ///< measures in the model card, Markdown
 };
 
 /// Texts of the task in `cdiff train --help`.
@@ -116,9 +134,20 @@ class Task {
   /// Names of the weight files in the output folder, and of what else the task keeps there.
   virtual std::vector<std::string> weightFiles() const = 0;
   virtual std::vector<std::string> otherFiles() const { return {}; }
+  /// False for a task that makes its samples itself: it takes no data folder, and the data set of
+  /// its run is empty.
+  virtual bool needsSamples() const { return true; }
   /// Names of the fields that it needs of each sample.
   virtual std::vector<std::string> fields() const = 0;
+  /// The fields of the samples that the task makes of scenes; without any it learns from shards.
+  /// One must be kSessionField, which the trainer sets to a hash of the scene's network file: whole
+  /// networks are held out.
+  virtual SampleSchema sceneFields() const { return {}; }
+  /// The samples of a scene, called scene after scene before `start`.
+  virtual std::vector<Sample> samplesOf(const Scene&) { return {}; }
 
+  /// Sets the options of every training whose default is another for this task.
+  virtual void setDefaults(TrainingOptions&) const {}
   /// The task's own options; `validate` throws InputError naming the key.
   virtual void describe(core::OptionsVisitor&) {}
   virtual void validate() const {}

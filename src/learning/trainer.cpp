@@ -17,6 +17,7 @@
 #include "learning/export.h"
 #include "learning/stage_runner.h"
 #include "learning/task.h"
+#include "learning/task_data.h"
 #include "learning/training_folder.h"
 
 namespace cdiff::learning {
@@ -55,14 +56,15 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
                    {"training_samples", dataset.training().size()},
                    {"validation_samples", dataset.validation().size()},
                    {"judged_samples", run.held_out.size()},
-                   {"sessions", dataset.sessions()},
-                   {"validation_sessions", dataset.validationSessions()}}},
+                   {dataset.unit(), dataset.sessions()},
+                   {"validation_" + dataset.unit(), dataset.validationSessions()}}},
                  {"stages", stages},
                  {"held_out", model.held_out},
                  {"init", options.init},
                  {"seed", options.seed},
                  {"learning_rate", options.learning_rate},
                  {"weight_decay", options.weight_decay},
+                 {"second_decay", options.second_decay},
                  {"machine", processorName()},
                  {"threads", options.threads},
                  {"device", run.device.str()},
@@ -71,15 +73,21 @@ json recordOf(const TrainingRun& run, const TrainedModel& model,
   return record;
 }
 
+std::string dataSentence(const json& data) {
+  const std::string unit = data.contains("networks") ? "networks" : "sessions";
+  const json& held_out = data["validation_" + unit];
+  std::ostringstream text;
+  text << data["training_samples"] << " samples of " << data[unit].get<int>() - held_out.get<int>()
+       << " " << unit << "; judged on " << data["judged_samples"] << " samples of " << held_out
+       << " " << unit << " that it was not trained on (0 " << unit << ": on the training samples)";
+  return text.str();
+}
+
 std::string modelCard(const json& facts, const TrainedModel& model) {
   std::ostringstream card;
   card << "# " << model.title << "\n\nTrained by `cdiff train` on "
-       << facts["data"]["training_samples"] << " samples of "
-       << facts["data"]["sessions"].get<int>() - facts["data"]["validation_sessions"].get<int>()
-       << " sessions; judged on " << facts["data"]["judged_samples"] << " samples of "
-       << facts["data"]["validation_sessions"]
-       << " sessions that it was not trained on (0 sessions: on the training samples).\n\n"
-          "| Stage | Steps | Seconds | Loss |\n|---|---|---|---|\n";
+       << (model.trained_on.empty() ? dataSentence(facts["data"]) : model.trained_on)
+       << ".\n\n| Stage | Steps | Seconds | Loss |\n|---|---|---|---|\n";
   for (const auto& [name, stage] : facts["stages"].items()) {
     card << "| " << name << " | " << stage["steps"] << " | "
          << formatFixed(stage["seconds"].get<double>(), 0) << " | "
@@ -129,32 +137,6 @@ std::vector<std::size_t> chooseHeldOut(const Dataset& dataset, std::size_t count
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
   return chosen;
-}
-
-/// Throws InputError naming the task and what to do where the data folder holds no shard.
-void requireShards(const Training& training) {
-  try {
-    findShards(training.options.data);
-  } catch (const InputError& error) {
-    throw InputError("training task '" + training.options.task + "' has no samples: " +
-                     error.what() + "; collect them (cdiff collect) or give another --data");
-  }
-}
-
-void requireFields(const Training& training, const Dataset& dataset) {
-  const std::string who = "training task '" + training.options.task + "'";
-  const std::vector<std::string> fields = training.task->fields();
-  if (fields.empty()) {
-    throw InputError(who +
-                     " learns from no field of the samples; its fields() in "
-                     "planners/NAME/training must name them");
-  }
-  for (const std::string& field : fields) {
-    if (dataset.schema().find(field) != nullptr) continue;
-    throw InputError(who + " needs the field '" + field + "' of the samples, which " +
-                     dataset.name() + " lacks (it holds " + dataset.schema().names() +
-                     "); collect samples with that field, or give another --task");
-  }
 }
 
 class Trainer {
@@ -263,12 +245,15 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   requireFreeOutput(training);
   requireSources(training);
   core::removeTemporaries(options.output);
-  requireShards(training);
-  const Dataset dataset(options.data, options.validation_share);
-  requireFields(training, dataset);
+  if (!training.needsSamples()) {
+    const Dataset none;
+    Trainer(training, none, stop, log).run();
+    return;
+  }
+  const Dataset dataset = readData(training, stop, log);
   log << "data: " << dataset.training().size() << " training samples, "
-      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " sessions"
-      << std::endl;
+      << dataset.validation().size() << " validation samples, " << dataset.sessions() << " "
+      << dataset.unit() << std::endl;
   Trainer(training, dataset, stop, log).run();
 }
 

@@ -36,7 +36,9 @@ void describeRun(Training& training, OptionsVisitor& visitor) {
   visitor.text({"task", "", "What to train; it decides on the stages and on further options."},
                options.task, training.tasks);
   visitor.text({"stage", "", stage.c_str()}, options.stage, stageNames(*training.task));
-  visitor.text({"data", "", "Folder with *.shard."}, options.data, {});
+  const bool scenes = !training.task->sceneFields().fields.empty();
+  visitor.text({"data", "", scenes ? "Folder with *.scene." : "Folder with *.shard."}, options.data,
+               {});
   visitor.text({"output", "", "Folder for checkpoints and the model."}, options.output, {});
   visitor.text({"init", "", "Model to start from where no checkpoint is."}, options.init, {});
   visitor.integer({"steps", "", "Steps of the stage."}, options.steps, 1, kMost);
@@ -81,6 +83,8 @@ void describeOptimizer(TrainingOptions& options, OptionsVisitor& visitor) {
                  1e-9, 1.0);
   visitor.number({"weight_decay", "", "Weight decay of AdamW, on matrices."}, options.weight_decay,
                  0.0, 1.0);
+  visitor.number({"second_decay", "", "Decay of AdamW's mean of squared gradients."},
+                 options.second_decay, 0.5, 0.99999);
   visitor.integer({"warm_up", "", "Steps over which the learning rate rises."}, options.warm_up, 0,
                   kMost);
   visitor.number({"clip", "", "Largest norm of the gradient."}, options.clip, 1e-6, 1e6);
@@ -101,8 +105,12 @@ void Training::describe(OptionsVisitor& visitor) {
 void Training::validate() const {
   Training checked = *this;
   core::loadOptions({"training options", core::dumpOptions(*this)}, checked);
-  if (options.data.empty())
-    throw InputError("training: data, the folder of the shards, is not given");
+  if (options.data.empty() && needsSamples())
+    throw InputError("training: data, the folder of the samples, is not given");
+  if (!options.data.empty() && !needsSamples()) {
+    throw InputError("training: data is '" + options.data + "', but task '" + options.task +
+                     "' makes its samples itself; leave --data out");
+  }
   if (options.output.empty())
     throw InputError("training: output, the folder to write to, is not given");
   if (options.resume && options.overwrite) {
@@ -114,6 +122,8 @@ void Training::validate() const {
     throw InputError("training: anneal_by_time needs a time_limit");
   task->validate();
 }
+
+bool Training::needsSamples() const { return task->needsSamples(); }
 
 namespace {
 

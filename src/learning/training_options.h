@@ -21,7 +21,7 @@ class Task;
 struct TrainingOptions {
   std::string task;            ///< name in the table of tasks
   std::string stage = "all";   ///< one of the task's | export | all
-  std::string data;            ///< folder with *.shard
+  std::string data;            ///< folder with *.shard, or *.scene for tasks that learn from scenes
   std::string output;          ///< folder for checkpoints and the model
   std::string init;            ///< model to start from where no checkpoint is; empty: none
   std::int64_t steps = 20000;  ///< steps of the stage
@@ -35,6 +35,7 @@ struct TrainingOptions {
   std::string device = "auto";  ///< auto | cpu | cuda
   double learning_rate = 2e-4;
   double weight_decay = 1e-4;
+  double second_decay = 0.999;    ///< b2 of AdamW, decay of the mean of squared gradients
   std::int64_t warm_up = 500;     ///< steps
   double clip = 1.0;              ///< norm of the gradient
   double average_decay = 0.999;   ///< decay of the moving average of the weights, at most
@@ -54,6 +55,8 @@ struct Training {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError naming the key.
   void validate() const;
+  /// Whether a data folder must be given.
+  bool needsSamples() const;
 };
 
 // The options of an options struct on the command line: `--steps 10` for the key `steps`, a flag

@@ -87,7 +87,7 @@ void Route::noteEdge(const Lane& lane, double arc_length) {
   edge_starts_.push_back(arc_length);
 }
 
-/// Edges, signals and lane changes between point `i` and the one before it.
+/// Edges, stop lines and lane changes between point `i` and the one before it.
 void Route::noteStep(const RoadNetwork& network, std::size_t i) {
   const Step step = {path_.arcLengths()[i - 1], path_.arcLengths()[i]};
   const std::vector<LaneIndex> lanes = lanesBetween(network, path_, step, lanes_[i - 1], lanes_[i]);
@@ -96,10 +96,12 @@ void Route::noteStep(const RoadNetwork& network, std::size_t i) {
     noteEdge(network.lane(lanes[j]), step.end);
     if (lane.left == lanes[j] || lane.right == lanes[j]) lane_changes_.push_back(step.end);
     const LaneLink* link = linkBetween(network, lanes[j - 1], lanes[j]);
-    if (link == nullptr || link->signal_id.empty()) continue;
+    if (link == nullptr || (link->signal_id.empty() && !link->hasStopSign())) continue;
     const Eigen::Vector2d stop = lane.centerline.points().back().head<2>();
     const double arc_length = path_.project(stop, step.begin, step.end).arc_length;
-    signals_.push_back({arc_length, link->signal_id, link->signal_link});
+    if (link->hasStopSign()) stop_signs_.push_back(arc_length);
+    if (!link->signal_id.empty())
+      signals_.push_back({arc_length, link->signal_id, link->signal_link});
   }
 }
 

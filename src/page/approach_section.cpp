@@ -93,6 +93,26 @@ Markup dots(const std::vector<record::Waypoint>& states, const std::string& styl
   return svg + "\n";
 }
 
+/// What the planner weighed, from the vehicle on: the best few on top of the others.
+Markup candidatesSvg(const record::LoggedPlan& plan, const MapCanvas& canvas) {
+  constexpr std::size_t kBest = 3;
+  std::vector<const planning::PlannedCandidate*> order;
+  for (const planning::PlannedCandidate& candidate : plan.candidates) order.push_back(&candidate);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* left, const auto* right) { return left->score < right->score; });
+  Markup svg;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Points line = {plan.start.position};
+    for (const Eigen::Vector2d& place : order[i]->places) {
+      if (place.allFinite()) line.push_back(place);
+    }
+    const bool best = i + kBest >= order.size();
+    svg += svgPath(best ? "candidate best" : "candidate", canvas.line(line),
+                   "weighed with score " + core::formatFixed(order[i]->score, 3));
+  }
+  return svg;
+}
+
 /// What was driven, with the CBV's box at both ends, and what was planned.
 Markup statesSvg(const record::VehiclePlans& vehicle, const PlanView& view,
                  const std::string& style, const MapCanvas& canvas) {
@@ -112,10 +132,10 @@ Markup statesSvg(const record::VehiclePlans& vehicle, const PlanView& view,
 }
 
 Markup fromAbove(const record::SessionResult& result, const record::VehiclePlans& vehicle,
-                 const PlanView& view, const std::string& style) {
+                 const record::LoggedPlan& plan, const PlanView& view, const std::string& style) {
   const Eigen::Vector2d size(540.0, 360.0);  // [pixels]
   const MapCanvas canvas(regionOf(view), size);
-  Markup svg = roadSvg(result.setup, canvas);
+  Markup svg = roadSvg(result.setup, canvas) + candidatesSvg(plan, canvas);
   if (!view.ego.empty()) {
     Points trail;
     for (const geometry::Pose2d& pose : view.ego) trail.push_back(pose.position);
@@ -145,9 +165,13 @@ Markup speeds(const PlanView& view, const std::string& style) {
   return chartSvg(chart);
 }
 
-Markup planLegend(const std::string& style) {
-  return pageLegend(legendLine("plan", "planned by the CBV at this decision") +
-                    legendLine("trail " + style, "driven by the CBV") +
+Markup planLegend(const std::string& style, bool weighed) {
+  Markup lines = legendLine("plan", "planned by the CBV at this decision");
+  if (weighed) {
+    lines += legendLine("candidate best", "weighed, the three of the largest scores") +
+             legendLine("candidate", "weighed, the others");
+  }
+  return pageLegend(lines + legendLine("trail " + style, "driven by the CBV") +
                     legendLine("trail ego", "driven by the ego"));
 }
 
@@ -163,8 +187,8 @@ Markup planPictures(const record::SessionResult& result, const record::VehiclePl
   const std::string heading = "Plan of the decision at " + core::formatFixed(plan.time, 2) +
                               " s against what was driven in the next " +
                               core::formatFixed(plan.horizon(), 1) + " s: " + end;
-  const Markup pictures = fromAbove(result, vehicle, view, style) + speeds(view, style);
-  return element("h4", {}, heading) + "\n" + planLegend(style) +
+  const Markup pictures = fromAbove(result, vehicle, plan, view, style) + speeds(view, style);
+  return element("h4", {}, heading) + "\n" + planLegend(style, !plan.candidates.empty()) +
          element("div", {{"class", "charts"}}, "\n" + pictures) + "\n" +
          pageNote(
              "Filled boxes: at the decision; outlined: at the plan's end. A dot every 0.5 s. Later "

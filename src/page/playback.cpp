@@ -125,7 +125,7 @@ Markup stageHtml(const record::SessionResult& result, const MapCanvas& canvas) {
   const Markup map = element("div", {{"class", "map"}}, "\n" + topViewSvg(result, canvas)) + "\n";
   const Markup left = element("div", {}, "\n" + map + controls() + momentTable()) + "\n";
   return element("div", {{"class", "stage"}}, "\n" + left + sights(result)) + "\n" +
-         topViewLegend(canvas);
+         topViewLegend(canvas, showsGazes(result.timeline));
 }
 
 namespace {
@@ -226,15 +226,28 @@ void addVehicles(Json& data, const record::SessionResult& result) {
   }
 }
 
+/// Three whole numbers per line: indices of driver and vehicle, weight [%].
+Json gazeNumbers(const record::TimelineFrame& frame) {
+  Json numbers = Json::array();
+  for (const record::TimelineGaze& gaze : frame.gazes) {
+    numbers.push_back(gaze.driver);
+    numbers.push_back(gaze.vehicle);
+    numbers.push_back(rounded(100.0 * static_cast<double>(gaze.weight)));
+  }
+  return numbers;
+}
+
 void addFrames(Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
   const std::vector<std::size_t> cbv_styles = cbvStyles(result);
   const auto& frames = result.timeline.frames();
   const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
+  const bool gazes = showsGazes(result.timeline);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (i % stride != 0 && i + 1 != frames.size()) continue;
     data["times"].push_back(hundredths(frames[i].time));
     data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
     data["moments"].push_back(momentNumbers(frames[i]));
+    if (gazes) data["gazes"].push_back(gazeNumbers(frames[i]));
   }
 }
 

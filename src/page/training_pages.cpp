@@ -130,6 +130,7 @@ namespace {
 constexpr std::size_t kColumns = 5;
 constexpr const char* kHeader = "stage,step,seconds,figure,value";
 constexpr const char* kHeldOut = "held_out_";
+constexpr const char* kEpisode = "episode_";  // of trainings that drive
 constexpr const char* kStyles[] = {"ego", "bg", "c0 cbv", "c1 cbv", "c3 cbv"};
 
 /// Held-out measures end in what they measure.
@@ -238,11 +239,21 @@ Markup stageSection(const TrainingStage& stage) {
                       measuresOf(
                           stage, [&](const std::string& name) { return name == measure; }, whole));
   };
-  const Markup charts = curveChart(stage, "Loss (running mean, and its terms at the time)", "",
+  const auto episodes = [&](const char* ending, const char* title) {
+    const auto matches = [&](const std::string& measure) {
+      const bool of_episodes = startsWith(measure, kEpisode) || startsWith(measure, kHeldOut);
+      return of_episodes && endsWith(measure, ending);
+    };
+    return curveChart(stage, title, "", measuresOf(stage, matches, whole));
+  };
+  const Markup charts = episodes("_return", "Mean return of episodes") +
+                        episodes("_share", "Share of episodes that end so") +
+                        curveChart(stage, "Loss (running mean, and its terms at the time)", "",
                                    measuresOf(stage, losses, whole)) +
                         heldOutCharts(stage) + one("learning_rate", "Learning rate", "") +
                         one("gradient_norm", "Norm of the gradient before clipping", "") +
-                        one("samples_per_second", "Pace", "samples/s");
+                        one("samples_per_second", "Pace", "samples/s") +
+                        one("decisions_per_second", "Decisions collected and learned from", "1/s");
   const std::string note = std::to_string(stage.steps) + " steps in " +
                            core::formatFixed(stage.seconds, 0) +
                            " s; horizontally: seconds of training";

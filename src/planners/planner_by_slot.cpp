@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"
 
 namespace cdiff::planners {
@@ -70,6 +71,30 @@ planning::NetworkFacts networkOf(const Descriptors& members,
   return joined;
 }
 
+/// Names of the planners with this role, sorted.
+std::vector<std::string> plannersFor(Role role) {
+  std::vector<std::string> names;
+  for (const PlannerDescriptor* planner : registeredPlanners()) {
+    if (role == Role::kEgo ? planner->drives_ego : planner->drives_cbv)
+      names.push_back(planner->name);
+  }
+  if (role == Role::kEgo) names.emplace_back(planning::kExternalPlanner);
+  return names;
+}
+
+/// Of one planner; `place` names key and value.
+void requireOnePlanner(const std::string& place, const std::string& name, Role role) {
+  const std::vector<std::string> names = plannersFor(role);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  if (findPlanner(name) != nullptr) {
+    throw core::InputError(place + ", a planner that does not drive " +
+                           (role == Role::kEgo ? "the ego" : "CBVs") + "; expected one of " +
+                           core::joinText(names, ", "));
+  }
+  throw core::InputError(place + ", an unknown planner" + core::didYouMean(name, names) +
+                         "; known: " + core::joinText(names, ", "));
+}
+
 }  // namespace
 
 PlannerBySlot::PlannerBySlot(std::vector<Member> members) : members_(std::move(members)) {}
@@ -103,6 +128,18 @@ std::vector<std::string> planningMembers(const std::string& joined) {
 std::string plannerOfSlot(const std::string& joined, int slot) {
   const std::vector<std::string> members = planningMembers(joined);
   return members[static_cast<std::size_t>(slot) % members.size()];
+}
+
+void requirePlanner(const std::string& key, const std::string& name, Role role) {
+  const std::string place = "key '" + key + "' is '" + name + "'";
+  const bool by_slot = role == Role::kCbv && name.find('+') != std::string::npos;
+  if (!by_slot) return requireOnePlanner(place, name, role);
+  const std::vector<std::string> members = planningMembers(name);
+  for (const std::string& member : members)
+    requireOnePlanner(place + ": '" + member + "'", member, role);
+  if (members.size() > 1 && core::joinText(members, "+") == name) return;
+  throw core::InputError(place + "; expected names of planners by slot, joined by single '+', of " +
+                         core::joinText(plannersFor(role), ", "));
 }
 
 PlannerDescriptor describeBySlot(const Descriptors& members) {

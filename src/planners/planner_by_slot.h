@@ -37,6 +37,13 @@ std::vector<std::string> planningMembers(const std::string& joined);
 /// The member of "NAME+NAME..." that drives a slot.
 std::string plannerOfSlot(const std::string& joined, int slot);
 
+/// Whom a planner drives.
+enum class Role { kEgo, kCbv };
+
+/// Throws InputError naming `key`, its value and what is possible, unless `name` is a planner for
+/// this role: for CBVs also several by slot, for the ego also the external one.
+void requirePlanner(const std::string& key, const std::string& name, Role role);
+
 /// The descriptor of several planners by slot: it drives CBVs when all of them do, sees and is
 /// guided when one does. `members`: two or more.
 planning::PlannerDescriptor describeBySlot(

@@ -4,14 +4,12 @@
 #include <array>
 
 #include "rendering/scene_objects.h"
+#include "traffic/vehicle_class.h"
 
 namespace cdiff::rendering {
 namespace {
 
-constexpr double kClearance = 0.2;   // [m] of the body above the road
-constexpr double kTallBody = 2.1;    // [m] higher vehicles have no cabin of their own
-constexpr double kLongBody = 6.5;    // [m] nor have longer ones
-constexpr double kNarrowBody = 1.1;  // [m] nor have bicycles and motorcycles
+constexpr double kClearance = 0.2;  // [m] of the body above the road
 constexpr Color kGlass = rgb(36, 44, 54);
 constexpr Color kTire = rgb(22, 22, 24);
 constexpr Color kShadow = rgb(44, 46, 50);
@@ -221,7 +219,7 @@ void drawVehicle(const traffic::Vehicle& vehicle, const View& view, Canvas& canv
   const Color color = bodyColor(vehicle.id);
   paintShadow(size, painter);
   paintWheels(size, painter);
-  const bool car = size.height <= kTallBody && size.length <= kLongBody && size.width > kNarrowBody;
+  const bool car = traffic::classOf(size) == traffic::VehicleClass::kCar;  // with a cabin
   if (car) {
     paintCar(size, color, painter);
   } else {

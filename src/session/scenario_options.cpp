@@ -75,44 +75,6 @@ void checkDemandFile(const std::string& file) {
   }
 }
 
-enum class Role { kEgo, kCbv };
-
-/// Names of the planners with this role, sorted.
-std::vector<std::string> plannersFor(Role role) {
-  std::vector<std::string> names;
-  for (const planning::PlannerDescriptor* planner : planners::registeredPlanners()) {
-    if (role == Role::kEgo ? planner->drives_ego : planner->drives_cbv)
-      names.push_back(planner->name);
-  }
-  if (role == Role::kEgo) names.emplace_back(planning::kExternalPlanner);
-  return names;
-}
-
-/// Of one planner; `place` names key and value.
-void requireOnePlanner(const std::string& place, const std::string& name, Role role) {
-  const std::vector<std::string> names = plannersFor(role);
-  if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  if (planners::findPlanner(name) != nullptr) {
-    throw InputError(place + ", a planner that does not drive " +
-                     (role == Role::kEgo ? "the ego" : "CBVs") + "; expected one of " +
-                     core::joinText(names, ", "));
-  }
-  throw InputError(place + ", an unknown planner" + core::didYouMean(name, names) +
-                   "; known: " + core::joinText(names, ", "));
-}
-
-void requirePlanner(const std::string& key, const std::string& name, Role role) {
-  const std::string place = "key '" + key + "' is '" + name + "'";
-  const bool by_slot = role == Role::kCbv && name.find('+') != std::string::npos;
-  if (!by_slot) return requireOnePlanner(place, name, role);
-  const std::vector<std::string> members = planners::planningMembers(name);
-  for (const std::string& member : members)
-    requireOnePlanner(place + ": '" + member + "'", member, role);
-  if (members.size() > 1 && core::joinText(members, "+") == name) return;
-  throw InputError(place + "; expected names of planners by slot, joined by single '+', of " +
-                   core::joinText(plannersFor(role), ", "));
-}
-
 }  // namespace
 
 VerdictOptions VerdictOptions::standard() {
@@ -239,8 +201,8 @@ void ScenarioOptions::validate() const {
   vehicle.validate();
   metrics.validate();
   validateTime();
-  requirePlanner("ego_planner", ego_planner, Role::kEgo);
-  requirePlanner("cbv_planner", cbv_planner, Role::kCbv);
+  planners::requirePlanner("ego_planner", ego_planner, planners::Role::kEgo);
+  planners::requirePlanner("cbv_planner", cbv_planner, planners::Role::kCbv);
   if (mode == "safety_critical" && !planners::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +

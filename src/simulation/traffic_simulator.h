@@ -58,7 +58,8 @@ class TrafficSimulator {
   virtual bool addBackground(const std::string& id, const std::vector<std::string>& edges,
                              double depart_position, int depart_lane, double depart_speed,
                              const traffic::VehicleDimensions& dimensions) = 0;
-  /// Takes a vehicle out of the simulation (after a contact).
+  /// Takes a vehicle out of the simulation (after a contact). No error when it is gone already:
+  /// vehicles() still has one that a release of this step removed.
   virtual void remove(const std::string& id) = 0;
 
   /// Moves the driven vehicles and advances by one simulation step.

@@ -201,6 +201,25 @@ std::vector<std::string> shippedSuites() {
   return names;
 }
 
+void requireForTraining(const Suite& suite) {
+  const std::vector<std::string> shipped = shippedSuites();
+  const bool ships = std::find(shipped.begin(), shipped.end(), suite.name) != shipped.end();
+  if (!ships && !suite.sealed) return;
+  throw InputError("suite '" + suite.name +
+                   "' is for evaluation: nothing is trained on it and no training data may come "
+                   "from it; make one of your own (cdiff suite train --results FOLDER)");
+}
+
+void requireForTraining(const std::vector<std::string>& scenarios) {
+  std::set<fs::path> folders;
+  for (const std::string& scenario : scenarios) {
+    if (!core::isFile(scenario)) continue;
+    const fs::path folder = fs::weakly_canonical(scenario).parent_path().parent_path();
+    if (core::isFile(folder / kManifest) && folders.insert(folder).second)
+      requireForTraining(loadSuite(folder.string()));
+  }
+}
+
 std::string manifestText(const Suite& suite) {
   std::string text =
       "# SPDX-License-Identifier: BSD-3-Clause\n"

@@ -34,6 +34,15 @@ std::vector<std::string> scenarioFiles(const Suite& suite);
 /// Names of the shipped suites, sorted.
 std::vector<std::string> shippedSuites();
 
+// What is held out of all training: sealed suites, and those that ship with the package, wherever
+// a copy of them lies.
+
+/// Throws InputError naming the suite when it is one of them. Whatever learns on routes calls it.
+void requireForTraining(const Suite& suite);
+/// The same for the suites that scenario files, SUITE/scenarios/NAME.yaml, belong to; names of
+/// scenarios and other files belong to none. Whatever makes training data calls it.
+void requireForTraining(const std::vector<std::string>& scenarios);
+
 /// The manifest suite.yaml, a line for each route.
 std::string manifestText(const Suite& suite);
 

@@ -53,6 +53,7 @@ TEST_F(DataCommands, WhatWouldBeIgnoredBesideBagsIsRefused) {
                                                         {"--duration", "20"},
                                                         {"--keep-bags"},
                                                         {"--no-images"},
+                                                        {"--scenes"},
                                                         {"--set", "collection.period=1"}};
   for (const std::vector<std::string>& other : others) {
     std::vector<std::string> words = bags;
@@ -139,6 +140,40 @@ TEST_F(DataCommands, SessionsTooShortForASampleAreNamedAndDrivenAgain) {
   EXPECT_EQ(collect("6"), 0);
   expectOutput("1 sessions, 0 of them already there");
   EXPECT_TRUE(fs::exists(path("data/shards/arterial_exit_seed1.shard")));
+}
+
+TEST_F(DataCommands, ScenesAreCollectedOnceAndTrainedOn) {
+  const auto collect = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "collect",    "--scenarios", "arterial_exit", "--results", path("data"),
+        "--duration", "6",           "--scenes",      "--set",     "traffic.warm_up=5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cdiff(words);
+  };
+  EXPECT_EQ(collect({"--no-images"}), 0);
+  expectOutput("1 scenes, ");
+  const fs::path scene = path("data/scenes/arterial_exit_seed1.scene");
+  EXPECT_TRUE(fs::exists(scene));
+  EXPECT_FALSE(fs::exists(path("data/shards"))) << "no images, no shards";
+  EXPECT_FALSE(fs::exists(path("data/bags/arterial_exit_seed1.bag"))) << "nor a bag";
+  EXPECT_EQ(collect({"--no-images"}), 0);
+  expectOutput("1 sessions, 1 of them already there");
+  const std::string bytes = core::readFile(scene, "scene");
+  EXPECT_EQ(collect({}), 0);
+  expectOutput("1 sessions, 0 of them already there");
+  EXPECT_TRUE(fs::exists(path("data/shards/arterial_exit_seed1.shard")));
+  EXPECT_EQ(core::readFile(scene, "scene"), bytes) << "images leave the session as it is";
+  EXPECT_EQ(cdiff({"train",    "--task",      "plant",    "--data",  path("data"),
+                   "--output", path("model"), "--steps",  "2",       "--batch",
+                   "4",        "--layers",    "1",        "--width", "32",
+                   "--heads",  "2",           "--hidden", "32",      "--validation-share",
+                   "0"}),
+            0);
+  EXPECT_TRUE(fs::exists(path("model/plant.safetensors")));
+  std::ofstream(scene, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  EXPECT_EQ(cdiff({"train", "--task", "plant", "--data", path("data"), "--output", path("other")}),
+            3);
+  expectOutput("scene '" + scene.string() + "': truncated");
 }
 
 TEST_F(DataCommands, CurvesAreDrawnOrTheirFaultIsNamed) {

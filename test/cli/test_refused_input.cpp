@@ -104,6 +104,16 @@ TEST_F(RefusedInput, ANetworkThatSumoCrashesOverIsNamed) {
   expectOutput("it crashed, signal 6 (Aborted)");
 }
 
+TEST_F(RefusedInput, APlannerInARoleThatItDoesNotHave) {
+  EXPECT_EQ(
+      cdiff({"run", "crossing_straight", "--ego-planner", "ppo", "--results", folder("results")}),
+      3);
+  expectOutput(
+      "key 'ego_planner' is 'ppo', a planner that does not drive the ego; expected one of "
+      "constant, diffusion, pdm_lite, plant, pluto, rift, two_stage_pid, external");
+  EXPECT_FALSE(fs::exists(folder("results")));
+}
+
 TEST_F(RefusedInput, ABatchDoesNotTryAgain) {
   const std::string demand =
       write("bad.rou.xml",

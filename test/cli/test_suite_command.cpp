@@ -87,6 +87,24 @@ TEST_F(SuiteCommand, ASealedSuiteIsOpenedWithAReasonOnly) {
 #endif
 }
 
+#ifdef E2E_CDIFF_WITH_ROS
+/// Neither as it ships, nor made anew, nor by single routes.
+TEST_F(SuiteCommand, NoTrainingDataComeFromTheDevelopmentSuite) {
+  ASSERT_EQ(cdiff({"suite", "development", "--results", path("suite")}), 0);
+  const std::vector<std::vector<std::string>> sources = {
+      {"--suite", "development"},
+      {"--suite", path("suite")},
+      {"--scenarios", path("suite/scenarios/development_left_1.yaml")}};
+  for (const std::vector<std::string>& source : sources) {
+    std::vector<std::string> command = {"collect", "--results", path("data")};
+    command.insert(command.end(), source.begin(), source.end());
+    EXPECT_EQ(cdiff(command), 3) << source.back();
+    expectOutput("suite 'development' is for evaluation");
+    EXPECT_FALSE(fs::exists(path("data"))) << source.back();
+  }
+}
+#endif
+
 TEST_F(SuiteCommand, UnknownSuitesAreNamedBeforeAnythingRuns) {
   std::ofstream(path("matrix.yaml")) << "suite: develpment\n";
   EXPECT_EQ(cdiff({"evaluate", path("matrix.yaml"), "--results", path("runs")}), 3);
@@ -101,7 +119,13 @@ TEST_F(SuiteCommand, UnknownSuitesAreNamedBeforeAnythingRuns) {
 #ifdef E2E_CDIFF_WITH_ROS
 /// The merge route's traffic is high: 16 vehicles.
 TEST_F(SuiteCommand, CollectDrivesTheRoutesWithTheirTraffic) {
-  ASSERT_EQ(cdiff({"collect", "--suite", "development", "--results", path("data"), "--duration",
+  ASSERT_EQ(cdiff({"suite", "development", "--results", path("suite")}), 0);
+  const std::string manifest = core::readFile(path("suite/suite.yaml"), "manifest");
+  const std::string name = "name: development\n";
+  ASSERT_NE(manifest.find(name), std::string::npos);
+  std::ofstream(path("suite/suite.yaml"))
+      << std::string(manifest).replace(manifest.find(name), name.size(), "name: mine\n");
+  ASSERT_EQ(cdiff({"collect", "--suite", path("suite"), "--results", path("data"), "--duration",
                    "5", "--jobs", "2", "--set", "traffic.warm_up=5"}),
             0);
   expectOutput("10 sessions, 0 of them already there");

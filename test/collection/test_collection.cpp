@@ -340,6 +340,20 @@ TEST(CollectionScenario, TheExpertDrivesInPlaceOfPlannersThatSee) {
   EXPECT_EQ(collected.ego_planner, session::ScenarioOptions().ego_planner);
 }
 
+// The file need not even be there.
+TEST(CollectionScenario, RoutesOfBench2DriveAreRefused) {
+  CollectRequest request;
+  request.scenario = "crossing_straight";
+  EXPECT_NO_THROW(resolveCollection(request));
+  request.set = {"route.bench2drive_file=b2d.xml"};
+  try {
+    resolveCollection(request);
+    FAIL() << "nothing was thrown";
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("are for evaluation"), std::string::npos);
+  }
+}
+
 TEST(CollectionScenario, EndsByTheDurationUnderEveryProtocol) {
   for (const std::string& preset : session::shippedProtocols()) {
     session::ScenarioOptions scenario;

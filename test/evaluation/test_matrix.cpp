@@ -2,12 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
+#include "planners/registry.h"
 #include "session/scenario_options.h"
 #include "support/temporary_folder.h"
 
@@ -90,12 +92,41 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("conditioning_effect"), "").size(), 10U * 3U * 9U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("image_effect"), "").size(), 10U * 3U * 4U);
   EXPECT_EQ(planRuns(loadMatrix("sampler_effect"), "").size(), 10U * 3U * 3U);
-  EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 5U * 18U);
+  EXPECT_EQ(planRuns(loadMatrix("paper_tables"), "").size(), 10U * 5U * 29U);
+  EXPECT_EQ(planRuns(loadMatrix("cbv_baselines"), "").size(), 10U * 3U * 7U);
+  EXPECT_EQ(planRuns(loadMatrix("ego_baselines"), "").size(), 10U * 3U * 6U);
   EXPECT_EQ(planRuns(loadMatrix("main_rows"), "").size(), 10U * 5U * 5U);
   EXPECT_EQ(planRuns(loadMatrix("default_choice"), "").size(), 10U * 3U * 4U);
   EXPECT_EQ(planRuns(loadMatrix("cbv_choice"), "").size(), 10U * 3U * 2U * 3U);
   EXPECT_EQ(planRuns(loadMatrix("attack_effect"), "").size(), 10U * 5U * 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("realism_matched"), "").size(), 10U * 4U * 2U);
+}
+
+TEST(ShippedMatrices, CbvPlannersHasEveryPlannerThatDrivesCbvs) {
+  std::vector<std::string> names;
+  for (const planning::PlannerDescriptor& planner : planners::packagePlanners()) {
+    if (planner.drives_cbv) names.push_back(planner.name);
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(loadMatrix("cbv_planners").cbv_planners, names);
+}
+
+/// What a matrix with this planner in a role is told, for planners of one role alone.
+TEST(Plan, RefusesAPlannerInARoleThatItDoesNotHave) {
+  std::size_t refused = 0;
+  for (const planning::PlannerDescriptor& planner : planners::packagePlanners()) {
+    MatrixOptions matrix = oneScenario();
+    if (!planner.drives_ego) matrix.ego_planners = {"pdm_lite", planner.name};
+    if (!planner.drives_cbv) matrix.cbv_planners = {"pdm_lite", planner.name};
+    if (planner.drives_ego && planner.drives_cbv) continue;
+    ++refused;
+    const std::string role = planner.drives_cbv ? "the ego" : "CBVs";
+    expectIn("matrix.yaml, scenario arterial_exit: ", errorOf(matrix));
+    expectIn("'" + planner.name + "', a planner that does not drive " + role +
+                 "; expected one of constant, diffusion, pdm_lite, ",
+             errorOf(matrix));
+  }
+  EXPECT_GT(refused, 0U);
 }
 
 TEST(Plan, IsTheProductOfItsFactors) {
@@ -114,6 +145,21 @@ TEST(Plan, IsTheProductOfItsFactors) {
   expectIn("time_limit: 5\n", plan[7].scenario_text);
   EXPECT_EQ(plan[0].scenario_sha256, plan[1].scenario_sha256);
   EXPECT_NE(plan[0].scenario_sha256, plan[2].scenario_sha256);
+}
+
+TEST(Plan, BaselinesAreTheConstantPlannerAtTwoSpeeds) {
+  for (const std::string role : {"cbv", "ego"}) {
+    MatrixOptions matrix = oneScenario();
+    matrix.variants = loadMatrix(role + "_baselines").variants;
+    matrix.variants.resize(2);
+    const auto plan = planRuns(matrix, "matrix.yaml");
+    ASSERT_EQ(plan.size(), 2U);
+    EXPECT_EQ(plan[0].factors.at("variant"), "stands_still");
+    expectIn("\nconstant:\n  speed: 0\n", plan[0].scenario_text);
+    EXPECT_EQ(plan[1].factors.at("variant"), "constant_speed");
+    expectIn("\nconstant:\n  speed: 8\n", plan[1].scenario_text);
+    for (const PlannedRun& run : plan) EXPECT_EQ(run.factors.at(role + "_planner"), "constant");
+  }
 }
 
 TEST(Plan, TakesCombinationsInsteadOfAProduct) {

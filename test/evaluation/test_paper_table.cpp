@@ -73,6 +73,7 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
   BatchRun broken = runOf("1", {});
   broken.record.status = "error";
   EXPECT_EQ(note("no_such_planner", {}), "not implemented");
+  EXPECT_EQ(note(PaperSystem("No such system").planner(), {}), "on the roadmap");
   EXPECT_EQ(note("pdm_lite", {}), "not run");
   EXPECT_EQ(note("pdm_lite", {broken}), "no run completed");
   EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this measure");
@@ -143,7 +144,7 @@ TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffe
   ASSERT_EQ(figure.sheet.rows.size(), 2U);
   EXPECT_EQ(figure.sheet.rows[1][0].title, "contacts of CBVs with the ego");
   const std::string row = "PDM-Lite,\"E2E-CDiff w/ coll (method default), contacts with the ego\"";
-  EXPECT_NE(figure.csv.find(row + ",1/km,clean,,,7,"), std::string::npos) << figure.csv;
+  EXPECT_NE(figure.csv.find(row + ",1/km,clean,,,,,7,"), std::string::npos) << figure.csv;
   EXPECT_EQ(figure.sheet.notes.back(),
             "The columns differ in conditioning, too (what the network of the CBVs is given): "
             "E2E-CDiff (method default) image_route; E2E-CDiff w/ coll (method default) image.");
@@ -153,14 +154,16 @@ TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffe
   EXPECT_EQ(same.sheet.notes.back().find("conditioning"), std::string::npos);
 }
 
-TEST(PaperTable, CsvHoldsThePapersValueBesideOurs) {
-  const std::string csv =
-      tableCsv(fillTable(rateTable("pdm_lite"), {runOf("1", {{"/r", 2.0}, {"/w", 10.0}})}));
+TEST(PaperTable, CsvHoldsThePublishedValuesBesideOurs) {
+  TableDefinition table = rateTable("pdm_lite");
+  table.rows[0].repository = {{6.0, 0.25}};
+  const std::string csv = tableCsv(fillTable(table, {runOf("1", {{"/r", 2.0}, {"/w", 10.0}})}));
   EXPECT_EQ(csv,
-            "row,column,unit,definition,paper_mean,paper_std,mean,std,interval_95_low,"
-            "interval_95_high,seeds,routes,events,km,runs,runs_with_figure,runs_failed,note\n"
-            "ours,rate,1/km,clean,5,0.5,2,,,,1,1,,,1,1,0,\n"
-            "ours,rate,1/km,rift_compat,5,0.5,,,,,0,1,,,1,1,0,no run has this measure\n");
+            "row,column,unit,definition,paper_mean,paper_std,rift_repository_mean,"
+            "rift_repository_std,mean,std,interval_95_low,interval_95_high,seeds,routes,events,km,"
+            "runs,runs_with_figure,runs_failed,note\n"
+            "ours,rate,1/km,clean,5,0.5,6,0.25,2,,,,1,1,,,1,1,0,\n"
+            "ours,rate,1/km,rift_compat,5,0.5,6,0.25,,,,,0,1,,,1,1,0,no run has this measure\n");
 }
 
 TEST(PaperTable, NamesTheSubjectInAKey) {

@@ -25,7 +25,7 @@ RESTRICTED = {
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
 ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion learning", "planning",
-         "planners", "planner_training", "session", "plugins suite record", "page", "video", "collection", "evaluation ros", "realism", "nodes cli"]
+         "planners", "session", "plugins suite record", "planner_training", "page", "video", "collection", "evaluation ros", "realism", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 

@@ -36,6 +36,8 @@ class ToyStage : public Stage {
     const at::Tensor loss = (parameters_("weight") - 3.0 - target).pow(2).mean() * factor;
     return {loss, {{"toy", loss}}};
   }
+  StageRules rules() const override { return stage_rules; }
+  Measures news() override { return news_now; }
   Measures judge() override {
     return {{"distance", std::abs(parameters_("weight").mean().item<double>() - 3.0)}};
   }
@@ -44,6 +46,8 @@ class ToyStage : public Stage {
   std::int64_t fail_at = -1;
   std::int64_t stop_at = -1;
   std::atomic<bool>* stop = nullptr;
+  StageRules stage_rules;
+  Measures news_now;
 
  private:
   std::string name_ = "toy";
@@ -100,6 +104,55 @@ TEST_F(StageRunnerTest, ResumedRunEqualsAnUninterruptedOneToTheBit) {
   for (const auto& [name, tensor] : expected.tensors)
     EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
   EXPECT_EQ(found.facts.at("loss"), expected.facts.at("loss"));
+}
+
+// Asked to stop at step 17 of periods of 8, it goes on to 24; 40 steps are five periods, 42 would
+// be rounded up to 48.
+TEST_F(StageRunnerTest, StopsAndEndsBetweenPeriods) {
+  options_.checkpoint_every = 0.0;
+  ToyStage first;
+  first.stage_rules.period = 8;
+  first.stop_at = 16;
+  first.stop = &stop_;
+  EXPECT_THROW(run(first), core::Interrupted);
+  EXPECT_EQ(stored().facts.at("steps"), 24);
+  stop_ = false;
+  options_.resume = true;
+  options_.steps = 42;
+  ToyStage second;
+  second.stage_rules.period = 8;
+  EXPECT_EQ(run(second).steps, 48);
+}
+
+// At step 10 of 40, after a warm-up, 30/40 of the rate are left; along the cosine 0.5 (1 + cos(pi /
+// 4)) = 0.854.
+TEST_F(StageRunnerTest, LearningRateFallsAsTheRulesHaveIt) {
+  options_.warm_up = 0;
+  options_.report_every = 0.0;
+  for (const bool linear : {false, true}) {
+    log_.str("");
+    ToyStage stage;
+    stage.stage_rules.linear = linear;
+    options_.overwrite = true;
+    run(stage);
+    const std::string line = "toy step 10/40";
+    const std::size_t begin = log_.str().find(line);
+    ASSERT_NE(begin, std::string::npos);
+    const std::string text = log_.str().substr(begin, log_.str().find('\n', begin) - begin);
+    EXPECT_NE(text.find(linear ? "rate 75000.0e-6" : "rate 85355.3e-6"), std::string::npos) << text;
+  }
+}
+
+// What a stage reports is a row at the step after it, so that a resumed run has it once.
+TEST_F(StageRunnerTest, NewsOfAStageAreInTheCurves) {
+  options_.steps = 2;
+  ToyStage stage;
+  stage.news_now = {{"return", 3.5}};
+  run(stage);
+  const std::string curves =
+      core::readFile(std::filesystem::path(options_.output) / "curves.csv", "curves");
+  EXPECT_EQ(curves.find("toy,0,"), std::string::npos);
+  EXPECT_NE(curves.find(",return,3.5"), std::string::npos) << curves;
 }
 
 TEST_F(StageRunnerTest, CurvesOfAResumedRunHoldEveryStepOnce) {
@@ -224,22 +277,6 @@ TEST_F(StageRunnerTest, ProgressIsAgainstWhatEndsTheStageFirst) {
   // At 0.3 s 30 % of the time is over, and far less than 1e9 steps.
   EXPECT_NE(log_.str().find(", 0:00:00 of 0:00:01 loss"), std::string::npos) << log_.str();
   EXPECT_EQ(log_.str().find("/1000000000"), std::string::npos) << log_.str();
-}
-
-TEST(Optimizer, FirstStepMovesByTheRate) {
-  // m' = g and v' = g^2 after the first step: w = 1 - 0.1 sign(g), without decay for one dimension;
-  // the average takes 1 - 1/10 of the way: 1 + 0.9 (w - 1).
-  at::Tensor weight = at::ones({2});
-  weight.set_requires_grad(true);
-  Optimizer optimizer({weight}, {0.5, 0.999});
-  (weight * toTensor({2.0F, -3.0F}, {2}, at::kCPU)).sum().backward();
-  EXPECT_NEAR(optimizer.clipGradients(1e9), std::sqrt(13.0), 1e-5);
-  optimizer.step(0, 0.1);
-  const std::vector<float> moved = toVector(weight);
-  EXPECT_NEAR(moved[0], 0.9F, 1e-6F);
-  EXPECT_NEAR(moved[1], 1.1F, 1e-6F);
-  optimizer.swapAverage();
-  EXPECT_NEAR(toVector(weight)[0], 0.91F, 1e-6F);
 }
 
 }  // namespace

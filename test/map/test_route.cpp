@@ -74,6 +74,26 @@ TEST(Route, KnowsEdgesJunctionsAndSignals) {
   EXPECT_DOUBLE_EQ(route.speedLimitAt(3.0), 10.0);
 }
 
+TEST(Route, KnowsStopSignsByTheRightOfWayOfItsLinks) {
+  const auto streetWith = [](const std::string& state) {
+    test::NetworkText text;
+    text.edge("a", {"0,0 50,0"}, "x", "j").edge(":j_0", {"50,0 60,0"});
+    text.edge("b", {"60,0 100,0"}, "j", "y");
+    text.connection("a_0", "b_0", ":j_0_0", 's', "state=\"" + state + "\"");
+    return RoadNetwork::fromText(text.text(), "street");
+  };
+  for (const std::string stop : {"s", "w"}) {
+    const Route route = matchRoute(streetWith(stop), lineFrom(30.5, 80.5, 1.0, 0.0));
+    ASSERT_EQ(route.stopSigns().size(), 1u) << stop;
+    EXPECT_NEAR(route.stopSigns()[0], 50.0 - 30.5, 1e-9);
+    EXPECT_TRUE(route.signals().empty());
+  }
+  for (const std::string other : {"M", "m", "=", "o", "-"}) {
+    const Route route = matchRoute(streetWith(other), lineFrom(30.5, 80.5, 1.0, 0.0));
+    EXPECT_TRUE(route.stopSigns().empty()) << other;
+  }
+}
+
 TEST(Route, MergesRepeatedPointsWithTheirLanes) {
   const RoadNetwork network = street();
   const LaneIndex a = network.findLane("a_0");

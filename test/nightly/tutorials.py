@@ -24,15 +24,16 @@ import junit  # noqa: E402
 BUILD, SOURCE, RESULT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3])
 DATA = Path(os.environ.get("E2E_CDIFF_DATA", SOURCE / ".." / "shared" / "data")).resolve()
 # figures.md and model_card.md take hours; what their commands do, these do.
-DOCUMENTS = ["README.md", "docs/diffusion_planner.md", "docs/evaluation.md", "docs/metrics.md", "docs/protocols.md", "docs/replay.md",
+DOCUMENTS = ["README.md", "docs/diffusion_planner.md", "docs/evaluation.md", "docs/metrics.md", "docs/planners.md", "docs/protocols.md", "docs/replay.md",
              "docs/report.md", "docs/ros_api.md", "docs/suites.md", "docs/training.md"]
 OURS = re.compile(r"(^|[\s;&|])(cdiff|roslaunch|rosrun|scripts/\w+|\. devel/setup\.bash)(\s|$)")
 LEFT_OUT = [
     (r"git clone|scripts/(demo|test|setup)|cmake --install", "sets up what is there already"),
     (r"\.\.\.", "is abridged"),
     (r"results/guidance_effect", "compares a matrix of 210 runs"),
-    (r"results/(towns|dev10)", "runs a matrix of 90 runs and more"),
+    (r"results/(towns|dev10|cbvs|egos)", "runs a matrix of 90 runs and more"),
     (r"--bags monday\.bag", "needs a bag of the reader's own"),
+    (r"scripts/benchmark", "measures, for which the machine must be quiet"),
 ]
 SMALLER = [
     (r" rviz:=true", ""),

@@ -118,6 +118,18 @@ TEST(HtmlReport, ShowsWhatTheCbvSawAndPlanned) {
   EXPECT_LT(page.size(), 3'000'000u);
 }
 
+// Four plans were weighed: three are emphasized, the one of the lowest score is not.
+TEST(HtmlReport, ShowsWhatThePlannerWeighed) {
+  const std::string article =
+      between(seenPage(), "<article class=\"approach cbv c0\">", "</article>");
+  const std::string view = between(article, "<figure class=\"plan-view\">", "</figure>");
+  EXPECT_EQ(countOf(view, "class=\"candidate best\""), 3u) << view.substr(0, 500);
+  EXPECT_EQ(countOf(view, "class=\"candidate\""), 1u);
+  for (const char* score : {"0.100", "0.200", "0.300", "0.400"})
+    EXPECT_EQ(countOf(view, std::string("weighed with score ") + score), 1u) << score;
+  EXPECT_NE(article.find("weighed, the three of the largest scores"), std::string::npos);
+}
+
 TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {
   const auto data =
       nlohmann::json::parse(between(pageOf("crossing"), "id=\"playback\">", "</script>"));

@@ -49,6 +49,22 @@ TEST(TrainingReport, DrawsEachQuantityOnceAndEscapesTheCard) {
   EXPECT_EQ(charts, 3U);  // loss and displacement of one stage, loss of the other
 }
 
+TEST(TrainingReport, DrawsHowEpisodesWent) {
+  const std::string page =
+      trainingReport("driver",
+                     readTrainingCurves("stage,step,seconds,figure,value\n"
+                                        "policy,1,2.0,episode_return,-3.5\n"
+                                        "policy,1,2.0,episode_goal_share,0.25\n"
+                                        "policy,64,4.0,held_out_goal_share,0.5\n"
+                                        "policy,65,5.0,episode_goal_share,0.75\n",
+                                        "curves.csv"),
+                     "");
+  EXPECT_NE(page.find("Mean return of episodes"), std::string::npos);
+  EXPECT_NE(page.find("Share of episodes that end so"), std::string::npos);
+  EXPECT_NE(page.find("held out goal share"), std::string::npos);
+  EXPECT_NE(page.find("episode goal share"), std::string::npos);
+}
+
 TEST(TrainingReport, PassesOverARowThatAKillCutOff) {
   const auto stages = readTrainingCurves(std::string(kCurves) + "denoiser,6,3.", "curves.csv");
   EXPECT_EQ(stages[1].steps, 5);

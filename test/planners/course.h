@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// Small worlds for planner tests: lanes from points (map frame, m), routes along them, and a
-/// closed loop of planner and bicycle model with decisions every 0.1 s and dynamics every 0.05 s.
+/// closed loop of planner and bicycle model with decisions every 0.1 s (unless told otherwise) and
+/// dynamics every 0.05 s.
 #pragma once
 
 #include <functional>
@@ -18,6 +19,8 @@ namespace cdiff::planners::testing {
 
 using Points = std::vector<Eigen::Vector3d>;
 
+inline constexpr double kNorth = 0.5 * core::kPi;  ///< heading [rad]
+
 /// A lane of its own edge; the edge has the name of the lane without "_0".
 struct LaneSpec {
   std::string edge;
@@ -26,11 +29,13 @@ struct LaneSpec {
   bool internal = false;
 };
 
-/// A connection between edges, `light` with its link where one controls it.
+/// A connection between edges, `light` with its link where one controls it, SUMO's letter of the
+/// right of way where it matters.
 struct LinkSpec {
   std::string from;
   std::string to;
   std::string light;
+  std::string state = "M";
 };
 
 inline std::string pointText(const Points& points) {
@@ -51,7 +56,7 @@ inline map::RoadNetwork makeNetwork(const std::vector<LaneSpec>& lanes,
   }
   for (const LinkSpec& link : links) {
     xml += "<connection from=\"" + link.from + "\" to=\"" + link.to +
-           "\" fromLane=\"0\" toLane=\"0\" dir=\"s\"";
+           "\" fromLane=\"0\" toLane=\"0\" dir=\"s\" state=\"" + link.state + "\"";
     if (!link.light.empty()) xml += " tl=\"" + link.light + "\" linkIndex=\"0\"";
     xml += "/>";
   }
@@ -102,8 +107,11 @@ inline traffic::Vehicle vehicleAt(const std::string& id, double x, double y, dou
 /// Vehicles with a route are driven by the planner; the others go straight at constant speed.
 class ClosedLoop {
  public:
-  ClosedLoop(const map::RoadNetwork& network, const PdmLiteOptions& options = {})
-      : area_(network), planner_(options, {}, planning::PlanningContext{network, area_}) {}
+  ClosedLoop(const map::RoadNetwork& network, const PdmLiteOptions& options = {},
+             double decision_period = 0.1)
+      : area_(network),
+        decision_period_(decision_period),
+        planner_(options, {}, {network, area_, 1, 0.05, decision_period}) {}
 
   /// The pointers must stay valid. The order of calls is the order of tasks.
   void drive(const traffic::Vehicle& vehicle, const map::Route& route, int slot = -1) {
@@ -117,7 +125,7 @@ class ClosedLoop {
     snapshot_.signals = {{id, state}};
   }
 
-  /// One decision and the 0.1 s after it.
+  /// One decision and the time up to the next.
   void advance() {
     std::vector<planning::PlanningTask> tasks;
     for (const Driven& driven : routes_) {
@@ -125,13 +133,14 @@ class ClosedLoop {
           {driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0, nullptr, style_});
     }
     last_ = planner_.plan(snapshot_, tasks);
-    for (int tick = 0; tick < 2; ++tick) tickOnce();
-    snapshot_.tick += 2;
+    const long ticks = std::lround(decision_period_ / 0.05);
+    for (long tick = 0; tick < ticks; ++tick) tickOnce();
+    snapshot_.tick += static_cast<std::uint64_t>(ticks);
   }
   /// Runs for `seconds` and calls `check` after each decision.
   void run(
       double seconds, const std::function<void()>& check = [] {}) {
-    for (int i = 0; i < std::lround(seconds / 0.1); ++i) {
+    for (int i = 0; i < std::lround(seconds / decision_period_); ++i) {
       advance();
       check();
     }
@@ -166,6 +175,7 @@ class ClosedLoop {
   }
 
   map::DrivableArea area_;
+  double decision_period_;  ///< [s]
   dynamics::BicycleModel model_;
   PdmLite planner_;
   traffic::TrafficSnapshot snapshot_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/course.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
@@ -69,6 +70,15 @@ TEST_F(PlannerRegistry, MakesEveryPlannerThatItNames) {
     const auto planner = make(name);
     ASSERT_NE(planner, nullptr) << name;
     EXPECT_EQ(planner->needsImages(), seesImages(name)) << name;
+  }
+}
+
+TEST(PlannersPage, HasARowOfEveryPlannerWithTitleAndRoles) {
+  const std::string page = core::readFile(E2E_CDIFF_DOCS "/planners.md", "documentation");
+  for (const planning::PlannerDescriptor& planner : packagePlanners()) {
+    const char* roles = !planner.drives_ego ? "CBVs" : !planner.drives_cbv ? "ego" : "ego, CBVs";
+    const std::string row = "\n| `" + planner.name + "` | " + planner.title + " | " + roles + " | ";
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/planners.md must hold" << row;
   }
 }
 
@@ -171,7 +181,21 @@ TEST(PdmLiteOptions, ReadBackFromTheirOwnText) {
 TEST(PdmLiteOptions, UnknownKeysAndValuesOutOfRangeAreErrors) {
   PdmLiteOptions options;
   EXPECT_THROW(core::loadOptions({"text", "lateral_pk: 2.0"}, options), core::InputError);
-  EXPECT_THROW(core::loadOptions({"text", "lateral_window: 0"}, options), core::InputError);
+  EXPECT_THROW(core::loadOptions({"text", "lateral_window: -1"}, options), core::InputError);
+  EXPECT_THROW(core::loadOptions({"text", "configuration: rfit"}, options), core::InputError);
+  options.configuration = "rfit";
+  EXPECT_THROW(options.validate(), core::InputError);
+}
+
+TEST(PdmLiteOptions, AConfigurationLiesBelowItsKeys) {
+  PdmLiteOptions options;
+  EXPECT_EQ(options.resolved().lateral_kp, 2.0);
+  EXPECT_EQ(options.resolved().lateral_window, 20);
+  EXPECT_EQ(options.resolved().top_speed, 0.0);
+  core::loadOptions({"text", "configuration: original\nlateral_window: 12"}, options);
+  EXPECT_EQ(options.resolved().lateral_kp, 3.118357247806046);
+  EXPECT_EQ(options.resolved().lateral_window, 12);
+  EXPECT_EQ(options.resolved().top_speed, 20.0);
 }
 
 /// Plans throttle `throttle` for all its vehicles, or throws; notes the slots of each batch.

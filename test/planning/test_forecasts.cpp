@@ -96,7 +96,7 @@ TEST(EgoForecast, AcceleratesTowardTheTargetAndLeavesTheDriverAlone) {
   const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.0, 0.0, 0.0);
   driver.follower.update(route, ego.state.position);
   const auto rollout =
-      planners::forecastEgo(ego.state, route, driver, 8.0, dynamics::BicycleModel(), 20);
+      planners::forecastEgo(ego.state, route, driver, 8.0, dynamics::BicycleModel(), {20, 1});
   ASSERT_EQ(rollout.size(), 20u);
   EXPECT_EQ(rollout.front().action.throttle, 1.0);
   // Full throttle for 0.1 s from rest: about 7.6 m/s^2 x 0.1 s.
@@ -109,6 +109,31 @@ TEST(EgoForecast, AcceleratesTowardTheTargetAndLeavesTheDriverAlone) {
   EXPECT_EQ(driver.follower.arcLength(), 5.0);
 }
 
+// With a decision on each simulation step the controllers act twice per point of the forecast: the
+// speed is that of throttles chosen every 0.05 s, and the window of the steering has two errors.
+TEST(EgoForecast, DecidesAsOftenAsTheSession) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});
+  const map::Route route = routeAlong(network, {"road"});
+  planners::DriverState driver{RouteFollower(),
+                               planners::LateralController(planners::PdmLiteOptions())};
+  const traffic::Vehicle ego = vehicleAt("ego", 5.0, 0.3, 0.0, 7.95);
+  driver.follower.update(route, ego.state.position);
+  const dynamics::BicycleModel model;
+  const auto rollout = planners::forecastEgo(ego.state, route, driver, 8.0, model, {1, 2});
+  ASSERT_EQ(rollout.size(), 1u);
+  traffic::VehicleState state = ego.state;
+  for (int decision = 0; decision < 2; ++decision) {
+    traffic::ControlAction action;
+    action.steer = planners::steerAlong(route, state, driver);
+    action.throttle = planners::forecastThrottle(state.speed, 8.0);
+    state = model.step(state, action, 0.05);
+  }
+  EXPECT_EQ(rollout[0].state.speed, state.speed);
+  EXPECT_EQ(rollout[0].state.heading, state.heading);
+  const auto once = planners::forecastEgo(ego.state, route, driver, 8.0, model, {1, 1});
+  EXPECT_NE(once[0].state.speed, state.speed);
+}
+
 TEST(BoxForecast, GrowsAsPublished) {
   traffic::Vehicle ego = vehicleAt("ego", 0.0, 0.0, 0.0, 4.9);
   const std::vector<RolloutPoint> points(2, RolloutPoint{ego.state, {}});
@@ -119,14 +144,24 @@ TEST(BoxForecast, GrowsAsPublished) {
 
   std::vector<traffic::VehicleState> states(20, ego.state);
   states[5].speed = 0.9;
-  const auto boxes = planners::otherBoxes(ego.dimensions, states, false);
+  const auto boxes = planners::otherBoxes(ego.dimensions, states, 20, false);
   EXPECT_DOUBLE_EQ(boxes[0].length, 4.5 * 1.2);
   EXPECT_DOUBLE_EQ(boxes[0].width, 1.8);
   EXPECT_DOUBLE_EQ(boxes[5].length, 4.5);
-  // Step 18 of 20: 1.3 x 18 / 20 = 1.17.
-  EXPECT_DOUBLE_EQ(boxes[17].width, 1.8 * 1.17);
-  EXPECT_DOUBLE_EQ(boxes[19].width, 1.8 * 1.3);
-  EXPECT_DOUBLE_EQ(planners::otherBoxes(ego.dimensions, states, true)[0].length, 9.0);
+  // Step i = 18 of 20: 1.3 x 18 / 20 = 1.17.
+  EXPECT_DOUBLE_EQ(boxes[18].width, 1.8 * 1.17);
+  EXPECT_DOUBLE_EQ(boxes[19].width, 1.8 * 1.235);
+}
+
+TEST(BoxForecast, GrowsTwiceAsLongAndWithinTheShorterHorizonNearALaneChange) {
+  const traffic::Vehicle other = vehicleAt("other", 0.0, 0.0, 0.0, 5.0);
+  const std::vector<traffic::VehicleState> states(20, other.state);
+  const auto boxes = planners::otherBoxes(other.dimensions, states, 11, true);
+  ASSERT_EQ(boxes.size(), 11u);
+  EXPECT_DOUBLE_EQ(boxes[0].length, 9.0);
+  EXPECT_DOUBLE_EQ(boxes[8].width, 1.8);
+  // Step i = 10 of 11: 1.3 x 10 / 11 = 1.1818.
+  EXPECT_DOUBLE_EQ(boxes[10].width, 1.8 * 1.3 * 10.0 / 11.0);
 }
 
 TEST(BoxForecast, BoxesMeetOnlyAtTheSameStep) {

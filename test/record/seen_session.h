@@ -37,6 +37,16 @@ inline planning::PlannedAction sampleAction(std::uint64_t tick) {
     point.state.position += Eigen::Vector2d(0.025 * i, 0.6 * i);
     action.rollout.push_back(point);
   }
+  // Straight on at 3.6, 4.2, 4.8 and 5.4 m/s.
+  for (int i = 1; i <= 4; ++i) {
+    planning::PlannedCandidate& candidate = action.candidates.emplace_back();
+    candidate.score = 0.1 * i;
+    candidate.chosen = i == 4;
+    for (int step = 1; step <= 6; ++step) {
+      candidate.places.push_back(snapshot.find("bg_1")->state.position +
+                                 Eigen::Vector2d(0.0, (3.0 + 0.6 * i) * 0.5 * step));
+    }
+  }
   action.guidance.objectives = {{"speed", 1.5, tick == 60 ? nan : 2.0, 0.5, 0.25, 1},
                                 {"comfort", 1.0, nan, nan, 0.0, 0}};
   action.guidance.trust_region_share = 0.125;

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/file.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "ros/bags/recorded_channels.h"
@@ -68,6 +70,20 @@ TEST(SightAndGuidance, NeitherFollowsFromTheOther) {
   EXPECT_EQ(listeners(ChannelId::kGuidance, guided), (Texts{kMetricsNode, kRecorderNode}));
   EXPECT_EQ(awaitedBy(Party::kMetrics, guided).count(ChannelId::kCbvImage), 0U);
   EXPECT_TRUE(replayed(channel(ChannelId::kGuidance), guided));
+}
+
+/// The camera that shows the ego alone takes no selection, so that no one may wait until it does.
+TEST(SightAndGuidance, TheCameraHearsOfCbvsWhereItShowsThem) {
+  const auto hears = [](const SessionGraph& graph) {
+    const Texts nodes = listeners(ChannelId::kSelection, graph);
+    return std::count(nodes.begin(), nodes.end(), kCameraNode) == 1;
+  };
+  SessionGraph graph = graphWith(false, false);
+  graph.ego_sees = true;
+  EXPECT_FALSE(hears(graph));
+  graph.show_cameras = true;
+  EXPECT_TRUE(hears(graph));
+  EXPECT_TRUE(hears(graphWith(true, false)));
 }
 
 TEST(SightAndGuidance, ARecordedReportIsReadWhereThePlannerIsGuided) {

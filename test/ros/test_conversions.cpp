@@ -110,6 +110,19 @@ TEST(Conversions, RolloutComesBackBitByBit) {
   EXPECT_EQ(back[0].action, action.rollout[0].action);
 }
 
+TEST(Conversions, CandidatesComeBackBitByBit) {
+  planning::PlannedAction action;
+  action.candidates = {{{{1.0 / 3.0, -2.0}, {0.1, 7.0 / 9.0}}, 1.0 / 7.0, true}, {{}, -0.5, false}};
+  const auto back = candidatesFromMsg(overTheWire(toRolloutMsg(action, test::sampleSnapshot(4))));
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].places, action.candidates[0].places);
+  EXPECT_EQ(back[0].score, 1.0 / 7.0);
+  EXPECT_TRUE(back[0].chosen);
+  EXPECT_TRUE(back[1].places.empty());
+  EXPECT_EQ(back[1].score, -0.5);
+  EXPECT_FALSE(back[1].chosen);
+}
+
 /// Two lanes, one behind the other.
 map::RoadNetwork twoLanes() {
   test::NetworkText text;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "metrics/session_metrics.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/registry.h"
 #include "session/world.h"
 #include "support/sumo_network.h"
@@ -90,7 +91,7 @@ TEST(ProtocolLights, CountsTheRedOnesThatAnEgoWithoutEyesRuns) {
 }
 
 /// Over a junction of a type from the south, the road with less priority, or from the west.
-metrics::Measure stopSigns(const std::string& type, const std::string& from) {
+metrics::Measure stopSigns(const std::string& type, const std::string& from, bool obeyed) {
   const test::TemporaryFolder folder;
   const test::SumoNetwork made = test::makeSumoNetwork(
       folder,
@@ -108,20 +109,23 @@ metrics::Measure stopSigns(const std::string& type, const std::string& from) {
   options.route.start_offset = 20.0;
   options.route.start_speed = 5.0;
   options.max_cbv = 0;
+  options.planner_options.of<planners::PdmLiteOptions>().obey_stop_signs = obeyed;
   const BlindDrive drive(options);
   EXPECT_EQ(*drive.measures.at("ego_completion_percent").value, 100.0) << type << " from " << from;
   return drive.measures.at("ego_infraction_stop_signs");
 }
 
-// The ego's planner knows no stop signs and drives on.
 TEST(ProtocolStopSigns, AreThoseOfStopJunctions) {
   for (const auto& [type, from, signs] :
        {std::tuple("priority_stop", "south", 1U), std::tuple("priority_stop", "west", 0U),
         std::tuple("allway_stop", "south", 1U), std::tuple("allway_stop", "west", 1U),
         std::tuple("priority", "south", 0U)}) {
-    const metrics::Measure found = stopSigns(type, from);
+    const metrics::Measure found = stopSigns(type, from, false);
     EXPECT_EQ(*found.value, signs) << type << " from " << from;
     EXPECT_EQ(found.n, signs) << type << " from " << from;
+    const metrics::Measure obeyed = stopSigns(type, from, true);
+    EXPECT_EQ(*obeyed.value, 0.0) << type << " from " << from;
+    EXPECT_EQ(obeyed.n, signs) << type << " from " << from;
   }
 }
 

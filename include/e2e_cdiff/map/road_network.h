@@ -26,6 +26,9 @@ struct LaneLink {
   int signal_link = -1;    ///< its position in the light's state text
   char direction = 's';    ///< SUMO's letter: s l r L R t
   char state = '-';  ///< SUMO's right of way: M m = s (stop) w (all-way stop) o O Z; - unknown
+
+  /// Whether every vehicle must stop before it drives on here.
+  bool hasStopSign() const { return state == 's' || state == 'w'; }
 };
 
 /// One lane of the network: centerline (x, y, z) in the map frame [m], width [m], limit [m/s],

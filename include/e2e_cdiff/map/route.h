@@ -47,6 +47,9 @@ class Route {
     int link = -1;            ///< position in its state text
   };
   const std::vector<Signal>& signals() const { return signals_; }
+  /// Arc lengths of the stop lines along the route at which right of way is SUMO's 's' (stop sign)
+  /// or 'w' (all-way stop): where the lanes before those links end [m].
+  const std::vector<double>& stopSigns() const { return stop_signs_; }
   /// Arc lengths where the route changes to a neighboring lane [m].
   const std::vector<double>& laneChanges() const { return lane_changes_; }
 
@@ -63,6 +66,7 @@ class Route {
   std::vector<double> edge_starts_;
   std::vector<std::pair<double, double>> junctions_;
   std::vector<Signal> signals_;
+  std::vector<double> stop_signs_;
   std::vector<double> lane_changes_;
 };
 

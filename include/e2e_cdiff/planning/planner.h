@@ -59,6 +59,22 @@ struct RolloutPoint {
   traffic::ControlAction action;
 };
 
+/// How much a planner looked at a vehicle when it decided.
+struct AttendedVehicle {
+  std::string vehicle_id;
+  double weight = 0.0;  ///< share of the planner's attention, in [0, 1]; all together at most 1
+};
+
+/// Time from one place of a candidate to the next [s].
+inline constexpr double kCandidateStep = 0.5;
+
+/// A plan that a planner weighed against others (map frame).
+struct PlannedCandidate {
+  std::vector<Eigen::Vector2d> places;  ///< kCandidateStep apart, the first one that far ahead [m]
+  double score = 0.0;                   ///< in the planner's own measure; the larger the better
+  bool chosen = false;                  ///< the rollout comes from it
+};
+
 /// What a planner decided for one vehicle: the action to apply, with the rollout and the report it
 /// comes from.
 struct PlannedAction {
@@ -70,6 +86,9 @@ struct PlannedAction {
   guidance::GuidanceReport guidance{};  ///< what guidance did; set by planners that are guided
   double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
                                 ///< with the planned actions [m]
+  std::vector<PlannedCandidate>
+      candidates{};                         ///< in the planner's own order; empty: it weighs none
+  std::vector<AttendedVehicle> attended{};  ///< in the planner's own order; empty: it does not say
 };
 
 /// The one interface of everything that drives: at a decision, an action for each of its vehicles.

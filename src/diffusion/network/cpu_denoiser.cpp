@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "diffusion/network/cpu_denoiser.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "diffusion/network/conditioning.h"
@@ -14,37 +12,6 @@ namespace cdiff::diffusion {
 namespace {
 
 using InstructionSet = CpuDenoiser::InstructionSet;
-
-constexpr InstructionSet kInstructionSets[] = {InstructionSet::kPlain, InstructionSet::kAvx2,
-                                               InstructionSet::kAvx512};
-
-/// nullptr where compiler or CPU lack it.
-const inference::DenoiserKernels* kernelsOf(InstructionSet instruction_set) {
-#if defined(__x86_64__)
-  if (instruction_set == InstructionSet::kAvx512) {
-    return __builtin_cpu_supports("avx512f") ? inference::avx512Kernels() : nullptr;
-  }
-  if (instruction_set == InstructionSet::kAvx2) {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-               ? inference::avx2Kernels()
-               : nullptr;
-  }
-#endif
-  return instruction_set == InstructionSet::kPlain ? inference::plainKernels() : nullptr;
-}
-
-const inference::DenoiserKernels& requiredKernels(InstructionSet instruction_set) {
-  if (const inference::DenoiserKernels* kernels = kernelsOf(instruction_set)) return *kernels;
-  throw core::InputError("this CPU lacks the instruction set " +
-                         CpuDenoiser::toText(instruction_set));
-}
-
-InstructionSet instructionSetNamed(const std::string& name) {
-  for (const InstructionSet known : kInstructionSets) {
-    if (CpuDenoiser::toText(known) == name) return known;
-  }
-  throw core::InputError("E2E_CDIFF_ISA is '" + name + "'; plain, avx2 or avx512 was expected");
-}
 
 void requireDenoiserTensors(const Model& model) {
   model.architecture.validate();
@@ -80,29 +47,14 @@ struct CpuDenoiser::Network {
   bool states_predicted = false;   ///< since then
 };
 
-InstructionSet CpuDenoiser::bestInstructionSet() {
-  InstructionSet best = InstructionSet::kPlain;
-  for (const InstructionSet candidate : kInstructionSets) {
-    if (kernelsOf(candidate)) best = candidate;
-  }
-  const char* wanted = std::getenv("E2E_CDIFF_ISA");
-  return wanted ? std::min(best, instructionSetNamed(wanted)) : best;
-}
+InstructionSet CpuDenoiser::bestInstructionSet() { return inference::bestInstructionSet(); }
 
 std::string CpuDenoiser::toText(InstructionSet instruction_set) {
-  switch (instruction_set) {
-    case InstructionSet::kPlain:
-      return "plain";
-    case InstructionSet::kAvx2:
-      return "avx2";
-    case InstructionSet::kAvx512:
-      return "avx512";
-  }
-  return "unknown";
+  return inference::toText(instruction_set);
 }
 
 CpuDenoiser::CpuDenoiser(const Model& model, InstructionSet instruction_set) {
-  const inference::DenoiserKernels& kernels = requiredKernels(instruction_set);
+  const inference::DenoiserKernels& kernels = inference::denoiserKernels(instruction_set);
   requireDenoiserTensors(model);
   network_ = std::make_unique<Network>(model, kernels);
 }

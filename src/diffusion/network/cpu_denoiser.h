@@ -7,6 +7,7 @@
 
 #include "diffusion/denoiser.h"
 #include "diffusion/model.h"
+#include "inference/instruction_set.h"
 
 namespace cdiff::diffusion {
 
@@ -14,7 +15,7 @@ namespace cdiff::diffusion {
 /// chosen at run time), forward and vector-Jacobian product. Inference only.
 class CpuDenoiser : public Denoiser {
  public:
-  enum class InstructionSet { kPlain, kAvx2, kAvx512 };
+  using InstructionSet = inference::InstructionSet;
   /// The best one of this machine; E2E_CDIFF_ISA=plain|avx2|avx512 lowers it.
   static InstructionSet bestInstructionSet();
   static std::string toText(InstructionSet instruction_set);

@@ -182,12 +182,11 @@ page::Panel examplePanel(const Execution& execution, const Plan& plan,
   const record::Waypoint& start = plan.front().planned;
   panel.title = execution.name + ": " + core::formatFixed(displacement(plan.back()), 2) +
                 " m apart after " + core::formatFixed(plan.back().seconds, 1) + " s";
-  panel.content = page::svgPath("ground", "M0 0H540V220H0Z");
-  if (setup != nullptr) panel.content += page::roadSvg(*setup, canvas);
-  panel.content += page::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
-                                    {start.position, start.heading}, canvas, "cbv") +
-                   page::svgPath("driven", canvas.line(driven)) +
-                   page::svgPath("plan", canvas.line(planned)) + page::scaleBarSvg(canvas);
+  panel.content = groundSvg(setup, canvas) +
+                  page::vehicleSvg({plan.front().vehicle_id, size.length, size.width},
+                                   {start.position, start.heading}, canvas, "cbv") +
+                  page::svgPath("driven", canvas.line(driven)) +
+                  page::svgPath("plan", canvas.line(planned)) + page::scaleBarSvg(canvas);
   return panel;
 }
 
@@ -220,12 +219,7 @@ void addExamples(std::vector<Execution>& executions, Figure& figure) {
   executions.erase(std::remove_if(executions.begin(), executions.end(),
                                   [](const Execution& one) { return one.plans.empty(); }),
                    executions.end());
-  std::unique_ptr<session::SessionSetup> setup;
-  try {
-    setup = std::make_unique<session::SessionSetup>(scenarioOf(*executions[0].run_of.at(*best)));
-  } catch (const core::InputError& error) {
-    figure.sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
-  }
+  const auto setup = roadsOf(*executions[0].run_of.at(*best), figure.sheet);
   for (std::size_t i = 0; i < executions.size(); ++i) {
     Execution& execution = executions[i];
     const Plan& plan = medianPlan(execution.plans.at(*best));

@@ -112,7 +112,6 @@ class FrameRow {
 
  private:
   page::Panel panelAt(std::size_t frame, std::uint64_t tick, std::string& csv) const {
-    const Markup road = setup_ == nullptr ? Markup() : page::roadSvg(*setup_, canvas_);
     Markup vehicles;
     const TraceRow* ego = nullptr;
     const TraceRow* other = nullptr;
@@ -134,15 +133,10 @@ class FrameRow {
     panel.cut = true;
     panel.width = kWidth;
     panel.height = kHeight;
-    panel.content = ground() + road + vehicles;
+    panel.content = groundSvg(setup_, canvas_) + vehicles;
     if (circled) panel.content += circle(*ego, *other);
     if (frame == 0) panel.content += page::scaleBarSvg(canvas_);
     return panel;
-  }
-
-  static Markup ground() {
-    return page::svgPath(
-        "ground", "M0 0H" + core::shortNumber(kWidth) + "V" + core::shortNumber(kHeight) + "H0Z");
   }
 
   Markup boxOf(const TraceRow& row) const {
@@ -179,7 +173,7 @@ class FrameRow {
   page::MapCanvas canvas_;
 };
 
-/// The road is the same in all rows; nullptr, with a note, when the network is no longer there.
+/// The road is the same in all rows.
 std::unique_ptr<session::SessionSetup> setupOf(const RunsBySystem& row, Figure& figure) {
   const auto run = std::find_if(row.begin(), row.end(), [](const auto* one) { return one; });
   if (run == row.end()) return nullptr;
@@ -190,15 +184,25 @@ std::unique_ptr<session::SessionSetup> setupOf(const RunsBySystem& row, Figure& 
   figure.sheet.notes.emplace_back(
       "Frames 1.5 s before, at and 1 s after the smallest distance between the centers of ego and "
       "CBV. Boxes have the default size.");
+  return roadsOf(**run, figure.sheet);
+}
+
+}  // namespace
+
+std::unique_ptr<session::SessionSetup> roadsOf(const BatchRun& run, page::PanelSheet& sheet) {
   try {
-    return std::make_unique<session::SessionSetup>(scenarioOf(**run));
+    return std::make_unique<session::SessionSetup>(scenarioOf(run));
   } catch (const core::InputError& error) {
-    figure.sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
+    sheet.notes.push_back("Roads are not drawn: " + std::string(error.what()));
     return nullptr;
   }
 }
 
-}  // namespace
+Markup groundSvg(const session::SessionSetup* setup, const page::MapCanvas& canvas) {
+  const Markup ground = page::svgPath("ground", "M0 0H" + core::shortNumber(canvas.width()) + "V" +
+                                                    core::shortNumber(canvas.height()) + "H0Z");
+  return setup == nullptr ? ground : ground + page::roadSvg(*setup, canvas);
+}
 
 Figure frameFigure(const std::string& id, const std::string& title,
                    const std::vector<ShownSystem>& systems, const std::vector<BatchRun>& runs) {

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/published_figures.h"
 #include "metrics/known_measures.h"
 
 namespace cdiff::evaluation {
@@ -64,6 +65,24 @@ void addOwnRows(const std::vector<PaperFigure>& paper, TableDefinition& table) {
     table.rows.push_back(cbvRow(own, paper));
 }
 
+/// Adds what RIFT's repository prints beside the rows, which are those of the CBV planners, in
+/// columns of these names under `ego`.
+void addRepository(const PaperSystem& ego, const std::vector<TableColumn>& columns,
+                   TableDefinition& table) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    for (const TableColumn& column : columns) {
+      table.rows[i].repository.push_back(repositoryFigure(ego, paperCbvPlanners()[i], column.name));
+    }
+  }
+}
+
+/// The protocol of the published figures, then the differences of the systems.
+std::vector<std::string> footnotesOf(const std::vector<PaperSystem>& systems) {
+  std::vector<std::string> footnotes = {kPublishedProtocol};
+  for (const std::string& line : systemDifferences(systems)) footnotes.push_back(line);
+  return footnotes;
+}
+
 TableDefinition withLevels(TableDefinition table, const Factors& levels) {
   for (TableRow& row : table.rows) row.levels = merged(levels, row.levels);
   return table;
@@ -82,6 +101,8 @@ TableDefinition table1() {
        cbvRow(paper::kRift,
               {{2.70, 1.34}, {0.83, 0.33}, {0.97, 0.00}, {0.94, 0.03}, {4.26, 0.12}})}};
   addOwnRows({{2.79, 1.33}, {1.26, 1.47}, {0.97, 0.01}, {0.88, 0.09}, {4.80, 1.38}}, table);
+  addRepository(paper::kPdmLite, table.columns, table);
+  table.footnotes = footnotesOf({paper::kPdmLite, paper::kPpo, paper::kPluto, paper::kRift});
   return withLevels(table, egoLevel(paper::kPdmLite));
 }
 
@@ -98,6 +119,8 @@ TableDefinition table2() {
        cbvRow(paper::kRift,
               {{1.90, 0.36}, {0.38, 0.10}, {0.63, 0.03}, {0.49, 0.02}, {7.23, 0.08}})}};
   addOwnRows({{2.92, 1.53}, {5.96, 2.47}, {0.97, 0.03}, {0.94, 0.02}, {3.83, 0.73}}, table);
+  addRepository(paper::kPlanT, table.columns, table);
+  table.footnotes = footnotesOf({paper::kPlanT, paper::kPpo, paper::kPluto, paper::kRift});
   return withLevels(table, egoLevel(paper::kPlanT));
 }
 
@@ -152,12 +175,15 @@ TableDefinition table3() {
   }
   for (const PaperSystem& ego : paperEgoPlanners()) {
     if (ego.planner() == paper::kDiffusion.planner()) continue;
+    addRepository(ego, {drivingScore(), routeCompletion()}, table);
     for (TableColumn column : {drivingScore(), routeCompletion()}) {
       column.name = std::string(ego.name) + " " + column.name;
       column.levels = egoLevel(ego);
       table.columns.push_back(column);
     }
   }
+  table.footnotes = footnotesOf({paper::kPdmLite, paper::kPlanT, paper::kUniAd, paper::kVad,
+                                 paper::kPpo, paper::kPluto, paper::kRift});
   return table;
 }
 
@@ -249,6 +275,7 @@ TableDefinition table6() {
     table.rows.push_back({ego.name, merged(egoLevel(ego), cbvLevels(cbvs)),
                           paper[std::min(i, std::size(paper) - 1)], ""});
   }
+  table.footnotes = footnotesOf({paper::kPdmLite, paper::kPlanT, paper::kUniAd, paper::kVad});
   return table;
 }
 

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/published_figures.h"
 #include "metrics/measures/distributions.h"
 #include "page/pictures/charts.h"
 #include "record/logs/driving_log.h"
@@ -72,14 +73,17 @@ std::size_t countSeeds(const std::vector<const BatchRun*>& runs) {
 std::vector<Figure> paperFigures(const std::vector<BatchRun>& runs) {
   Figure latency = barFigure(latencyFigure(), runs);
   latency.wall_clock = true;
-  return {
-      distributionFigure(runs),
-      barFigure(collisionFigure(), runs),
-      frameFigure("figure_5", "Figure 5. CBV planners from above", shownCbvPlanners(runs), runs),
-      frameFigure("figure_6", "Figure 6. Safety-critical scenario generation from above",
-                  shownModes(), runs),
-      executionFigure(runs),
-      latency};
+  Figure planners =
+      frameFigure("figure_5", "Figure 5. CBV planners from above", shownCbvPlanners(runs), runs);
+  for (const std::string& line : systemDifferences({paper::kPpo, paper::kPluto, paper::kRift}))
+    planners.sheet.notes.push_back(line);
+  return {distributionFigure(runs),
+          barFigure(collisionFigure(), runs),
+          planners,
+          frameFigure("figure_6", "Figure 6. Safety-critical scenario generation from above",
+                      shownModes(), runs),
+          executionFigure(runs),
+          latency};
 }
 
 namespace {
@@ -237,7 +241,13 @@ Figure distributionFigure(const std::vector<BatchRun>& runs) {
        panelOf(planners, &PlannerSamples::accelerations, "Acceleration", "m/s^2")}};
   figure.sheet.notes = {
       "At decisions, ego planner PDM-Lite, naturalistic; the outermost bins hold "
-      "what lies beyond."};
+      "what lies beyond.",
+      "RIFT's repository prints of CBVs in CARLA: speed " +
+          repositoryList(paper::kPdmLite, "speed", "m/s") + "; magnitude of acceleration " +
+          repositoryList(paper::kPdmLite, "acceleration", "m/s^2") +
+          "; from histograms that count early samples more often."};
+  for (const std::string& line : systemDifferences({paper::kPpo, paper::kPluto, paper::kRift}))
+    figure.sheet.notes.push_back(line);
   return figure;
 }
 

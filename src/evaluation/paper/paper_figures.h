@@ -2,20 +2,22 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_record.h"
 #include "page/pictures/panel_sheet.h"
+#include "page/pictures/top_view.h"
 
 namespace cdiff::evaluation {
 
 // Figures 3 to 8 of the paper as a batch fills them: numbers as CSV and a picture.
 
-/// A figure of the paper, filled from a batch: numbers as CSV and a sheet of pictures.
+/// A figure, filled from a batch: numbers as CSV and a sheet of pictures.
 struct Figure {
-  std::string id;  ///< "figure_3", also the name of its files
+  std::string id;  ///< "figure_3", "trails", also the name of its files
   std::string csv;
   page::PanelSheet sheet;
   bool wall_clock = false;  ///< whether its numbers are wall-clock times
@@ -52,7 +54,12 @@ Figure frameFigure(const std::string& id, const std::string& title,
 /// Figure 7: planned against driven states over the plan's horizon, end-to-end and two-stage.
 Figure executionFigure(const std::vector<BatchRun>& runs);
 
-/// All of them.
+/// All of the paper's.
 std::vector<Figure> paperFigures(const std::vector<BatchRun>& runs);
+
+/// The map of a run; nullptr, with a note on the sheet, when the network is no longer there.
+std::unique_ptr<session::SessionSetup> roadsOf(const BatchRun& run, page::PanelSheet& sheet);
+/// What lies below the vehicles of a picture from above: the ground and, of a map, the roads.
+core::Markup groundSvg(const session::SessionSetup* setup, const page::MapCanvas& canvas);
 
 }  // namespace cdiff::evaluation

@@ -10,10 +10,21 @@
 #include "session/session_request.h"
 
 namespace cdiff::evaluation {
+namespace {
+
+constexpr const char* kRoadmapEnd = " (on the roadmap)";  // after a title; no planner's name has it
+
+}  // namespace
 
 std::string PaperSystem::planner() const {
   const std::string found = planners::plannerTitled(title);
-  return found.empty() ? std::string("(") + title + " is not implemented)" : found;
+  return found.empty() ? std::string(title) + kRoadmapEnd : found;
+}
+
+bool isOnRoadmap(const std::string& level) {
+  const std::string end = kRoadmapEnd;
+  return level.size() > end.size() &&
+         level.compare(level.size() - end.size(), end.size(), end) == 0;
 }
 
 const std::vector<PaperSystem>& paperEgoPlanners() {
@@ -54,10 +65,15 @@ Factors merged(Factors levels, const Factors& others) {
 
 namespace {
 
-std::string csvLine(const Table& table, std::size_t row, std::size_t column, bool rift) {
-  const TableCell& cell = table.cells[row][column];
+/// The cells of a line of CSV for what is published.
+std::vector<std::string> publishedCells(const TableCell& cell) {
+  return {core::csvNumber(cell.paper.mean), core::csvNumber(cell.paper.deviation),
+          core::csvNumber(cell.repository.mean), core::csvNumber(cell.repository.deviation)};
+}
+
+/// And for ours.
+std::vector<std::string> ownCells(const TableCell& cell, bool rift) {
   const Statistics& statistics = rift ? cell.rift : cell.seeds;
-  const TableColumn& head = table.definition.columns[column];
   std::optional<double> low;
   std::optional<double> high;
   if (statistics.interval) {
@@ -65,17 +81,30 @@ std::string csvLine(const Table& table, std::size_t row, std::size_t column, boo
     high = statistics.interval->high;
   }
   const bool counted = !rift && cell.events.has_value();
-  return core::csvRow({table.definition.rows[row].name, head.name, head.unit,
-                       rift ? "rift_compat" : "clean", core::csvNumber(cell.paper.mean),
-                       core::csvNumber(cell.paper.deviation), core::csvNumber(statistics.mean),
-                       core::csvNumber(statistics.standard_deviation), core::csvNumber(low),
-                       core::csvNumber(high), std::to_string(statistics.n),
-                       std::to_string(cell.routes), counted ? std::to_string(*cell.events) : "",
-                       counted ? core::csvNumber(cell.kilometers) : "", std::to_string(cell.runs),
-                       std::to_string(cell.used), std::to_string(cell.failed),
-                       statistics.mean     ? ""
-                       : cell.note.empty() ? kNoRunHasIt
-                                           : cell.note});
+  return {core::csvNumber(statistics.mean),
+          core::csvNumber(statistics.standard_deviation),
+          core::csvNumber(low),
+          core::csvNumber(high),
+          std::to_string(statistics.n),
+          std::to_string(cell.routes),
+          counted ? std::to_string(*cell.events) : "",
+          counted ? core::csvNumber(cell.kilometers) : "",
+          std::to_string(cell.runs),
+          std::to_string(cell.used),
+          std::to_string(cell.failed),
+          statistics.mean     ? ""
+          : cell.note.empty() ? kNoRunHasIt
+                              : cell.note};
+}
+
+std::string csvLine(const Table& table, std::size_t row, std::size_t column, bool rift) {
+  const TableCell& cell = table.cells[row][column];
+  const TableColumn& head = table.definition.columns[column];
+  std::vector<std::string> cells = {table.definition.rows[row].name, head.name, head.unit,
+                                    rift ? "rift_compat" : "clean"};
+  for (const auto& further : {publishedCells(cell), ownCells(cell, rift)})
+    cells.insert(cells.end(), further.begin(), further.end());
+  return core::csvRow(cells);
 }
 
 std::string statisticsText(const Statistics& statistics, bool with_interval) {
@@ -110,8 +139,9 @@ bool anyRowWithout(const Table& table) {
 
 std::string tableCsv(const Table& table) {
   std::string text =
-      "row,column,unit,definition,paper_mean,paper_std,mean,std,interval_95_low,interval_95_high,"
-      "seeds,routes,events,km,runs,runs_with_figure,runs_failed,note\n";
+      "row,column,unit,definition,paper_mean,paper_std,rift_repository_mean,rift_repository_std,"
+      "mean,std,interval_95_low,interval_95_high,seeds,routes,events,km,runs,runs_with_figure,"
+      "runs_failed,note\n";
   for (std::size_t row = 0; row < table.cells.size(); ++row) {
     for (std::size_t column = 0; column < table.cells[row].size(); ++column) {
       text += csvLine(table, row, column, false);

@@ -24,9 +24,15 @@ struct PaperSystem {
   explicit constexpr PaperSystem(const char* a_title) : PaperSystem(a_title, a_title) {}
   constexpr PaperSystem(const char* a_title, const char* a_name, const char* a_method = "default")
       : title(a_title), name(a_name), method(a_method) {}
-  /// Name of its planner here; where there is none, a level that no run has.
+  /// Name of its planner here; where there is none yet, a level that no run has and that
+  /// isOnRoadmap knows.
   std::string planner() const;
 };
+
+/// Note of a cell of a system that is not here yet.
+inline constexpr const char* kOnRoadmap = "on the roadmap";
+/// Whether a level stands for a planner of the paper that is not here yet.
+bool isOnRoadmap(const std::string& level);
 
 inline constexpr const char* kNaturalistic = "naturalistic";
 inline constexpr const char* kSafetyCritical = "safety_critical";
@@ -89,6 +95,7 @@ struct TableRow {
   Factors levels;
   std::vector<PaperFigure> paper;  ///< by column; missing ones were not printed
   std::string subject;
+  std::vector<PaperFigure> repository = {};  ///< likewise: as RIFT's repository prints them
 };
 
 /// A table of the paper before it is filled: title, columns and rows.
@@ -99,6 +106,7 @@ struct TableDefinition {
   std::string heading;
   std::vector<TableColumn> columns;
   std::vector<TableRow> rows;
+  std::vector<std::string> footnotes = {};  ///< what differs in protocol and training
 };
 
 /// How the runs behind rows or columns of a table worked.
@@ -110,6 +118,7 @@ struct TableSettings {
 /// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
 struct TableCell {
   PaperFigure paper;
+  PaperFigure repository;             ///< RIFT's
   Statistics seeds;                   ///< over seeds that have the figure
   Statistics rift;                    ///< the same by RIFT's definition; n = 0 where it has none
   std::size_t routes = 0;             ///< of the runs that have the measure
@@ -118,7 +127,7 @@ struct TableCell {
   std::size_t runs = 0;               ///< runs at these levels, however they ended
   std::size_t failed = 0;             ///< those of them that broke, were interrupted or not run
   std::size_t used = 0;               ///< those of them that have the measure
-  std::string note;                   ///< why it is empty: not implemented, not run, ...
+  std::string note;                   ///< why it is empty: on the roadmap, not run, ...
 };
 
 /// A table of the paper, filled from the runs of a batch.
@@ -139,9 +148,10 @@ bool showsIntervals(const std::vector<TableCell>& row);
 bool anyIntervals(const Table& table);
 bool anyRowWithout(const Table& table);
 
-/// Why nothing stands where runs with these levels would: "not implemented" (a planner that is
-/// not), "not applicable in mode M" (the batch ran them in other modes alone, here M), "not run",
-/// "no run completed", or `otherwise`.
+/// Why nothing stands where runs with these levels would: "on the roadmap" (a planner of the paper
+/// that is not here yet), "not implemented" (any other that is not), "not applicable in mode M"
+/// (the batch ran them in other modes alone, here M), "not run", "no run completed", or
+/// `otherwise`.
 std::string emptyReason(const Factors& levels, const std::vector<BatchRun>& runs,
                         const std::string& otherwise);
 

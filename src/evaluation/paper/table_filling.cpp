@@ -149,6 +149,7 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   const auto own = runsWith(runs, levels);
   TableCell cell;
   if (index < row.paper.size()) cell.paper = row.paper[index];
+  if (index < row.repository.size()) cell.repository = row.repository[index];
   cell.runs = own.size();
   for (const BatchRun* run : own) cell.failed += !run->record.complete();
   const std::string weight = withSubject(column.weight, row.subject);
@@ -173,6 +174,7 @@ std::string emptyReason(const Factors& levels, const std::vector<BatchRun>& runs
   for (const char* factor : {"ego_planner", "cbv_planner"}) {
     const auto level = levels.find(factor);
     if (level == levels.end()) continue;
+    if (isOnRoadmap(level->second)) return kOnRoadmap;
     if (std::find(known.begin(), known.end(), level->second) == known.end())
       return "not implemented";
   }

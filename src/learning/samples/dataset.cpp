@@ -50,13 +50,7 @@ ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
   return header;
 }
 
-namespace {
-
 namespace fs = std::filesystem;
-
-constexpr std::string_view kShardMagic = "CDIFFSHD";
-
-}  // namespace
 
 void ShardWriter::append(const Sample& sample) {
   header_.schema.check(sample);
@@ -65,24 +59,34 @@ void ShardWriter::append(const Sample& sample) {
   ++header_.samples;
 }
 
-void ShardWriter::write(const fs::path& path, const std::map<std::string, std::string>& facts) {
+std::string ShardWriter::take(const std::map<std::string, std::string>& facts) {
   header_.facts = facts;
-  std::string content(kShardMagic);
+  std::string content(kind_.magic);
   putValue(content, kShardVersion);
   putText(content, headerText(header_));
   content += body_;
   content += core::sha256(content);
-  core::writeFileAtomically(path, content);
   body_.clear();
   header_.samples = 0;
+  return content;
 }
 
-ShardReader::ShardReader(const fs::path& path)
-    : name_("shard '" + path.string() + "'"), content_(core::readFile(path, "shard")) {
-  if (content_.size() < kShardMagic.size() + 8 + core::kSha256Digits)
+void ShardWriter::write(const fs::path& path, const std::map<std::string, std::string>& facts) {
+  core::writeFileAtomically(path, take(facts));
+}
+
+ShardReader::ShardReader(const fs::path& path, const ShardKind& kind)
+    : ShardReader(core::readFile(path, kind.name),
+                  std::string(kind.name) + " '" + path.string() + "'", kind) {}
+
+ShardReader::ShardReader(std::string content, std::string name, const ShardKind& kind)
+    : name_(std::move(name)), content_(std::move(content)) {
+  const std::string_view begun = std::string_view(content_).substr(0, kind.magic.size());
+  if (begun != kind.magic.substr(0, begun.size()))
+    throw InputError(name_ + ": is not a " + kind.name);
+  if (content_.size() < kind.magic.size() + 8 + core::kSha256Digits)
     throw InputError(name_ + ": truncated: " + std::to_string(content_.size()) + " bytes");
-  ByteReader reader(content_, name_);
-  if (reader.take(kShardMagic.size()) != kShardMagic) throw InputError(name_ + ": is not a shard");
+  ByteReader reader(content_, name_, kind.magic.size());
   const auto version = reader.value<std::uint32_t>();
   header_ = readShardHeader(version, std::string(reader.text()), name_);
   const std::size_t begin = reader.place();
@@ -127,18 +131,21 @@ Sample ShardReader::sample(std::size_t index, const FieldNames& left_out) const 
   return sample;
 }
 
-std::vector<fs::path> findShards(const fs::path& folder) {
+std::vector<fs::path> findDataFiles(const fs::path& folder, const std::string& extension) {
   std::error_code error;
-  std::vector<fs::path> shards;
+  std::vector<fs::path> files;
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->path().extension() == ".shard") shards.push_back(entry->path());
+    if (entry->path().extension() == extension) files.push_back(entry->path());
   }
   if (error) throw InputError("data folder '" + folder.string() + "': " + error.message());
-  if (shards.empty()) throw InputError("data folder '" + folder.string() + "' holds no *.shard");
-  std::sort(shards.begin(), shards.end());
-  return shards;
+  if (files.empty())
+    throw InputError("data folder '" + folder.string() + "' holds no *" + extension);
+  std::sort(files.begin(), files.end());
+  return files;
 }
+
+std::vector<fs::path> findShards(const fs::path& folder) { return findDataFiles(folder, ".shard"); }
 
 namespace {
 
@@ -161,24 +168,37 @@ std::set<std::uint64_t> drawHeldOut(const std::set<std::uint64_t>& sessions, dou
 
 }  // namespace
 
-Dataset::Dataset(const std::filesystem::path& folder, double validation_share)
-    : name_("data folder '" + folder.string() + "'") {
-  readShards(folder);
+namespace {
+
+std::vector<ShardReader> readShards(const fs::path& folder) {
+  std::vector<ShardReader> shards;
+  for (const fs::path& path : findShards(folder)) shards.emplace_back(path);
+  return shards;
+}
+
+}  // namespace
+
+Dataset::Dataset(const fs::path& folder, double validation_share)
+    : Dataset(readShards(folder), "data folder '" + folder.string() + "'", validation_share) {}
+
+Dataset::Dataset(std::vector<ShardReader> shards, std::string name, double validation_share,
+                 std::string unit)
+    : name_(std::move(name)), unit_(std::move(unit)), shards_(std::move(shards)) {
+  addShards();
   split(validation_share);
 }
 
-void Dataset::readShards(const std::filesystem::path& folder) {
+void Dataset::addShards() {
   core::Sha256 digest;
-  for (const std::filesystem::path& path : findShards(folder)) {
-    shards_.emplace_back(path);
-    const ShardReader& shard = shards_.back();
-    if (shards_.size() == 1) schema_ = shard.schema();
+  for (std::size_t i = 0; i < shards_.size(); ++i) {
+    const ShardReader& shard = shards_[i];
+    if (i == 0) schema_ = shard.schema();
     if (!(shard.schema() == schema_)) {
-      throw InputError("shard '" + path.string() + "': its schema " + shard.schema().toJson() +
+      throw InputError(shard.name() + ": its schema " + shard.schema().toJson() +
                        " is not that of the first shard, " + schema_.toJson());
     }
     digest.update(shard.sha256());
-    addSamples(shard);
+    addSamples(i);
   }
   sha256_ = digest.finish();
   if (places_.empty()) {
@@ -187,7 +207,8 @@ void Dataset::readShards(const std::filesystem::path& folder) {
   }
 }
 
-void Dataset::addSamples(const ShardReader& shard) {
+void Dataset::addSamples(std::size_t number) {
+  const ShardReader& shard = shards_[number];
   FieldNames others;
   for (const FieldSpec& field : schema_.fields) others.insert(field.name);
   if (others.erase(kSessionField) == 0 || schema_.find(kSessionField)->type != FieldType::kU64 ||
@@ -198,8 +219,7 @@ void Dataset::addSamples(const ShardReader& shard) {
   }
   for (std::size_t i = 0; i < shard.size(); ++i) {
     const Sample sample = shard.sample(i, others);
-    places_.push_back(
-        {shards_.size() - 1, i, sample.get<std::vector<std::uint64_t>>(kSessionField).at(0)});
+    places_.push_back({number, i, sample.get<std::vector<std::uint64_t>>(kSessionField).at(0)});
   }
 }
 
@@ -214,10 +234,10 @@ void Dataset::split(double validation_share) {
   validation_sessions_ = held_out.size();
   if (validation_share <= 0.0) validation_ = training_;
   if (!training_.empty() && !validation_.empty()) return;
-  throw InputError("data: of " + std::to_string(sessions_) + " sessions with " +
-                   std::to_string(places_.size()) + " samples, " +
-                   std::to_string(validation_sessions_) +
-                   " are held out; both parts need one (more sessions, or validation share 0)");
+  throw InputError(
+      "data: of " + std::to_string(sessions_) + " " + unit_ + " with " +
+      std::to_string(places_.size()) + " samples, " + std::to_string(validation_sessions_) +
+      " are held out; both parts need one (more " + unit_ + ", or validation share 0)");
 }
 
 Sample Dataset::sample(std::size_t index, const FieldNames& left_out) const {

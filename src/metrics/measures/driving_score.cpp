@@ -160,7 +160,7 @@ namespace {
 constexpr double kTail = 0.8;        // of half the length, behind the center (CARLA's criterion)
 constexpr double kLaneRadius = 5.0;  // [m] around that point; more than it moves in a tick
 
-bool isStopSign(const map::LaneLink& link) { return link.state == 's' || link.state == 'w'; }
+bool hasStopSign(const map::LaneLink& link) { return link.hasStopSign(); }
 
 bool isRed(const map::LaneLink& link, const std::vector<traffic::SignalState>& signals) {
   for (const traffic::SignalState& signal : signals) {
@@ -237,7 +237,7 @@ void StopLines::noteStop(const traffic::Vehicle& ego, const std::vector<map::Lan
       ego.state.position + 0.5 * ego.dimensions.length * geometry::direction(ego.state.heading);
   for (const map::LaneIndex lane : lanes) {
     const Links links = linksOf(lane);
-    if (std::none_of(links.begin(), links.end(), isStopSign)) continue;
+    if (std::none_of(links.begin(), links.end(), hasStopSign)) continue;
     const Place place = placeAt(network_.lane(lane), front);
     const bool near = place.beyond >= -options_.stop_sign_distance;
     if (near && std::abs(place.beside) <= 0.5 * network_.lane(lane).width) stopped_on_ = lane;
@@ -252,7 +252,7 @@ void StopLines::cross(map::LaneIndex lane, const std::vector<traffic::SignalStat
     const auto red = [&](const map::LaneLink& link) { return isRed(link, signals); };
     if (std::all_of(links.begin(), links.end(), red)) ++red_lights_;
   }
-  if (std::all_of(links.begin(), links.end(), isStopSign)) {
+  if (std::all_of(links.begin(), links.end(), hasStopSign)) {
     ++stop_signs_crossed_;
     if (stopped_on_ != lane) ++stop_signs_;
   }

@@ -116,8 +116,26 @@
       sight.querySelector("figcaption").textContent = text;
     }
   };
+  const placeOf = function (numbers, index) {
+    for (let i = 0; i < numbers.length; i += 6)
+      if (numbers[i] === index) return `${numbers[i + 2] / 10} ${numbers[i + 3] / 10}`;
+    return null;
+  };
+  const drawGazes = function (frame) {
+    const lines = document.getElementById("gazes");
+    if (lines === null) return;
+    lines.replaceChildren();
+    const gazes = data.gazes[frame], numbers = data.frames[frame];
+    for (let i = 0; i < gazes.length; i += 3) {
+      const from = placeOf(numbers, gazes[i]), to = placeOf(numbers, gazes[i + 1]);
+      if (from === null || to === null) continue;
+      const line = svgElement("path", { class: "gaze", d: `M${from}L${to}` }, lines);
+      line.style.setProperty("--weight", gazes[i + 2] / 100);
+    }
+  };
   const draw = function (frame) {
     const numbers = data.frames[frame], seen = new Set();
+    drawGazes(frame);
     let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
     for (let i = 0; i < numbers.length; i += 6) {
       const index = numbers[i], box = boxOf(index);

@@ -10,9 +10,8 @@
 namespace cdiff::page {
 namespace {
 
-constexpr double kRounding = 1e-9;             // share of a step
-constexpr double kHalfLetter = 4.0;            // half the width of a letter [px]
-constexpr std::size_t kMostLineLetters = 160;  // of a line of text in a picture
+constexpr double kRounding = 1e-9;   // share of a step
+constexpr double kHalfLetter = 4.0;  // half the width of a letter [px]
 
 }  // namespace
 

@@ -28,7 +28,10 @@ std::string axisNumber(double value, double step);
 
 // Elements of pictures (pixels, x right, y down). `style` is a CSS class, or several.
 
-/// One line of text; what is longer than 160 characters is cut.
+/// Most characters of a line of text in a picture.
+inline constexpr std::size_t kMostLineLetters = 160;
+
+/// One line of text; what is longer than kMostLineLetters is cut.
 core::Markup chartText(const std::string& style, double x, double y, const std::string& content);
 
 /// A path of `data` (attribute d) with a tool tip; nothing without data.

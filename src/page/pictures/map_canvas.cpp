@@ -11,25 +11,6 @@
 namespace cdiff::page {
 namespace {
 
-double distanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& begin,
-                         const Eigen::Vector2d& end) {
-  const Eigen::Vector2d along = end - begin;
-  const double squared = along.squaredNorm();
-  const double share =
-      squared > 0.0 ? std::clamp((point - begin).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (point - begin - share * along).norm();
-}
-
-/// Index of the point between two others that is farthest from their segment, with the distance.
-std::pair<std::size_t, double> farthest(const Points& line, std::size_t begin, std::size_t end) {
-  std::pair<std::size_t, double> result{begin, -1.0};
-  for (std::size_t i = begin + 1; i < end; ++i) {
-    const double distance = distanceToSegment(line[i], line[begin], line[end]);
-    if (distance > result.second) result = {i, distance};
-  }
-  return result;
-}
-
 bool segmentMayCross(const Eigen::Vector2d& begin, const Eigen::Vector2d& end,
                      const Region& region) {
   return std::min(begin.x(), end.x()) <= region.high.x() &&
@@ -73,27 +54,6 @@ bool Region::contains(const Eigen::Vector2d& point) const {
 Region Region::grown(double margin) const {
   const Eigen::Vector2d offset(margin, margin);
   return {low - offset, high + offset};
-}
-
-Points simplified(const Points& line, double tolerance) {
-  if (line.size() < 3) return line;
-  std::vector<bool> kept(line.size(), false);
-  kept.front() = kept.back() = true;
-  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, line.size() - 1}};
-  while (!open.empty()) {
-    const auto [begin, end] = open.back();
-    open.pop_back();
-    const auto [index, distance] = farthest(line, begin, end);
-    if (distance <= tolerance) continue;
-    kept[index] = true;
-    open.emplace_back(begin, index);
-    open.emplace_back(index, end);
-  }
-  Points result;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (kept[i]) result.push_back(line[i]);
-  }
-  return result;
 }
 
 std::vector<Points> stretchesIn(const Points& line, const Region& region) {
@@ -217,7 +177,7 @@ Markup boxItem(const std::string& style, const std::string& text) {
 
 }  // namespace
 
-Markup topViewLegend(const MapCanvas& canvas) {
+Markup topViewLegend(const MapCanvas& canvas, bool gazes) {
   const Markup conflict =
       element("path", {{"class", "conflict"}, {"d", "M9 2l10 10m0 -10l-10 10"}});
   const Markup html = pageLegend(
@@ -226,7 +186,9 @@ Markup topViewLegend(const MapCanvas& canvas) {
       legendLine("trail cbv c0", "driven as CBV") + legendLine("trail bg", "driven by background") +
       legendLine("planned cbv c0", "conflict-aware route") +
       legendItem(conflict, "conflict point as selected") +
-      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact"));
+      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact") +
+      (gazes ? legendLine("gaze", "attention of the planner to a vehicle, by its share")
+             : Markup()));
   const double magnification = vehicleMagnification(canvas);
   if (magnification <= 1.0) return html;
   return html + pageNote("Vehicles are drawn " + core::formatFixed(magnification, 1) +

@@ -43,7 +43,7 @@ Markup panelSvg(const Panel& panel, double x, double y) {
 /// Lines of words that fit into a width.
 std::vector<std::string> wrapped(const std::string& text, double width) {
   constexpr double kLetter = 6.9;  // mean width of a letter of a note
-  const auto most = static_cast<std::size_t>(width / kLetter);
+  const std::size_t most = std::min(static_cast<std::size_t>(width / kLetter), kMostLineLetters);
   std::vector<std::string> lines(1);
   for (const std::string& word : core::splitText(text, ' ')) {
     if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();

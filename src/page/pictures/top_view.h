@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/markup.h"
+#include "geometry/simplified.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {
@@ -26,8 +27,7 @@ struct Region {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// The line without points that lie nearer than `tolerance` [m] to it (Douglas and Peucker 1973).
-Points simplified(const Points& line, double tolerance);
+using geometry::simplified;
 
 /// Stretches of the line whose segments may cross the region (their bounding boxes touch it).
 std::vector<Points> stretchesIn(const Points& line, const Region& region);
@@ -85,8 +85,15 @@ core::Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::
 /// A bar of a round length and the direction of north, in the lower corners and at the top right.
 core::Markup scaleBarSvg(const MapCanvas& canvas);
 
-/// Its legend, as HTML.
-core::Markup topViewLegend(const MapCanvas& canvas);
+/// Its legend, as HTML; `gazes`: with the lines of gazesSvg.
+core::Markup topViewLegend(const MapCanvas& canvas, bool gazes = false);
+
+/// Whether any planner of the session said what it looked at.
+bool showsGazes(const record::Timeline& timeline);
+
+/// Lines from drivers to the vehicles that they look at in the last frame, as thick and dark as
+/// they do; empty where no planner of the session says so.
+core::Markup gazesSvg(const record::Timeline& timeline, const MapCanvas& canvas);
 
 /// Factor by which vehicles are drawn larger than they are, so that they can be seen; 1 when the
 /// scale allows.

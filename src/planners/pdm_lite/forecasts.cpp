@@ -18,10 +18,10 @@ double lookAheadDistance(double speed) {
 }
 
 LateralController::LateralController(const PdmLiteOptions& options)
-    : kp_(options.lateral_kp),
+    : kp_(options.resolved().lateral_kp),
       ki_(options.lateral_ki),
       kd_(options.lateral_kd),
-      errors_(static_cast<std::size_t>(options.lateral_window), 0.0) {}
+      errors_(static_cast<std::size_t>(options.resolved().lateral_window), 0.0) {}
 
 double LateralController::steer(const geometry::Pose2d& pose, const Eigen::Vector2d& aim) {
   const Eigen::Vector2d offset = aim - pose.position;
@@ -166,15 +166,15 @@ std::vector<geometry::OrientedBox> egoBoxes(const traffic::Vehicle& ego,
 
 std::vector<geometry::OrientedBox> otherBoxes(const traffic::VehicleDimensions& dimensions,
                                               const std::vector<traffic::VehicleState>& forecast,
-                                              bool near_lane_change) {
+                                              std::size_t steps, bool near_lane_change) {
   const double length_factor = near_lane_change ? kOtherLengthFactorLaneChange : kOtherLengthFactor;
-  const double count = static_cast<double>(forecast.size());
+  const std::size_t count = std::min(steps, forecast.size());
   std::vector<geometry::OrientedBox> boxes;
-  boxes.reserve(forecast.size());
-  for (std::size_t i = 0; i < forecast.size(); ++i) {
+  boxes.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const bool slow = forecast[i].speed < kOtherSlow;
-    const double width_factor =
-        std::max(1.0, kOtherWidthFactor * static_cast<double>(i + 1) / count);
+    const double share = static_cast<double>(i) / static_cast<double>(count);
+    const double width_factor = std::max(1.0, kOtherWidthFactor * share);
     boxes.push_back(
         grown(forecast[i], dimensions, slow ? 1.0 : length_factor, slow ? 1.0 : width_factor));
   }
@@ -202,15 +202,17 @@ std::vector<planning::RolloutPoint> forecastEgo(const traffic::VehicleState& sta
                                                 const map::Route& route, DriverState driver,
                                                 double target_speed,
                                                 const dynamics::BicycleModel& model,
-                                                std::size_t steps) {
+                                                const EgoHorizon& horizon) {
   std::vector<planning::RolloutPoint> points;
-  points.reserve(steps);
+  points.reserve(horizon.steps);
   traffic::VehicleState state = start;
-  for (std::size_t i = 0; i < steps; ++i) {
+  for (std::size_t i = 0; i < horizon.steps; ++i) {
     traffic::ControlAction action;
-    action.steer = steerAlong(route, state, driver);
-    action.throttle = forecastThrottle(state.speed, target_speed);
-    state = model.step(state, action, planning::kForecastStep);
+    for (int decision = 0; decision < horizon.decisions; ++decision) {
+      action.steer = steerAlong(route, state, driver);
+      action.throttle = forecastThrottle(state.speed, target_speed);
+      state = model.step(state, action, planning::kForecastStep / horizon.decisions);
+    }
     points.push_back({state, action});
   }
   return points;

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/pdm_lite/forecasts.h"
-#include "planners/pdm_lite/route_rules.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
@@ -108,7 +108,7 @@ std::size_t PdmLite::forecastSteps(double horizon) const {
 
 std::vector<planning::PlannedAction> PdmLite::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
-  std::map<std::string, Memory> kept;
+  Memories kept;
   Forecasts forecasts(snapshot.vehicles.size());
   std::vector<planning::PlannedAction> actions;
   for (const planning::PlanningTask& asked : tasks) {
@@ -116,10 +116,7 @@ std::vector<planning::PlannedAction> PdmLite::plan(
     const Driver driver = driverOf(asked);
     const planning::PlanningTask task = styled(asked, driver);
     const traffic::VehicleState& state = task.vehicle->state;
-    auto known = memories_.extract(task.vehicle->id);
-    if (!known.empty()) kept.insert(std::move(known));
-    const Memory fresh{{planning::RouteFollower(), LateralController(options_)}};
-    Memory& memory = kept.try_emplace(task.vehicle->id, fresh).first->second;
+    Memory& memory = recall(task.vehicle->id, kept);
     memory.driver.follower.update(*task.route, state.position);
     const double s = memory.driver.follower.arcLength();
     const Situation situation{
@@ -133,13 +130,25 @@ std::vector<planning::PlannedAction> PdmLite::plan(
   return actions;
 }
 
+PdmLite::Memory& PdmLite::recall(const std::string& vehicle_id, Memories& kept) {
+  auto known = memories_.extract(vehicle_id);
+  if (!known.empty()) return kept.insert(std::move(known)).position->second;
+  const DriverState driver{planning::RouteFollower(), LateralController(options_)};
+  return kept.try_emplace(vehicle_id, Memory{driver}).first->second;
+}
+
+EgoHorizon PdmLite::egoHorizon() const {
+  const long decisions = std::lround(planning::kForecastStep / decision_period_);
+  return {forecastSteps(options_.forecast_horizon), static_cast<int>(std::max(1L, decisions))};
+}
+
 planning::PlannedAction PdmLite::planOne(const Situation& situation, Memory& memory,
                                          Forecasts& forecasts) const {
   const planning::PlanningTask& task = situation.task;
   const traffic::VehicleState& state = task.vehicle->state;
   planning::PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
-  planned.rollout = forecastEgo(state, *task.route, memory.driver, situation.initial_speed, model_,
-                                forecastSteps(options_.forecast_horizon));
+  planned.rollout =
+      forecastEgo(state, *task.route, memory.driver, situation.initial_speed, model_, egoHorizon());
   const double target = targetSpeed(situation, planned.rollout, memory, forecasts);
   planned.action = pedalAction(situation, target, memory);
   planned.action.steer = steerAlong(*task.route, state, memory.driver);
@@ -156,8 +165,7 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
   memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
   const bool stuck = memory.standing_time >= kStuckTime - 1e-9 && remaining > 0.0;
   if (stuck) return {1.0, 0.0, 0.0};
-  const bool rolls_back = pedal.throttle == 0.0 && speed < kRollbackSpeed;
-  if (!pedal.brake) return {pedal.throttle, 0.0, rolls_back ? 1.0 : 0.0};
+  if (!pedal.brake) return {pedal.throttle, 0.0, 0.0};
   const bool ends = remaining < kEndZone && target > 0.0 && speed >= kRollbackSpeed;
   const double strongest = model_.options().max_deceleration;
   return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
@@ -185,11 +193,7 @@ double PdmLite::targetSpeed(const Situation& situation,
                             Forecasts& forecasts) const {
   const planning::PlanningTask& task = situation.task;
   const Obstruction others = obstructionOf(situation, rollout, forecasts);
-  double target = others.target;
-  if (options_.obey_lights) {
-    const auto light = distanceToRedLight(*task.route, situation.arc_length, situation.snapshot);
-    if (light) target = std::min(target, idmBeforeLight(task, situation.initial_speed, *light));
-  }
+  const double target = std::min(others.target, speedBeforeLines(situation, memory));
   if (!mustWait(situation, others.met.has_value(), memory)) {
     memory.waiting = 0.0;
     return target;
@@ -201,28 +205,52 @@ double PdmLite::targetSpeed(const Situation& situation,
   return std::min(target, now.speed - memory.waiting * IdmParameters().time_bound);
 }
 
+double PdmLite::speedBeforeLines(const Situation& situation, Memory& memory) const {
+  const planning::PlanningTask& task = situation.task;
+  const double s = situation.arc_length;
+  double slowest = std::numeric_limits<double>::infinity();
+  if (options_.obey_lights) {
+    const auto light = distanceToRedLight(*task.route, s, situation.snapshot);
+    if (light) slowest = idmBefore(lineOfLight(*light), task, situation.initial_speed);
+  }
+  if (options_.obey_stop_signs) {
+    const auto sign = memory.stop_signs.distance(*task.route, s, task.vehicle->state.speed);
+    if (sign)
+      slowest = std::min(slowest, idmBefore(lineOfStopSign(*sign), task, situation.initial_speed));
+  }
+  return slowest;
+}
+
 PdmLite::Obstruction PdmLite::obstructionOf(const Situation& situation,
                                             const std::vector<planning::RolloutPoint>& rollout,
                                             Forecasts& forecasts) const {
   const traffic::Vehicle& self = *situation.task.vehicle;
   const map::Route& route = *situation.task.route;
   const std::vector<geometry::OrientedBox> own = egoBoxes(self, rollout);
+  const double reach =
+      std::max(options_.detection_radius, leaderReach(route, situation.arc_length, self.state));
   const bool exempt = !situation.near_lane_change;
   const bool first_counts = situation.task.style.even();
   Obstruction found{freeSpeed(situation.task, situation.initial_speed), {}};
   for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
     const traffic::Vehicle& other = situation.snapshot.vehicles[i];
-    if (other.id == self.id || traffic::onDifferentLevels(self, other)) continue;
+    const double distance = (other.state.position - self.state.position).norm();
+    if (distance > reach || other.id == self.id || traffic::onDifferentLevels(self, other))
+      continue;
     if (exempt && isLeading(route, situation.arc_length, other.state)) {
       const double behind = idmBehind(situation.task, other, situation.initial_speed);
       found.target = std::min(found.target, behind);
       continue;
     }
     if (exempt && isTrailing(route, situation.arc_length, other.state)) continue;
-    const double distance = (other.state.position - self.state.position).norm();
     if (distance > options_.detection_radius || (found.met && !first_counts)) continue;
     const auto step = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
-    if (step && (!found.met || *step < *found.met)) found.met = step;
+    if (step && isBicycle(other.dimensions)) {
+      const double behind = idmBehind(situation.task, other, situation.initial_speed);
+      found.target = std::min(found.target, behind);
+    } else if (step && (!found.met || *step < *found.met)) {
+      found.met = step;
+    }
   }
   return found;
 }
@@ -233,7 +261,8 @@ std::optional<std::size_t> PdmLite::meetsBox(
     const std::vector<traffic::VehicleState>& forecast) const {
   const bool lane_change = situation.near_lane_change;
   const double horizon = lane_change ? kLaneChangeHorizon : options_.forecast_horizon;
-  return meet(own, otherBoxes(other.dimensions, forecast, lane_change), forecastSteps(horizon));
+  const std::size_t steps = forecastSteps(horizon);
+  return meet(own, otherBoxes(other.dimensions, forecast, steps, lane_change), steps);
 }
 
 bool PdmLite::mustWait(const Situation& situation, bool box_met, Memory& memory) const {

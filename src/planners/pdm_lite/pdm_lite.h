@@ -11,20 +11,24 @@
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
+#include "planners/pdm_lite/route_rules.h"
 
 namespace cdiff::planners {
 
-/// PDM-Lite, the rule-based planner, in RIFT's configuration (10 Hz, no scenario scripts, no
-/// steering noise, no stop signs): action from route, boxes and lights; map frame, SI units. target
-/// speed = min of the initial one, IDM behind leaders and lights, and 0 when the forecast box of
-/// the vehicle meets that of another; then PID steering and pedals.
+/// PDM-Lite, the rule-based planner, in RIFT's configuration or the original one: action from
+/// route, boxes, lights and stop signs; map frame, SI units. target speed = min of the initial one,
+/// IDM behind leaders, before lights, stop signs and bicycles whose box is met, and 0 when the
+/// forecast box of the vehicle meets that of another; then PID steering and pedals. Neither the
+/// scripts for CARLA's scenarios nor the noise on the steer are there (docs/pdm_lite.md).
 ///
 /// Where it differs from the published program:
 ///  - Cars of SUMO are forecast along their lanes (surrounding_vehicles.h); lights that are
 ///    switched off do not stop it; the speed limit is anticipated (route_rules.h).
+///  - Leaders are followed along the next 80 m of the route, not within the detection radius alone.
 ///  - In the last 5 m of the route it brakes evenly so as to stand 1 m beyond the end; slower than
 ///    1 m/s it creeps to the end first.
 ///  - "Standing for 170 ticks -> full throttle" is kept as 8.5 s, whatever the decision period.
+///    "No throttle below 0.5 m/s -> brake" needs no rule: the pedals never coast there.
 ///  - Order of giving way: two vehicles that brake for each other's boxes would each forecast the
 ///    other to go on braking, start, see the other start, and brake, again and again until they
 ///    touch. So a CBV that the box rule made brake keeps braking until its way has been clear for
@@ -60,7 +64,9 @@ class PdmLite : public planning::Planner {
     bool gave_way = false;       ///< the box rule made it brake and it has not driven on since
     double clear_time = 0.0;     ///< since no box is met [s]
     double waiting = 0.0;        ///< deceleration of an even style that gives way [m/s^2]
+    StopSignRule stop_signs = {};
   };
+  using Memories = std::map<std::string, Memory>;
   /// Forecasts of the snapshot's vehicles, made when first asked for.
   using Forecasts = std::vector<std::optional<std::vector<traffic::VehicleState>>>;
   /// How one CBV's driver differs from the published one.
@@ -80,6 +86,8 @@ class PdmLite : public planning::Planner {
     bool near_lane_change;
   };
 
+  /// What is remembered of a vehicle, moved into `kept`; of a new one a fresh memory.
+  Memory& recall(const std::string& vehicle_id, Memories& kept);
   planning::PlannedAction planOne(const Situation& situation, Memory& memory,
                                   Forecasts& forecasts) const;
   traffic::ControlAction pedalAction(const Situation& situation, double target,
@@ -88,9 +96,11 @@ class PdmLite : public planning::Planner {
                                     double target) const;
   double targetSpeed(const Situation& situation, const std::vector<planning::RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;
+  /// Speed for the stop lines ahead [m/s]; infinite where there is none to stop at.
+  double speedBeforeLines(const Situation& situation, Memory& memory) const;
   /// What the others mean for the vehicle.
   struct Obstruction {
-    double target;                   ///< by the free road and leaders [m/s]
+    double target;                   ///< by the free road, leaders and bicycles [m/s]
     std::optional<std::size_t> met;  ///< step that meets a box, the first for an even style
   };
   Obstruction obstructionOf(const Situation& situation,
@@ -105,13 +115,15 @@ class PdmLite : public planning::Planner {
                                                        std::size_t index,
                                                        Forecasts& forecasts) const;
   std::size_t forecastSteps(double horizon) const;
+  /// The ego forecast of the options, with a decision wherever one falls.
+  EgoHorizon egoHorizon() const;
 
   PdmLiteOptions options_;
   dynamics::BicycleModel model_;
   const map::RoadNetwork& network_;
   double decision_period_;
   core::RandomStream drivers_;
-  std::map<std::string, Memory> memories_;
+  Memories memories_;
 };
 
 }  // namespace cdiff::planners

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/pdm_lite/pdm_lite_options.h"
 
+#include <map>
+#include <vector>
+
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/planning/planner.h"
@@ -16,25 +19,45 @@ void requirePositive(const char* key, double value) {
                          ", but must be positive");
 }
 
+const std::map<std::string, PdmLiteConfiguration>& configurations() {
+  static const std::map<std::string, PdmLiteConfiguration> known = {
+      {"rift", {2.0, 20, 0.0}}, {"original", {3.118357247806046, 6, 20.0}}};
+  return known;
+}
+
+std::vector<std::string> configurationNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, constants] : configurations()) names.push_back(name);
+  return names;
+}
+
 }  // namespace
 
 void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text(
+      {"configuration", "", "Constants of RIFT, or of the original at 20 decisions a second."},
+      configuration, configurationNames());
   visitor.number({"speed_limit_share", "", "Initial target speed as a share of the limit."},
                  speed_limit_share, 0.05, 1.5);
+  visitor.number({"top_speed", "m/s", "Cap of the initial target speed; 0: the configuration's."},
+                 top_speed, 0.0, 60.0);
   visitor.number({"junction_speed", "m/s", "Cap when a junction lies within 30 m."}, junction_speed,
                  0.5, 60.0);
   visitor.number({"forecast_horizon", "s", "Horizon of the box forecasts."}, forecast_horizon, 0.1,
                  10.0);
   visitor.number({"detection_radius", "m", "Vehicles within it are forecast."}, detection_radius,
                  1.0, 500.0);
-  visitor.number({"lateral_kp", "", "Proportional gain of the steering."}, lateral_kp, 0.0, 20.0);
+  visitor.number({"lateral_kp", "", "Proportional gain of the steering; 0: the configuration's."},
+                 lateral_kp, 0.0, 20.0);
   visitor.number({"lateral_ki", "", "Gain of the mean error of the steering."}, lateral_ki, 0.0,
                  20.0);
   visitor.number({"lateral_kd", "", "Gain of the last error change of the steering."}, lateral_kd,
                  0.0, 20.0);
-  visitor.integer({"lateral_window", "", "Errors in the mean of the steering."}, lateral_window, 1,
-                  1000);
+  visitor.integer(
+      {"lateral_window", "", "Errors in the mean of the steering; 0: the configuration's."},
+      lateral_window, 0, 1000);
   visitor.flag({"obey_lights", "", "Stop for lights that are not green."}, obey_lights);
+  visitor.flag({"obey_stop_signs", "", "Stop at stop signs."}, obey_stop_signs);
   visitor.number(
       {"cbv_acceleration", "m/s^2", "Of CBVs with even pedals; 0: PDM-Lite's, published."},
       cbv_acceleration, 0.0, 8.0);
@@ -55,7 +78,20 @@ void PdmLiteOptions::validate() const {
   requirePositive("junction_speed", junction_speed);
   requirePositive("forecast_horizon", forecast_horizon);
   requirePositive("detection_radius", detection_radius);
-  requirePositive("lateral_window", static_cast<double>(lateral_window));
+  resolved();
+}
+
+PdmLiteConfiguration PdmLiteOptions::resolved() const {
+  const auto named = configurations().find(configuration);
+  if (named == configurations().end()) {
+    throw core::InputError("pdm_lite: configuration is '" + configuration + "'; expected one of " +
+                           core::joinText(configurationNames(), ", "));
+  }
+  PdmLiteConfiguration constants = named->second;
+  if (lateral_kp > 0.0) constants.lateral_kp = lateral_kp;
+  if (lateral_window > 0) constants.lateral_window = lateral_window;
+  if (top_speed > 0.0) constants.top_speed = top_speed;
+  return constants;
 }
 
 planning::PlannerDescriptor pdmLiteDescriptor() {

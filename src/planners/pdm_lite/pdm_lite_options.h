@@ -2,28 +2,45 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "e2e_cdiff/core/options.h"
 
 namespace cdiff::planners {
 
-/// Options of PDM-Lite; defaults are RIFT's configuration of it.
+/// The constants in which the published configurations of PDM-Lite differ: RIFT's `rift`, for ten
+/// decisions a second, and DriveLM's `original`, for twenty.
+struct PdmLiteConfiguration {
+  double lateral_kp = 2.0;           ///< gain of the steering, per call
+  std::int64_t lateral_window = 20;  ///< errors in the mean of the steering, one per call
+  double top_speed = 0.0;            ///< cap of the initial target speed [m/s]; 0: none
+};
+
+/// Options of PDM-Lite. A key that is 0 where that says so has its configuration's value.
 struct PdmLiteOptions {
-  double speed_limit_share = 0.72;  ///< initial target speed as a share of the limit
-  double junction_speed = 17.78;    ///< cap when a junction lies within 30 m [m/s]
-  double forecast_horizon = 2.0;    ///< how far boxes are forecast [s]
-  double detection_radius = 50.0;   ///< vehicles that are forecast [m]
-  double lateral_kp = 2.0;          ///< RIFT's gain (original: 3.118)
+  std::string configuration = "rift";  ///< rift | original
+  double speed_limit_share = 0.72;     ///< initial target speed as a share of the limit
+  double top_speed = 0.0;              ///< cap of it [m/s]; 0: the configuration's
+  double junction_speed = 64.0 / 3.6;  ///< cap when a junction lies within 30 m [m/s]
+  double forecast_horizon = 2.0;       ///< how far boxes are forecast [s]
+  double detection_radius = 50.0;      ///< vehicles that are forecast [m]
+  double lateral_kp = 0.0;             ///< 0: the configuration's
   double lateral_ki = 0.6406067986034124;
   double lateral_kd = 1.3782508892109167;
-  std::int64_t lateral_window = 20;  ///< errors in the integral (original: 6)
-  bool obey_lights = true;           ///< stop for lights that are not green
-  double cbv_acceleration = 0.0;     ///< a of CBVs, which are then even; 0: as published [m/s^2]
-  double cbv_deceleration = 3.0;     ///< b of even CBVs [m/s^2]
-  double cbv_speed_spread = 0.0;     ///< of CBVs' target speeds, as a share of them; 0: one driver
-  double cbv_headway_spread = 0.0;   ///< of CBVs' time headways; 0: one driver [s]
+  std::int64_t lateral_window = 0;  ///< errors in the integral; 0: the configuration's
+  bool obey_lights = true;          ///< stop for lights that are not green
+  bool obey_stop_signs = true;      ///< stop at stop signs
+  double cbv_acceleration = 0.0;    ///< a of CBVs, which are then even; 0: as published [m/s^2]
+  double cbv_deceleration = 3.0;    ///< b of even CBVs [m/s^2]
+  double cbv_speed_spread = 0.0;    ///< of CBVs' target speeds, as a share of them; 0: one driver
+  double cbv_headway_spread = 0.0;  ///< of CBVs' time headways; 0: one driver [s]
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;
+  /// The named configuration with the keys that are given on top. Throws InputError for a name that
+  /// is not known.
+  PdmLiteConfiguration resolved() const;
 };
 
 }  // namespace cdiff::planners

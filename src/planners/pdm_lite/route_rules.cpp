@@ -13,6 +13,7 @@ namespace cdiff::planners {
 namespace {
 
 constexpr double kSearchDistance = 80.0;    // of leading and trailing vehicles [m]
+constexpr double kLeaderDistance = 2.5;     // of leading vehicles from the route [m]
 constexpr double kLaneChangeBehind = 15.0;  // [m]
 
 double lowestLimit(const map::Route& route, double begin, double end) {
@@ -63,6 +64,8 @@ double initialTargetSpeed(const PdmLiteOptions& options, const map::Route& route
   const double braking = speed * speed / (2.0 * kAnticipatedDeceleration);
   const double limit = lowestLimit(route, begin, std::min(begin + braking, route.length()));
   double target = std::min({options.speed_limit_share * limit, task_speed, limit});
+  const double top_speed = options.resolved().top_speed;
+  if (top_speed > 0.0) target = std::min(target, top_speed);
   for (const auto& [from, to] : route.junctionStretches()) {
     const bool near = to >= arc_length && from <= arc_length + kJunctionDistance;
     if (near) target = std::min(target, options.junction_speed);
@@ -77,10 +80,15 @@ bool nearLaneChange(const map::Route& route, double arc_length, double speed) {
   return changesLaneWithin(route, arc_length - kLaneChangeBehind, arc_length + ahead);
 }
 
+double leaderReach(const map::Route& route, double arc_length,
+                   const traffic::VehicleState& vehicle) {
+  const Eigen::Vector2d place = planning::extendedPositionAt(route, arc_length);
+  return kSearchDistance + kLeaderDistance + (place - vehicle.position).norm();
+}
+
 bool isLeading(const map::Route& route, double arc_length, const traffic::VehicleState& other) {
-  constexpr double kDistance = 2.5;
   const double end = std::max(arc_length, std::min(arc_length + kSearchDistance, route.length()));
-  return follows(route, {arc_length, end}, other, kDistance, core::degreesToRadians(35.0));
+  return follows(route, {arc_length, end}, other, kLeaderDistance, core::degreesToRadians(35.0));
 }
 
 bool isTrailing(const map::Route& route, double arc_length, const traffic::VehicleState& other) {
@@ -100,10 +108,26 @@ std::optional<double> distanceToRedLight(const map::Route& route, double arc_len
   return std::nullopt;
 }
 
-namespace {
+std::optional<double> StopSignRule::distance(const map::Route& route, double arc_length,
+                                             double speed) {
+  constexpr double kClearing = 3.0;
+  constexpr double kArming = 10.0;
+  constexpr double kStanding = 0.1;
+  const std::vector<double>& signs = route.stopSigns();
+  const auto next = std::upper_bound(signs.begin(), signs.end(), arc_length);
+  if (next == signs.end()) return std::nullopt;
+  const double distance = *next - arc_length;
+  if (distance > kArming) cleared_ = false;
+  if (distance < kClearing && speed < kStanding) cleared_ = true;
+  return cleared_ ? std::nullopt : std::optional<double>(distance);
+}
 
-constexpr double kLightGap = 6.0;      // s0 before a stop line [m]
-constexpr double kLightHeadway = 0.1;  // T before a stop line [s]
+bool isBicycle(const traffic::VehicleDimensions& dimensions) {
+  constexpr double kWidest = 0.75;
+  return dimensions.width <= kWidest;
+}
+
+namespace {
 
 /// PDM-Lite's constants, or those of a vehicle with an even style.
 IdmParameters parametersOf(const planning::DrivingStyle& style) {
@@ -146,11 +170,15 @@ double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& lea
                   parametersOf(task.style));
 }
 
-double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance) {
+StopLine lineOfLight(double distance) { return {distance, 6.0, 0.1}; }
+
+StopLine lineOfStopSign(double distance) { return {distance, 2.0, 0.1}; }
+
+double idmBefore(const StopLine& line, const planning::PlanningTask& task, double desired) {
   IdmObstacle obstacle;
-  obstacle.distance = distance;
-  obstacle.minimum_gap = kLightGap;
-  obstacle.time_headway = kLightHeadway;
+  obstacle.distance = line.distance;
+  obstacle.minimum_gap = line.minimum_gap;
+  obstacle.time_headway = line.time_headway;
   return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
                   parametersOf(task.style));
 }

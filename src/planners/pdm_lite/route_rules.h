@@ -12,11 +12,12 @@
 namespace cdiff::planners {
 
 // PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
-// speed, lane change near, who leads, who trails, the next light; and its IDM speeds.
+// speed, lane change near, who leads, who trails, the next light, the next stop sign; and its IDM
+// speeds.
 
-/// min(share x limit, task's target speed, limit), capped where a junction lies within 30 m [m/s].
-/// The limit is the lowest one within the distance of braking at 4 m/s^2: SUMO's lanes inside
-/// junctions carry the speed of their curve (CARLA's roads do not).
+/// min(share x limit, task's target speed, limit, the configuration's top speed), capped where a
+/// junction lies within 30 m [m/s]. The limit is the lowest one within the distance of braking at 4
+/// m/s^2: SUMO's lanes inside junctions carry the speed of their curve (CARLA's roads do not).
 double initialTargetSpeed(const PdmLiteOptions& options, const map::Route& route, double arc_length,
                           double speed, double task_speed);
 
@@ -27,6 +28,10 @@ bool nearLaneChange(const map::Route& route, double arc_length, double speed);
 /// Within 2.5 m of the next 80 m of the route and heading along it within 35 degrees.
 bool isLeading(const map::Route& route, double arc_length, const traffic::VehicleState& other);
 
+/// Vehicles farther than this from `vehicle` cannot be leading [m].
+double leaderReach(const map::Route& route, double arc_length,
+                   const traffic::VehicleState& vehicle);
+
 /// Within 3 m (6 m when a lane change lies in the last 15 m) of the past 80 m and heading along it
 /// within 30 degrees.
 bool isTrailing(const map::Route& route, double arc_length, const traffic::VehicleState& other);
@@ -36,15 +41,44 @@ bool isTrailing(const map::Route& route, double arc_length, const traffic::Vehic
 std::optional<double> distanceToRedLight(const map::Route& route, double arc_length,
                                          const traffic::TrafficSnapshot& snapshot);
 
+/// Stop signs as RIFT obeys them: one that the vehicle stands at (below 0.1 m/s, its center less
+/// than 3 m before the line) is cleared, and stays so until the next one is farther than 10 m.
+/// State of one vehicle, one call per decision.
+class StopSignRule {
+ public:
+  /// Distance to the line of the next stop sign that is not cleared [m].
+  std::optional<double> distance(const map::Route& route, double arc_length, double speed);
+
+ private:
+  bool cleared_ = false;
+};
+
+/// Whether a vehicle is a bicycle. Snapshots carry sizes and no vehicle classes: SUMO's bicycles
+/// are 0.65 m wide, its mopeds 0.8 m.
+bool isBicycle(const traffic::VehicleDimensions& dimensions);
+
 /// Target on a free road [m/s]: the desired speed, or for an even style IDM's approach to it,
 /// slowing down by no more than b.
 double freeSpeed(const planning::PlanningTask& task, double desired);
 
-/// IDM speed behind a leader [m/s].
+/// IDM speed behind a leader, or a bicycle in the way [m/s].
 double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
                  double desired);
 
-/// IDM speed before a red light `distance` [m] ahead [m/s].
-double idmBeforeLight(const planning::PlanningTask& task, double desired, double distance);
+/// A stop line: where it is and how far before it to stand.
+struct StopLine {
+  double distance = 0.0;      ///< from the vehicle's center along the route [m]
+  double minimum_gap = 6.0;   ///< s0, from the center [m]
+  double time_headway = 0.1;  ///< T [s]
+};
+
+/// The line of a light that is not green: s0 = 6 m, T = 0.1 s.
+StopLine lineOfLight(double distance);
+
+/// The line of a stop sign: s0 = 2 m, T = 0.1 s.
+StopLine lineOfStopSign(double distance);
+
+/// IDM speed before a stop line [m/s].
+double idmBefore(const StopLine& line, const planning::PlanningTask& task, double desired);
 
 }  // namespace cdiff::planners

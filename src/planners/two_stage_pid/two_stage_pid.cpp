@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/text.h"
@@ -81,17 +80,6 @@ void TrajectoryTrackerOptions::validate() const {
   throw core::InputError(
       "two_stage_pid: look_ahead_minimum is " + core::formatNumber(look_ahead_minimum) +
       " m, but look_ahead_maximum only " + core::formatNumber(look_ahead_maximum) + " m");
-}
-
-WindowedPid::WindowedPid(double kp, double ki, double kd, std::int64_t window)
-    : kp_(kp), ki_(ki), kd_(kd), errors_(static_cast<std::size_t>(window), 0.0) {}
-
-double WindowedPid::update(double error) {
-  const double change = error - errors_.back();
-  errors_.pop_front();
-  errors_.push_back(error);
-  const double sum = std::accumulate(errors_.begin(), errors_.end(), 0.0);
-  return kp_ * error + ki_ * sum / static_cast<double>(errors_.size()) + kd_ * change;
 }
 
 TrajectoryTracker::TrajectoryTracker(const TrajectoryTrackerOptions& options)

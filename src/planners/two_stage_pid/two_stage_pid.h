@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/diffusion/diffusion_planner.h"
+#include "planning/windowed_pid.h"
 
 namespace cdiff::planners {
 
@@ -38,20 +38,6 @@ struct TrajectoryTrackerOptions {
   void validate() const;
 };
 
-/// PID with the mean of the last errors in place of an integral.
-class WindowedPid {
- public:
-  WindowedPid(double kp, double ki, double kd, std::int64_t window);
-  /// Output for this error; remembers it.
-  double update(double error);
-
- private:
-  double kp_;
-  double ki_;
-  double kd_;
-  std::deque<double> errors_;  ///< newest last, of fixed length
-};
-
 /// Makes one vehicle follow planned places (its body frame, m, one per 0.1 s) with two PIDs: the
 /// published execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e
 /// before). One call per decision; the gains are per call, so they depend on the decision period
@@ -76,8 +62,8 @@ class TrajectoryTracker {
   double turnError(double speed, const Eigen::MatrixX2d& places) const;
 
   TrajectoryTrackerOptions options_;
-  WindowedPid turn_;
-  WindowedPid speed_;
+  planning::WindowedPid turn_;
+  planning::WindowedPid speed_;
 };
 
 /// The diffusion planner with its denoised actions left out (the paper's two-stage variant): the

@@ -113,6 +113,28 @@ void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
   frames_.push_back(std::move(frame));
 }
 
+void Timeline::observeGazes(const traffic::TrafficSnapshot& snapshot,
+                            const std::vector<planning::PlannedAction>& actions) {
+  constexpr std::size_t kMost = 8;
+  constexpr double kLeast = 0.02;
+  if (frames_.empty() || frames_.back().time != snapshot.time) return;
+  for (const planning::PlannedAction& action : actions) {
+    const auto driver = index_by_id_.find(action.vehicle_id);
+    if (driver == index_by_id_.end()) continue;
+    std::vector<planning::AttendedVehicle> attended = action.attended;
+    std::stable_sort(attended.begin(), attended.end(), [](const auto& left, const auto& right) {
+      return left.weight > right.weight;
+    });
+    attended.resize(std::min(attended.size(), kMost));
+    for (const planning::AttendedVehicle& one : attended) {
+      const auto vehicle = index_by_id_.find(one.vehicle_id);
+      if (vehicle == index_by_id_.end() || !(one.weight >= kLeast)) continue;
+      frames_.back().gazes.push_back(
+          {driver->second, vehicle->second, static_cast<float>(std::min(one.weight, 1.0))});
+    }
+  }
+}
+
 void Timeline::addContacts(const traffic::TrafficSnapshot& snapshot) {
   for (const traffic::Contact& contact : snapshot.contacts) {
     const traffic::Vehicle* first = snapshot.find(contact.first);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "metrics/measures/sample_statistics.h"
 
@@ -83,10 +84,18 @@ struct TimelinePose {
   float time_to_collision = -1.0F;
 };
 
+/// How much the planner of one vehicle looked at another (planning::AttendedVehicle).
+struct TimelineGaze {
+  std::uint32_t driver = 0;  ///< index in Timeline::vehicles(), as is the next
+  std::uint32_t vehicle = 0;
+  float weight = 0.0F;  ///< [0, 1]
+};
+
 /// Poses of all vehicles at one time.
 struct TimelineFrame {
   double time = 0.0;  ///< [s]
   std::vector<TimelinePose> poses;
+  std::vector<TimelineGaze> gazes;  ///< the largest of each driver, of planners that say them
 };
 
 /// A contact of two vehicles, with its place in the map frame [m].
@@ -111,6 +120,10 @@ class Timeline {
  public:
   explicit Timeline(double simulation_step);
   void observe(const traffic::TrafficSnapshot& snapshot);
+  /// What the planners looked at, after `observe` of the snapshot that they decided on. Of each
+  /// driver the eight largest weights are kept, those below 0.02 not.
+  void observeGazes(const traffic::TrafficSnapshot& snapshot,
+                    const std::vector<planning::PlannedAction>& actions);
 
   /// In order of appearance.
   const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }

@@ -32,6 +32,7 @@ LoggedPlan planOf(const traffic::TrafficSnapshot& snapshot, const traffic::Vehic
   plan.time = snapshot.time;
   plan.start = waypointOf(vehicle.state);
   plan.state_mismatch = action.state_mismatch;
+  plan.candidates = action.candidates;
   plan.points.reserve(action.rollout.size());
   for (const planning::RolloutPoint& point : action.rollout) {
     plan.points.push_back(waypointOf(point.state));

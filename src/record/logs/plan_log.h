@@ -28,7 +28,8 @@ struct LoggedPlan {
   double time = 0.0;  ///< [s]
   Waypoint start;     ///< state of the vehicle at the decision
   std::vector<Waypoint> points;
-  double state_mismatch = 0.0;  ///< see planning::PlannedAction [m]
+  double state_mismatch = 0.0;                         ///< see planning::PlannedAction [m]
+  std::vector<planning::PlannedCandidate> candidates;  ///< that it was weighed against
 
   double horizon() const;  ///< duration of the plan [s]
 };

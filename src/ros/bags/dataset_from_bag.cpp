@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
+#include "collection/scene_recorder.h"
 #include "collection/training_samples.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -160,18 +162,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void record(const collection::CollectRequest& request, const collection::CollectSettings& settings,
-            const fs::path& file, const std::atomic<bool>& stop) {
-  const auto setup = collection::collectionSetup(settings.scenario, settings.collection);
-  collection::CollectionLoop loop(*setup, settings.collection, request.images);
-  SessionBagWriter bag(*setup, file, {"cdiff collect", loop.world().simulatorVersion()});
-  bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
-  loop.addObserver(bag);
+collection::DriverQueries queriesOf(const collection::CollectionLoop& loop) {
+  collection::DriverQueries queries;
+  queries.driver = [&](const std::string& id) -> learning::SceneDriver {
+    const auto driver = loop.driverOf(id);
+    return {driver.target_speed, driver.style.minimum_gap, driver.style.time_headway,
+            driver.style.acceleration, driver.style.deceleration};
+  };
+  queries.noisy = [&](const std::string& id) { return loop.perturbed(id); };
+  return queries;
+}
+
+void runToItsEnd(collection::CollectionLoop& loop, const std::atomic<bool>& stop) {
   const traffic::SessionStatus status = loop.run(stop);
   if (status == traffic::SessionStatus::kInterrupted) throw core::Interrupted("interrupted");
   if (status == traffic::SessionStatus::kError)
     throw core::SimulatorError(loop.world().snapshot().faults.back().text);
-  bag.finish();
+}
+
+/// Drives the session, and writes its bag where shards are made of it or it is asked for, and its
+/// scene where that is asked for.
+void record(const collection::CollectRequest& request, const collection::CollectSettings& settings,
+            const std::string& name, const std::atomic<bool>& stop) {
+  const auto setup = collection::collectionSetup(settings.scenario, settings.collection);
+  collection::CollectionLoop loop(*setup, settings.collection, request.images);
+  std::optional<SessionBagWriter> bag;
+  std::optional<collection::SceneRecorder> scene;
+  if (request.images || request.keep_bag || !request.scenes) {
+    bag.emplace(*setup, collection::bagFile(request, name),
+                BagOrigin{"cdiff collect", loop.world().simulatorVersion()});
+    bag->setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
+    loop.addObserver(*bag);
+  }
+  if (request.scenes) loop.addObserver(scene.emplace(*setup, queriesOf(loop)));
+  runToItsEnd(loop, stop);
+  if (bag) bag->finish();
+  if (!scene) return;
+  const fs::path file = collection::sceneFile(request, name);
+  fs::create_directories(file.parent_path());
+  learning::writeScene(file, scene->take());
 }
 
 collection::DatasetStatistics writeShard(const collection::CollectRequest& request,
@@ -221,7 +250,7 @@ void collectSession(const collection::CollectRequest& request, const std::atomic
   const collection::CollectSettings settings = collection::resolveCollection(request);
   const std::string name = collection::sessionName(settings);
   const fs::path bag = collection::bagFile(request, name);
-  record(request, settings, bag, stop);
+  record(request, settings, name, stop);
   if (!request.images) return;
   const collection::DatasetStatistics statistics =
       writeShard(request, settings, bag, collection::shardFile(request, name));

@@ -183,7 +183,9 @@ void takeControl(const AnyMessage& message, const TickReading&, Answer& answer) 
 }
 
 void takeRollout(const AnyMessage& message, const TickReading&, Answer& answer) {
-  answer.action.rollout = fromMsg(*messageAs<msgs::Rollout>(message));
+  const auto rollout = messageAs<msgs::Rollout>(message);
+  answer.action.rollout = fromMsg(*rollout);
+  answer.action.candidates = candidatesFromMsg(*rollout);
 }
 
 void takeGuidance(const AnyMessage& message, const TickReading&, Answer& answer) {

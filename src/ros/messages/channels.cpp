@@ -154,7 +154,7 @@ Rows tickRows() {
       Row::of<msgs::CbvSelection>(ChannelId::kSelection, "cbv/selection", Party::kIdentification,
                                   "Vehicle, conflict point and route of each occupied slot.")
           .heardBy(Party::kSimulator)
-          .heardBy(Party::kCamera)
+          .heardBy(Party::kCamera, kCbvsShown)
           .heardBy(Party::kCbvPlanner)
           .observed()
           .answer(Need::kDecision)

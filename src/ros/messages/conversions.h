@@ -63,6 +63,7 @@ planning::PlannedAction fromMsg(const msgs::ControlAction& message);
 msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
                            const traffic::TrafficSnapshot& snapshot);
 std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message);
+std::vector<planning::PlannedCandidate> candidatesFromMsg(const msgs::Rollout& message);
 
 /// What guidance did for all vehicles of a decision; the caller fills in latency and image age.
 msgs::GuidanceReport toGuidanceMsg(const std::vector<planning::PlannedAction>& actions,

@@ -161,6 +161,11 @@ msgs::ControlAction toMsg(const planning::PlannedAction& action,
   message.planner = origin.planner;
   message.planner_latency_ms = origin.latency_ms;
   message.fault = origin.fault.empty() ? action.fault : origin.fault;
+  for (const planning::AttendedVehicle& vehicle : action.attended) {
+    message.attended.emplace_back();
+    message.attended.back().vehicle_id = vehicle.vehicle_id;
+    message.attended.back().weight = vehicle.weight;
+  }
   return message;
 }
 
@@ -170,6 +175,8 @@ planning::PlannedAction fromMsg(const msgs::ControlAction& message) {
   action.vehicle_id = message.vehicle_id;
   action.action = {message.throttle, message.steer, message.brake};
   action.fault = message.fault;
+  for (const msgs::AttendedVehicle& vehicle : message.attended)
+    action.attended.push_back({vehicle.vehicle_id, vehicle.weight});
   return action;
 }
 
@@ -187,6 +194,15 @@ msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
     message.points.back().steer = point.action.steer;
     message.points.back().brake = point.action.brake;
   }
+  for (const planning::PlannedCandidate& candidate : action.candidates) {
+    message.candidates.emplace_back();
+    message.candidates.back().score = candidate.score;
+    message.candidates.back().chosen = candidate.chosen ? 1 : 0;
+    for (const Eigen::Vector2d& place : candidate.places) {
+      message.candidates.back().x.push_back(place.x());
+      message.candidates.back().y.push_back(place.y());
+    }
+  }
   return message;
 }
 
@@ -196,6 +212,18 @@ std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message) {
     points.push_back({fromMsg(point.state), {point.throttle, point.steer, point.brake}});
   }
   return points;
+}
+
+std::vector<planning::PlannedCandidate> candidatesFromMsg(const msgs::Rollout& message) {
+  std::vector<planning::PlannedCandidate> candidates;
+  for (const msgs::PlannedCandidate& from : message.candidates) {
+    planning::PlannedCandidate& candidate = candidates.emplace_back();
+    candidate.score = from.score;
+    candidate.chosen = from.chosen != 0;
+    for (std::size_t i = 0; i < std::min(from.x.size(), from.y.size()); ++i)
+      candidate.places.emplace_back(from.x[i], from.y[i]);
+  }
+  return candidates;
 }
 
 }  // namespace cdiff::ros

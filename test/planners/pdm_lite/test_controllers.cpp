@@ -29,6 +29,18 @@ TEST(LateralController, FirstStepIsTheSumOfAllThreeTerms) {
   EXPECT_DOUBLE_EQ(controller.steer({}, aim), 0.206);
 }
 
+TEST(LateralController, OriginalConfigurationSteersHarder) {
+  // 3.1183572 x 0.1 + 0.6406068 x 0.1 / 6 + 1.3782509 x 0.1 = 0.3118357 + 0.0106768 + 0.1378251.
+  PdmLiteOptions options;
+  options.configuration = "original";
+  const double angle = core::degreesToRadians(9.0);
+  const Eigen::Vector2d aim(std::cos(angle), std::sin(angle));
+  EXPECT_DOUBLE_EQ(LateralController(options).steer({}, aim), 0.46);
+  // A key that is given lies above the configuration: 0.1 + 0.0106768 + 0.1378251 = 0.2485019.
+  options.lateral_kp = 1.0;
+  EXPECT_DOUBLE_EQ(LateralController(options).steer({}, aim), 0.249);
+}
+
 TEST(LateralController, WindowForgetsOldErrors) {
   PdmLiteOptions options;
   options.lateral_window = 2;
@@ -81,6 +93,16 @@ TEST(Pedals, ZeroTargetBrakesAndSmallTargetsAreOneKmh) {
   // Target 0.001 m/s counts as 1 km/h: from rest e = 1 km/h, 1.710818711 + 0.00009 limited to 1.
   EXPECT_FALSE(pedals(0.0, 0.001).brake);
   EXPECT_EQ(pedals(0.0, 0.001).throttle, 1.0);
+}
+
+// PDM-Lite brakes where there is no throttle below 0.5 m/s, lest the car rolls back on a slope.
+TEST(Pedals, NeverCoastWhenSlow) {
+  for (double speed = 0.0; speed < 0.5; speed += 0.01) {
+    for (double target = 0.0; target < 20.0; target += 0.01) {
+      const PedalCommand command = pedals(speed, target);
+      ASSERT_TRUE(command.brake || command.throttle > 0.0) << speed << " to " << target;
+    }
+  }
 }
 
 TEST(ForecastThrottle, NeverBrakesAndRollsFarAboveTheTarget) {

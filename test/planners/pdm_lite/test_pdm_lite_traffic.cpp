@@ -12,12 +12,11 @@ namespace cdiff::planners {
 namespace {
 
 using testing::ClosedLoop;
+using testing::kNorth;
 using testing::makeNetwork;
 using testing::routeAlong;
 using testing::straight;
 using testing::vehicleAt;
-
-constexpr double kNorth = 0.5 * core::kPi;
 
 /// A road along +x and one across it at x = 100, without a junction.
 class CrossRoads : public ::testing::Test {
@@ -302,38 +301,6 @@ TEST_F(CrossRoads, CbvThatGaveWayRestartsByItsSlot) {
     } while (loop.actions()[0].action.throttle == 0.0 && decision < 20);
     EXPECT_EQ(decision, goes) << "slot " << slot;
   }
-}
-
-class Light : public ::testing::Test {
- protected:
-  map::RoadNetwork network_ =
-      makeNetwork({{"in", straight(0.0, 0.0, 80.0, 0.0)}, {"out", straight(80.0, 0.0, 200.0, 0.0)}},
-                  {{"in", "out", "light"}});
-  map::Route route_ = routeAlong(network_, {"in", "out"});
-};
-
-TEST_F(Light, StopsSixMetersBeforeRedAndGoesOnGreen) {
-  ClosedLoop loop(network_);
-  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
-  loop.setSignal("light", "r");
-  loop.run(15.0);
-  // s0 = 6 m from the center to the stop line.
-  EXPECT_NEAR(80.0 - loop.vehicle(0).state.position.x(), 6.0, 1.5);
-  EXPECT_LT(loop.vehicle(0).state.speed, 0.1);
-  RecordProperty("stop_distance_m", std::to_string(80.0 - loop.vehicle(0).state.position.x()));
-  loop.setSignal("light", "G");
-  loop.run(5.0);
-  EXPECT_GT(loop.vehicle(0).state.position.x(), 90.0);
-}
-
-TEST_F(Light, IsIgnoredWhereTheOptionSaysSo) {
-  PdmLiteOptions options;
-  options.obey_lights = false;
-  ClosedLoop loop(network_, options);
-  loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route_);
-  loop.setSignal("light", "r");
-  loop.run(15.0);
-  EXPECT_GT(loop.vehicle(0).state.position.x(), 90.0);
 }
 
 std::string bytesOf(const std::vector<planning::PlannedAction>& actions) {

@@ -34,6 +34,18 @@ TEST_F(StraightRoad, InitialSpeedIsTheSmallestOfThree) {
   EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route_, 10.0, 5.0, 20.0), 10.0);
 }
 
+TEST(RouteRules, OriginalConfigurationDrivesAtMost20MetersPerSecond) {
+  const auto network = makeNetwork({{"fast", straight(0.0, 0.0, 200.0, 0.0), 40.0}});
+  const map::Route route = routeAlong(network, {"fast"});
+  PdmLiteOptions options;
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 10.0, 5.0, 100.0), 28.8);  // 0.72 x 40
+  options.configuration = "original";
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 10.0, 5.0, 100.0), 20.0);
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 10.0, 5.0, 8.0), 8.0);
+  options.top_speed = 15.0;
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 10.0, 5.0, 100.0), 15.0);
+}
+
 TEST_F(StraightRoad, LeaderIsNearTheRouteAheadAndAlongIt) {
   EXPECT_TRUE(isLeading(route_, 50.0, stateAt(70.0, 2.4, 34.0)));
   EXPECT_FALSE(isLeading(route_, 50.0, stateAt(70.0, 2.6, 0.0)));
@@ -60,8 +72,8 @@ TEST(RouteRules, JunctionCapCounts30MetersAhead) {
   const map::Route route = routeAlong(network, {"in", ":j_0", "out"});
   const PdmLiteOptions options;
   EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 69.0, 0.0, 100.0), 36.0);
-  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 71.0, 0.0, 100.0), 17.78);
-  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 105.0, 0.0, 100.0), 17.78);
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 71.0, 0.0, 100.0), 64.0 / 3.6);
+  EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 105.0, 0.0, 100.0), 64.0 / 3.6);
   EXPECT_DOUBLE_EQ(initialTargetSpeed(options, route, 113.0, 0.0, 100.0), 36.0);
 }
 
@@ -120,6 +132,47 @@ TEST(RouteRules, RedLightIsMeasuredToItsStopLine) {
   }
   snapshot.signals = {{"light", "r"}};
   EXPECT_FALSE(distanceToRedLight(route, 100.5, snapshot));
+}
+
+/// Three roads with stop signs between them, 25 and 8 m apart.
+class StopSigns : public ::testing::Test {
+ protected:
+  /// What the rule says where the next line is so far away.
+  std::optional<double> before(double line, double distance, double speed) {
+    return rule_.distance(route_, line - distance, speed);
+  }
+
+  map::RoadNetwork network_ =
+      makeNetwork({{"a", straight(0.0, 0.0, 50.0, 0.0)},
+                   {"b", straight(50.0, 0.0, 75.0, 0.0)},
+                   {"c", straight(75.0, 0.0, 83.0, 0.0)},
+                   {"d", straight(83.0, 0.0, 200.0, 0.0)}},
+                  {{"a", "b", "", "s"}, {"b", "c", "", "w"}, {"c", "d", "", "s"}});
+  map::Route route_ = routeAlong(network_, {"a", "b", "c", "d"});
+  StopSignRule rule_;
+};
+
+TEST_F(StopSigns, AreClearedByStandingLessThan3MetersBeforeTheLine) {
+  EXPECT_DOUBLE_EQ(before(50.0, 40.0, 8.0).value(), 40.0);
+  EXPECT_DOUBLE_EQ(before(50.0, 3.1, 0.0).value(), 3.1);
+  EXPECT_DOUBLE_EQ(before(50.0, 2.9, 0.11).value(), 2.9);
+  EXPECT_FALSE(before(50.0, 2.9, 0.09));
+  EXPECT_FALSE(before(50.0, 1.0, 5.0)) << "it stays cleared";
+}
+
+TEST_F(StopSigns, CountAgainOnceTheNextIsFartherThan10Meters) {
+  ASSERT_FALSE(before(50.0, 2.0, 0.0));
+  EXPECT_DOUBLE_EQ(before(75.0, 24.0, 3.0).value(), 24.0);
+  EXPECT_DOUBLE_EQ(before(75.0, 9.0, 3.0).value(), 9.0);
+  ASSERT_FALSE(before(75.0, 2.0, 0.0));
+  EXPECT_FALSE(before(83.0, 7.9, 3.0)) << "the next sign is too near to be armed";
+  EXPECT_FALSE(before(200.0, 50.0, 3.0)) << "no sign ahead";
+}
+
+TEST(RouteRules, BicyclesAreToldByTheirWidth) {
+  EXPECT_TRUE(isBicycle({1.6, 0.65, 1.7}));
+  EXPECT_FALSE(isBicycle({2.1, 0.8, 1.7}));  // SUMO's moped
+  EXPECT_FALSE(isBicycle({4.5, 1.8, 1.5}));
 }
 
 TEST(RouteFollower, GoesStraightOnBeyondTheEnds) {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "decision_scene.h"
+
+#include "e2e_cdiff/core/random.h"
+#include "session/session_request.h"
+
+namespace cdiff::benchmark {
+namespace {
+
+constexpr double kSpeed = 5.0;     // of all vehicles [m/s]
+constexpr double kStart = 5.0;     // of the ego on its route [m]
+constexpr double kSpacing = 8.0;   // [m]
+constexpr double kRadius = 150.0;  // of traffic around the middle of the row [m]
+
+session::ScenarioOptions scenarioWith(const std::string& cbv_planner) {
+  session::SessionRequest request;
+  request.scenario = "crossing_straight";
+  request.cbv_planner = cbv_planner;
+  return session::resolveRequest(request);
+}
+
+std::vector<map::LaneIndex> lanesAround(const map::RoadNetwork& network,
+                                        const Eigen::Vector2d& middle) {
+  std::vector<map::LaneIndex> lanes;
+  for (std::size_t i = 0; i < network.lanes().size(); ++i) {
+    const map::Lane& lane = network.lanes()[i];
+    const geometry::Polyline& line = lane.centerline;
+    const bool usable = lane.routable && !lane.internal && line.length() > 10.0;
+    const bool near = (line.positionAt(0.5 * line.length()) - middle).norm() < kRadius;
+    if (usable && near) lanes.push_back(static_cast<map::LaneIndex>(i));
+  }
+  return lanes;
+}
+
+traffic::Vehicle vehicleOn(const geometry::Polyline& line, double arc_length) {
+  traffic::Vehicle vehicle;
+  vehicle.state.position = line.positionAt(arc_length);
+  vehicle.state.elevation = line.pointAt(arc_length).z();
+  vehicle.state.heading = line.headingAt(arc_length);
+  vehicle.state.speed = kSpeed;
+  return vehicle;
+}
+
+}  // namespace
+
+DecisionScene::DecisionScene(const std::string& cbv_planner, std::size_t traffic)
+    : setup_(scenarioWith(cbv_planner)), images_(kCbvs) {
+  addRow();
+  addTraffic(traffic);
+  renewImages();
+}
+
+void DecisionScene::advance(bool new_images) {
+  snapshot_.tick += setup_.ticksPerDecision();
+  snapshot_.time += setup_.options().decision_period;
+  if (new_images) renewImages();
+  for (traffic::CameraImage& image : images_) image.tick = snapshot_.tick;
+}
+
+std::vector<planning::PlanningTask> DecisionScene::tasks(int first, int count) const {
+  std::vector<planning::PlanningTask> tasks;
+  for (int i = first; i < first + count; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    tasks.push_back({i, &snapshot_.vehicles[index + 1], &setup_.egoRoute(), 8.0, &images_[index]});
+  }
+  return tasks;
+}
+
+void DecisionScene::addRow() {
+  for (int i = 0; i <= kCbvs; ++i) {
+    traffic::Vehicle vehicle = vehicleOn(setup_.egoRoute().path(), kStart + kSpacing * i);
+    vehicle.id = i == 0 ? traffic::kEgoId : "cbv" + std::to_string(i);
+    vehicle.role = i == 0 ? traffic::VehicleRole::kEgo : traffic::VehicleRole::kCbv;
+    vehicle.cbv_slot = i - 1;
+    snapshot_.vehicles.push_back(vehicle);
+  }
+}
+
+void DecisionScene::addTraffic(std::size_t count) {
+  const Eigen::Vector2d middle =
+      setup_.egoRoute().path().positionAt(kStart + 0.5 * kSpacing * kCbvs);
+  const std::vector<map::LaneIndex> lanes = lanesAround(setup_.network(), middle);
+  const core::RandomStream random(3, "traffic");
+  for (std::size_t i = 0; i < count; ++i) {
+    const core::RandomKey key{i, 0, 0};
+    const map::Lane& lane = setup_.network().lane(lanes[random.index(key, 0, lanes.size())]);
+    traffic::Vehicle vehicle =
+        vehicleOn(lane.centerline, random.uniform(key, 1, 0.0, lane.centerline.length()));
+    vehicle.id = "car" + std::to_string(i);
+    vehicle.lane_id = lane.id;
+    snapshot_.vehicles.push_back(vehicle);
+  }
+}
+
+void DecisionScene::renewImages() {
+  const core::RandomStream random(snapshot_.tick + 1, "benchmark");
+  for (std::size_t i = 0; i < images_.size(); ++i) {
+    images_[i].width = 160;
+    images_[i].height = 96;
+    images_[i].rgb.resize(160 * 96 * 3);
+    for (std::size_t j = 0; j < images_[i].rgb.size(); ++j) {
+      images_[i].rgb[j] =
+          static_cast<std::uint8_t>(random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
+    }
+  }
+}
+
+}  // namespace cdiff::benchmark

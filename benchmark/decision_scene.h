@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "session/session_setup.h"
+
+namespace cdiff::benchmark {
+
+/// What planners decide on: an ego and CBVs one behind the other on the ego route of a shipped
+/// scenario, each with an image of its own, and traffic at fixed places on the lanes around them.
+class DecisionScene {
+ public:
+  static constexpr int kCbvs = 8;  ///< 8 m apart, the first 8 m ahead of the ego
+  /// `cbv_planner` as in a scenario, empty: the default; `traffic`: further vehicles within 150 m.
+  explicit DecisionScene(const std::string& cbv_planner = "", std::size_t traffic = 0);
+
+  /// A decision later; every CBV sees something new if asked.
+  void advance(bool new_images);
+  /// CBVs by number.
+  std::vector<planning::PlanningTask> tasks(int first, int count) const;
+  const session::SessionSetup& setup() const { return setup_; }
+  const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
+
+ private:
+  void addRow();
+  void addTraffic(std::size_t count);
+  void renewImages();
+
+  session::SessionSetup setup_;
+  traffic::TrafficSnapshot snapshot_;
+  std::vector<traffic::CameraImage> images_;
+};
+
+}  // namespace cdiff::benchmark

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/paper/paper_figures.h"
+#include "record/result_folder.h"
+
+namespace cdiff::evaluation {
+
+// One scene as each CBV planner of a batch drove it: runs that differ in the CBV planner alone.
+
+/// A contact of two vehicles and its place in the map frame [m].
+struct TouchPlace {
+  std::uint64_t tick = 0;
+  std::string vehicle;
+  std::string partner;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+};
+
+/// One planner's run of a scene: trace and contacts of CBVs and ego.
+struct DrivenScene {
+  std::string planner;
+  const BatchRun* run = nullptr;
+  double step = 0.0;                   ///< [s]
+  std::vector<record::TraceRow> rows;  ///< of all vehicles
+  std::vector<TouchPlace> touches;
+};
+
+/// The factors that the runs of a scene share: all but the CBV planner.
+Factors sceneOf(const BatchRun& run);
+
+/// Of the scenes that two or more planners drove to an end that of most planners with a CBV, then
+/// with the smallest distance of any CBV to the ego; by planner. Empty where there is none. Throws
+/// InputError naming a damaged trace or summary.
+std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs);
+
+/// "trails": a panel for each planner of that scene with road, trails, contacts and the smallest
+/// distance; none where there is no such scene.
+std::optional<Figure> trailFigure(const std::vector<BatchRun>& runs);
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/file.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/trail_figure.h"
+#include "metrics/known_measures.h"
+
+namespace cdiff::evaluation {
+namespace {
+
+using nlohmann::json;
+using record::TraceRow;
+using traffic::VehicleRole;
+
+/// Runs of one scene by CBV planner.
+using PlannersOfScene = std::map<std::string, const BatchRun*>;
+
+/// How well a scene shows planners: how many drove a CBV, and their smallest distance, negative.
+std::pair<std::ptrdiff_t, double> rankOfScene(const PlannersOfScene& scene) {
+  std::ptrdiff_t driven = 0;
+  double nearest = 1e9;
+  for (const auto& [planner, run] : scene) {
+    const auto distance = run->number(metrics::known::kCbvMinimumDistance.place);
+    driven += distance.has_value();
+    nearest = std::min(nearest, distance.value_or(nearest));
+  }
+  return {driven, -nearest};
+}
+
+/// Empty where no scene was driven by two planners.
+PlannersOfScene bestScene(const std::vector<BatchRun>& runs) {
+  std::map<Factors, PlannersOfScene> scenes;
+  for (const BatchRun& run : runs) {
+    if (run.record.complete())
+      scenes[sceneOf(run)].emplace(run.record.factors.at("cbv_planner"), &run);
+  }
+  PlannersOfScene best;
+  for (const auto& [factors, scene] : scenes) {
+    if (scene.size() > 1 && (best.empty() || rankOfScene(scene) > rankOfScene(best))) best = scene;
+  }
+  return best;
+}
+
+const TraceRow* lastRowAsCbv(const std::vector<TraceRow>& rows, const json& selection) {
+  const std::string id = selection.at("vehicle_id");
+  const std::uint64_t begin = selection.at("selected_tick");
+  const json& released = selection.at("released_tick");
+  const std::uint64_t end = released.is_null() ? rows.back().tick : released.get<std::uint64_t>();
+  const TraceRow* last = nullptr;
+  for (const TraceRow& row : rows) {
+    const bool within = begin <= row.tick && row.tick <= end;
+    if (within && row.role == VehicleRole::kCbv && row.id == id) last = &row;
+  }
+  return last;
+}
+
+/// A CBV that touches a vehicle other than the ego is gone at the next tick: the contact is midway
+/// between where the two were last.
+std::optional<TouchPlace> touchOf(const json& selection, const std::vector<TraceRow>& rows) {
+  const json& partner = selection.at("contact_with");
+  if (partner.is_null() || partner == traffic::kEgoId || rows.empty()) return std::nullopt;
+  const TraceRow* last = lastRowAsCbv(rows, selection);
+  if (last == nullptr) return std::nullopt;
+  TouchPlace touch{last->tick, last->id, partner.get<std::string>(), last->position};
+  for (const TraceRow& row : rows) {
+    if (row.tick == touch.tick && row.id == touch.partner)
+      touch.position = 0.5 * (last->position + row.position);
+  }
+  return touch;
+}
+
+/// Those of the ego, then those of CBVs with others; of two CBVs once.
+std::vector<TouchPlace> touchesIn(const json& summary, const std::vector<TraceRow>& rows) {
+  std::vector<TouchPlace> touches;
+  for (const json& contact : summary.at("ego").at("contacts")) {
+    const Eigen::Vector2d place(contact.at("x").get<double>(), contact.at("y").get<double>());
+    touches.push_back({contact.at("tick"), traffic::kEgoId, contact.at("with"), place});
+  }
+  for (const json& selection : summary.at("cbv").at("selections")) {
+    const auto touch = touchOf(selection, rows);
+    const auto same = [&](const TouchPlace& other) {
+      return other.tick == touch->tick && other.vehicle == touch->partner &&
+             other.partner == touch->vehicle;
+    };
+    if (touch && std::none_of(touches.begin(), touches.end(), same)) touches.push_back(*touch);
+  }
+  return touches;
+}
+
+DrivenScene drivenScene(const std::string& planner, const BatchRun& run) {
+  DrivenScene scene{planner, &run, scenarioOf(run).simulation_step, {}, {}};
+  scene.rows = record::readTrace(run.folder / "trace.csv");
+  const auto file = run.folder / "summary.json";
+  try {
+    scene.touches = touchesIn(json::parse(core::readFile(file, "summary")), scene.rows);
+  } catch (const json::exception& error) {
+    throw core::InputError("'" + file.string() + "' is no summary of a session: " + error.what());
+  }
+  return scene;
+}
+
+}  // namespace
+
+Factors sceneOf(const BatchRun& run) {
+  Factors scene = run.record.factors;
+  scene.erase("cbv_planner");
+  return scene;
+}
+
+std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs) {
+  std::vector<DrivenScene> scenes;
+  for (const auto& [planner, run] : bestScene(runs)) scenes.push_back(drivenScene(planner, *run));
+  return scenes;
+}
+
+}  // namespace cdiff::evaluation

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/plant/training/plant_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/file.h"
+#include "core/text.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "e2e_cdiff/core/random.h"
+#include "planning/route_follower.h"
+
+namespace cdiff::planners {
+namespace {
+
+using learning::Scene;
+
+constexpr std::size_t kStepsPerWaypoint = 5;  // decisions
+constexpr std::size_t kHorizon = kStepsPerWaypoint * kPlantWaypoints;
+constexpr double kStandingSpeed = 0.3;   // [m/s]
+constexpr double kDecisionPeriod = 0.1;  // [s]
+
+std::uint8_t binOf(double value, double low, double high, std::int64_t bins) {
+  const double place = (value - low) / (high - low) * static_cast<double>(bins);
+  return static_cast<std::uint8_t>(
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place)), 0, bins - 1));
+}
+
+void requireTenths(const Scene& scene) {
+  for (std::size_t i = 1; i < scene.decisions.size(); ++i) {
+    const double step = scene.decisions[i].time - scene.decisions[i - 1].time;
+    if (std::abs(step - kDecisionPeriod) < 1e-6) continue;
+    throw core::InputError("scene '" + scene.name + "': its decisions are " +
+                           core::formatNumber(step) +
+                           " s apart; PlanT learns from decisions 0.1 s "
+                           "apart (key decision_period)");
+  }
+}
+
+/// Where a drive's vehicle is at a decision.
+struct DrivePlace {
+  const traffic::Vehicle* vehicle = nullptr;
+  double arc_length = 0.0;
+};
+
+/// Follows the drives of one scene and makes its examples.
+class SceneExamples {
+ public:
+  SceneExamples(const Scene& scene, const map::RoadNetwork& network,
+                const PlantArchitecture& architecture, const PlantSampleOptions& options)
+      : scene_(scene),
+        architecture_(architecture),
+        options_(options),
+        thinning_(core::hashText(scene.name), "plant_standing"),
+        places_(scene.drives.size()) {
+    for (const learning::SceneDrive& drive : scene.drives)
+      routes_.push_back(learning::routeOf(scene, drive, network));
+    for (const auto& [tick, contact] : scene.contacts) {
+      contacts_.insert({contact.first, tick});
+      contacts_.insert({contact.second, tick});
+    }
+    followAll();
+  }
+
+  std::vector<PlantExample> make() const {
+    const auto stride =
+        static_cast<std::size_t>(std::max(1L, std::lround(options_.period / kDecisionPeriod)));
+    std::vector<PlantExample> examples;
+    for (std::size_t i = 0; i + kHorizon < scene_.decisions.size(); ++i) {
+      for (const auto& [slot, drive] : scene_.driven[i]) {
+        const double target = scene_.drives[drive].driver.target_speed;
+        if (target < options_.lowest_speed || target > options_.highest_speed) continue;
+        const bool due = (i + static_cast<std::size_t>(slot + 1)) % stride == 0;
+        if (due && fit(i, drive) && !thinned(i, drive)) examples.push_back(exampleAt(i, drive));
+      }
+    }
+    return examples;
+  }
+
+ private:
+  /// Along each route, decision by decision, as a planner follows it.
+  void followAll() {
+    std::vector<planning::RouteFollower> followers(scene_.drives.size());
+    for (std::size_t i = 0; i < scene_.decisions.size(); ++i) {
+      for (const auto& [slot, drive] : scene_.driven[i]) {
+        const traffic::Vehicle* vehicle = scene_.decisions[i].find(scene_.drives[drive].vehicle_id);
+        if (vehicle == nullptr) continue;
+        followers[drive].update(routes_[drive], vehicle->state.position);
+        places_[drive][i] = {vehicle, followers[drive].arcLength()};
+      }
+    }
+  }
+
+  const DrivePlace* placeAt(std::size_t i, std::size_t drive) const {
+    const auto found = places_[drive].find(i);
+    return found == places_[drive].end() ? nullptr : &found->second;
+  }
+
+  /// Whether the vehicle drives by itself from a decision to the end of the horizon.
+  bool fit(std::size_t begin, std::size_t drive) const {
+    constexpr double kJump = 0.5;  // [m] off the distance that its speeds explain
+    const std::string& id = scene_.drives[drive].vehicle_id;
+    const traffic::Vehicle* before = nullptr;
+    for (std::size_t i = begin; i <= begin + kHorizon; ++i) {
+      const std::uint64_t tick = scene_.decisions[i].tick;
+      const DrivePlace* place = placeAt(i, drive);
+      if (place == nullptr || !place->vehicle->applied_action) return false;
+      if (i < begin + kHorizon && scene_.disturbed.count({id, tick}) != 0) return false;
+      const traffic::VehicleState& state = place->vehicle->state;
+      if (before != nullptr) {
+        const double moved = (state.position - before->state.position).norm();
+        const double expected = 0.5 * kDecisionPeriod * (state.speed + before->state.speed);
+        if (std::abs(moved - expected) > kJump) return false;
+      }
+      before = place->vehicle;
+    }
+    const auto contact = contacts_.lower_bound({id, scene_.decisions[begin].tick});
+    return contact == contacts_.end() || contact->first != id ||
+           contact->second > scene_.decisions[begin + kHorizon].tick;
+  }
+
+  bool thinned(std::size_t begin, std::size_t drive) const {
+    for (std::size_t i = begin; i <= begin + kHorizon; ++i) {
+      if (placeAt(i, drive)->vehicle->state.speed > kStandingSpeed) return false;
+    }
+    const core::RandomKey key{core::hashText(scene_.drives[drive].vehicle_id),
+                              static_cast<std::uint32_t>(begin), 0};
+    return thinning_.uniform(key, 0) >= options_.standing_share;
+  }
+
+  PlantExample exampleAt(std::size_t begin, std::size_t drive) const {
+    const traffic::TrafficSnapshot& snapshot = scene_.decisions[begin];
+    const DrivePlace& place = *placeAt(begin, drive);
+    const geometry::Pose2d pose = place.vehicle->state.pose();
+    PlantExample example;
+    example.input =
+        plantInput(architecture_, snapshot, *place.vehicle, routes_[drive], place.arc_length);
+    example.speed = place.vehicle->state.speed;
+    example.session = core::hashText(scene_.name);
+    for (std::size_t n = 0; n < example.driven.size(); ++n) {
+      const std::size_t later = begin + (n + 1) * kStepsPerWaypoint;
+      example.driven[n] = pose.toBody(placeAt(later, drive)->vehicle->state.position);
+    }
+    const traffic::TrafficSnapshot& next = scene_.decisions[begin + kStepsPerWaypoint];
+    for (const std::string& id : example.input.ids) {
+      const traffic::Vehicle* other = next.find(id);
+      example.next.emplace_back();
+      example.next.back().fill(kNoBin);
+      if (other != nullptr)
+        example.next.back() = plantBins(plantToken(pose, other->state, other->dimensions));
+    }
+    example.input.ids.clear();
+    return example;
+  }
+
+  const Scene& scene_;
+  const PlantArchitecture& architecture_;
+  const PlantSampleOptions& options_;
+  core::RandomStream thinning_;
+  std::vector<map::Route> routes_;                            ///< by drive
+  std::vector<std::map<std::size_t, DrivePlace>> places_;     ///< by drive, then decision
+  std::set<std::pair<std::string, std::uint64_t>> contacts_;  ///< vehicle, tick
+};
+
+}  // namespace
+
+std::array<std::uint8_t, kPlantAttributes> plantBins(const PlantToken& token) {
+  constexpr double kRange = 30.0;          // of x and y to either side, and of extents [m]
+  constexpr double kFastest = 60.0 / 3.6;  // [m/s]
+  const auto value = [&](std::size_t i, double scale) {
+    return scale * static_cast<double>(token[i]);
+  };
+  return {binOf(value(0, kPlantPlaceScale), -kRange, kRange, kPlantBins[0]),
+          binOf(value(1, kPlantPlaceScale), -kRange, kRange, kPlantBins[1]),
+          binOf(value(2, 1.0), -1.0, 1.0, kPlantBins[2]),
+          binOf(value(3, kPlantSpeedScale), 0.0, kFastest, kPlantBins[3]),
+          binOf(value(4, kPlantExtentScale), 0.0, kRange, kPlantBins[4]),
+          binOf(value(5, kPlantExtentScale), 0.0, kRange, kPlantBins[5])};
+}
+
+void PlantSampleOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.number({"period", "s", "Between two samples of a vehicle."}, period, 0.1, 60.0);
+  visitor.number({"standing_share", "", "Part kept of samples that stand for the 2 s to come."},
+                 standing_share, 0.0, 1.0);
+  visitor.number({"lowest_target_speed", "m/s", "Drivers with a lower target speed are left out."},
+                 lowest_speed, 0.0, 100.0);
+  visitor.number({"highest_target_speed", "m/s", "Drivers with a higher one are left out."},
+                 highest_speed, 0.0, 100.0);
+}
+
+const map::RoadNetwork& PlantSampler::networkOf(const learning::Scene& scene) {
+  auto& network = networks_[core::sha256(scene.network_text)];
+  if (!network) {
+    network = std::make_unique<map::RoadNetwork>(
+        map::RoadNetwork::fromText(scene.network_text, scene.network_source));
+  }
+  return *network;
+}
+
+std::vector<PlantExample> PlantSampler::examplesOf(const learning::Scene& scene) {
+  requireTenths(scene);
+  return SceneExamples(scene, networkOf(scene), architecture_, options_).make();
+}
+
+}  // namespace cdiff::planners

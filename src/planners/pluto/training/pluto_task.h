@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "learning/task.h"
+#include "learning/task_registry.h"
+#include "planners/pluto/training/pluto_net.h"
+#include "planners/pluto/training/pluto_scenes.h"
+
+namespace cdiff::planners {
+
+/// What the training of Pluto asks beyond the options of every training.
+struct PlutoTrainingSettings {
+  PlutoArchitecture architecture;
+  PlutoSampleOptions samples;
+  double motion_dropout = 0.75;  ///< chance that speed, acceleration or steer is not shown
+  double history_dropout = 0.1;  ///< chance that less of the history is shown, as after a start
+  double layer_dropout = 0.1;    ///< chance that a step of the encoder is left out
+  double contrast_share = 1.0 / 3.0;  ///< last part of the steps that learns from triplets, too
+
+  void describe(core::OptionsVisitor& visitor);
+};
+
+/// The network and all moments of a run.
+struct PlutoTrainingState {
+  const learning::TrainingRun& run;
+  const PlutoTrainingSettings& settings;
+  PlutoNet net;
+  const std::vector<PlutoScene>& scenes;
+  std::vector<PlutoPlace> places;  ///< by index in the data set
+};
+
+/// The training of Pluto: it imitates the vehicles that were driven in scenes, in one stage,
+/// `imitation`.
+class PlutoTask : public learning::Task {
+ public:
+  learning::TaskTexts texts() const override;
+  std::vector<learning::StageInfo> stages() const override;
+  std::vector<std::string> allStages() const override;
+  std::vector<learning::PartSource> model() const override;
+  std::vector<std::string> weightFiles() const override { return {kPluto.file}; }
+  std::vector<std::string> fields() const override;
+  learning::SampleSchema sceneFields() const override { return plutoFields(); }
+  std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
+  void setDefaults(learning::TrainingOptions& options) const override;
+  void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
+  void validate() const override { settings.architecture.validate(); }
+
+  void start(const learning::TrainingRun& run) override;
+  nlohmann::json facts() const override;
+  std::vector<learning::TrainedPart> parts() override;
+  std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
+  learning::TrainedModel finish() override;
+
+  PlutoTrainingSettings settings;
+
+ private:
+  std::optional<PlutoWorlds> worlds_;
+  std::vector<PlutoScene> scenes_;
+  std::unique_ptr<PlutoTrainingState> state_;
+};
+
+/// The task "pluto".
+learning::TaskDescriptor plutoTraining();
+
+}  // namespace cdiff::planners

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "inference/safetensors.h"
+#include "planners/ppo/ppo_rules.h"
+
+namespace cdiff::planners {
+
+/// A dense layer y = W x + b in float32. Sums run over the inputs in their order, so the result
+/// does not depend on compiler or instruction set as long as multiplication and addition are not
+/// fused.
+class PpoLayer {
+ public:
+  /// `weight` [outputs, inputs], `bias` [outputs].
+  PpoLayer(const inference::Tensor& weight, const inference::Tensor& bias);
+  /// y of x; both have their own memory. Inputs that are 0 cost nothing.
+  void apply(const float* x, float* y) const;
+  std::size_t outputs() const { return bias_.size(); }
+
+ private:
+  std::size_t inputs_;
+  std::vector<float> weight_;  ///< [inputs, outputs]
+  std::vector<float> bias_;
+};
+
+/// The actor of PPO: 24-256-256-2 with ReLU between the layers, and a standard deviation that does
+/// not depend on the observation. The weight file also holds the critic, 24-256-256-1, for training
+/// to go on from. Training builds the same networks of torch (training/ppo_networks.h).
+class PpoActor {
+ public:
+  static constexpr std::int64_t kHidden = 256;
+  static constexpr const char* kFile = "ppo.safetensors";    ///< in the folder of the weights
+  static constexpr const char* kFormat = "e2e_cdiff.ppo.1";  ///< its metadata key "format"
+
+  using Weights = std::map<std::string, inference::Tensor>;
+
+  /// Names and shapes of the weights of actor ("actor.") and critic ("critic.").
+  static std::vector<inference::TensorShape> tensors();
+  /// The file in `folder`. Throws InputError with the command that trains it where there is none.
+  static std::filesystem::path weightFile(const std::filesystem::path& folder);
+  /// Throws InputError naming the file and what is wrong: see weightFile and readSafetensors;
+  /// weights of another planner are named as such.
+  static Weights readWeights(const std::filesystem::path& folder);
+
+  /// `weights` are those that tensors() names; the critic's are not looked at.
+  explicit PpoActor(const Weights& weights);
+
+  /// Mean of the Gaussian that training samples from.
+  PpoAction mean(const PpoObservation& observation) const;
+  /// The action that drives outside of training: tanh(mean).
+  PpoAction act(const PpoObservation& observation) const;
+  /// Standard deviation of the Gaussian, by action.
+  const PpoAction& deviation() const { return deviation_; }
+
+ private:
+  PpoLayer first_;
+  PpoLayer second_;
+  PpoLayer last_;
+  PpoAction deviation_{};
+};
+
+}  // namespace cdiff::planners

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/rift/training/rift_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "e2e_cdiff/core/random.h"
+#include "planning/surrounding_vehicles.h"
+
+namespace cdiff::planners {
+namespace {
+
+constexpr double kNeighborRadius = 60.0;     // [m]
+constexpr double kRiftStanding = 0.3;        // [m/s]
+constexpr std::size_t kProfileLength = 100;  // [m]
+
+std::vector<traffic::Vehicle> neighborsOf(const traffic::TrafficSnapshot& snapshot,
+                                          const traffic::Vehicle& own) {
+  std::vector<traffic::Vehicle> neighbors;
+  for (const traffic::Vehicle& other : snapshot.vehicles) {
+    if (other.id == own.id || traffic::onDifferentLevels(own, other)) continue;
+    if ((other.state.position - own.state.position).norm() <= kNeighborRadius)
+      neighbors.push_back(other);
+  }
+  return neighbors;
+}
+
+/// 1 for the smallest; equal values share their mean.
+std::vector<double> ranksOf(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
+    const double rank = 0.5 * static_cast<double>(begin + 1 + end);
+    for (; begin < end; ++begin) ranks[order[begin]] = rank;
+  }
+  return ranks;
+}
+
+}  // namespace
+
+std::vector<RiftMoment> riftMoments(const learning::Scene& scene, const PlutoScene& tracks,
+                                    std::uint32_t number, const RiftSampleOptions& options) {
+  const auto stride =
+      static_cast<std::size_t>(std::max(1L, std::lround(options.period / kPlutoPeriod)));
+  const core::RandomStream thinning(core::hashText(tracks.name()), "rift_standing");
+  std::vector<RiftMoment> moments;
+  for (std::size_t d = 0; d < tracks.drives().size(); ++d) {
+    for (const auto& [decision, arc_length] : tracks.drives()[d].places) {
+      if ((decision + d) % stride != 0) continue;
+      const traffic::TrafficSnapshot& snapshot = scene.decisions[decision];
+      const traffic::Vehicle* own = snapshot.find(scene.drives[d].vehicle_id);
+      const core::RandomKey key{d, static_cast<std::uint32_t>(decision), 0};
+      if (own->state.speed < kRiftStanding && thinning.uniform(key, 0) >= options.standing_share)
+        continue;
+      moments.push_back(
+          {{number, static_cast<std::uint32_t>(decision), static_cast<std::uint32_t>(d), 0},
+           neighborsOf(snapshot, *own)});
+    }
+  }
+  return moments;
+}
+
+RiftGroups::OfWorld& RiftGroups::ofWorld(const PlutoWorld& world) {
+  std::unique_ptr<OfWorld>& known = worlds_[&world];
+  if (!known) known = std::make_unique<OfWorld>(model_, world);
+  return *known;
+}
+
+RiftGroup RiftGroups::of(const PlutoScene& scene, const RiftMoment& moment) {
+  const PlutoWorld& world = scene.world();
+  OfWorld& tools = ofWorld(world);
+  const PlutoMoment view = scene.moment(moment.place.decision, moment.place.drive);
+  RiftState state;
+  state.lines = tools.builder.linesOf(view);
+  state.pose = view.point().state.pose();
+  state.elevations.clear();
+  for (std::size_t i = 0; i <= kProfileLength; ++i)
+    state.elevations.push_back(
+        view.route->path().pointAt(view.arc_length + static_cast<double>(i)).z());
+  state.speed = view.point().state.speed;
+  state.size = view.vehicles->size(view.own);
+  for (const traffic::Vehicle& other : moment.neighbors) {
+    state.neighbors.push_back(
+        {planning::forecastMotion(other, world.network, vehicle_, kRiftSteps), other.dimensions});
+  }
+  const PlutoOutput output = tools.network.forward(tools.builder.inputOf(view, state.lines));
+  return {output.features, output.logits,
+          evaluator_.returnsOf(state, output.candidates, tools.mask)};
+}
+
+double rankCorrelation(const std::vector<double>& first, const std::vector<double>& second) {
+  const std::vector<double> a = ranksOf(first);
+  const std::vector<double> b = ranksOf(second);
+  const double mean = 0.5 * static_cast<double>(a.size() + 1);
+  double product = 0.0;
+  double square_a = 0.0;
+  double square_b = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    product += (a[i] - mean) * (b[i] - mean);
+    square_a += (a[i] - mean) * (a[i] - mean);
+    square_b += (b[i] - mean) * (b[i] - mean);
+  }
+  const double scale = std::sqrt(square_a * square_b);
+  return scale > 0.0 ? product / scale : 0.0;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "learning/task.h"
+#include "learning/task_registry.h"
+#include "planners/rift/training/rift_groups.h"
+#include "planners/rift/training/rift_objective.h"
+
+namespace cdiff::planners {
+
+/// What the fine-tuning of RIFT asks beyond the options of every training.
+struct RiftTrainingSettings {
+  RiftSampleOptions samples;
+  std::string objective = "rift";  ///< rift | grpo
+  double kl_weight = 0.2;          ///< of `grpo`
+  std::int64_t buffer = 4096;      ///< states gathered at a time
+  std::int64_t epochs = 16;        ///< passes over them
+
+  void describe(core::OptionsVisitor& visitor);
+  RiftObjective objectiveOf() const;
+};
+
+/// The network and all moments of a run.
+struct RiftTrainingState {
+  const learning::TrainingRun& run;
+  const RiftTrainingSettings& settings;
+  PlutoModel model;             ///< that it started from
+  std::string start;            ///< SHA-256 of its file
+  learning::ParameterSet head;  ///< what is trained: the score head
+  RiftGroups groups;
+  const std::vector<PlutoScene>& scenes;
+  const std::vector<RiftMoment>& moments;  ///< by index in the data set
+};
+
+/// The fine-tuning of RIFT: Pluto's score head learns by simulated returns, in one stage,
+/// `fine_tune`, which gathers states and trains on them by turns. It can be resumed where states
+/// are to be gathered anew.
+class RiftTask : public learning::Task {
+ public:
+  learning::TaskTexts texts() const override;
+  std::vector<learning::StageInfo> stages() const override;
+  std::vector<std::string> allStages() const override;
+  std::vector<learning::PartSource> model() const override;
+  std::vector<std::string> weightFiles() const override { return {kRift.file}; }
+  std::vector<std::string> fields() const override;
+  learning::SampleSchema sceneFields() const override { return plutoFields(); }
+  std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
+  void setDefaults(learning::TrainingOptions& options) const override;
+  void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
+  void validate() const override {}
+
+  /// Throws InputError for steps that are no multiple of a buffer's.
+  void start(const learning::TrainingRun& run) override;
+  nlohmann::json facts() const override;
+  std::vector<learning::TrainedPart> parts() override;
+  std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
+  learning::TrainedModel finish() override;
+
+  RiftTrainingSettings settings;
+
+ private:
+  std::optional<PlutoWorlds> worlds_;
+  std::vector<PlutoScene> scenes_;
+  std::vector<RiftMoment> moments_;
+  std::unique_ptr<RiftTrainingState> state_;
+};
+
+/// The task "rift".
+learning::TaskDescriptor riftTraining();
+
+}  // namespace cdiff::planners

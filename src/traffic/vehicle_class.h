@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstdint>
+
+#include "e2e_cdiff/traffic/vehicle.h"
+
+namespace cdiff::traffic {
+
+/// What kind of body a vehicle has, told by its box; the numbers are those of scene files.
+enum class VehicleClass : std::uint8_t {
+  kCar = 0,
+  kLarge = 1,  ///< vans, trucks and buses: higher than 2.1 m or longer than 6.5 m
+  kNarrow = 2  ///< bicycles and motorcycles: at most 1.1 m wide
+};
+
+inline VehicleClass classOf(const VehicleDimensions& size) {
+  constexpr double kTallBody = 2.1;    // [m]
+  constexpr double kLongBody = 6.5;    // [m]
+  constexpr double kNarrowBody = 1.1;  // [m]
+  if (size.width <= kNarrowBody) return VehicleClass::kNarrow;
+  const bool large = size.height > kTallBody || size.length > kLongBody;
+  return large ? VehicleClass::kLarge : VehicleClass::kCar;
+}
+
+}  // namespace cdiff::traffic

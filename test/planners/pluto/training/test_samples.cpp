@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/pluto/training/pluto_examples.h"
+#include "planners/pluto/training/small_scene.h"
+
+namespace cdiff::planners {
+namespace {
+
+/// 15 s of the small scene: 151 decisions.
+class PlutoSamples : public ::testing::Test {
+ protected:
+  PlutoScene sceneOf() {
+    PlutoWorlds worlds(PlutoArchitecture{});
+    return PlutoScene(recorded_, worlds.of(recorded_));
+  }
+  std::vector<PlutoPlace> placesOf(const PlutoScene& scene) {
+    return plutoPlaces(scene, 0, options_);
+  }
+  static std::vector<PlutoPlace> ofDrive(const std::vector<PlutoPlace>& places,
+                                         std::uint32_t drive) {
+    std::vector<PlutoPlace> found;
+    for (const PlutoPlace& place : places) {
+      if (place.drive == drive) found.push_back(place);
+    }
+    return found;
+  }
+
+  learning::Scene recorded_ = testing::smallScene("small", 15.0);
+  PlutoSampleOptions options_;
+};
+
+// A sample every 5 decisions, if 30 follow: decisions up to 120 of 0 to 150. 80 count at most.
+TEST_F(PlutoSamples, AreTakenWhileEnoughFollows) {
+  const PlutoScene scene = sceneOf();
+  const auto places = ofDrive(placesOf(scene), 0);
+  ASSERT_EQ(places.size(), 25U);
+  EXPECT_EQ(places.front().decision, 0U);
+  EXPECT_EQ(places.front().steps, 80U);
+  EXPECT_EQ(places.back().decision, 120U);
+  EXPECT_EQ(places.back().steps, 30U);
+}
+
+// Samples of "a" are at decisions 4, 9, ... Taken over at 4, it is put 0.4 m to the side, which no
+// future may hold: the first is at 9.
+TEST_F(PlutoSamples, BeginAfterTheTakeOver) {
+  for (std::size_t i = 0; i < 5; ++i)
+    recorded_.decisions[i].vehicles[1].applied_action.reset();  // of "a"
+  for (std::size_t i = 5; i < recorded_.decisions.size(); ++i)
+    recorded_.decisions[i].vehicles[1].state.position.y() += 0.4;
+  const PlutoScene scene = sceneOf();
+  const auto places = ofDrive(placesOf(scene), 1);
+  ASSERT_FALSE(places.empty());
+  EXPECT_EQ(places.front().decision, 9U);
+  EXPECT_EQ(places.front().steps, 80U);
+}
+
+TEST_F(PlutoSamples, DecisionsThatAreNotATenthApartAreNamed) {
+  recorded_.decisions.erase(recorded_.decisions.begin() + 20);
+  recorded_.driven.pop_back();
+  EXPECT_THROW(sceneOf(), core::InputError);
+}
+
+// A contact of "a" at decision 100: what comes before ends at 99; no sample from 70 to 100 has 30.
+TEST_F(PlutoSamples, EndBeforeAContact) {
+  recorded_.contacts.push_back({200, {"a", "ego"}});
+  const PlutoScene scene = sceneOf();
+  for (const PlutoPlace& place : ofDrive(placesOf(scene), 1)) {
+    if (place.decision < 100) {
+      EXPECT_LE(place.decision + place.steps, 99U);
+      EXPECT_LE(place.decision, 69U);
+    }
+  }
+  recorded_.contacts.clear();
+  EXPECT_EQ(ofDrive(placesOf(scene), 2).size(), ofDrive(placesOf(sceneOf()), 2).size())
+      << "of no concern to b";
+}
+
+// Noise at decisions 50 to 53: no sample whose first 10 decisions hold one. A stop from 100 to 119
+// is longer than 1 s: the future ends where it begins.
+TEST_F(PlutoSamples, NoiseIsNoneInTheFirstSecondAndNeverLong) {
+  for (std::uint64_t i = 50; i < 54; ++i) recorded_.disturbed.insert({"ego", 2 * i});
+  for (std::uint64_t i = 100; i < 120; ++i) recorded_.disturbed.insert({"ego", 2 * i});
+  const PlutoScene scene = sceneOf();
+  for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
+    EXPECT_FALSE(place.decision > 40 && place.decision < 54) << place.decision;
+    if (place.decision < 100) {
+      EXPECT_LE(place.decision + place.steps, 100U) << place.decision;
+    }
+  }
+}
+
+// A stop from decision 110 on begins within the last second of the futures of samples at 35: they
+// end where it begins, though only 6 of its decisions lie in them.
+TEST_F(PlutoSamples, AStopThatBeginsInTheLastSecondCutsAFuture) {
+  for (std::uint64_t i = 110; i < 130; ++i) recorded_.disturbed.insert({"ego", 2 * i});
+  const PlutoScene scene = sceneOf();
+  for (const PlutoPlace& place : ofDrive(placesOf(scene), 0)) {
+    if (place.decision == 35) {
+      EXPECT_EQ(place.steps, 75U);
+    }
+  }
+  EXPECT_EQ(ofDrive(placesOf(scene), 0).front().steps, 80U);
+}
+
+// "a" drives 0.6 m in 0.1 s: 48 m in 8 s, so mode 4 of the route's line.
+TEST_F(PlutoSamples, TheTargetIsWhereTheVehicleWas) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = ofDrive(placesOf(scene), 1).front();
+  const PlutoMoment moment = scene.moment(place.decision, place.drive);
+  const auto lines = scene.world().builder.linesOf(moment);
+  const PlutoTarget target = plutoTarget(scene, place, moment.point().state.pose(), lines);
+  EXPECT_EQ(target.line, 0U);
+  EXPECT_EQ(target.mode, 4U);
+  for (Eigen::Index i = 0; i < kPlutoSteps; ++i) {
+    const double expected[] = {0.6 * static_cast<double>(i + 1), 0.0, 1.0, 0.0, 6.0, 0.0};
+    for (Eigen::Index c = 0; c < kPlutoChannels; ++c)
+      EXPECT_NEAR(target.future(i, c), expected[c], 1e-4) << i;
+  }
+}
+
+// Only 3 s are known: 18 m, and 5 s more at 6 m/s.
+TEST_F(PlutoSamples, ACutFutureIsLedOnForItsMode) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 120, 1, 30};
+  const PlutoMoment moment = scene.moment(place.decision, place.drive);
+  const PlutoTarget target =
+      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  EXPECT_EQ(target.mode, 4U);
+  EXPECT_EQ(target.steps, 30);
+  EXPECT_EQ(target.future(30, 0), 0.0F);
+}
+
+// 79 m along a road that bends left at 100 m, "a" is known for 3 s, up to 97 m; 5 s more at 6 m/s
+// are 30 m along the road: 48 m, mode 4. Straight on they would end 27 m beside it, abreast of the
+// bend, in mode 2.
+TEST_F(PlutoSamples, ACutFutureIsLedOnAlongTheRoad) {
+  const std::string bend = testing::pointText({{0, 0, 0}, {100, 0, 0}, {100, 300, 0}});
+  recorded_.network_text =
+      "<net><edge id=\"road\"><lane id=\"road_0\" index=\"0\" speed=\"13.89\" shape=\"" + bend +
+      "\"/></edge></net>";
+  for (learning::SceneDrive& drive : recorded_.drives) {
+    for (std::size_t i = 100; i < drive.route_points.size(); ++i)
+      drive.route_points[i] = {100.0, static_cast<double>(i) - 100.0, 0.0};
+  }
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 40, 1, 30};
+  const PlutoMoment moment = scene.moment(place.decision, place.drive);
+  const PlutoTarget target =
+      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  EXPECT_EQ(target.line, 0U);
+  EXPECT_EQ(target.mode, 4U);
+}
+
+TEST_F(PlutoSamples, OfferedFuturesOfOthersAreInTheirOwnFrames) {
+  const PlutoScene scene = sceneOf();
+  const AgentFuture future = agentFuture(scene, 100, scene.drives()[2].vehicle);
+  EXPECT_NEAR(future.future(9, 0), 7.0, 1e-4);
+  EXPECT_TRUE(future.known[49]);
+  EXPECT_FALSE(future.known[50]) << "the scene is over";
+}
+
+/// A stream that gives the same draws for all samples.
+const core::RandomStream kChanges(3, "changes");
+
+TEST_F(PlutoSamples, APositiveIsDisplacedWithinItsLimitsAndKeepsTheWay) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 20, 1, 80};
+  const geometry::Pose2d pose = scene.moment(20, 1).point().state.pose();
+  bool moved = false;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const auto changed = positiveMoment(scene, place, {kChanges, {i, 0, 0}});
+    const traffic::VehicleState& state = changed->moment.point().state;
+    const Eigen::Vector2d offset = pose.toBody(state.position);
+    EXPECT_LE(std::abs(offset.x()), 1.0);
+    EXPECT_LE(std::abs(offset.y()), 0.75);
+    EXPECT_LE(std::abs(state.heading - pose.heading), 0.35);
+    moved = moved || offset.norm() > 0.1;
+    const PlutoExample example = plutoExample(scene, place, changed->moment, true);
+    // The end of the way is the same place.
+    const Eigen::Vector2d end =
+        example.frame.toMap(example.target.future.row(79).head<2>().transpose().cast<double>());
+    EXPECT_NEAR(end.x(), pose.position.x() + 48.0, 1e-3);
+    EXPECT_NEAR(end.y(), 0.0, 1e-3);
+  }
+  EXPECT_TRUE(moved);
+}
+
+// "ego" at 5 m/s never comes within reach of "a" 25 m ahead at 6 m/s in 4 s, but would drive where
+// "a" was: it interacts with it.
+TEST_F(PlutoSamples, WhoDrivesAheadInteracts) {
+  const PlutoScene scene = sceneOf();
+  const auto found = interactingVehicles(scene, {0, 0, 0, 80});
+  EXPECT_EQ(found.count(scene.drives()[1].vehicle), 0U) << "20 m in 4 s, 25 m apart";
+  learning::Scene near = recorded_;
+  for (auto& snapshot : near.decisions) snapshot.vehicles[1].state.position.x() -= 10.0;
+  PlutoWorlds worlds(PlutoArchitecture{});
+  const PlutoScene closer(near, worlds.of(near));
+  EXPECT_EQ(interactingVehicles(closer, {0, 0, 0, 80}).count(closer.drives()[1].vehicle), 1U);
+}
+
+TEST_F(PlutoSamples, ANegativeOnAFreeRoadHasASlowLeader) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 30, 2, 80};
+  const auto changed = negativeMoment(scene, place, {kChanges, {1, 0, 0}});
+  ASSERT_NE(changed, nullptr);
+  const TrackFrame& now = changed->frames.back();
+  ASSERT_EQ(now.points.size(), 5U);
+  const TrackPoint& leader = now.points.back();
+  const TrackPoint& own = changed->moment.point();
+  EXPECT_GT(leader.state.position.x(), own.state.position.x() + 4.5);
+  EXPECT_LT(leader.state.speed, 0.8 * own.state.speed);
+  // It has driven like that before.
+  const double before = changed->frames.front().points.back().state.position.x();
+  EXPECT_NEAR(leader.state.position.x() - before, 2.0 * leader.state.speed, 1e-6);
+}
+
+TEST_F(PlutoSamples, SamplesKeepTheirPlaces) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 35, 2, 77};
+  const PlutoPlace back = toPlutoPlace(toSample(place, scene));
+  EXPECT_EQ(back.scene, place.scene);
+  EXPECT_EQ(back.decision, place.decision);
+  EXPECT_EQ(back.drive, place.drive);
+  EXPECT_EQ(back.steps, place.steps);
+  plutoFields().check(toSample(place, scene));
+}
+
+}  // namespace
+}  // namespace cdiff::planners
