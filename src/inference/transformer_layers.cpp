@@ -35,12 +35,42 @@ void addRows(const Rows& change, const Rows& x) {
   for (std::int64_t row = 0; row < x.rows(); ++row) addRow(change.row(row), x.stride(), x.row(row));
 }
 
+void requireMultiple(const char* key, std::int64_t value, std::int64_t divisor,
+                     const std::string& reason) {
+  if (value % divisor == 0) return;
+  throw core::InputError(std::string(key) + " is " + std::to_string(value) + "; a multiple of " +
+                         reason + " was expected");
+}
+
 }  // namespace
 
 const Tensor& LayerWeights::named(const std::string& name) const {
   const auto found = tensors.find(name);
   if (found == tensors.end()) throw core::InputError("the network has no tensor '" + name + "'");
   return found->second;
+}
+
+void TensorList::layer(const std::string& name, const std::vector<std::int64_t>& shape) {
+  add(name + ".weight", shape);
+  add(name + ".bias", {shape[0]});
+}
+
+void TensorList::mlp(const std::string& name, std::int64_t in, std::int64_t hidden,
+                     std::int64_t out) {
+  layer(name + ".in", {hidden, in});
+  norm(name + ".norm", hidden);
+  layer(name + ".out", {out, hidden});
+}
+
+void TensorList::attention(const std::string& name, std::int64_t width) {
+  layer(name + ".query", {width, width});
+  layer(name + ".key_value", {2 * width, width});
+  layer(name + ".output", {width, width});
+}
+
+void TensorList::feedForward(const std::string& name, std::int64_t width, std::int64_t hidden) {
+  layer(name + ".up", {hidden, width});
+  layer(name + ".down", {width, hidden});
 }
 
 void Rows::resize(std::int64_t rows, std::int64_t channels) {
@@ -68,6 +98,11 @@ LayerNorm::LayerNorm(const LayerWeights& weights, const std::string& name)
 void LayerNorm::apply(const View& input, const View& added, const View& output,
                       std::int64_t rows) const {
   kernels_->normalizeRows({channels_, rows, gain_.data(), shift_.data(), input, added, output});
+}
+
+void TransformerSizes::validate() const {
+  requireMultiple("width", width, kChannelMultiple * heads, "16 x heads");
+  requireMultiple("hidden", hidden, kChannelMultiple, "16");
 }
 
 Mlp::Mlp(const LayerWeights& weights, const std::string& name)

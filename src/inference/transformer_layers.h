@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inference/convolution.h"
@@ -26,6 +27,25 @@ struct LayerWeights {
       : linear(denoiserKernels(set)), kernels(transformerKernels(set)), tensors(weights) {}
   /// Throws InputError naming the tensor when there is none.
   const Tensor& named(const std::string& name) const;
+};
+
+/// Collects names and shapes of the tensors that layers are built from.
+class TensorList {
+ public:
+  void add(const std::string& name, const std::vector<std::int64_t>& shape) {
+    tensors_.push_back({name, shape});
+  }
+  /// NAME.weight and NAME.bias [out]: [out, in] of a Linear, or [out, in, taps].
+  void layer(const std::string& name, const std::vector<std::int64_t>& shape);
+  void norm(const std::string& name, std::int64_t channels) { layer(name, {channels}); }
+  void mlp(const std::string& name, std::int64_t in, std::int64_t hidden, std::int64_t out);
+  /// Of MultiHeadAttention.
+  void attention(const std::string& name, std::int64_t width);
+  void feedForward(const std::string& name, std::int64_t width, std::int64_t hidden);
+  std::vector<TensorShape> take() { return std::move(tensors_); }
+
+ private:
+  std::vector<TensorShape> tensors_;
 };
 
 /// Rows x channels of float32 in memory of its own, channels padded to kChannelMultiple with zeros.
@@ -105,6 +125,9 @@ struct TransformerSizes {
   std::int64_t width = 256;
   std::int64_t heads = 8;
   std::int64_t hidden = 1024;  ///< of the feed-forward network
+
+  /// Throws InputError naming the key that is no such multiple.
+  void validate() const;
 };
 
 /// Memory that the layers of a network share.

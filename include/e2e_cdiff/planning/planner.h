@@ -86,9 +86,14 @@ struct PlannedAction {
   guidance::GuidanceReport guidance{};  ///< what guidance did; set by planners that are guided
   double state_mismatch = 0.0;  ///< largest distance of planned states from what the dynamics does
                                 ///< with the planned actions [m]
-  std::vector<PlannedCandidate> candidates{};  ///< in the planner's own order; empty: it weighs none
+  std::vector<PlannedCandidate>
+      candidates{};                         ///< in the planner's own order; empty: it weighs none
   std::vector<AttendedVehicle> attended{};  ///< in the planner's own order; empty: it does not say
 };
+
+/// The fail-safe action for a task; with a reason it is a fault, "vehicle 'ID': REASON; full
+/// braking instead".
+PlannedAction failSafeAction(const PlanningTask& task, const std::string& reason = "");
 
 /// The one interface of everything that drives: at a decision, an action for each of its vehicles.
 class Planner {

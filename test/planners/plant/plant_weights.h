@@ -35,8 +35,8 @@ inline PlantModel constantPlant(double x, double y) {
 }
 
 inline void writePlant(const std::filesystem::path& folder, const PlantModel& model) {
-  inference::writeSafetensors(folder / kPlantFile,
-                              {plantMetadata(model.architecture), model.weights},
+  inference::writeSafetensors(folder / kPlant.file,
+                              {networkMetadata(kPlant, model.architecture), model.weights},
                               inference::TensorType::kF32);
 }
 

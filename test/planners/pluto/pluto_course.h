@@ -18,10 +18,10 @@ inline PlutoModel randomPluto(const PlutoArchitecture& architecture = {}) {
 }
 
 /// Into the file of `kind` in `folder`, which says that it is of `format`.
-inline void writePluto(const std::filesystem::path& folder, const PlutoKind& kind,
+inline void writePluto(const std::filesystem::path& folder, const WeightKind& kind,
                        const char* format) {
   const PlutoModel model = randomPluto();
-  auto metadata = plutoMetadata(kind, model.architecture);
+  auto metadata = networkMetadata(kind, model.architecture);
   metadata["format"] = format;
   std::filesystem::create_directories(folder);
   inference::writeSafetensors(folder / kind.file, {metadata, model.weights},

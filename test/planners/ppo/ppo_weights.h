@@ -22,12 +22,11 @@ inline planners::PpoActor::Weights constantPpo(float acceleration, float steer) 
 
 inline void writePpo(const std::filesystem::path& folder,
                      const planners::PpoActor::Weights& weights,
-                     const std::string& format = planners::PpoActor::kFormat) {
+                     const std::string& format = planners::kPpo.format) {
   inference::SafetensorsFile file;
   file.metadata = {{"format", format}};
   file.tensors = weights;
-  inference::writeSafetensors(folder / planners::PpoActor::kFile, file,
-                              inference::TensorType::kF32);
+  inference::writeSafetensors(folder / planners::kPpo.file, file, inference::TensorType::kF32);
 }
 
 }  // namespace cdiff::test

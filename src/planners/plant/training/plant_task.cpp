@@ -180,10 +180,11 @@ std::unique_ptr<learning::Stage> PlantTask::makeStage(const std::string&) {
 
 learning::TrainedModel PlantTask::finish() {
   learning::TrainedModel model;
-  model.files = {{kPlantFile,
-                  {plantMetadata(state_->architecture), state_->net.parameters().values()},
-                  true,
-                  ""}};
+  model.files = {
+      {kPlant.file,
+       {networkMetadata(kPlant, state_->architecture), state_->net.parameters().values()},
+       true,
+       ""}};
   model.held_out = ImitationOfWaypoints(*state_).judge();
   model.settings = {{"architecture", core::dumpOptions(state_->architecture)},
                     {"samples", core::dumpOptions(settings.samples)}};

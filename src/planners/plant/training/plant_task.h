@@ -41,7 +41,7 @@ class PlantTask : public learning::Task {
   std::vector<learning::StageInfo> stages() const override;
   std::vector<std::string> allStages() const override;
   std::vector<learning::PartSource> model() const override;
-  std::vector<std::string> weightFiles() const override { return {kPlantFile}; }
+  std::vector<std::string> weightFiles() const override { return {kPlant.file}; }
   std::vector<std::string> fields() const override;
   learning::SampleSchema sceneFields() const override { return plantFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;

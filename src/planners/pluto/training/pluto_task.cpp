@@ -215,10 +215,11 @@ std::unique_ptr<learning::Stage> PlutoTask::makeStage(const std::string&) {
 
 learning::TrainedModel PlutoTask::finish() {
   learning::TrainedModel model;
-  model.files = {{kPluto.file,
-                  {plutoMetadata(kPluto, settings.architecture), state_->net.parameters().values()},
-                  true,
-                  ""}};
+  model.files = {
+      {kPluto.file,
+       {networkMetadata(kPluto, settings.architecture), state_->net.parameters().values()},
+       true,
+       ""}};
   model.held_out = ImitationOfPlans(*state_).judge();
   model.settings = {{"architecture", core::dumpOptions(settings.architecture)},
                     {"samples", core::dumpOptions(settings.samples)}};

@@ -76,7 +76,7 @@ class PpoTask : public learning::Task {
     return {{"actor", "an actor", {PpoStage::kStage}, PpoStage::kStage},
             {"critic", "a critic", {PpoStage::kStage}, PpoStage::kStage}};
   }
-  std::vector<std::string> weightFiles() const override { return {PpoActor::kFile}; }
+  std::vector<std::string> weightFiles() const override { return {kPpo.file}; }
   std::vector<std::string> fields() const override { return {}; }
   bool needsSamples() const override { return false; }
   void setDefaults(learning::TrainingOptions& options) const override;
@@ -196,10 +196,7 @@ std::string PpoTask::measuresText(const learning::Measures& held_out) const {
 
 learning::TrainedModel PpoTask::finish() {
   learning::TrainedModel model;
-  model.files = {{PpoActor::kFile,
-                  {{{"format", PpoActor::kFormat}}, training_->networks.weights()},
-                  true,
-                  ""}};
+  model.files = {{kPpo.file, {{{"format", kPpo.format}}, training_->networks.weights()}, true, ""}};
   model.held_out = PpoStage(*training_).judge();
   model.settings = facts();
   model.settings["data"] = {

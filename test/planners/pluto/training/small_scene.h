@@ -6,7 +6,7 @@
 
 #include "learning/samples/scene.h"
 #include "planners/course.h"
-#include "planners/pluto/pluto_architecture.h"
+#include "planners/pluto/pluto_weights.h"
 
 namespace cdiff::planners::testing {
 

@@ -31,7 +31,7 @@ class RiftTraining : public ::testing::Test {
     const PlutoArchitecture sizes = testing::smallPluto();
     inference::writeSafetensors(
         init() / kPluto.file,
-        {plutoMetadata(kPluto, sizes), cdiff::testing::randomTensors(plutoTensors(sizes))},
+        {networkMetadata(kPluto, sizes), cdiff::testing::randomTensors(plutoTensors(sizes))},
         inference::TensorType::kF16);
   }
   std::filesystem::path init() const { return folder_.path() / "pluto"; }
