@@ -2,10 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/plant/training/plant_task.h"
 
-#include <cmath>
-
 #include "core/text.h"
-#include "learning/samples/sample_order.h"
 
 namespace cdiff::planners {
 namespace {
@@ -40,30 +37,18 @@ PlantWaypoints atConstantSpeed(double speed) {
   return places;
 }
 
-class ImitationOfWaypoints : public learning::Stage {
+class ImitationOfWaypoints : public learning::EvenStage {
  public:
   explicit ImitationOfWaypoints(PlantTrainingState& state)
-      : state_(state),
-        order_(
-            state.run.dataset.training(),
-            std::vector<double>(state.run.dataset.training().size(), 1.0), batchSize(),
-            core::RandomStream(static_cast<std::uint64_t>(state.run.options.seed), "plant order")) {
-  }
-
-  const std::string& name() const override { return name_; }
-  std::vector<learning::TrainedPart> parts() override {
-    return {{"network", &state_.net.parameters()}};
-  }
-  std::int64_t batchSize() const override {
-    return state_.run.options.batch > 0 ? state_.run.options.batch : kPlantBatch;
-  }
-  std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
+      : EvenStage(state.run, kPlantStage, {"network", &state.net.parameters()}, kPlantBatch,
+                  "plant order"),
+        state_(state) {}
 
   /// Mean absolute error of the waypoints' coordinates [m] plus the mean of the cross entropies of
   /// the six attributes 0.5 s later.
   learning::Loss loss(std::int64_t step) override {
     std::vector<const PlantExample*> examples;
-    for (const std::size_t index : order_.at(step)) examples.push_back(&state_.examples[index]);
+    for (const std::size_t index : samplesOf(step)) examples.push_back(&state_.examples[index]);
     const PlantBatch batch = plantBatch(examples, state_.run.device);
     const PlantNet::Result result = state_.net.forward(batch);
     const at::Tensor waypoints = (result.waypoints - batch.driven).abs().mean();
@@ -99,9 +84,7 @@ class ImitationOfWaypoints : public learning::Stage {
   }
 
  private:
-  std::string name_ = kPlantStage;
   PlantTrainingState& state_;
-  learning::SampleOrder order_;
 };
 
 std::string plantTable(const Measures& held_out) {
@@ -120,23 +103,7 @@ std::string plantTable(const Measures& held_out) {
 
 }  // namespace
 
-learning::TaskTexts PlantTask::texts() const { return {kPlantStage, std::to_string(kPlantBatch)}; }
-
-std::vector<learning::StageInfo> PlantTask::stages() const {
-  return {{kPlantStage, {}, true, {}, ""}};
-}
-
-std::vector<std::string> PlantTask::allStages() const { return {kPlantStage}; }
-
-std::vector<learning::PartSource> PlantTask::model() const {
-  return {{"network", "a network", {kPlantStage}, kPlantStage}};
-}
-
-std::vector<std::string> PlantTask::fields() const {
-  std::vector<std::string> names;
-  for (const learning::FieldSpec& field : plantFields().fields) names.push_back(field.name);
-  return names;
-}
+PlantTask::PlantTask() : OneStageTask(kPlantStage, kPlantBatch, {{"network", "a network"}}) {}
 
 std::vector<learning::Sample> PlantTask::samplesOf(const learning::Scene& scene) {
   if (!sampler_) sampler_.emplace(settings.architecture, settings.samples);

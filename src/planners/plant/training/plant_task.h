@@ -17,7 +17,7 @@ namespace cdiff::planners {
 /// What the training of PlanT asks beyond the options of every training.
 struct PlantTrainingSettings {
   PlantArchitecture architecture;
-  PlantSampleOptions samples;
+  learning::SceneSampleOptions samples;
 
   void describe(core::OptionsVisitor& visitor) {
     architecture.describe(visitor);
@@ -35,14 +35,10 @@ struct PlantTrainingState {
 
 /// The training of PlanT: it imitates the waypoints of the vehicles that were driven in scenes, in
 /// one stage, `imitation`.
-class PlantTask : public learning::Task {
+class PlantTask : public learning::OneStageTask {
  public:
-  learning::TaskTexts texts() const override;
-  std::vector<learning::StageInfo> stages() const override;
-  std::vector<std::string> allStages() const override;
-  std::vector<learning::PartSource> model() const override;
+  PlantTask();
   std::vector<std::string> weightFiles() const override { return {kPlant.file}; }
-  std::vector<std::string> fields() const override;
   learning::SampleSchema sceneFields() const override { return plantFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;

@@ -37,14 +37,10 @@ struct PlutoTrainingState {
 
 /// The training of Pluto: it imitates the vehicles that were driven in scenes, in one stage,
 /// `imitation`.
-class PlutoTask : public learning::Task {
+class PlutoTask : public learning::OneStageTask {
  public:
-  learning::TaskTexts texts() const override;
-  std::vector<learning::StageInfo> stages() const override;
-  std::vector<std::string> allStages() const override;
-  std::vector<learning::PartSource> model() const override;
+  PlutoTask();
   std::vector<std::string> weightFiles() const override { return {kPluto.file}; }
-  std::vector<std::string> fields() const override;
   learning::SampleSchema sceneFields() const override { return plutoFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;

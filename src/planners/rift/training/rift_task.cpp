@@ -34,9 +34,7 @@ learning::ParameterSet headOf(const PlutoModel& model) {
 }  // namespace
 
 void RiftTrainingSettings::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"period", "s", "Between two states of a vehicle."}, samples.period, 0.1, 60.0);
-  visitor.number({"standing_share", "", "Part kept of states at which the vehicle stands."},
-                 samples.standing_share, 0.0, 1.0);
+  samples.describe(visitor);
   visitor.text({"objective", "", "RIFT's, or GRPO's: no dual clip, but a divergence."}, objective,
                {"rift", "grpo"});
   visitor.number({"kl_weight", "", "Weight of the divergence from Pluto in grpo."}, kl_weight, 0.0,
@@ -53,23 +51,7 @@ RiftObjective RiftTrainingSettings::objectiveOf() const {
   return made;
 }
 
-learning::TaskTexts RiftTask::texts() const { return {kRiftStage, std::to_string(kRiftBatch)}; }
-
-std::vector<learning::StageInfo> RiftTask::stages() const {
-  return {{kRiftStage, {}, true, {}, ""}};
-}
-
-std::vector<std::string> RiftTask::allStages() const { return {kRiftStage}; }
-
-std::vector<learning::PartSource> RiftTask::model() const {
-  return {{"head", "a score head", {kRiftStage}, kRiftStage}};
-}
-
-std::vector<std::string> RiftTask::fields() const {
-  std::vector<std::string> names;
-  for (const learning::FieldSpec& field : plutoFields().fields) names.push_back(field.name);
-  return names;
-}
+RiftTask::RiftTask() : OneStageTask(kRiftStage, kRiftBatch, {{"head", "a score head"}}) {}
 
 /// The scenes' moments; what networks make of them waits until the weights are known.
 std::vector<learning::Sample> RiftTask::samplesOf(const learning::Scene& scene) {
