@@ -133,8 +133,8 @@ at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
   return tensorOfValues(values, shape, at::kFloat, device);
 }
 
-at::Tensor toTensor(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
-                    const at::Device& device) {
+at::Tensor toIndices(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
+                     const at::Device& device) {
   return tensorOfValues(values, shape, at::kLong, device);
 }
 

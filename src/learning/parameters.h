@@ -66,8 +66,9 @@ class ParameterSet {
 
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device);
-at::Tensor toTensor(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
-                    const at::Device& device);
+/// Whole numbers, as rows are chosen by.
+at::Tensor toIndices(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
+                     const at::Device& device);
 std::vector<float> toVector(const at::Tensor& tensor);
 
 /// Weight decay, the decay per step of the moving average of the weights, b2 of AdamW, and what is

@@ -76,7 +76,7 @@ PlantBatch plantBatch(const std::vector<const PlantExample*>& examples, const at
   for (const PlantExample* example : examples) rows.add(*example);
   const auto count = static_cast<std::int64_t>(rows.unpadded.size());
   const auto indices = [&](const std::vector<std::int64_t>& values) {
-    return toTensor(values, {static_cast<std::int64_t>(values.size())}, device);
+    return learning::toIndices(values, {static_cast<std::int64_t>(values.size())}, device);
   };
   PlantBatch batch;
   batch.tokens = toTensor(rows.values, {count, kPlantAttributes}, device);

@@ -162,7 +162,7 @@ PlutoBatch BatchRows::tensors(const at::Device& device) const {
     return learning::toTensor(values, shape, device);
   };
   const auto counts = [&](const Counts& values, at::IntArrayRef shape) {
-    return learning::toTensor(values, shape, device);
+    return learning::toIndices(values, shape, device);
   };
   PlutoBatch batch;
   batch.motion = floats(motion_, {b_, kMotionNumbers});

@@ -174,7 +174,7 @@ learning::Loss RiftStage::loss(std::int64_t step) {
   if (gathered_ != buffer) gather(buffer);
   const std::vector<std::int64_t> rows = rowsOf(step);
   const at::Tensor indices =
-      learning::toTensor(rows, {static_cast<std::int64_t>(rows.size())}, state_.run.device);
+      learning::toIndices(rows, {static_cast<std::int64_t>(rows.size())}, state_.run.device);
   const auto chosen = [&](const at::Tensor& all) { return all.index_select(0, indices); };
   const at::Tensor features = chosen(buffer_->features);
   RiftRows part;

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/small_scene.h"
+#include "planners/pluto/pluto_course.h"
 #include "planners/pluto/training/pluto_examples.h"
-#include "planners/pluto/training/small_scene.h"
 
 namespace cdiff::planners {
 namespace {
@@ -28,7 +29,7 @@ class PlutoSamples : public ::testing::Test {
     return found;
   }
 
-  learning::Scene recorded_ = testing::smallScene("small", 15.0);
+  learning::Scene recorded_ = test::platoonScene("small", 15.0);
   PlutoSampleOptions options_;
 };
 
