@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// Tensors of given shapes whose values come from a rule or a fixed stream.
+/// Tensors of given shapes whose values come from a rule or a fixed stream, and how far two are
+/// apart.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +40,19 @@ inline std::map<std::string, inference::Tensor> uniformTensors(
   for (const inference::TensorShape& shape : shapes)
     tensors[shape.name] = uniformTensor(shape.name, shape.shape, bound);
   return tensors;
+}
+
+/// Largest difference relative to the largest value.
+inline double relativeDifference(const std::vector<float>& ours,
+                                 const std::vector<float>& reference) {
+  EXPECT_EQ(ours.size(), reference.size());
+  double largest = 0.0;
+  double apart = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    largest = std::max(largest, std::abs(static_cast<double>(reference[i])));
+    apart = std::max(apart, std::abs(static_cast<double>(ours[i]) - reference[i]));
+  }
+  return apart / largest;
 }
 
 }  // namespace cdiff::test

@@ -40,7 +40,7 @@ PlantWaypoints atConstantSpeed(double speed) {
 class ImitationOfWaypoints : public learning::EvenStage {
  public:
   explicit ImitationOfWaypoints(PlantTrainingState& state)
-      : EvenStage(state.run, kPlantStage, {"network", &state.net.parameters()}, kPlantBatch,
+      : EvenStage(state.run, kPlantStage, {PlantTask::kPart, &state.net.parameters()}, kPlantBatch,
                   "plant order"),
         state_(state) {}
 
@@ -87,23 +87,9 @@ class ImitationOfWaypoints : public learning::EvenStage {
   PlantTrainingState& state_;
 };
 
-std::string plantTable(const Measures& held_out) {
-  std::string table =
-      "Distance to where the expert drove: mean over 0.5, 1.0, 1.5 and 2.0 s, and at 2 s [m].\n\n"
-      "| Prediction | mean | at 2 s |\n|---|---|---|\n";
-  const std::pair<const char*, const char*> rows[] = {
-      {"PlanT", ""}, {"stands", "standing_"}, {"keeps its speed straight on", "constant_speed_"}};
-  for (const auto& [title, prefix] : rows) {
-    table += "| " + std::string(title) + " | " +
-             core::formatFixed(held_out.at(std::string(prefix) + "ade_m"), 3) + " | " +
-             core::formatFixed(held_out.at(std::string(prefix) + "fde_m"), 3) + " |\n";
-  }
-  return table;
-}
-
 }  // namespace
 
-PlantTask::PlantTask() : OneStageTask(kPlantStage, kPlantBatch, {{"network", "a network"}}) {}
+PlantTask::PlantTask() : NetworkTask({kPlant, "PlanT", kPlantStage, kPlantBatch, plantTensors}) {}
 
 std::vector<learning::Sample> PlantTask::samplesOf(const learning::Scene& scene) {
   if (!sampler_) sampler_.emplace(settings.architecture, settings.samples);
@@ -126,38 +112,25 @@ void PlantTask::start(const learning::TrainingRun& run) {
       run, settings.architecture, PlantNet(settings.architecture, seed), {}});
   for (std::size_t i = 0; i < run.dataset.size(); ++i)
     state_->examples.push_back(toExample(run.dataset.sample(i)));
-  if (!run.options.init.empty()) {
-    const PlantModel model = readPlantModel(run.options.init);
-    state_->net.parameters().load(model.weights, run.options.init);
-  }
-  state_->net.parameters().moveTo(run.device);
-}
-
-nlohmann::json PlantTask::facts() const {
-  return {{"architecture", core::dumpOptions(settings.architecture)}};
-}
-
-std::vector<learning::TrainedPart> PlantTask::parts() {
-  return {{"network", &state_->net.parameters()}};
+  loadWeights(run);
 }
 
 std::unique_ptr<learning::Stage> PlantTask::makeStage(const std::string&) {
   return std::make_unique<ImitationOfWaypoints>(*state_);
 }
 
-learning::TrainedModel PlantTask::finish() {
-  learning::TrainedModel model;
-  model.files = {
-      {kPlant.file,
-       {networkMetadata(kPlant, state_->architecture), state_->net.parameters().values()},
-       true,
-       ""}};
-  model.held_out = ImitationOfWaypoints(*state_).judge();
-  model.settings = {{"architecture", core::dumpOptions(state_->architecture)},
-                    {"samples", core::dumpOptions(settings.samples)}};
-  model.title = "PlanT";
-  model.measures = plantTable(model.held_out);
-  return model;
+std::string PlantTask::table(const Measures& held_out) const {
+  std::string table =
+      "Distance to where the expert drove: mean over 0.5, 1.0, 1.5 and 2.0 s, and at 2 s [m].\n\n"
+      "| Prediction | mean | at 2 s |\n|---|---|---|\n";
+  const std::pair<const char*, const char*> rows[] = {
+      {"PlanT", ""}, {"stands", "standing_"}, {"keeps its speed straight on", "constant_speed_"}};
+  for (const auto& [title, prefix] : rows) {
+    table += "| " + std::string(title) + " | " +
+             core::formatFixed(held_out.at(std::string(prefix) + "ade_m"), 3) + " | " +
+             core::formatFixed(held_out.at(std::string(prefix) + "fde_m"), 3) + " |\n";
+  }
+  return table;
 }
 
 learning::TaskDescriptor plantTraining() {

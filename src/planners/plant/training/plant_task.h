@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "learning/task.h"
 #include "learning/task_registry.h"
+#include "planners/network_task.h"
 #include "planners/plant/training/plant_net.h"
 #include "planners/plant/training/plant_samples.h"
 
@@ -35,23 +35,18 @@ struct PlantTrainingState {
 
 /// The training of PlanT: it imitates the waypoints of the vehicles that were driven in scenes, in
 /// one stage, `imitation`.
-class PlantTask : public learning::OneStageTask {
+class PlantTask : public NetworkTask<PlantTrainingSettings> {
  public:
   PlantTask();
-  std::vector<std::string> weightFiles() const override { return {kPlant.file}; }
   learning::SampleSchema sceneFields() const override { return plantFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
-  void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
-  void validate() const override { settings.architecture.validate(); }
-
   void start(const learning::TrainingRun& run) override;
-  nlohmann::json facts() const override;
-  std::vector<learning::TrainedPart> parts() override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
-  learning::TrainedModel finish() override;
 
-  PlantTrainingSettings settings;
+ protected:
+  learning::ParameterSet& parameters() override { return state_->net.parameters(); }
+  std::string table(const learning::Measures& held_out) const override;
 
  private:
   std::optional<PlantSampler> sampler_;

@@ -31,7 +31,7 @@ struct StepExamples {
 class ImitationOfPlans : public learning::EvenStage {
  public:
   explicit ImitationOfPlans(PlutoTrainingState& state)
-      : EvenStage(state.run, kPlutoStage, {"network", &state.net.parameters()}, kPlutoBatch,
+      : EvenStage(state.run, kPlutoStage, {PlutoTask::kPart, &state.net.parameters()}, kPlutoBatch,
                   "pluto order"),
         state_(state),
         dropout_(state.run.stream("pluto dropout")),
@@ -136,7 +136,7 @@ void PlutoTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  contrast_share, 0.0, 1.0);
 }
 
-PlutoTask::PlutoTask() : OneStageTask(kPlutoStage, kPlutoBatch, {{"network", "a network"}}) {}
+PlutoTask::PlutoTask() : NetworkTask({kPluto, "Pluto", kPlutoStage, kPlutoBatch, plutoTensors}) {}
 
 std::vector<learning::Sample> PlutoTask::samplesOf(const learning::Scene& scene) {
   if (!worlds_) worlds_.emplace(settings.architecture);
@@ -161,38 +161,15 @@ void PlutoTask::start(const learning::TrainingRun& run) {
       new PlutoTrainingState{run, settings, PlutoNet(settings.architecture, seed), scenes_, {}});
   for (std::size_t i = 0; i < run.dataset.size(); ++i)
     state_->places.push_back(toPlutoPlace(run.dataset.sample(i)));
-  if (!run.options.init.empty()) {
-    const PlutoModel model = readPlutoModel(kPluto, run.options.init);
-    state_->net.parameters().load(model.weights, run.options.init);
-  }
-  state_->net.parameters().moveTo(run.device);
-}
-
-nlohmann::json PlutoTask::facts() const {
-  return {{"architecture", core::dumpOptions(settings.architecture)}};
-}
-
-std::vector<learning::TrainedPart> PlutoTask::parts() {
-  return {{"network", &state_->net.parameters()}};
+  loadWeights(run);
 }
 
 std::unique_ptr<learning::Stage> PlutoTask::makeStage(const std::string&) {
   return std::make_unique<ImitationOfPlans>(*state_);
 }
 
-learning::TrainedModel PlutoTask::finish() {
-  learning::TrainedModel model;
-  model.files = {
-      {kPluto.file,
-       {networkMetadata(kPluto, settings.architecture), state_->net.parameters().values()},
-       true,
-       ""}};
-  model.held_out = ImitationOfPlans(*state_).judge();
-  model.settings = {{"architecture", core::dumpOptions(settings.architecture)},
-                    {"samples", core::dumpOptions(settings.samples)}};
-  model.title = "Pluto";
-  model.measures = plutoTable(model.held_out);
-  return model;
+std::string PlutoTask::table(const learning::Measures& held_out) const {
+  return plutoTable(held_out);
 }
 
 learning::TaskDescriptor plutoTraining() {
