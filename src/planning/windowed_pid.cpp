@@ -26,9 +26,10 @@ WindowedPid::WindowedPid(const PidGains& gains, std::int64_t window)
 
 /// The sum runs from the oldest error to the newest.
 double WindowedPid::update(double error) {
-  const double change = error - errors_[(oldest_ + errors_.size() - 1) % errors_.size()];
+  const double change = error - last_;
+  last_ = error;
   errors_[oldest_] = error;
-  oldest_ = (oldest_ + 1) % errors_.size();
+  oldest_ = oldest_ + 1 == errors_.size() ? 0 : oldest_ + 1;
   const auto begin = errors_.begin() + static_cast<std::ptrdiff_t>(oldest_);
   const double sum =
       std::accumulate(errors_.begin(), begin, std::accumulate(begin, errors_.end(), 0.0));

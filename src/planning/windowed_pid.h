@@ -36,6 +36,7 @@ class WindowedPid {
   PidGains gains_;
   std::vector<double> errors_;  ///< of fixed length, in a ring
   std::size_t oldest_ = 0;      ///< its place
+  double last_ = 0.0;
 };
 
 /// Gains and limits of PlanPids; defaults as published for Pluto and RIFT.
