@@ -37,7 +37,7 @@ std::vector<std::string> planningMembers(const std::string& joined);
 /// The member of "NAME+NAME..." that drives a slot.
 std::string plannerOfSlot(const std::string& joined, int slot);
 
-/// Whom a planner is asked to drive.
+/// Whom a planner drives.
 enum class Role { kEgo, kCbv };
 
 /// Throws InputError naming `key`, its value and what is possible, unless `name` is a planner for

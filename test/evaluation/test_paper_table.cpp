@@ -144,7 +144,7 @@ TEST(PaperFigures, OfCollisionsShowsThoseWithTheEgoAndSaysWhereConditioningDiffe
   ASSERT_EQ(figure.sheet.rows.size(), 2U);
   EXPECT_EQ(figure.sheet.rows[1][0].title, "contacts of CBVs with the ego");
   const std::string row = "PDM-Lite,\"E2E-CDiff w/ coll (method default), contacts with the ego\"";
-  EXPECT_NE(figure.csv.find(row + ",1/km,clean,,,7,"), std::string::npos) << figure.csv;
+  EXPECT_NE(figure.csv.find(row + ",1/km,clean,,,,,7,"), std::string::npos) << figure.csv;
   EXPECT_EQ(figure.sheet.notes.back(),
             "The columns differ in conditioning, too (what the network of the CBVs is given): "
             "E2E-CDiff (method default) image_route; E2E-CDiff w/ coll (method default) image.");

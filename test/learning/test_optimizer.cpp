@@ -26,7 +26,7 @@ TEST(Optimizer, ClipsSomeOfTheParameters) {
 TEST(Optimizer, EpsilonDampsSmallGradients) {
   at::Tensor weight = at::ones({2});
   weight.set_requires_grad(true);
-  Optimizer optimizer({weight}, {0.0, 0.0, 1.0});
+  Optimizer optimizer({weight}, {0.0, 0.0, 0.999, 1.0});
   (weight * toTensor({2.0F, -3.0F}, {2}, at::kCPU)).sum().backward();
   optimizer.step(0, 0.1);
   EXPECT_NEAR(toVector(weight)[0], 1.0F - 0.1F * 2.0F / 3.0F, 1e-6F);

@@ -104,8 +104,10 @@ void PlantPlanner::conclude(const planning::PlanningTask& task, const PlantInput
   const traffic::VehicleState& state = task.vehicle->state;
   planned.action = memories_.at(planned.vehicle_id).tracker.track(state.speed, output.waypoints);
   planned.rollout = rolloutOf(state, output.waypoints, planned.action);
-  for (std::size_t i = 0; i < input.ids.size(); ++i)
+  for (std::size_t i = 0; i < input.ids.size(); ++i) {
+    if (input.ids[i] == planned.vehicle_id) continue;
     planned.attended.push_back({input.ids[i], static_cast<double>(output.attention[i])});
+  }
 }
 
 planning::PlannerDescriptor plantDescriptor() {

@@ -46,6 +46,9 @@ void PlantArchitecture::describe(core::OptionsVisitor& visitor) {
   visitor.number({"radius", "m", "Vehicles farther away are no tokens."}, radius, 1.0, 500.0);
   visitor.number({"light_distance", "m", "A light counts up to this far before its stop line."},
                  light_distance, 1.0, 500.0);
+  visitor.flag(
+      {"own_vehicle", "", "The driven vehicle is a token, too, so that its speed is known."},
+      own_vehicle);
 }
 
 void PlantArchitecture::validate() const {
@@ -67,7 +70,8 @@ std::vector<std::pair<double, std::size_t>> nearestFirst(const PlantArchitecture
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < snapshot.vehicles.size(); ++i) {
     const traffic::Vehicle& other = snapshot.vehicles[i];
-    if (other.id == vehicle.id || traffic::onDifferentLevels(vehicle, other)) continue;
+    const bool left_out = other.id == vehicle.id && !architecture.own_vehicle;
+    if (left_out || traffic::onDifferentLevels(vehicle, other)) continue;
     const double distance = (other.state.position - vehicle.state.position).norm();
     if (distance <= architecture.radius) near.emplace_back(distance, i);
   }

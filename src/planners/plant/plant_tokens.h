@@ -24,6 +24,8 @@ struct PlantArchitecture {
   std::int64_t vehicles = 24;    ///< most vehicle tokens; the nearest are kept
   double radius = 50.0;          ///< vehicles farther away are no tokens [m]
   double light_distance = 30.0;  ///< a light counts up to this far before its stop line [m]
+  bool own_vehicle = false;      ///< the driven vehicle is the first vehicle token, with its speed
+                                 ///< (`input_ego` of PlanT's code, off there, too)
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for sizes that do not fit each other.
@@ -49,7 +51,8 @@ PlantToken plantToken(const geometry::Pose2d& frame, const traffic::VehicleState
 
 /// What PlanT is given of a moment.
 struct PlantInput {
-  std::vector<PlantToken> vehicles;  ///< within the radius on the vehicle's level, nearest first
+  std::vector<PlantToken> vehicles;  ///< within the radius on the vehicle's level, nearest first;
+                                     ///< with `own_vehicle` itself among them
   std::vector<std::string> ids;      ///< of these
   std::vector<PlantToken> route;     ///< at most two segments of the route ahead, nearest first
   bool red_light = false;            ///< a light ahead on the route is not green

@@ -56,6 +56,18 @@ TEST_F(PlantTokens, NearVehiclesOnTheLevelNearestFirstThenById) {
   EXPECT_EQ(inputOf(snapshot).vehicles.size(), 2U);
 }
 
+// At its own place, heading ahead, with its speed of 5 of 20 m/s.
+TEST_F(PlantTokens, TheDrivenVehicleIsTheFirstTokenWhereTheArchitectureSaysSo) {
+  const auto snapshot =
+      snapshotOf({vehicleAt("ego", 0.0, 0.0, 0.0, 5.0), vehicleAt("a", 20.0, 0.0, 0.0, 7.0)});
+  EXPECT_EQ(inputOf(snapshot).ids, (std::vector<std::string>{"a"}));
+  architecture_.own_vehicle = true;
+  const PlantInput input = inputOf(snapshot);
+  ASSERT_EQ(input.ids, (std::vector<std::string>{"ego", "a"}));
+  const float expected[] = {0.0F, 0.0F, 0.0F, 0.25F};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(input.vehicles[0][i], expected[i]) << i;
+}
+
 TEST_F(PlantTokens, AnEmptySceneHasTheRouteAlone) {
   const PlantInput input = inputOf(snapshotOf({vehicleAt("ego", 0.0, 0.0, 0.0, 5.0)}));
   EXPECT_TRUE(input.vehicles.empty());

@@ -51,7 +51,7 @@ TEST(PpoSession, DrivesTheCbvsOfASessionTheSameEachTime) {
   const test::TemporaryFolder folder;
   test::writePpo(folder.path(), test::constantPpo(0.4F, 0.0F));
   const ScenarioOptions options = scenarioWith(
-      {"cbv_planner=ppo", "ppo.weights=" + folder.path().string(), "protocol.time_limit=6"});
+      {"cbv_planner=ppo", "ppo.weights=" + folder.path().string(), "protocol.time_limit=15"});
   const ActionRecorder first = drive(options);
   EXPECT_EQ(first.faults, std::vector<std::string>());
   ASSERT_GT(first.actions.size(), 20U);

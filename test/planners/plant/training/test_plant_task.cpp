@@ -31,7 +31,7 @@ class PlantTaskTest : public test::TrainingFixture {
     settings.architecture.width = 32;
     settings.architecture.heads = 2;
     settings.architecture.hidden = 64;
-    training.options.steps = 60;
+    training.options.steps = 120;
     training.options.batch = 16;
     training.options.warm_up = 5;
     training.options.learning_rate = 0.01;
@@ -59,8 +59,8 @@ TEST_F(PlantTaskTest, LearnsToDriveAsItsScenesDo) {
 
 TEST_F(PlantTaskTest, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
   train(start("model"));
+  trainUntil(start("resumed"), "imitation step 23/120");
   learning::Training other = start("resumed");
-  trainUntil(other, "imitation step 23/60");
   other.options.resume = true;
   train(other);
   expectSameCheckpoints("model", "resumed", "imitation");

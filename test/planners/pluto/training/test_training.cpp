@@ -17,7 +17,7 @@ class PlutoTraining : public test::TrainingFixture {
   learning::Training start(const std::string& output) const {
     learning::Training training = trainingOf(plutoTraining(), output);
     dynamic_cast<PlutoTask&>(*training.task).settings.architecture = testing::smallPluto();
-    training.options.steps = 60;
+    training.options.steps = 120;
     training.options.batch = 4;
     training.options.warm_up = 5;
     training.options.validation_share = 0.5;
@@ -44,15 +44,16 @@ TEST_F(PlutoTraining, LearnsToDriveOn) {
 }
 
 TEST_F(PlutoTraining, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
-  for (const char* output : {"whole", "parted"}) {
+  const auto twelveSteps = [&](const char* output) {
     learning::Training training = start(output);
     training.options.steps = 12;
-    if (output == std::string("parted")) {
-      trainUntil(training, "imitation step 9/12");
-      training.options.resume = true;
-    }
-    train(training);
-  }
+    return training;
+  };
+  train(twelveSteps("whole"));
+  trainUntil(twelveSteps("parted"), "imitation step 9/12");
+  learning::Training again = twelveSteps("parted");
+  again.options.resume = true;
+  train(again);
   expectSameCheckpoints("whole", "parted", "imitation");
 }
 
