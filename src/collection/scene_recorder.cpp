@@ -10,6 +10,17 @@
 
 namespace cdiff::collection {
 
+DriverQueries driverQueries(const CollectionLoop& loop) {
+  DriverQueries queries;
+  queries.driver = [&](const std::string& id) -> learning::SceneDriver {
+    const auto driver = loop.driverOf(id);
+    return {driver.target_speed, driver.style.minimum_gap, driver.style.time_headway,
+            driver.style.acceleration, driver.style.deceleration};
+  };
+  queries.noisy = [&](const std::string& id) { return loop.perturbed(id); };
+  return queries;
+}
+
 SceneRecorder::SceneRecorder(const session::SessionSetup& setup, DriverQueries queries)
     : setup_(setup), queries_(std::move(queries)) {
   const session::ScenarioOptions& options = setup.options();

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "collection/collection_loop.h"
 #include "collection/training_samples.h"
 #include "learning/samples/scene.h"
 #include "session/session_observer.h"
@@ -18,6 +19,9 @@ struct DriverQueries {
   std::function<learning::SceneDriver(const std::string& id)> driver;
   std::function<bool(const std::string& id)> noisy;  ///< whether its last action carries noise
 };
+
+/// Answered by a session that runs, which must outlive them.
+DriverQueries driverQueries(const CollectionLoop& loop);
 
 /// Keeps what a scene holds of a session that runs (map frame, SI units): every decision, drive and
 /// contact. Observes all ticks of a CollectionLoop.

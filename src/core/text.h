@@ -42,6 +42,7 @@ std::string fileName(std::string text);
 std::vector<std::string> splitText(std::string_view text, char separator);
 
 /// The parts with a separator between them.
+bool endsWith(std::string_view text, std::string_view end);
 std::string joinText(const std::vector<std::string>& parts, std::string_view separator);
 
 // The local time of the wall clock as text, to the second.

@@ -18,8 +18,28 @@ AlignedFloats copied(const Tensor& tensor) {
 
 float logistic(float x) { return 1.0f / (1.0f + std::exp(-x)); }
 
-void copyRow(const View& from, const View& to, std::int64_t channels) {
-  std::copy_n(from.data, channels, to.data);
+RowSpan sequenceOf(const std::vector<std::int64_t>& begins, std::size_t index) {
+  return {begins[index], 1, begins[index + 1] - begins[index]};
+}
+
+View spanView(const Rows& rows, const RowSpan& span, std::int64_t channel = 0) {
+  return {rows.row(span.first) + channel, span.step * rows.stride()};
+}
+
+void normalizeInto(const LayerNorm& norm, const Rows& x, TransformerMemory& memory) {
+  memory.normed.resize(x.rows(), x.stride());
+  norm.apply(x.view(), memory.normed.view(), x.rows());
+}
+
+void addRows(const Rows& change, const Rows& x) {
+  for (std::int64_t row = 0; row < x.rows(); ++row) addRow(change.row(row), x.stride(), x.row(row));
+}
+
+void requireMultiple(const char* key, std::int64_t value, std::int64_t divisor,
+                     const std::string& reason) {
+  if (value % divisor == 0) return;
+  throw core::InputError(std::string(key) + " is " + std::to_string(value) + "; a multiple of " +
+                         reason + " was expected");
 }
 
 }  // namespace
@@ -28,6 +48,29 @@ const Tensor& LayerWeights::named(const std::string& name) const {
   const auto found = tensors.find(name);
   if (found == tensors.end()) throw core::InputError("the network has no tensor '" + name + "'");
   return found->second;
+}
+
+void TensorList::layer(const std::string& name, const std::vector<std::int64_t>& shape) {
+  add(name + ".weight", shape);
+  add(name + ".bias", {shape[0]});
+}
+
+void TensorList::mlp(const std::string& name, std::int64_t in, std::int64_t hidden,
+                     std::int64_t out) {
+  layer(name + ".in", {hidden, in});
+  norm(name + ".norm", hidden);
+  layer(name + ".out", {out, hidden});
+}
+
+void TensorList::attention(const std::string& name, std::int64_t width) {
+  layer(name + ".query", {width, width});
+  layer(name + ".key_value", {2 * width, width});
+  layer(name + ".output", {width, width});
+}
+
+void TensorList::feedForward(const std::string& name, std::int64_t width, std::int64_t hidden) {
+  layer(name + ".up", {hidden, width});
+  layer(name + ".down", {width, hidden});
 }
 
 void Rows::resize(std::int64_t rows, std::int64_t channels) {
@@ -49,101 +92,165 @@ LayerNorm::LayerNorm(const LayerWeights& weights, const std::string& name)
     : kernels_(&weights.kernels),
       channels_(weights.named(name + ".weight").shape[0]),
       gain_(copied(weights.named(name + ".weight"))),
-      shift_(copied(weights.named(name + ".bias"))) {}
+      shift_(copied(weights.named(name + ".bias"))),
+      zeros_(channels_) {}
 
 void LayerNorm::apply(const View& input, const View& added, const View& output,
                       std::int64_t rows) const {
   kernels_->normalizeRows({channels_, rows, gain_.data(), shift_.data(), input, added, output});
 }
 
-TransformerLayer::TransformerLayer(const LayerWeights& weights, const std::string& name,
-                                   const TransformerSizes& sizes)
-    : kernels_(&weights.kernels),
-      sizes_(sizes),
-      query_(weights, name + ".query"),
-      key_value_(weights, name + ".key_value"),
-      output_(weights, name + ".output"),
-      norm1_(weights, name + ".norm1"),
-      up_(weights, name + ".up"),
-      down_(weights, name + ".down"),
-      norm2_(weights, name + ".norm2") {}
+void TransformerSizes::validate() const {
+  requireMultiple("width", width, kChannelMultiple * heads, "16 x heads");
+  requireMultiple("hidden", hidden, kChannelMultiple, "16");
+}
 
-void TransformerLayer::attend(const View& query, std::int64_t count, std::int64_t begin,
-                              std::int64_t end, std::int64_t output,
-                              TransformerMemory& memory) const {
-  const std::int64_t head_width = sizes_.width / sizes_.heads;
-  const std::int64_t padded = paddedKeys(end - begin);
-  memory.weights.resize(static_cast<std::size_t>(sizes_.heads * count * padded));
+Mlp::Mlp(const LayerWeights& weights, const std::string& name)
+    : in_(weights, name + ".in"), norm_(weights, name + ".norm"), out_(weights, name + ".out") {}
+
+void Mlp::apply(const View& input, const View& output, std::int64_t rows, Rows& hidden) const {
+  hidden.resize(rows, in_.outputs());
+  in_.apply(input, hidden.view(), rows);
+  norm_.apply(hidden.view(), hidden.view(), rows);
+  float* values = hidden.row(0);
+  for (std::int64_t i = 0; i < rows * hidden.stride(); ++i) values[i] = std::max(0.0F, values[i]);
+  out_.apply(hidden.view(), output, rows);
+}
+
+void attendRows(const TransformerKernels& kernels, const TransformerSizes& sizes,
+                const RowSpan& queries, const RowSpan& keys, TransformerMemory& memory) {
+  const std::int64_t head_width = sizes.width / sizes.heads;
+  const std::int64_t padded = paddedKeys(keys.count);
+  memory.weights.resize(static_cast<std::size_t>(sizes.heads * queries.count * padded));
   if (head_width * padded > memory.keys_capacity) {
     memory.keys_capacity = head_width * padded;
     memory.keys = AlignedFloats(memory.keys_capacity);
   }
   AttentionCall call;
-  call.heads = sizes_.heads;
+  call.heads = sizes.heads;
   call.head_width = head_width;
-  call.queries = count;
-  call.keys = end - begin;
-  call.query = query;
-  call.key = memory.key_value.view(begin);
-  call.value = memory.key_value.view(begin, sizes_.width);
-  call.output = memory.mixed.view(output);
+  call.queries = queries.count;
+  call.keys = keys.count;
+  call.query = spanView(memory.query, queries);
+  call.key = spanView(memory.key_value, keys);
+  call.value = spanView(memory.key_value, keys, sizes.width);
+  call.output = spanView(memory.mixed, queries);
   call.weights = memory.weights.data();
   call.scratch = memory.keys.data();
-  kernels_->attend(call);
+  kernels.attend(call);
 }
 
+MultiHeadAttention::MultiHeadAttention(const LayerWeights& weights, const std::string& name,
+                                       const TransformerSizes& sizes)
+    : kernels_(&weights.kernels),
+      sizes_(sizes),
+      query_(weights, name + ".query"),
+      key_value_(weights, name + ".key_value"),
+      output_(weights, name + ".output") {}
+
+void MultiHeadAttention::project(const Rows& x, const Rows& context,
+                                 TransformerMemory& memory) const {
+  memory.query.resize(x.rows(), sizes_.width);
+  memory.key_value.resize(context.rows(), 2 * sizes_.width);
+  memory.mixed.resize(x.rows(), sizes_.width);
+  query_.apply(x.view(), memory.query.view(), x.rows());
+  key_value_.apply(context.view(), memory.key_value.view(), context.rows());
+}
+
+void MultiHeadAttention::finish(TransformerMemory& memory) const {
+  memory.change.resize(memory.mixed.rows(), sizes_.width);
+  output_.apply(memory.mixed.view(), memory.change.view(), memory.mixed.rows());
+}
+
+FeedForward::FeedForward(const LayerWeights& weights, const std::string& name)
+    : kernels_(&weights.kernels), up_(weights, name + ".up"), down_(weights, name + ".down") {}
+
+void FeedForward::apply(const Rows& x, TransformerMemory& memory) const {
+  memory.hidden.resize(x.rows(), up_.outputs());
+  memory.change.resize(x.rows(), down_.outputs());
+  up_.apply(x.view(), memory.hidden.view(), x.rows());
+  kernels_->gelu(memory.hidden.row(0), x.rows() * memory.hidden.stride());
+  down_.apply(memory.hidden.view(), memory.change.view(), x.rows());
+}
+
+TransformerLayer::TransformerLayer(const LayerWeights& weights, const std::string& name,
+                                   const TransformerSizes& sizes)
+    : sizes_(sizes),
+      attention_(weights, name, sizes),
+      norm1_(weights, name + ".norm1"),
+      mix_(weights, name),
+      norm2_(weights, name + ".norm2") {}
+
 /// From the output of attention to the end of the layer, in place on x.
-void TransformerLayer::finish(const View& x, std::int64_t rows, TransformerMemory& memory) const {
-  memory.change.resize(rows, sizes_.width);
-  memory.hidden.resize(rows, sizes_.hidden);
-  output_.apply(memory.mixed.view(), memory.change.view(), rows);
-  norm1_.apply(x, memory.change.view(), x, rows);
-  up_.apply(x, memory.hidden.view(), rows);
-  kernels_->gelu(memory.hidden.row(0), rows * memory.hidden.stride());
-  down_.apply(memory.hidden.view(), memory.change.view(), rows);
-  norm2_.apply(x, memory.change.view(), x, rows);
+void TransformerLayer::finish(const Rows& x, TransformerMemory& memory) const {
+  attention_.finish(memory);
+  norm1_.apply(x.view(), memory.change.view(), x.view(), x.rows());
+  mix_.apply(x, memory);
+  norm2_.apply(x.view(), memory.change.view(), x.view(), x.rows());
 }
 
 void TransformerLayer::forward(const std::vector<std::int64_t>& begins, const Rows& x,
                                TransformerMemory& memory) const {
-  const std::int64_t rows = begins.back();
-  memory.query.resize(rows, sizes_.width);
-  memory.key_value.resize(rows, 2 * sizes_.width);
-  memory.mixed.resize(rows, sizes_.width);
-  query_.apply(x.view(), memory.query.view(), rows);
-  key_value_.apply(x.view(), memory.key_value.view(), rows);
+  attention_.project(x, x, memory);
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
-    attend(memory.query.view(begins[i]), begins[i + 1] - begins[i], begins[i], begins[i + 1],
-           begins[i], memory);
+    const RowSpan sequence = sequenceOf(begins, i);
+    attention_.attend(sequence, sequence, memory);
   }
-  finish(x.view(), rows, memory);
+  finish(x, memory);
 }
 
 void TransformerLayer::forwardFirst(const std::vector<std::int64_t>& begins, const Rows& x,
                                     TransformerMemory& memory,
                                     std::vector<float>& attention) const {
-  const auto sequences = static_cast<std::int64_t>(begins.size()) - 1;
-  memory.first.resize(sequences, sizes_.width);
-  memory.query.resize(sequences, sizes_.width);
-  memory.key_value.resize(begins.back(), 2 * sizes_.width);
-  memory.mixed.resize(sequences, sizes_.width);
+  memory.first.resize(static_cast<std::int64_t>(begins.size()) - 1, sizes_.width);
   attention.clear();
-  for (std::int64_t i = 0; i < sequences; ++i)
-    copyRow(x.view(begins[static_cast<std::size_t>(i)]), memory.first.view(i), sizes_.width);
-  query_.apply(memory.first.view(), memory.query.view(), sequences);
-  key_value_.apply(x.view(), memory.key_value.view(), begins.back());
-  for (std::int64_t i = 0; i < sequences; ++i) {
-    const std::int64_t begin = begins[static_cast<std::size_t>(i)];
-    const std::int64_t end = begins[static_cast<std::size_t>(i) + 1];
-    attend(memory.query.view(i), 1, begin, end, i, memory);
-    for (std::int64_t key = 0; key < end - begin; ++key) {
+  for (std::int64_t i = 0; i < memory.first.rows(); ++i)
+    std::copy_n(x.row(begins[static_cast<std::size_t>(i)]), sizes_.width, memory.first.row(i));
+  attention_.project(memory.first, x, memory);
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const RowSpan keys = sequenceOf(begins, i);
+    attention_.attend({static_cast<std::int64_t>(i), 1, 1}, keys, memory);
+    for (std::int64_t key = 0; key < keys.count; ++key) {
       float sum = 0.0f;
       for (std::int64_t head = 0; head < sizes_.heads; ++head)
-        sum += memory.weights[static_cast<std::size_t>(head * paddedKeys(end - begin) + key)];
+        sum += memory.weights[static_cast<std::size_t>(head * paddedKeys(keys.count) + key)];
       attention.push_back(sum / static_cast<float>(sizes_.heads));
     }
   }
-  finish(memory.first.view(), sequences, memory);
+  finish(memory.first, memory);
+}
+
+PreNormAttention::PreNormAttention(const LayerWeights& weights, const std::string& name,
+                                   const TransformerSizes& sizes)
+    : norm_(weights, name + ".norm"), attention_(weights, name, sizes) {}
+
+void PreNormAttention::attendSelf(const std::vector<RowSpan>& spans, const Rows& x,
+                                  const Rows& position, TransformerMemory& memory) const {
+  normalizeInto(norm_, x, memory);
+  for (std::int64_t row = 0; position.rows() > 0 && row < x.rows(); ++row)
+    addRow(position.row(row % position.rows()), position.stride(), memory.normed.row(row));
+  attention_.project(memory.normed, memory.normed, memory);
+  for (const RowSpan& span : spans) attention_.attend(span, span, memory);
+  attention_.finish(memory);
+  addRows(memory.change, x);
+}
+
+void PreNormAttention::attendTo(const Rows& context, const Rows& x,
+                                TransformerMemory& memory) const {
+  normalizeInto(norm_, x, memory);
+  attention_.project(memory.normed, context, memory);
+  attention_.attend({0, 1, x.rows()}, {0, 1, context.rows()}, memory);
+  attention_.finish(memory);
+  addRows(memory.change, x);
+}
+
+PreNormFeedForward::PreNormFeedForward(const LayerWeights& weights, const std::string& name)
+    : norm_(weights, name + ".norm"), mix_(weights, name) {}
+
+void PreNormFeedForward::apply(const Rows& x, TransformerMemory& memory) const {
+  normalizeInto(norm_, x, memory);
+  mix_.apply(memory.normed, memory);
+  addRows(memory.change, x);
 }
 
 GruCell::GruCell(const LayerWeights& weights, const std::string& name)

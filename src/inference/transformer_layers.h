@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inference/convolution.h"
@@ -28,6 +29,25 @@ struct LayerWeights {
   const Tensor& named(const std::string& name) const;
 };
 
+/// Collects names and shapes of the tensors that layers are built from.
+class TensorList {
+ public:
+  void add(const std::string& name, const std::vector<std::int64_t>& shape) {
+    tensors_.push_back({name, shape});
+  }
+  /// NAME.weight and NAME.bias [out]: [out, in] of a Linear, or [out, in, taps].
+  void layer(const std::string& name, const std::vector<std::int64_t>& shape);
+  void norm(const std::string& name, std::int64_t channels) { layer(name, {channels}); }
+  void mlp(const std::string& name, std::int64_t in, std::int64_t hidden, std::int64_t out);
+  /// Of MultiHeadAttention.
+  void attention(const std::string& name, std::int64_t width);
+  void feedForward(const std::string& name, std::int64_t width, std::int64_t hidden);
+  std::vector<TensorShape> take() { return std::move(tensors_); }
+
+ private:
+  std::vector<TensorShape> tensors_;
+};
+
 /// Rows x channels of float32 in memory of its own, channels padded to kChannelMultiple with zeros.
 class Rows {
  public:
@@ -47,6 +67,11 @@ class Rows {
   std::int64_t rows_ = 0;
   std::int64_t stride_ = 0;
 };
+
+/// to += from.
+inline void addRow(const float* from, std::int64_t count, float* to) {
+  for (std::int64_t i = 0; i < count; ++i) to[i] += from[i];
+}
 
 /// y = W x + b on each row, of the tensors NAME.weight [out, in] and NAME.bias [out].
 class Linear {
@@ -68,23 +93,46 @@ class LayerNorm {
  public:
   LayerNorm(const LayerWeights& weights, const std::string& name);
   void apply(const View& input, const View& added, const View& output, std::int64_t rows) const;
+  /// With nothing added.
+  void apply(const View& input, const View& output, std::int64_t rows) const {
+    apply(input, {zeros_.data(), 0}, output, rows);
+  }
 
  private:
   const TransformerKernels* kernels_;
   std::int64_t channels_;
   AlignedFloats gain_;
   AlignedFloats shift_;
+  AlignedFloats zeros_;
 };
 
-/// Sizes of a transformer's encoder: width and hidden are multiples of 16, width / heads is, too.
+/// y = W_2 max(0, LN(W_1 x + b_1)) + b_2 on each row, of the tensors NAME.in, NAME.norm and
+/// NAME.out; the hidden width is a multiple of 16.
+class Mlp {
+ public:
+  Mlp(const LayerWeights& weights, const std::string& name);
+  void apply(const View& input, const View& output, std::int64_t rows, Rows& hidden) const;
+  std::int64_t outputs() const { return out_.outputs(); }
+
+ private:
+  Linear in_;
+  LayerNorm norm_;
+  Linear out_;
+};
+
+/// Sizes of a transformer's layers: width and hidden are multiples of 16, width / heads is, too.
 struct TransformerSizes {
   std::int64_t width = 256;
   std::int64_t heads = 8;
   std::int64_t hidden = 1024;  ///< of the feed-forward network
+
+  /// Throws InputError naming the key that is no such multiple.
+  void validate() const;
 };
 
 /// Memory that the layers of a network share.
 struct TransformerMemory {
+  Rows normed;
   Rows query;
   Rows key_value;
   Rows mixed;   ///< output of attention
@@ -94,6 +142,53 @@ struct TransformerMemory {
   std::vector<float> weights;
   AlignedFloats keys;
   std::int64_t keys_capacity = 0;
+};
+
+/// The rows of one sequence among others: first, first + step, ...
+struct RowSpan {
+  std::int64_t first = 0;
+  std::int64_t step = 1;
+  std::int64_t count = 0;
+};
+
+/// Scaled dot-product attention of several heads (Vaswani et al. 2017) between rows that are in
+/// memory: of the rows `queries` of memory.query to the rows `keys` of memory.key_value (keys, then
+/// values). Writes memory.weights, and memory.mixed at `queries`; the rows must be there.
+void attendRows(const TransformerKernels& kernels, const TransformerSizes& sizes,
+                const RowSpan& queries, const RowSpan& keys, TransformerMemory& memory);
+
+/// W_o attention(W_q x, W_kv context), of the tensors NAME.query, NAME.key_value (keys, then
+/// values) and NAME.output: `project`, `attend` for each sequence, `finish`.
+class MultiHeadAttention {
+ public:
+  MultiHeadAttention(const LayerWeights& weights, const std::string& name,
+                     const TransformerSizes& sizes);
+  /// memory.query of the rows of x, and memory.key_value of those of `context`.
+  void project(const Rows& x, const Rows& context, TransformerMemory& memory) const;
+  void attend(const RowSpan& queries, const RowSpan& keys, TransformerMemory& memory) const {
+    attendRows(*kernels_, sizes_, queries, keys, memory);
+  }
+  /// memory.change of memory.mixed.
+  void finish(TransformerMemory& memory) const;
+
+ private:
+  const TransformerKernels* kernels_;
+  TransformerSizes sizes_;
+  Linear query_;
+  Linear key_value_;
+  Linear output_;
+};
+
+/// memory.change = W_2 gelu(W_1 x), of the tensors NAME.up and NAME.down.
+class FeedForward {
+ public:
+  FeedForward(const LayerWeights& weights, const std::string& name);
+  void apply(const Rows& x, TransformerMemory& memory) const;
+
+ private:
+  const TransformerKernels* kernels_;
+  Linear up_;
+  Linear down_;
 };
 
 /// A layer of a transformer's encoder, normalization last (Vaswani et al. 2017, as BERT has it):
@@ -113,20 +208,43 @@ class TransformerLayer {
                     TransformerMemory& memory, std::vector<float>& attention) const;
 
  private:
-  /// Attention of `count` queries that start at `query` to a sequence.
-  void attend(const View& query, std::int64_t count, std::int64_t begin, std::int64_t end,
-              std::int64_t output, TransformerMemory& memory) const;
-  void finish(const View& x, std::int64_t rows, TransformerMemory& memory) const;
+  void finish(const Rows& x, TransformerMemory& memory) const;
 
-  const TransformerKernels* kernels_;
   TransformerSizes sizes_;
-  Linear query_;
-  Linear key_value_;
-  Linear output_;
+  MultiHeadAttention attention_;
   LayerNorm norm1_;
-  Linear up_;
-  Linear down_;
+  FeedForward mix_;
   LayerNorm norm2_;
+};
+
+/// Normalization first: x += W_o attention(LN(x) + position), of the tensors NAME.norm,
+/// NAME.query, NAME.key_value and NAME.output.
+class PreNormAttention {
+ public:
+  PreNormAttention(const LayerWeights& weights, const std::string& name,
+                   const TransformerSizes& sizes);
+
+  /// Each span attends to itself. `position` is empty or has a row for each of the first
+  /// position.rows() rows of x, repeated from there on.
+  void attendSelf(const std::vector<RowSpan>& spans, const Rows& x, const Rows& position,
+                  TransformerMemory& memory) const;
+  /// All rows of x attend to those of `context`, which come normalized.
+  void attendTo(const Rows& context, const Rows& x, TransformerMemory& memory) const;
+
+ private:
+  LayerNorm norm_;
+  MultiHeadAttention attention_;
+};
+
+/// Normalization first: x += W_2 gelu(W_1 LN(x)), of the tensors NAME.norm, NAME.up and NAME.down.
+class PreNormFeedForward {
+ public:
+  PreNormFeedForward(const LayerWeights& weights, const std::string& name);
+  void apply(const Rows& x, TransformerMemory& memory) const;
+
+ private:
+  LayerNorm norm_;
+  FeedForward mix_;
 };
 
 /// A gated recurrent unit (Cho et al. 2014, with the reset gate behind the matrix as libtorch has

@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
+#include <string_view>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::learning {
@@ -57,6 +58,25 @@ void ParameterSet::declareNorm(const std::string& name, std::int64_t channels, d
   declare(name + ".bias", {channels}, {});
 }
 
+void ParameterSet::declareAll(const std::vector<inference::TensorShape>& tensors,
+                              const std::function<double(const std::string&)>& bound) {
+  constexpr std::string_view kWeight = ".weight";
+  for (const inference::TensorShape& tensor : tensors) {
+    const std::string& name = tensor.name;
+    if (core::endsWith(name, ".bias")) continue;
+    if (!core::endsWith(name, kWeight)) {
+      declare(name, tensor.shape, {Start::Kind::kUniform, bound(name)});
+      continue;
+    }
+    const std::string layer = name.substr(0, name.size() - kWeight.size());
+    if (tensor.shape.size() > 1) {
+      declareLayer(layer, tensor.shape);
+    } else {
+      declareNorm(layer, tensor.shape[0]);
+    }
+  }
+}
+
 const at::Tensor& ParameterSet::operator()(const std::string& name) const {
   const auto found = places_.find(name);
   if (found == places_.end()) throw std::logic_error("no parameter " + name);
@@ -94,29 +114,28 @@ std::map<std::string, inference::Tensor> ParameterSet::values() const {
   return result;
 }
 
-at::Tensor linear(const ParameterSet& parameters, const std::string& name, const at::Tensor& x) {
-  const at::Tensor weight = parameters(name + ".weight").unsqueeze(2).unsqueeze(3);
-  return at::conv2d(x.unsqueeze(2).unsqueeze(3), weight, parameters(name + ".bias")).flatten(1);
+namespace {
+
+template <class Value>
+at::Tensor tensorOfValues(const std::vector<Value>& values, at::IntArrayRef shape,
+                          at::ScalarType type, const at::Device& device) {
+  at::Tensor tensor = at::empty(shape, type);
+  if (tensor.numel() != static_cast<std::int64_t>(values.size()))
+    throw std::logic_error("a tensor's count of values does not fit its shape");
+  if (!values.empty()) std::memcpy(tensor.data_ptr(), values.data(), values.size() * sizeof(Value));
+  return tensor.to(device);
 }
 
-at::Tensor linearOfRows(const ParameterSet& parameters, const std::string& name,
-                        const at::Tensor& x) {
-  const at::Tensor weight = parameters(name + ".weight")
-                                .unsqueeze(2)
-                                .unsqueeze(3)
-                                .contiguous(at::MemoryFormat::ChannelsLast);
-  const at::Tensor image = x.reshape({1, x.size(0), 1, x.size(1)}).permute({0, 3, 1, 2});
-  const at::Tensor y = at::conv2d(image, weight, parameters(name + ".bias"));
-  return y.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
-}
+}  // namespace
 
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device) {
-  at::Tensor tensor = at::empty(shape, at::kFloat);
-  if (tensor.numel() != static_cast<std::int64_t>(values.size()))
-    throw std::logic_error("a tensor's count of values does not fit its shape");
-  if (!values.empty()) std::memcpy(tensor.data_ptr(), values.data(), values.size() * sizeof(float));
-  return tensor.to(device);
+  return tensorOfValues(values, shape, at::kFloat, device);
+}
+
+at::Tensor toIndices(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
+                     const at::Device& device) {
+  return tensorOfValues(values, shape, at::kLong, device);
 }
 
 std::vector<float> toVector(const at::Tensor& tensor) {

@@ -4,6 +4,7 @@
 
 #include <ATen/ATen.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@
 
 namespace cdiff::learning {
 
-// Named tensors of a network in the order of their declaration, and what a layer does with them.
+// Named tensors of a network in the order of their declaration, and the steps that train them.
 
 /// How a tensor starts.
 struct Start {
@@ -38,6 +39,11 @@ class ParameterSet {
   /// NAME.weight = `weight` and NAME.bias = 0.
   void declareNorm(const std::string& name, std::int64_t channels, double weight = 1.0);
 
+  /// Of names and shapes as weight files list them: NAME.weight as by declareLayer, or with one
+  /// dimension by declareNorm, each with its bias; others uniform within bound(name).
+  void declareAll(const std::vector<inference::TensorShape>& tensors,
+                  const std::function<double(const std::string&)>& bound);
+
   bool has(const std::string& name) const { return places_.count(name) != 0; }
   const at::Tensor& operator()(const std::string& name) const;
   const std::vector<std::string>& names() const { return names_; }
@@ -58,16 +64,11 @@ class ParameterSet {
   std::map<std::string, std::size_t> places_;
 };
 
-/// x [B, in] -> [B, out], as a convolution: Debian's libtorch has fast code for those only.
-at::Tensor linear(const ParameterSet& parameters, const std::string& name, const at::Tensor& x);
-
-/// The same for many rows, several times as fast: the rows are the pixels of one image, channels
-/// last.
-at::Tensor linearOfRows(const ParameterSet& parameters, const std::string& name,
-                        const at::Tensor& x);
-
 at::Tensor toTensor(const std::vector<float>& values, at::IntArrayRef shape,
                     const at::Device& device);
+/// Whole numbers, as rows are chosen by.
+at::Tensor toIndices(const std::vector<std::int64_t>& values, at::IntArrayRef shape,
+                     const at::Device& device);
 std::vector<float> toVector(const at::Tensor& tensor);
 
 /// Weight decay, the decay per step of the moving average of the weights, b2 of AdamW, and what is

@@ -12,6 +12,26 @@ namespace cdiff::learning {
 
 using core::InputError;
 
+EvenStage::EvenStage(const TrainingRun& run, const std::string& name, const TrainedPart& part,
+                     std::int64_t batch, const std::string& order)
+    : name_(name),
+      part_(part),
+      batch_(run.batchSize(batch)),
+      order_(run.dataset.training(), std::vector<double>(run.dataset.training().size(), 1.0),
+             batch_, run.stream(order)) {}
+
+std::vector<PartSource> OneStageTask::model() const {
+  std::vector<PartSource> sources;
+  for (const auto& [part, what] : parts_) sources.push_back({part, what, {stage_}, stage_});
+  return sources;
+}
+
+std::vector<std::string> OneStageTask::fields() const {
+  std::vector<std::string> names;
+  for (const FieldSpec& field : sceneFields().fields) names.push_back(field.name);
+  return names;
+}
+
 void TaskRegistry::add(const TaskDescriptor& descriptor) {
   const std::string who = "training task '" + descriptor.name + "'";
   if (descriptor.name.empty() || descriptor.make == nullptr) {

@@ -19,6 +19,7 @@
 #include "learning/curve_log.h"
 #include "learning/parameters.h"
 #include "learning/samples/dataset.h"
+#include "learning/samples/sample_order.h"
 #include "learning/samples/scene.h"
 #include "learning/training_options.h"
 
@@ -92,6 +93,34 @@ struct TrainingRun {
   std::vector<std::size_t> held_out;  ///< validation samples that judge
   const std::atomic<bool>& stop;
   std::ostream& log;
+
+  /// Samples a step: as the options say, or `usual`.
+  std::int64_t batchSize(std::int64_t usual) const {
+    return options.batch > 0 ? options.batch : usual;
+  }
+  core::RandomStream stream(const std::string& name) const {
+    return core::RandomStream(static_cast<std::uint64_t>(options.seed), name);
+  }
+};
+
+/// A stage of one part, for which every training sample comes as often as any other.
+class EvenStage : public Stage {
+ public:
+  const std::string& name() const override { return name_; }
+  std::vector<TrainedPart> parts() override { return {part_}; }
+  std::int64_t batchSize() const override { return batch_; }
+  std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
+
+ protected:
+  /// `batch` where the options give none; the order is drawn from the stream `order`.
+  EvenStage(const TrainingRun& run, const std::string& name, const TrainedPart& part,
+            std::int64_t batch, const std::string& order);
+
+ private:
+  std::string name_;
+  TrainedPart part_;
+  std::int64_t batch_;
+  SampleOrder order_;
 };
 
 /// A file of the trained model.
@@ -161,6 +190,28 @@ class Task {
   /// A stage, once the parts that it starts with are loaded.
   virtual std::unique_ptr<Stage> makeStage(const std::string& name) = 0;
   virtual TrainedModel finish() = 0;
+};
+
+/// A task of one stage, which trains all parts of the model, on every field of the samples that it
+/// makes of scenes.
+class OneStageTask : public Task {
+ public:
+  TaskTexts texts() const override { return {stage_, std::to_string(batch_)}; }
+  std::vector<StageInfo> stages() const override { return {{stage_, {}, true, {}, ""}}; }
+  std::vector<std::string> allStages() const override { return {stage_}; }
+  std::vector<PartSource> model() const override;
+  std::vector<std::string> fields() const override;
+
+ protected:
+  /// `parts`: their names, and what they are for messages, {"network", "a network"}.
+  OneStageTask(const std::string& stage, std::int64_t batch,
+               const std::vector<std::pair<std::string, std::string>>& parts)
+      : stage_(stage), batch_(batch), parts_(parts) {}
+
+ private:
+  std::string stage_;
+  std::int64_t batch_;
+  std::vector<std::pair<std::string, std::string>> parts_;
 };
 
 }  // namespace cdiff::learning

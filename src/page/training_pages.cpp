@@ -153,10 +153,6 @@ bool startsWith(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 TrainingStage& stageNamed(std::vector<TrainingStage>& stages, const std::string& name) {
   for (TrainingStage& stage : stages) {
     if (stage.name == name) return stage;
@@ -221,7 +217,7 @@ Markup heldOutCharts(const TrainingStage& stage) {
   for (const TrainingQuantity& quantity : kQuantities) {
     const std::string ending = quantity.ending;
     const auto matches = [&](const std::string& measure) {
-      return startsWith(measure, kHeldOut) && endsWith(measure, ending);
+      return startsWith(measure, kHeldOut) && core::endsWith(measure, ending);
     };
     const auto shown = [&](const std::string& measure) {
       return measure.substr(start, measure.size() - start - ending.size());
@@ -242,7 +238,7 @@ Markup stageSection(const TrainingStage& stage) {
   const auto episodes = [&](const char* ending, const char* title) {
     const auto matches = [&](const std::string& measure) {
       const bool of_episodes = startsWith(measure, kEpisode) || startsWith(measure, kHeldOut);
-      return of_episodes && endsWith(measure, ending);
+      return of_episodes && core::endsWith(measure, ending);
     };
     return curveChart(stage, title, "", measuresOf(stage, matches, whole));
   };

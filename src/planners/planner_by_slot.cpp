@@ -34,7 +34,7 @@ std::vector<PlannedAction> planOne(PlannerBySlot::Member& member,
   }
   std::vector<PlannedAction> actions;
   for (const PlanningTask& task : tasks) {
-    actions.push_back({task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}});
+    actions.push_back(planning::failSafeAction(task));
     actions.back().fault = member.name + ": " + fault;
   }
   return actions;

@@ -4,6 +4,13 @@
 
 namespace cdiff::planning {
 
+PlannedAction failSafeAction(const PlanningTask& task, const std::string& reason) {
+  PlannedAction action{task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}};
+  if (!reason.empty())
+    action.fault = "vehicle '" + action.vehicle_id + "': " + reason + "; full braking instead";
+  return action;
+}
+
 PlannerOptionsTable::PlannerOptionsTable(const PlannerOptionsTable& other) {
   for (const Entry& entry : other.entries_)
     entries_.push_back({entry.name, entry.help, entry.options->clone()});

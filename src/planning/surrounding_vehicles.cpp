@@ -174,6 +174,20 @@ bool isFinite(const traffic::VehicleState& state) {
          std::isfinite(state.heading) && std::isfinite(state.speed);
 }
 
+std::string faultOf(const PlanningTask& task) {
+  if (!isFinite(task.vehicle->state)) return "its state is not finite";
+  return task.route == nullptr || task.route->empty() ? "it has no route" : "";
+}
+
+std::string faultOf(const traffic::TrafficSnapshot& snapshot, const PlanningTask& task) {
+  const std::string own = faultOf(task);
+  if (!own.empty()) return own;
+  for (const traffic::Vehicle& other : snapshot.vehicles) {
+    if (!isFinite(other.state)) return "the state of '" + other.id + "' is not finite";
+  }
+  return "";
+}
+
 const traffic::Vehicle* nearestVehicle(const traffic::TrafficSnapshot& snapshot,
                                        const traffic::Vehicle& vehicle) {
   const auto found = neighborsOf(snapshot, vehicle, std::numeric_limits<double>::infinity());

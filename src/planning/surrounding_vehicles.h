@@ -2,11 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "e2e_cdiff/map/route.h"
+#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
@@ -15,6 +17,11 @@ namespace cdiff::planning {
 // The vehicles of a snapshot that matter to a plan: on the vehicle's level, with finite states.
 
 bool isFinite(const traffic::VehicleState& state);
+/// Why a vehicle cannot be driven along its route: its state is not finite, or it has no route;
+/// empty where it can.
+std::string faultOf(const PlanningTask& task);
+/// Likewise where every vehicle of the snapshot is looked at and must be finite.
+std::string faultOf(const traffic::TrafficSnapshot& snapshot, const PlanningTask& task);
 
 /// The vehicle whose center is nearest to that of `vehicle`; nullptr when it is alone.
 const traffic::Vehicle* nearestVehicle(const traffic::TrafficSnapshot& snapshot,

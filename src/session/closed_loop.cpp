@@ -19,13 +19,9 @@ using planning::PlannedAction;
 using planning::PlanningTask;
 using traffic::SessionStatus;
 
-PlannedAction failSafe(const PlanningTask& task) {
-  return {task.slot, task.vehicle->id, traffic::ControlAction::failSafe(), {}};
-}
-
 std::vector<PlannedAction> failSafe(const std::vector<PlanningTask>& tasks) {
   std::vector<PlannedAction> actions;
-  for (const PlanningTask& task : tasks) actions.push_back(failSafe(task));
+  for (const PlanningTask& task : tasks) actions.push_back(planning::failSafeAction(task));
   return actions;
 }
 

@@ -7,6 +7,7 @@
 
 #include "diffusion/model.h"
 #include "inference/weight_file_text.h"
+#include "support/tensors.h"
 
 namespace cdiff::diffusion {
 namespace {
@@ -36,11 +37,8 @@ std::map<std::string, inference::Tensor> filled(const std::vector<inference::Ten
   std::map<std::string, inference::Tensor> tensors;
   int next = 0;
   for (const inference::TensorShape& shape : shapes) {
-    std::size_t count = 1;
-    for (const std::int64_t size : shape.shape) count *= static_cast<std::size_t>(size);
-    std::vector<float> values(count);
-    for (float& value : values) value = static_cast<float>(next = (next + 7) % 1001) / 8.0F;
-    tensors[shape.name] = {shape.shape, std::move(values)};
+    tensors[shape.name] = test::tensorOf(
+        shape.shape, [&](std::uint32_t) { return (next = (next + 7) % 1001) / 8.0; });
   }
   return tensors;
 }

@@ -5,32 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "e2e_cdiff/core/random.h"
 #include "inference/transformer_layers.h"
+#include "support/tensors.h"
 
 namespace cdiff::inference {
 namespace {
 
+using test::uniformTensor;
 using Matrix = std::vector<std::vector<double>>;
 using Weights = std::map<std::string, Tensor>;
 
 constexpr TransformerSizes kSizes = {32, 2, 48};
 
-/// Uniform in [-bound, bound].
-Tensor randomTensor(const std::string& name, const std::vector<std::int64_t>& shape, double bound) {
-  const core::RandomStream random(5, name);
-  std::size_t count = 1;
-  for (const std::int64_t size : shape) count *= static_cast<std::size_t>(size);
-  Tensor tensor{shape, {}};
-  for (std::size_t i = 0; i < count; ++i)
-    tensor.values.push_back(
-        static_cast<float>(random.uniform({0}, static_cast<std::uint32_t>(i), -bound, bound)));
-  return tensor;
-}
-
 void addLinear(Weights& weights, const std::string& name, std::int64_t in, std::int64_t out) {
-  weights[name + ".weight"] = randomTensor(name + ".weight", {out, in}, 0.4);
-  weights[name + ".bias"] = randomTensor(name + ".bias", {out}, 0.4);
+  weights[name + ".weight"] = uniformTensor(name + ".weight", {out, in}, 0.4);
+  weights[name + ".bias"] = uniformTensor(name + ".bias", {out}, 0.4);
 }
 
 Weights layerWeights() {
@@ -40,15 +29,15 @@ Weights layerWeights() {
   addLinear(weights, "l.output", kSizes.width, kSizes.width);
   addLinear(weights, "l.up", kSizes.width, kSizes.hidden);
   addLinear(weights, "l.down", kSizes.hidden, kSizes.width);
-  for (const char* name : {"l.norm1", "l.norm2"}) {
-    weights[std::string(name) + ".weight"] = randomTensor(name, {kSizes.width}, 1.5);
-    weights[std::string(name) + ".bias"] = randomTensor(name, {kSizes.width}, 0.5);
+  for (const char* name : {"l.norm", "l.norm1", "l.norm2"}) {
+    weights[std::string(name) + ".weight"] = uniformTensor(name, {kSizes.width}, 1.5);
+    weights[std::string(name) + ".bias"] = uniformTensor(name, {kSizes.width}, 0.5);
   }
   return weights;
 }
 
 Matrix randomRows(std::size_t rows, std::size_t columns, const std::string& name) {
-  const Tensor values = randomTensor(
+  const Tensor values = uniformTensor(
       name, {static_cast<std::int64_t>(rows), static_cast<std::int64_t>(columns)}, 2.0);
   Matrix matrix(rows, std::vector<double>(columns));
   for (std::size_t i = 0; i < rows * columns; ++i)
@@ -128,15 +117,31 @@ Matrix attended(const Matrix& q, const Matrix& kv, std::vector<Matrix>& weights)
   return mixed;
 }
 
-Matrix transformed(const Weights& weights, const Matrix& x, std::vector<Matrix>& attention) {
-  const Matrix mixed =
-      attended(linear(weights, "l.query", x), linear(weights, "l.key_value", x), attention);
-  const Matrix middle = normalized(weights, "l.norm1", x, linear(weights, "l.output", mixed));
-  Matrix hidden = linear(weights, "l.up", middle);
+Matrix attentionOf(const Weights& weights, const Matrix& x, const Matrix& context,
+                   std::vector<Matrix>& attention) {
+  return linear(
+      weights, "l.output",
+      attended(linear(weights, "l.query", x), linear(weights, "l.key_value", context), attention));
+}
+
+Matrix mixOf(const Weights& weights, const Matrix& x) {
+  Matrix hidden = linear(weights, "l.up", x);
   for (std::vector<double>& row : hidden) {
     for (double& value : row) value *= 0.5 * (1.0 + std::erf(value / std::sqrt(2.0)));
   }
-  return normalized(weights, "l.norm2", middle, linear(weights, "l.down", hidden));
+  return linear(weights, "l.down", hidden);
+}
+
+Matrix transformed(const Weights& weights, const Matrix& x, std::vector<Matrix>& attention) {
+  const Matrix middle = normalized(weights, "l.norm1", x, attentionOf(weights, x, x, attention));
+  return normalized(weights, "l.norm2", middle, mixOf(weights, middle));
+}
+
+Matrix sum(Matrix a, const Matrix& b) {
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    for (std::size_t c = 0; c < a[r].size(); ++c) a[r][c] += b[r % b.size()][c];
+  }
+  return a;
 }
 
 void expectNear(const Rows& found, std::int64_t first, const Matrix& expected, double tolerance) {
@@ -154,59 +159,54 @@ class TransformerLayers : public testing::TestWithParam<InstructionSet> {
   void SetUp() override {
     if (GetParam() > bestInstructionSet()) GTEST_SKIP() << "this CPU lacks " << toText(GetParam());
   }
+  TransformerLayer layer() const { return {{GetParam(), weights_}, "l", kSizes}; }
+
+  Weights weights_ = layerWeights();
+  TransformerMemory memory_;
+  std::vector<Matrix> unused_;
 };
 
 TEST_P(TransformerLayers, ALayerIsWhatItsDefinitionSays) {
-  const Weights weights = layerWeights();
-  const TransformerLayer layer({GetParam(), weights}, "l", kSizes);
   // Two sequences of 5 and 19 rows: fewer and more keys than a vector has lanes.
   const Matrix first = randomRows(5, 32, "first"), second = randomRows(19, 32, "second");
   Matrix both = first;
   both.insert(both.end(), second.begin(), second.end());
   const Rows x = rowsOf(both);
-  TransformerMemory memory;
-  layer.forward({0, 5, 24}, x, memory);
-  std::vector<Matrix> unused;
-  expectNear(x, 0, transformed(weights, first, unused), 2e-5);
-  expectNear(x, 5, transformed(weights, second, unused), 2e-5);
+  layer().forward({0, 5, 24}, x, memory_);
+  expectNear(x, 0, transformed(weights_, first, unused_), 2e-5);
+  expectNear(x, 5, transformed(weights_, second, unused_), 2e-5);
 }
 
 TEST_P(TransformerLayers, TheFirstRowAloneIsThatOfTheWholeLayerWithItsAttention) {
-  const Weights weights = layerWeights();
-  const TransformerLayer layer({GetParam(), weights}, "l", kSizes);
   const Matrix one = randomRows(1, 32, "one"), many = randomRows(18, 32, "many");
   Matrix both = one;
   both.insert(both.end(), many.begin(), many.end());
-  TransformerMemory memory;
   std::vector<float> attention;
-  layer.forwardFirst({0, 1, 19}, rowsOf(both), memory, attention);
+  layer().forwardFirst({0, 1, 19}, rowsOf(both), memory_, attention);
   std::vector<Matrix> expected_attention;
-  const Matrix expected = transformed(weights, many, expected_attention);
-  expectNear(memory.first, 1, {expected.front()}, 2e-5);
+  const Matrix expected = transformed(weights_, many, expected_attention);
+  expectNear(memory_.first, 1, {expected.front()}, 2e-5);
   ASSERT_EQ(attention.size(), 19U);
   EXPECT_FLOAT_EQ(attention[0], 1.0F) << "a row alone attends to itself";
-  double sum = 0.0;
+  double total = 0.0;
   for (std::size_t j = 0; j < 18; ++j) {
     const double mean = 0.5 * (expected_attention[0][0][j] + expected_attention[1][0][j]);
     EXPECT_NEAR(static_cast<double>(attention[1 + j]), mean, 1e-6);
-    sum += static_cast<double>(attention[1 + j]);
+    total += static_cast<double>(attention[1 + j]);
   }
-  EXPECT_NEAR(sum, 1.0, 1e-5);
+  EXPECT_NEAR(total, 1.0, 1e-5);
 }
 
 TEST_P(TransformerLayers, ASequenceIsTheSameToTheBitWhateverItsNeighbors) {
-  const Weights weights = layerWeights();
-  const TransformerLayer layer({GetParam(), weights}, "l", kSizes);
   const Matrix sequence = randomRows(7, 32, "sequence");
-  TransformerMemory memory;
   const Rows alone = rowsOf(sequence);
-  layer.forward({0, 7}, alone, memory);
+  layer().forward({0, 7}, alone, memory_);
   for (const std::size_t before : {1, 3, 10}) {
     Matrix rows = randomRows(before, 32, "neighbors");
     rows.insert(rows.end(), sequence.begin(), sequence.end());
     const Rows x = rowsOf(rows);
     const auto begin = static_cast<std::int64_t>(before);
-    layer.forward({0, begin, begin + 7}, x, memory);
+    layer().forward({0, begin, begin + 7}, x, memory_);
     for (std::int64_t r = 0; r < 7; ++r) {
       for (std::int64_t c = 0; c < kSizes.width; ++c)
         EXPECT_EQ(x.row(begin + r)[c], alone.row(r)[c]) << before << " rows before";
@@ -215,15 +215,37 @@ TEST_P(TransformerLayers, ASequenceIsTheSameToTheBitWhateverItsNeighbors) {
 }
 
 TEST_P(TransformerLayers, LargeScoresDoNotOverflow) {
-  Weights weights = layerWeights();
-  for (float& value : weights.at("l.query.weight").values) value *= 300.0F;
-  const TransformerLayer layer({GetParam(), weights}, "l", kSizes);
+  for (float& value : weights_.at("l.query.weight").values) value *= 300.0F;
   const Matrix sequence = randomRows(9, 32, "sequence");
   const Rows x = rowsOf(sequence);
-  TransformerMemory memory;
-  layer.forward({0, 9}, x, memory);
-  std::vector<Matrix> unused;
-  expectNear(x, 0, transformed(weights, sequence, unused), 2e-3);
+  layer().forward({0, 9}, x, memory_);
+  expectNear(x, 0, transformed(weights_, sequence, unused_), 2e-3);
+}
+
+// Rows 0, 2, 4 and 1, 3, 5 attend to each other, with two positions that repeat; then all attend to
+// other rows, and the feed-forward network is added.
+TEST_P(TransformerLayers, LayersThatNormalizeFirstAreWhatTheirDefinitionsSay) {
+  const PreNormAttention attention({GetParam(), weights_}, "l", kSizes);
+  const PreNormFeedForward mix({GetParam(), weights_}, "l");
+  const Matrix zero(6, std::vector<double>(32, 0.0));
+  const Matrix start = randomRows(6, 32, "start"), context = randomRows(3, 32, "context");
+  const Matrix position = randomRows(2, 32, "position");
+  const auto normed = [&](const Matrix& x) { return normalized(weights_, "l.norm", x, zero); };
+  Matrix expected = start;
+  const Matrix query = sum(normed(start), position);
+  for (const std::size_t first : {0, 1}) {
+    const Matrix rows = {query[first], query[first + 2], query[first + 4]};
+    const Matrix change = attentionOf(weights_, rows, rows, unused_);
+    for (std::size_t i = 0; i < 3; ++i)
+      expected[first + 2 * i] = sum({start[first + 2 * i]}, {change[i]}).front();
+  }
+  expected = sum(expected, attentionOf(weights_, normed(expected), context, unused_));
+  expected = sum(expected, mixOf(weights_, normed(expected)));
+  const Rows x = rowsOf(start);
+  attention.attendSelf({{0, 2, 3}, {1, 2, 3}}, x, rowsOf(position), memory_);
+  attention.attendTo(rowsOf(context), x, memory_);
+  mix.apply(x, memory_);
+  expectNear(x, 0, expected, 5e-5);
 }
 
 // States of 5 units, padded to 16: r, z and n follow each other in the tensors' rows.

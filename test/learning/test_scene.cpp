@@ -7,6 +7,7 @@
 #include "learning/samples/dataset.h"
 #include "learning/samples/scene_tables.h"
 #include "learning/small_scene.h"
+#include "support/same_vehicle.h"
 #include "support/temporary_folder.h"
 #include "traffic/vehicle_class.h"
 
@@ -14,23 +15,6 @@ namespace cdiff::learning {
 namespace {
 
 using test::smallScene;
-
-void expectSame(const traffic::Vehicle& found, const traffic::Vehicle& expected) {
-  EXPECT_EQ(found.id, expected.id);
-  EXPECT_EQ(found.role, expected.role);
-  EXPECT_EQ(found.cbv_slot, expected.cbv_slot);
-  EXPECT_EQ(found.state.position, expected.state.position);
-  EXPECT_EQ(found.state.elevation, expected.state.elevation);
-  EXPECT_EQ(found.state.heading, expected.state.heading);
-  EXPECT_EQ(found.state.speed, expected.state.speed);
-  EXPECT_EQ(found.dimensions.length, expected.dimensions.length);
-  EXPECT_EQ(found.dimensions.width, expected.dimensions.width);
-  EXPECT_EQ(found.dimensions.height, expected.dimensions.height);
-  EXPECT_EQ(found.acceleration, expected.acceleration);
-  EXPECT_EQ(found.yaw_rate, expected.yaw_rate);
-  EXPECT_EQ(found.applied_action, expected.applied_action);
-  EXPECT_EQ(found.lane_id, expected.lane_id);
-}
 
 void expectSame(const SceneDrive& found, const SceneDrive& expected) {
   EXPECT_EQ(found.vehicle_id, expected.vehicle_id);
@@ -86,7 +70,7 @@ TEST(Scene, ComesBackFromItsFileToTheLastBit) {
     EXPECT_EQ(found.decisions[i].signals[0].state, scene.decisions[i].signals[0].state);
     ASSERT_EQ(found.decisions[i].vehicles.size(), 3U);
     for (std::size_t n = 0; n < 3; ++n)
-      expectSame(found.decisions[i].vehicles[n], scene.decisions[i].vehicles[n]);
+      test::expectSame(found.decisions[i].vehicles[n], scene.decisions[i].vehicles[n]);
   }
 }
 

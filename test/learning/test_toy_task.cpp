@@ -2,38 +2,22 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // A task goes all the way: trained, judged, interrupted, resumed, exported. The library knows
 // nothing of it but its interface.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-#include <sstream>
-
-#include "core/file.h"
-#include "learning/stopping_buffer.h"
 #include "learning/task.h"
-#include "learning/task_registry.h"
 #include "learning/toy_task.h"
-#include "learning/trainer.h"
-#include "learning/training_folder.h"
-#include "support/temporary_folder.h"
+#include "learning/training_fixture.h"
 
 namespace cdiff::learning {
 namespace {
 
-class ToyTaskTest : public testing::Test {
+class ToyTaskTest : public test::TrainingFixture {
  protected:
   ToyTaskTest() {
-    std::filesystem::create_directories(folder_.path() / "data");
-    test::writeToyShard(folder_.path() / "data" / "a.shard", 100);
+    test::writeToyShard(path("data") / "a.shard", 100);
     training_ = start("model");
   }
 
   Training start(const std::string& output) const {
-    TaskRegistry tasks;
-    tasks.add(test::toyTraining());
-    Training training = tasks.training("toy");
-    training.options.data = (folder_.path() / "data").string();
-    training.options.output = (folder_.path() / output).string();
-    training.options.device = "cpu";
+    Training training = trainingOf(test::toyTraining(), output);
     training.options.steps = 300;
     training.options.warm_up = 5;
     training.options.learning_rate = 0.05;
@@ -41,81 +25,60 @@ class ToyTaskTest : public testing::Test {
     training.options.average_decay = 0.9;
     training.options.validation_share = 0.2;
     training.options.validation_every = 100;
-    training.options.report_every = 0.0;
     return training;
   }
-  std::string trainingText(const Training& training) {
-    try {
-      train(training, stop_, log_);
-    } catch (const core::InputError& error) {
-      return error.what();
-    }
-    return "trained";
-  }
-  std::filesystem::path output(const std::string& file) const {
-    return std::filesystem::path(training_.options.output) / file;
-  }
   inference::SafetensorsFile model(const std::string& folder) const {
-    return inference::readSafetensors(folder_.path() / folder / "line.safetensors",
+    return inference::readSafetensors(path(folder) / "line.safetensors",
                                       [](const auto&) -> std::vector<inference::TensorShape> {
                                         return {{"line.bias", {1}}, {"line.weight", {1, 2}}};
                                       });
   }
 
-  test::TemporaryFolder folder_;
   Training training_;
-  std::atomic<bool> stop_{false};
-  std::ostringstream log_;
 };
 
 TEST_F(ToyTaskTest, LearnsTheLineJudgesItAndExportsIt) {
-  train(training_, stop_, log_);
+  train(training_);
   const inference::SafetensorsFile found = model("model");
   // The line that the samples lie on; F16 holds its coefficients to 1e-3.
   EXPECT_NEAR(found.tensors.at("line.weight").values[0], 2.0F, 0.02F);
   EXPECT_NEAR(found.tensors.at("line.weight").values[1], -3.0F, 0.02F);
   EXPECT_NEAR(found.tensors.at("line.bias").values[0], 1.0F, 0.02F);
   EXPECT_EQ(found.metadata.at("format"), "toy");
-  const auto record = nlohmann::json::parse(core::readFile(output("training.json"), "record"));
-  EXPECT_EQ(nlohmann::json::parse(found.metadata.at("training")), record);
-  EXPECT_EQ(record.at("stages").at("fit").at("steps"), 300);
-  EXPECT_EQ(record.at("slope"), 1.0);
-  EXPECT_EQ(record.at("data").at("samples"), 100);
-  EXPECT_LT(record.at("held_out").at("square").get<double>(), 1e-3);
-  const std::string curves = core::readFile(output("curves.csv"), "curves");
+  const auto written = record("model");
+  EXPECT_EQ(nlohmann::json::parse(found.metadata.at("training")), written);
+  EXPECT_EQ(written.at("stages").at("fit").at("steps"), 300);
+  EXPECT_EQ(written.at("slope"), 1.0);
+  EXPECT_EQ(written.at("data").at("samples"), 100);
+  EXPECT_LT(written.at("held_out").at("square").get<double>(), 1e-3);
+  const std::string curves = text("model", "curves.csv");
   for (const char* row : {"fit,100,", "fit,300,", "held_out_square", "loss_square"})
     EXPECT_NE(curves.find(row), std::string::npos) << row;
-  const std::string card = core::readFile(output("model_card.md"), "card");
+  const std::string card = text("model", "model_card.md");
   EXPECT_EQ(card.rfind("# A line\n", 0), 0U) << card;
   EXPECT_NE(card.find("| fit | 300 |"), std::string::npos) << card;
 }
 
 TEST_F(ToyTaskTest, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
-  train(training_, stop_, log_);
+  train(training_);
   Training other = start("resumed");
-  test::StoppingBuffer buffer(stop_, "fit step 123/300");
-  std::ostream log(&buffer);
-  EXPECT_THROW(train(other, stop_, log), core::Interrupted);
-  const auto path = folder_.path() / "resumed" / "fit.checkpoint";
-  EXPECT_EQ(readCheckpoint(path).facts.at("steps"), 123);
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "resumed" / "line.safetensors"));
-  stop_ = false;
+  trainUntil(other, "fit step 123/300");
+  EXPECT_EQ(checkpoint("resumed", "fit").facts.at("steps"), 123);
+  EXPECT_FALSE(std::filesystem::exists(path("resumed") / "line.safetensors"));
   other.options.resume = true;
-  train(other, stop_, log_);
-  const Checkpoint expected = readCheckpoint(output("fit.checkpoint"));
-  const Checkpoint found = readCheckpoint(path);
-  ASSERT_EQ(found.tensors.size(), 8U);  // weight, two moments and average of two tensors
-  for (const auto& [name, tensor] : expected.tensors)
-    EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
+  train(other);
+  EXPECT_EQ(checkpoint("resumed", "fit").tensors.size(), 8U)
+      << "weight, two moments and average of two tensors";
+  expectSameCheckpoints("model", "resumed", "fit");
   EXPECT_EQ(model("resumed").metadata.at("sha256"), model("model").metadata.at("sha256"));
 }
 
 TEST_F(ToyTaskTest, ExportWritesTheModelAnew) {
-  train(training_, stop_, log_);
+  train(training_);
   const std::string hash = model("model").metadata.at("sha256");
-  std::filesystem::remove(output("line.safetensors"));
+  std::filesystem::remove(path("model") / "line.safetensors");
   training_.options.stage = "export";
-  train(training_, stop_, log_);
+  train(training_);
   EXPECT_EQ(model("model").metadata.at("sha256"), hash);
   Training empty = start("empty");
   empty.options.stage = "export";
@@ -124,7 +87,7 @@ TEST_F(ToyTaskTest, ExportWritesTheModelAnew) {
 }
 
 TEST_F(ToyTaskTest, AnotherSettingOfTheTaskIsNoResumption) {
-  train(training_, stop_, log_);
+  train(training_);
   Training other = start("model");
   other.options.resume = true;
   EXPECT_EQ(trainingText(other), "trained");
@@ -149,7 +112,7 @@ TEST_F(ToyTaskTest, AFieldThatTheSamplesLackIsNamed) {
 }
 
 TEST_F(ToyTaskTest, ATaskWithoutSamplesSaysWhoMustCollect) {
-  training_.options.data = (folder_.path() / "none").string();
+  training_.options.data = path("none").string();
   std::filesystem::create_directories(training_.options.data);
   EXPECT_NE(trainingText(training_).find("training task 'toy' has no samples: data folder '" +
                                          training_.options.data + "' holds no *.shard; collect"),

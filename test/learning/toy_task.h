@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "learning/batches.h"
+#include "learning/layers.h"
 #include "learning/samples/dataset.h"
-#include "learning/samples/sample_order.h"
 #include "learning/task.h"
 #include "learning/task_registry.h"
 
@@ -33,23 +33,13 @@ inline void writeToyShard(const std::filesystem::path& path, std::size_t count) 
 }
 
 /// The linear map, and squared errors of it.
-class ToyStage : public learning::Stage {
+class ToyStage : public learning::EvenStage {
  public:
   ToyStage(const learning::TrainingRun& run, learning::ParameterSet& weights)
-      : run_(run),
-        weights_(weights),
-        order_(run.dataset.training(), std::vector<double>(run.dataset.training().size(), 1.0),
-               batchSize(),
-               core::RandomStream(static_cast<std::uint64_t>(run.options.seed), "fit order")) {}
+      : EvenStage(run, "fit", {"line", &weights}, 8, "fit order"), run_(run), weights_(weights) {}
 
-  const std::string& name() const override { return name_; }
-  std::vector<learning::TrainedPart> parts() override { return {{"line", &weights_}}; }
-  std::int64_t batchSize() const override {
-    return run_.options.batch > 0 ? run_.options.batch : 8;
-  }
-  std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
   learning::Loss loss(std::int64_t step) override {
-    const at::Tensor error = squaredError(order_.at(step));
+    const at::Tensor error = squaredError(samplesOf(step));
     return {error, {{"square", error}}};
   }
   learning::Measures judge() override {
@@ -65,20 +55,13 @@ class ToyStage : public learning::Stage {
     return (learning::linear(weights_, "line", field("inputs")) - field("target")).pow(2).mean();
   }
 
-  std::string name_ = "fit";
   const learning::TrainingRun& run_;
   learning::ParameterSet& weights_;
-  learning::SampleOrder order_;
 };
 
-class ToyTask : public learning::Task {
+class ToyTask : public learning::OneStageTask {
  public:
-  learning::TaskTexts texts() const override { return {"fit", "8"}; }
-  std::vector<learning::StageInfo> stages() const override { return {{"fit", {}, true, {}, ""}}; }
-  std::vector<std::string> allStages() const override { return {"fit"}; }
-  std::vector<learning::PartSource> model() const override {
-    return {{"line", "a line", {"fit"}, "fit"}};
-  }
+  ToyTask() : OneStageTask("fit", 8, {{"line", "a line"}}) {}
   std::vector<std::string> weightFiles() const override { return {"line.safetensors"}; }
   std::vector<std::string> fields() const override { return needed; }
   void describe(core::OptionsVisitor& visitor) override {
@@ -87,7 +70,7 @@ class ToyTask : public learning::Task {
 
   void start(const learning::TrainingRun& run) override {
     run_ = &run;
-    weights_.emplace(core::RandomStream(static_cast<std::uint64_t>(run.options.seed), "line"));
+    weights_.emplace(run.stream("line"));
     weights_->declare("line.weight", {1, 2}, {learning::Start::Kind::kUniform, slope});
     weights_->declare("line.bias", {1}, {});
   }

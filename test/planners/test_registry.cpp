@@ -117,10 +117,10 @@ TEST_F(PlannerRegistry, PassesTheOptionsOn) {
 
 TEST_F(PlannerRegistry, CopiesOfOptionsAreDeep) {
   planning::PlannerOptionsTable copy = options_;
-  copy.of<PdmLiteOptions>().lateral_kp = 3.118;
-  EXPECT_NE(options_.of<PdmLiteOptions>().lateral_kp, 3.118);
+  copy.of<PdmLiteOptions>().lateral.kp = 3.118;
+  EXPECT_NE(options_.of<PdmLiteOptions>().lateral.kp, 3.118);
   options_ = copy;
-  EXPECT_EQ(options_.of<PdmLiteOptions>().lateral_kp, 3.118);
+  EXPECT_EQ(options_.of<PdmLiteOptions>().lateral.kp, 3.118);
 }
 
 TEST_F(PlannerRegistry, RefusesWhatCannotWork) {
@@ -169,11 +169,11 @@ TEST_F(PlannerRegistry, WhatIsRegisteredIsKnownEverywhere) {
 
 TEST(PdmLiteOptions, ReadBackFromTheirOwnText) {
   PdmLiteOptions options;
-  options.lateral_kp = 3.118;
+  options.lateral.kp = 3.118;
   options.obey_lights = false;
   PdmLiteOptions read;
   core::loadOptions({"text", core::dumpOptions(options, true)}, read);
-  EXPECT_EQ(read.lateral_kp, 3.118);
+  EXPECT_EQ(read.lateral.kp, 3.118);
   EXPECT_FALSE(read.obey_lights);
   EXPECT_EQ(core::dumpOptions(read), core::dumpOptions(options));
 }

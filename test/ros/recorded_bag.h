@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "collection/collection_loop.h"
 #include "page/result_writer.h"
 #include "ros/bags/session_bag_writer.h"
 #include "rosbag/bag.h"
@@ -41,6 +42,29 @@ inline void recordSession(const std::filesystem::path& folder,
   request.seed = "2";
   request.set = settings;
   runInOneProcess(request, folder);
+}
+
+/// The bag of a session of crossing_left_turn that is driven for training data; `observe` is called
+/// before it runs and may add observers.
+inline void recordCollection(
+    const std::filesystem::path& file, double duration, bool images,
+    const std::function<void(const session::SessionSetup&, collection::CollectionLoop&)>& observe) {
+  collection::CollectionOptions options;
+  options.duration = duration;
+  options.vehicles = 4;
+  options.noise.interval = 4.0;
+  session::ScenarioOptions wanted = session::loadScenario("crossing_left_turn");
+  wanted.seed = 3;
+  const auto setup =
+      collection::collectionSetup(collection::collectionScenario(wanted, options), options);
+  collection::CollectionLoop loop(*setup, options, images);
+  ros::SessionBagWriter bag(*setup, file, {"test", "SUMO"});
+  bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
+  loop.addObserver(bag);
+  observe(*setup, loop);
+  const std::atomic<bool> never{false};
+  loop.run(never);
+  bag.finish();
 }
 
 /// Called with each message in order; writes to the new bag what that shall hold.

@@ -12,6 +12,7 @@
 #include "ros/messages/display.h"
 #include "ros/sample_messages.h"
 #include "support/network_text.h"
+#include "support/same_vehicle.h"
 
 namespace cdiff::ros {
 namespace {
@@ -25,25 +26,6 @@ Message overTheWire(const Message& message) {
   return copy;
 }
 
-void expectEqual(const traffic::Vehicle& left, const traffic::Vehicle& right) {
-  EXPECT_EQ(left.id, right.id);
-  EXPECT_EQ(left.role, right.role);
-  EXPECT_EQ(left.cbv_slot, right.cbv_slot);
-  EXPECT_EQ(left.state.position, right.state.position);
-  EXPECT_EQ(left.state.elevation, right.state.elevation);
-  EXPECT_EQ(left.state.heading, right.state.heading);
-  EXPECT_EQ(left.state.speed, right.state.speed);
-  EXPECT_EQ(left.dimensions.length, right.dimensions.length);
-  EXPECT_EQ(left.dimensions.width, right.dimensions.width);
-  EXPECT_EQ(left.dimensions.height, right.dimensions.height);
-  EXPECT_EQ(left.acceleration, right.acceleration);
-  EXPECT_EQ(left.yaw_rate, right.yaw_rate);
-  EXPECT_EQ(left.applied_action.has_value(), right.applied_action.has_value());
-  EXPECT_EQ(left.applied_action.value_or(traffic::ControlAction{}),
-            right.applied_action.value_or(traffic::ControlAction{}));
-  EXPECT_EQ(left.lane_id, right.lane_id);
-}
-
 TEST(Conversions, SnapshotComesBackBitByBit) {
   const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(80000000001ULL);
   const traffic::TrafficSnapshot back = fromMsg(overTheWire(toMsg(snapshot)));
@@ -52,7 +34,7 @@ TEST(Conversions, SnapshotComesBackBitByBit) {
   EXPECT_TRUE(back.decision_tick);
   EXPECT_EQ(back.status, snapshot.status);
   ASSERT_EQ(back.vehicles.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) expectEqual(back.vehicles[i], snapshot.vehicles[i]);
+  for (std::size_t i = 0; i < 3; ++i) test::expectSame(back.vehicles[i], snapshot.vehicles[i]);
   ASSERT_EQ(back.signals.size(), 1U);
   EXPECT_EQ(back.signals[0].id + back.signals[0].state, "lightrGy");
   ASSERT_EQ(back.contacts.size(), 1U);

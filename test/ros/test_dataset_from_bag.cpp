@@ -5,7 +5,6 @@
 #include <optional>
 #include <set>
 
-#include "collection/collection_loop.h"
 #include "collection/collection_options.h"
 #include "core/file.h"
 #include "diffusion/network/architecture.h"
@@ -13,7 +12,7 @@
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/geometry/shapes.h"
 #include "ros/bags/dataset_from_bag.h"
-#include "ros/bags/session_bag_writer.h"
+#include "ros/recorded_bag.h"
 #include "std_msgs/String.h"
 #include "support/sumo_network.h"
 
@@ -84,23 +83,12 @@ class DatasetFromBag : public testing::Test {
   static std::filesystem::path bag() { return folder_->path() / "session.bag"; }
 
   static void record(const std::filesystem::path& file, bool images) {
-    collection::CollectionOptions options;
-    options.duration = images ? 10.0 : 0.5;
-    options.vehicles = 4;
-    options.noise.interval = 4.0;
-    session::ScenarioOptions wanted = session::loadScenario("crossing_left_turn");
-    wanted.seed = 3;
-    const auto setup =
-        collection::collectionSetup(collection::collectionScenario(wanted, options), options);
-    collection::CollectionLoop loop(*setup, options, images);
-    SessionBagWriter bag(*setup, file, {"test", "SUMO"});
-    bag.setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
-    loop.addObserver(bag);
-    auto witness = std::make_unique<Witness>(loop);
-    loop.addObserver(*witness);
-    const std::atomic<bool> stop{false};
-    loop.run(stop);
-    bag.finish();
+    std::unique_ptr<Witness> witness;
+    test::recordCollection(file, images ? 10.0 : 0.5, images,
+                           [&](const session::SessionSetup&, collection::CollectionLoop& loop) {
+                             witness = std::make_unique<Witness>(loop);
+                             loop.addObserver(*witness);
+                           });
     if (images) witness_ = std::move(witness);
   }
 

@@ -2,11 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "collection/collection_loop.h"
 #include "collection/scene_recorder.h"
 #include "rendering/front_camera.h"
 #include "ros/bags/dataset_from_bag.h"
-#include "ros/bags/session_bag_writer.h"
+#include "ros/recorded_bag.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::ros {
@@ -18,32 +17,13 @@ class SceneOfSession : public testing::Test {
   static void SetUpTestSuite() {
     const test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "session.bag";
-    collection::CollectionOptions options;
-    options.duration = 6.0;
-    options.vehicles = 4;
-    options.noise.interval = 4.0;
-    session::ScenarioOptions wanted = session::loadScenario("crossing_left_turn");
-    wanted.seed = 3;
-    const auto setup =
-        collection::collectionSetup(collection::collectionScenario(wanted, options), options);
-    collection::CollectionLoop loop(*setup, options, true);
-    collection::DriverQueries queries;
-    queries.driver = [&](const std::string& id) -> learning::SceneDriver {
-      const auto driver = loop.driverOf(id);
-      return {driver.target_speed, driver.style.minimum_gap, driver.style.time_headway,
-              driver.style.acceleration, driver.style.deceleration};
-    };
-    queries.noisy = [&](const std::string& id) { return loop.perturbed(id); };
-    collection::SceneRecorder scene(*setup, queries);
-    SessionBagWriter bag(*setup, file, {"test", "SUMO"});
-    bag.setNoiseQuery(queries.noisy);
-    loop.addObserver(bag);
-    loop.addObserver(scene);
-    const std::atomic<bool> stop{false};
-    loop.run(stop);
-    bag.finish();
+    std::optional<collection::SceneRecorder> scene;
+    test::recordCollection(
+        file, 6.0, true, [&](const session::SessionSetup& setup, collection::CollectionLoop& loop) {
+          loop.addObserver(scene.emplace(setup, collection::driverQueries(loop)));
+        });
     recorded_.emplace(readSessionBag(file));
-    scene_ = learning::sceneOf(learning::sceneBytes(scene.take()), "scene");
+    scene_ = learning::sceneOf(learning::sceneBytes(scene->take()), "scene");
   }
   static void TearDownTestSuite() { recorded_.reset(); }
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "diffusion/model.h"
-#include "e2e_cdiff/core/random.h"
+#include "support/tensors.h"
 
 namespace cdiff::testing {
 
@@ -18,23 +18,15 @@ inline std::map<std::string, inference::Tensor> randomTensors(
   const core::RandomStream random(1, "random model");
   std::map<std::string, inference::Tensor> tensors;
   for (const inference::TensorShape& shape : shapes) {
-    std::size_t count = 1;
-    for (const std::int64_t size : shape.shape) count *= static_cast<std::size_t>(size);
-    const double fan_in = shape.shape.size() > 1
-                              ? static_cast<double>(count) / static_cast<double>(shape.shape[0])
-                              : 1.0;
-    inference::Tensor tensor{shape.shape, {}};
-    const bool norm = shape.name.find("norm") != std::string::npos;
+    std::int64_t fan_in = 1;
+    for (std::size_t axis = 1; axis < shape.shape.size(); ++axis) fan_in *= shape.shape[axis];
     const bool vector = shape.shape.size() == 1;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double draw =
-          random.normal({core::hashText(shape.name), 0, 0}, static_cast<std::uint32_t>(i));
-      const bool gain = norm && shape.name.back() == 't';  // "...weight"
-      tensor.values.push_back(static_cast<float>(gain     ? 1.0
-                                                 : vector ? 0.1 * draw
-                                                          : draw * std::sqrt(2.0 / fan_in)));
-    }
-    tensors.emplace(shape.name, std::move(tensor));
+    const bool gain =
+        shape.name.find("norm") != std::string::npos && shape.name.back() == 't';  // "...weight"
+    const double scale = vector ? 0.1 : std::sqrt(2.0 / static_cast<double>(fan_in));
+    tensors[shape.name] = test::tensorOf(shape.shape, [&](std::uint32_t i) {
+      return gain ? 1.0 : random.normal({core::hashText(shape.name), 0, 0}, i) * scale;
+    });
   }
   return tensors;
 }

@@ -91,6 +91,10 @@ struct PlannedAction {
   std::vector<AttendedVehicle> attended{};  ///< in the planner's own order; empty: it does not say
 };
 
+/// The fail-safe action for a task; with a reason it is a fault, "vehicle 'ID': REASON; full
+/// braking instead".
+PlannedAction failSafeAction(const PlanningTask& task, const std::string& reason = "");
+
 /// The one interface of everything that drives: at a decision, an action for each of its vehicles.
 class Planner {
  public:

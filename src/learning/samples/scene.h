@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
@@ -55,6 +56,29 @@ struct Scene {
   std::vector<std::pair<std::uint64_t, traffic::Contact>> contacts;  ///< by tick
   double seconds = 0.0;                                              ///< simulated
 };
+
+/// Which moments of scenes become samples of a learner.
+struct SceneSampleOptions {
+  double period = 0.5;           ///< between two samples of a vehicle [s]
+  double standing_share = 0.25;  ///< part kept of moments at which it stands
+  double lowest_speed = 0.0;     ///< of drivers whose target speed lies in between [m/s]
+  double highest_speed = 100.0;  ///< [m/s]
+
+  void describe(core::OptionsVisitor& visitor);
+  /// Decisions from one sample to the next.
+  std::size_t stride() const;
+  bool wants(double target_speed) const {
+    return target_speed >= lowest_speed && target_speed <= highest_speed;
+  }
+};
+
+/// Between the decisions of scenes that planners learn from [s].
+inline constexpr double kScenePeriod = 0.1;
+/// Throws InputError naming scene and decisions where they are not kScenePeriod apart; `learner`:
+/// who learns from it.
+void requireScenePeriod(const Scene& scene, const std::string& learner);
+/// Whether a vehicle moved from one decision to the next as its speeds say, up to 0.5 m.
+bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& after);
 
 /// Version of what scene files hold; readers refuse others.
 inline constexpr int kSceneVersion = 1;

@@ -64,11 +64,6 @@ std::string convert(const fs::path& source, const std::string& format, const std
 /// input.
 constexpr const char* kImporterVersion = "e2e_cdiff network importer 1";
 
-bool endsWith(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 std::vector<std::string> shippedNames(const fs::path& folder) {
   std::vector<std::string> names;
   if (!core::isFolder(folder)) return names;
@@ -99,12 +94,12 @@ void storeUnlessThere(const fs::path& file, const std::string& text) {
 }
 
 bool isOpenDrive(const std::string& source, const std::string& content) {
-  return endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
+  return core::endsWith(source, ".xodr") || content.find("<OpenDRIVE") != std::string::npos;
 }
 
 bool isOpenStreetMap(const std::string& source, const std::string& content) {
   constexpr std::size_t kHead = 4096;  // [bytes] within which the first element starts
-  return endsWith(source, ".osm") || endsWith(source, ".osm.xml") ||
+  return core::endsWith(source, ".osm") || core::endsWith(source, ".osm.xml") ||
          std::string_view(content).substr(0, kHead).find("<osm") != std::string_view::npos;
 }
 
@@ -194,8 +189,8 @@ fs::path networkFile(const std::string& source) {
   if (source.empty())
     throw core::InputError("no network was given; a file or a shipped name was expected");
   if (core::isFile(source)) return source;
-  const bool is_path = source.find('/') != std::string::npos || endsWith(source, ".xml") ||
-                       endsWith(source, ".xodr") || endsWith(source, ".osm");
+  const bool is_path = source.find('/') != std::string::npos || core::endsWith(source, ".xml") ||
+                       core::endsWith(source, ".xodr") || core::endsWith(source, ".osm");
   if (is_path && core::isFolder(source)) {
     throw core::InputError("network '" + source + "' is a folder; a file was expected");
   }

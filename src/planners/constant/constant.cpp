@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "planning/surrounding_vehicles.h"
 
@@ -24,22 +23,14 @@ ConstantSpeed::ConstantSpeed(const ConstantSpeedOptions& options,
 std::vector<planning::PlannedAction> ConstantSpeed::plan(
     const traffic::TrafficSnapshot&, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlannedAction> actions;
-  std::map<std::string, DriverState> kept;
   for (const planning::PlanningTask& task : tasks) {
-    const std::string& id = task.vehicle->id;
-    actions.push_back({task.slot, id, traffic::ControlAction::failSafe(), {}});
-    const bool finite = planning::isFinite(task.vehicle->state);
-    if (!finite || task.route == nullptr || task.route->empty()) {
-      actions.back().fault = "vehicle '" + id +
-                             "': " + (finite ? "it has no route" : "its state is not finite") +
-                             "; full braking instead";
-      continue;
-    }
-    auto known = drivers_.extract(id);
-    if (!known.empty()) kept.insert(std::move(known));
-    actions.back().action = actionOf(task, kept[id]);
+    const std::string fault = planning::faultOf(task);
+    actions.push_back(planning::failSafeAction(task, fault));
+    if (!fault.empty()) continue;
+    DriverState& driver = drivers_.keep(task.vehicle->id, [] { return DriverState(); });
+    actions.back().action = actionOf(task, driver);
   }
-  drivers_ = std::move(kept);
+  drivers_.forgetOthers();
   return actions;
 }
 

@@ -2,14 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/forecasts.h"
+#include "planning/vehicle_memory.h"
 
 namespace cdiff::planners {
 
@@ -40,7 +39,7 @@ class ConstantSpeed : public planning::Planner {
 
   ConstantSpeedOptions options_;
   dynamics::BicycleModel model_;
-  std::map<std::string, DriverState> drivers_;  ///< by vehicle
+  planning::VehicleMemory<DriverState> drivers_;
 };
 
 }  // namespace cdiff::planners

@@ -194,8 +194,7 @@ void DiffusionPlanner::rememberOnly(const std::vector<planning::PlanningTask>& t
 void DiffusionPlanner::conclude(std::uint64_t tick, const Situation& situation,
                                 planning::PlannedAction& planned) const {
   if (!situation.plan.allFinite()) {
-    planned.fault = "vehicle '" + planned.vehicle_id +
-                    "': the sampled plan is not finite; full braking instead";
+    planned = planning::failSafeAction(*situation.task, "the sampled plan is not finite");
     situation.memory->plan.reset();
     return;
   }
@@ -213,11 +212,10 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
   std::vector<Situation*> cold;
   std::vector<Situation*> warm;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const std::string& id = tasks[i].vehicle->id;
-    actions.push_back({tasks[i].slot, id, traffic::ControlAction::failSafe(), {}});
-    Memory& memory = *memories_[id];
-    if (auto fault = faultOf(tasks[i], snapshot.tick, memory)) {
-      actions[i].fault = "vehicle '" + id + "': " + *fault + "; full braking instead";
+    Memory& memory = *memories_[tasks[i].vehicle->id];
+    const auto fault = faultOf(tasks[i], snapshot.tick, memory);
+    actions.push_back(planning::failSafeAction(tasks[i], fault.value_or("")));
+    if (fault) {
       memory.plan.reset();
       continue;
     }

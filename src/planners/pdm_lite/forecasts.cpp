@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "e2e_cdiff/core/angle.h"
 #include "planning/surrounding_vehicles.h"
@@ -18,22 +17,14 @@ double lookAheadDistance(double speed) {
 }
 
 LateralController::LateralController(const PdmLiteOptions& options)
-    : kp_(options.resolved().lateral_kp),
-      ki_(options.lateral_ki),
-      kd_(options.lateral_kd),
-      errors_(static_cast<std::size_t>(options.resolved().lateral_window), 0.0) {}
+    : pid_({options.resolved().lateral_kp, options.lateral.ki, options.lateral.kd},
+           options.resolved().lateral_window) {}
 
 double LateralController::steer(const geometry::Pose2d& pose, const Eigen::Vector2d& aim) {
   const Eigen::Vector2d offset = aim - pose.position;
   const double bearing = std::atan2(offset.y(), offset.x());
   const double error = core::angleDifference(bearing, pose.heading) / (0.5 * core::kPi);
-  const double change = error - errors_.back();
-  errors_.pop_front();
-  errors_.push_back(error);
-  const double sum = std::accumulate(errors_.begin(), errors_.end(), 0.0);
-  const double mean = sum / static_cast<double>(errors_.size());
-  const double output = kp_ * error + ki_ * mean + kd_ * change;
-  return std::clamp(std::round(output * 1000.0) / 1000.0, -1.0, 1.0);
+  return std::clamp(std::round(pid_.update(error) * 1000.0) / 1000.0, -1.0, 1.0);
 }
 
 namespace {

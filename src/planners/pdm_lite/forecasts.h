@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planning/route_follower.h"
+#include "planning/windowed_pid.h"
 
 namespace cdiff::planners {
 
@@ -19,8 +19,7 @@ namespace cdiff::planners {
 double lookAheadDistance(double speed);
 
 /// PDM-Lite's steering: PID on the bearing of a route point ahead relative to the vehicle's
-/// heading, in units of 90 degrees; steer [-1, 1], positive left. One call per decision (the gains
-/// are per call, so they depend on the decision period).
+/// heading, in units of 90 degrees; steer [-1, 1], positive left. One call per decision.
 /// Copyable: a copy steers a forecast without touching the original.
 class LateralController {
  public:
@@ -29,10 +28,7 @@ class LateralController {
   double steer(const geometry::Pose2d& pose, const Eigen::Vector2d& aim);
 
  private:
-  double kp_;
-  double ki_;
-  double kd_;
-  std::deque<double> errors_;  ///< newest last, of fixed length, zeros at the start
+  planning::WindowedPid pid_;
 };
 
 // PDM-Lite's throttle and brake from speed and target speed [m/s]: full throttle far below the

@@ -108,7 +108,6 @@ std::size_t PdmLite::forecastSteps(double horizon) const {
 
 std::vector<planning::PlannedAction> PdmLite::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
-  Memories kept;
   Forecasts forecasts(snapshot.vehicles.size());
   std::vector<planning::PlannedAction> actions;
   for (const planning::PlanningTask& asked : tasks) {
@@ -116,7 +115,9 @@ std::vector<planning::PlannedAction> PdmLite::plan(
     const Driver driver = driverOf(asked);
     const planning::PlanningTask task = styled(asked, driver);
     const traffic::VehicleState& state = task.vehicle->state;
-    Memory& memory = recall(task.vehicle->id, kept);
+    Memory& memory = memories_.keep(task.vehicle->id, [&] {
+      return Memory{{planning::RouteFollower(), LateralController(options_)}};
+    });
     memory.driver.follower.update(*task.route, state.position);
     const double s = memory.driver.follower.arcLength();
     const Situation situation{
@@ -126,15 +127,8 @@ std::vector<planning::PlannedAction> PdmLite::plan(
         nearLaneChange(*task.route, s, state.speed)};
     actions.push_back(planOne(situation, memory, forecasts));
   }
-  memories_ = std::move(kept);
+  memories_.forgetOthers();
   return actions;
-}
-
-PdmLite::Memory& PdmLite::recall(const std::string& vehicle_id, Memories& kept) {
-  auto known = memories_.extract(vehicle_id);
-  if (!known.empty()) return kept.insert(std::move(known)).position->second;
-  const DriverState driver{planning::RouteFollower(), LateralController(options_)};
-  return kept.try_emplace(vehicle_id, Memory{driver}).first->second;
 }
 
 EgoHorizon PdmLite::egoHorizon() const {

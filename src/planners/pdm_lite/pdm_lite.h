@@ -2,9 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "e2e_cdiff/core/random.h"
@@ -12,6 +10,7 @@
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/pdm_lite/route_rules.h"
+#include "planning/vehicle_memory.h"
 
 namespace cdiff::planners {
 
@@ -66,7 +65,6 @@ class PdmLite : public planning::Planner {
     double waiting = 0.0;        ///< deceleration of an even style that gives way [m/s^2]
     StopSignRule stop_signs = {};
   };
-  using Memories = std::map<std::string, Memory>;
   /// Forecasts of the snapshot's vehicles, made when first asked for.
   using Forecasts = std::vector<std::optional<std::vector<traffic::VehicleState>>>;
   /// How one CBV's driver differs from the published one.
@@ -86,8 +84,6 @@ class PdmLite : public planning::Planner {
     bool near_lane_change;
   };
 
-  /// What is remembered of a vehicle, moved into `kept`; of a new one a fresh memory.
-  Memory& recall(const std::string& vehicle_id, Memories& kept);
   planning::PlannedAction planOne(const Situation& situation, Memory& memory,
                                   Forecasts& forecasts) const;
   traffic::ControlAction pedalAction(const Situation& situation, double target,
@@ -123,7 +119,7 @@ class PdmLite : public planning::Planner {
   const map::RoadNetwork& network_;
   double decision_period_;
   core::RandomStream drivers_;
-  Memories memories_;
+  planning::VehicleMemory<Memory> memories_;
 };
 
 }  // namespace cdiff::planners

@@ -47,12 +47,7 @@ void PdmLiteOptions::describe(core::OptionsVisitor& visitor) {
                  10.0);
   visitor.number({"detection_radius", "m", "Vehicles within it are forecast."}, detection_radius,
                  1.0, 500.0);
-  visitor.number({"lateral_kp", "", "Proportional gain of the steering; 0: the configuration's."},
-                 lateral_kp, 0.0, 20.0);
-  visitor.number({"lateral_ki", "", "Gain of the mean error of the steering."}, lateral_ki, 0.0,
-                 20.0);
-  visitor.number({"lateral_kd", "", "Gain of the last error change of the steering."}, lateral_kd,
-                 0.0, 20.0);
+  lateral.describe(visitor, "lateral", "steering", "; 0: the configuration's");
   visitor.integer(
       {"lateral_window", "", "Errors in the mean of the steering; 0: the configuration's."},
       lateral_window, 0, 1000);
@@ -88,7 +83,7 @@ PdmLiteConfiguration PdmLiteOptions::resolved() const {
                            core::joinText(configurationNames(), ", "));
   }
   PdmLiteConfiguration constants = named->second;
-  if (lateral_kp > 0.0) constants.lateral_kp = lateral_kp;
+  if (lateral.kp > 0.0) constants.lateral_kp = lateral.kp;
   if (lateral_window > 0) constants.lateral_window = lateral_window;
   if (top_speed > 0.0) constants.top_speed = top_speed;
   return constants;

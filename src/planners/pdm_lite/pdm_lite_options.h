@@ -6,6 +6,7 @@
 #include <string>
 
 #include "e2e_cdiff/core/options.h"
+#include "planning/windowed_pid.h"
 
 namespace cdiff::planners {
 
@@ -25,9 +26,8 @@ struct PdmLiteOptions {
   double junction_speed = 64.0 / 3.6;  ///< cap when a junction lies within 30 m [m/s]
   double forecast_horizon = 2.0;       ///< how far boxes are forecast [s]
   double detection_radius = 50.0;      ///< vehicles that are forecast [m]
-  double lateral_kp = 0.0;             ///< 0: the configuration's
-  double lateral_ki = 0.6406067986034124;
-  double lateral_kd = 1.3782508892109167;
+  /// Of the steering; kp 0: the configuration's.
+  planning::PidGains lateral{0.0, 0.6406067986034124, 1.3782508892109167};
   std::int64_t lateral_window = 0;  ///< errors in the integral; 0: the configuration's
   bool obey_lights = true;          ///< stop for lights that are not green
   bool obey_stop_signs = true;      ///< stop at stop signs

@@ -3,30 +3,15 @@
 #include "planners/plant/plant_network.h"
 
 #include <algorithm>
-#include <system_error>
-
-#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::planners {
 namespace {
 
 using inference::LayerWeights;
-using inference::TensorShape;
 
 constexpr std::int64_t kGruInputs = 4;  // the last waypoint and the target point
 
 std::string layerName(std::int64_t index) { return "layer." + std::to_string(index); }
-
-void addLinear(std::vector<TensorShape>& list, const std::string& name, std::int64_t in,
-               std::int64_t out) {
-  list.push_back({name + ".weight", {out, in}});
-  list.push_back({name + ".bias", {out}});
-}
-
-void addNorm(std::vector<TensorShape>& list, const std::string& name, std::int64_t channels) {
-  list.push_back({name + ".weight", {channels}});
-  list.push_back({name + ".bias", {channels}});
-}
 
 std::vector<inference::TransformerLayer> makeLayers(const LayerWeights& weights,
                                                     const PlantArchitecture& architecture) {
@@ -41,66 +26,26 @@ std::vector<inference::TransformerLayer> makeLayers(const LayerWeights& weights,
 
 }  // namespace
 
-std::vector<TensorShape> plantTensors(const PlantArchitecture& architecture) {
+std::vector<inference::TensorShape> plantTensors(const PlantArchitecture& architecture) {
   const std::int64_t width = architecture.width;
-  std::vector<TensorShape> list;
-  addLinear(list, "token", kPlantAttributes, width);
-  for (const char* name : {"cls", "type.vehicle", "type.route"}) list.push_back({name, {width}});
-  addNorm(list, "norm", width);
+  inference::TensorList list;
+  list.layer("token", {width, kPlantAttributes});
+  for (const char* name : {"cls", "type.vehicle", "type.route"}) list.add(name, {width});
+  list.norm("norm", width);
   for (std::int64_t i = 0; i < architecture.layers; ++i) {
     const std::string name = layerName(i);
-    addLinear(list, name + ".query", width, width);
-    addLinear(list, name + ".key_value", width, 2 * width);
-    addLinear(list, name + ".output", width, width);
-    addNorm(list, name + ".norm1", width);
-    addLinear(list, name + ".up", width, architecture.hidden);
-    addLinear(list, name + ".down", architecture.hidden, width);
-    addNorm(list, name + ".norm2", width);
+    list.attention(name, width);
+    list.norm(name + ".norm1", width);
+    list.feedForward(name, width, architecture.hidden);
+    list.norm(name + ".norm2", width);
   }
-  addLinear(list, "summary", width, kPlantSummary);
-  addLinear(list, "gru.input", kGruInputs, 3 * kPlantStates);
-  addLinear(list, "gru.state", kPlantStates, 3 * kPlantStates);
-  addLinear(list, "step", kPlantStates, 2);
+  list.layer("summary", {kPlantSummary, width});
+  list.layer("gru.input", {3 * kPlantStates, kGruInputs});
+  list.layer("gru.state", {3 * kPlantStates, kPlantStates});
+  list.layer("step", {2, kPlantStates});
   for (std::size_t i = 0; i < kPlantBins.size(); ++i)
-    addLinear(list, std::string("next.") + kPlantAttributeNames[i], width, kPlantBins[i]);
-  return list;
-}
-
-std::filesystem::path plantWeightFile(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / kPlantFile;
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) return file;
-  throw core::InputError("planner 'plant' has no weights: there is no file '" + file.string() +
-                         "'; train them with cdiff train --task plant --data FOLDER --output " +
-                         folder.string());
-}
-
-std::map<std::string, std::string> plantMetadata(const PlantArchitecture& architecture) {
-  return {{"format", kPlantFormat}, {"architecture", core::dumpOptions(architecture)}};
-}
-
-PlantModel readPlantModel(const std::filesystem::path& folder) {
-  const std::filesystem::path file = plantWeightFile(folder);
-  const std::string source = "weight file '" + file.string() + "'";
-  PlantModel model;
-  const auto expected = [&](const std::map<std::string, std::string>& metadata) {
-    const auto format = metadata.find("format");
-    if (format == metadata.end() || format->second != kPlantFormat) {
-      throw core::InputError(source + ": its format is " +
-                             (format == metadata.end() ? "not named" : "'" + format->second + "'") +
-                             ", not '" + kPlantFormat +
-                             "': these are not weights of this version's planner 'plant'; train "
-                             "them with cdiff train --task plant");
-    }
-    const auto sizes = metadata.find("architecture");
-    if (sizes == metadata.end())
-      throw core::InputError(source + ": its metadata lacks the key 'architecture'");
-    core::loadOptions({source + ", architecture", sizes->second}, model.architecture);
-    model.architecture.validate();
-    return plantTensors(model.architecture);
-  };
-  model.weights = inference::readSafetensors(file, expected).tensors;
-  return model;
+    list.layer(std::string("next.") + kPlantAttributeNames[i], {kPlantBins[i], width});
+  return list.take();
 }
 
 PlantNetwork::PlantNetwork(const PlantModel& model, inference::InstructionSet set)

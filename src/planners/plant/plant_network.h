@@ -5,14 +5,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "inference/instruction_set.h"
-#include "inference/safetensors.h"
 #include "inference/transformer_layers.h"
 #include "planners/plant/plant_tokens.h"
+#include "planners/weight_files.h"
 
 namespace cdiff::planners {
 
@@ -27,14 +26,7 @@ struct PlantOutput {
   std::vector<float> attention;
 };
 
-/// Weights of PlanT as a file holds them: plant.safetensors.
-struct PlantModel {
-  PlantArchitecture architecture;
-  std::map<std::string, inference::Tensor> weights;
-};
-
-inline constexpr const char* kPlantFile = "plant.safetensors";    ///< in the folder of the weights
-inline constexpr const char* kPlantFormat = "e2e_cdiff.plant.1";  ///< its metadata key "format"
+inline constexpr WeightKind kPlant = {"plant", "plant.safetensors", "e2e_cdiff.plant.1"};
 inline constexpr double kPlantStepScale = 5.0;  ///< what an output of 1 stands for [m]
 inline constexpr std::int64_t kPlantSummary = 64;
 inline constexpr std::int64_t kPlantStates = kPlantSummary + 1;
@@ -49,13 +41,10 @@ inline constexpr std::array<const char*, kPlantAttributes> kPlantAttributeNames 
 /// Names and shapes of the weights.
 std::vector<inference::TensorShape> plantTensors(const PlantArchitecture& architecture);
 
-/// The file in `folder`. Throws InputError with the command that trains it where there is none.
-std::filesystem::path plantWeightFile(const std::filesystem::path& folder);
-/// Throws InputError naming the file and what is wrong: none, of another planner, of other sizes;
-/// see readSafetensors.
-PlantModel readPlantModel(const std::filesystem::path& folder);
-/// Metadata of the file.
-std::map<std::string, std::string> plantMetadata(const PlantArchitecture& architecture);
+using PlantModel = NetworkWeights<PlantArchitecture>;
+inline PlantModel readPlantModel(const std::filesystem::path& folder) {
+  return readNetwork<PlantArchitecture>(kPlant, folder, plantTensors);
+}
 
 /// PlanT (Renz et al. 2022, at reduced width; docs/plant.md): tokens of vehicles and route through
 /// a transformer's encoder; its CLS token, with the light, is the state of a GRU that steps from

@@ -7,9 +7,8 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "geometry/simplified.h"
-#include "inference/denoiser_kernels.h"
+#include "inference/transformer_layers.h"
 #include "planners/pdm_lite/route_rules.h"
 
 namespace cdiff::planners {
@@ -35,13 +34,6 @@ PlantToken tokenOf(const Eigen::Vector2d& place, double heading, double speed, d
           static_cast<float>(length / kPlantExtentScale)};
 }
 
-void requireMultipleOf(const char* key, std::int64_t value, std::int64_t divisor,
-                       const std::string& reason) {
-  if (value % divisor == 0) return;
-  throw core::InputError(std::string(key) + " is " + std::to_string(value) + "; a multiple of " +
-                         reason + " was expected");
-}
-
 }  // namespace
 
 void PlantArchitecture::describe(core::OptionsVisitor& visitor) {
@@ -60,9 +52,7 @@ void PlantArchitecture::describe(core::OptionsVisitor& visitor) {
 }
 
 void PlantArchitecture::validate() const {
-  constexpr std::int64_t kMultiple = inference::kChannelMultiple;
-  requireMultipleOf("width", width, kMultiple * heads, "16 x heads");
-  requireMultipleOf("hidden", hidden, kMultiple, "16");
+  inference::TransformerSizes{width, heads, hidden}.validate();
 }
 
 PlantToken plantToken(const geometry::Pose2d& frame, const traffic::VehicleState& state,

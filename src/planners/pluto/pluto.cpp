@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -15,19 +14,12 @@
 namespace cdiff::planners {
 
 void PlutoOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.text(
-      {"weights", "", "Folder of its weights; a plain name is one in weights/ of the package."},
-      weights, {});
+  WeightOptions::describe(visitor);
   visitor.integer({"top", "", "Candidates of largest logits that share the probability."}, top, 1,
                   1024);
   visitor.number({"free_score", "", "Score of the plan that follows no reference line."},
                  free_score, 0.0, 1.0);
   visitor.group({"tracker", "", "The PIDs that follow the chosen plan."}, tracker);
-}
-
-std::filesystem::path PlutoOptions::folder() const {
-  const std::filesystem::path given(weights);
-  return given == given.filename() ? core::shareFolder() / "weights" / given : given;
 }
 
 PlutoChoice choosePlan(const std::vector<float>& logits, std::size_t top, double free_score) {
@@ -119,14 +111,10 @@ std::vector<planning::PlannedCandidate> candidatesOf(const geometry::Pose2d& pos
 
 std::string plutoFault(const traffic::TrafficSnapshot& snapshot,
                        const planning::PlanningTask& task) {
-  if (!planning::isFinite(task.vehicle->state)) return "its state is not finite";
-  for (const traffic::Vehicle& other : snapshot.vehicles) {
-    if (!planning::isFinite(other.state)) return "the state of '" + other.id + "' is not finite";
-  }
+  const std::string fault = planning::faultOf(snapshot, task);
+  if (!fault.empty()) return fault;
   if (snapshot.find(task.vehicle->id) == nullptr) return "it is not in the snapshot";
-  if (!std::isfinite(task.vehicle->acceleration)) return "its acceleration is not finite";
-  if (task.route == nullptr || task.route->empty()) return "it has no route";
-  return {};
+  return std::isfinite(task.vehicle->acceleration) ? "" : "its acceleration is not finite";
 }
 
 bool statesFinite(const traffic::TrafficSnapshot& snapshot) {
@@ -161,23 +149,17 @@ std::vector<planning::PlannedAction> PlutoPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   if (statesFinite(snapshot)) tracks_.add(snapshot);
   std::vector<planning::PlannedAction> actions;
-  std::map<std::string, Memory> kept;
   for (const planning::PlanningTask& task : tasks) {
-    const std::string& id = task.vehicle->id;
-    actions.push_back({task.slot, id, traffic::ControlAction::failSafe(), {}});
     const std::string fault = plutoFault(snapshot, task);
-    if (!fault.empty()) {
-      actions.back().fault = "vehicle '" + id + "': " + fault + "; full braking instead";
-      continue;
-    }
-    auto known = memories_.extract(id);
-    if (!known.empty()) kept.insert(std::move(known));
-    Memory& memory =
-        kept.try_emplace(id, Memory{{}, TrajectoryTracker(options_.tracker)}).first->second;
+    actions.push_back(planning::failSafeAction(task, fault));
+    if (!fault.empty()) continue;
+    Memory& memory = memories_.keep(task.vehicle->id, [&] {
+      return Memory{{}, TrajectoryTracker(options_.tracker)};
+    });
     memory.follower.update(*task.route, task.vehicle->state.position);
     conclude(task, look(snapshot, task, memory.follower.arcLength()), memory, actions.back());
   }
-  memories_ = std::move(kept);
+  memories_.forgetOthers();
   return actions;
 }
 
@@ -189,8 +171,7 @@ void PlutoPlanner::conclude(const planning::PlanningTask& task, const PlutoOutpu
   const bool scored = std::all_of(output.logits.begin(), output.logits.end(),
                                   [](float x) { return std::isfinite(x); });
   if (!scored || !plan.finite()) {
-    planned.fault = "vehicle '" + planned.vehicle_id +
-                    "': a number of its plan is not finite; full braking instead";
+    planned = planning::failSafeAction(task, "a number of its plan is not finite");
     return;
   }
   const traffic::VehicleState& state = task.vehicle->state;
@@ -199,7 +180,7 @@ void PlutoPlanner::conclude(const planning::PlanningTask& task, const PlutoOutpu
   planned.candidates = candidatesOf(state.pose(), output, choice);
 }
 
-std::unique_ptr<planning::Planner> makePluto(const PlutoKind& kind, const PlutoOptions& options,
+std::unique_ptr<planning::Planner> makePluto(const WeightKind& kind, const PlutoOptions& options,
                                              const planning::PlannerParts& parts) {
   const double period = parts.context.decision_period;
   if (std::abs(period - kPlutoPeriod) > 1e-9) {
@@ -209,18 +190,6 @@ std::unique_ptr<planning::Planner> makePluto(const PlutoKind& kind, const PlutoO
   }
   return std::make_unique<PlutoPlanner>(options, readPlutoModel(kind, options.folder()),
                                         parts.context.network, period);
-}
-
-planning::NetworkFacts plutoFacts(const PlutoKind& kind, const PlutoOptions& options) {
-  return {options.weights,
-          "vehicles_map_route",
-          "one pass of the network",
-          {{std::string(kind.planner) + "_instruction_set",
-            inference::toText(inference::bestInstructionSet())}}};
-}
-
-std::string plutoHash(const PlutoKind& kind, const PlutoOptions& options) {
-  return core::sha256(core::readFile(plutoWeightFile(kind, options.folder()), "weight file"));
 }
 
 planning::PlannerDescriptor plutoDescriptor() {

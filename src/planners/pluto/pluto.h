@@ -2,9 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <filesystem>
-#include <map>
-#include <string>
+#include <memory>
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
@@ -14,20 +12,19 @@
 #include "planners/pluto/tracks.h"
 #include "planners/two_stage_pid/two_stage_pid.h"
 #include "planning/route_follower.h"
+#include "planning/vehicle_memory.h"
 
 namespace cdiff::planners {
 
 /// Options of the planner: its weights, how it chooses, and the PIDs that follow what it chose.
-struct PlutoOptions {
-  std::string weights = "pluto";
+struct PlutoOptions : WeightOptions {
   std::int64_t top = 10;     ///< candidates that share the probability, those of largest logits
   double free_score = 0.25;  ///< of the plan that follows no reference line
   TrajectoryTrackerOptions tracker;  ///< published for Pluto and RIFT
 
+  PlutoOptions() : WeightOptions{kPluto.planner} {}
   void describe(core::OptionsVisitor& visitor);
   void validate() const { tracker.validate(); }
-  /// The folder of the weights.
-  std::filesystem::path folder() const;
 };
 
 /// Which plan drives: a candidate, or the free plan behind them.
@@ -69,34 +66,21 @@ class PlutoPlanner : public planning::Planner {
   PlutoSceneBuilder builder_;
   PlutoNetwork network_;
   RecentTracks tracks_;
-  std::map<std::string, Memory> memories_;  ///< by vehicle
+  planning::VehicleMemory<Memory> memories_;
 };
-
-/// The descriptor of `pluto`, and that of `rift` but for names and options.
-template <class Options>
-planning::PlannerDescriptor plutoDescriptorOf(const PlutoKind& kind);
 
 /// The planner of a kind, whose options are `options`. Throws InputError for weights that are
 /// missing or do not fit, and for a decision period other than 0.1 s.
-std::unique_ptr<planning::Planner> makePluto(const PlutoKind& kind, const PlutoOptions& options,
+std::unique_ptr<planning::Planner> makePluto(const WeightKind& kind, const PlutoOptions& options,
                                              const planning::PlannerParts& parts);
-planning::NetworkFacts plutoFacts(const PlutoKind& kind, const PlutoOptions& options);
-std::string plutoHash(const PlutoKind& kind, const PlutoOptions& options);
 
+/// The descriptor of `pluto`, and that of `rift` but for title, help and options.
 template <class Options>
-planning::PlannerDescriptor plutoDescriptorOf(const PlutoKind& kind) {
-  planning::PlannerDescriptor descriptor;
-  descriptor.name = kind.planner;
-  descriptor.options = planning::makePlannerOptions<Options>;
+planning::PlannerDescriptor plutoDescriptorOf(const WeightKind& kind) {
+  planning::PlannerDescriptor descriptor =
+      learnedDescriptor<Options>(kind, {"vehicles_map_route", "one pass of the network"});
   descriptor.make = [kind](const planning::PlannerParts& parts) {
     return makePluto(kind, parts.options.of<Options>(), parts);
-  };
-  descriptor.network = [kind](const planning::PlannerOptionsTable& table,
-                              const guidance::GuidanceOptions&) {
-    return plutoFacts(kind, table.of<Options>());
-  };
-  descriptor.weights_sha256 = [kind](const planning::PlannerOptionsTable& table) {
-    return plutoHash(kind, table.of<Options>());
   };
   return descriptor;
 }

@@ -150,12 +150,14 @@ OwnStateEncoder::OwnStateEncoder(const LayerWeights& weights,
       output_(weights, "own.output") {}
 
 void OwnStateEncoder::apply(const std::array<float, kMotionNumbers>& motion, const View& output,
-                            inference::AttentionMemory& memory) {
+                            inference::TransformerMemory& memory) {
   const std::int64_t width = sizes_.width;
   constexpr std::int64_t kTokens = kMotionNumbers + 1;
   tokens_.resize(kTokens, width);
-  mixed_.resize(1, width);
+  memory.query.resize(1, width);
   memory.key_value.resize(kTokens, 2 * width);
+  memory.mixed.resize(1, width);
+  std::copy_n(query_.row(0), width, memory.query.row(0));
   for (std::int64_t token = 0; token < kTokens; ++token) {
     float* row = tokens_.row(token);
     std::copy_n(place_.data() + token * width, width, row);
@@ -165,11 +167,8 @@ void OwnStateEncoder::apply(const std::array<float, kMotionNumbers>& motion, con
     for (std::int64_t i = 0; i < width; ++i) row[i] += value * gain[i];
   }
   key_value_.apply(tokens_.view(), memory.key_value.view(), kTokens);
-  inference::attendRows(*kernels_, sizes_,
-                        {query_.view(), 1, memory.key_value.view(), memory.key_value.view(0, width),
-                         kTokens, mixed_.view()},
-                        memory);
-  output_.apply(mixed_.view(), output, 1);
+  inference::attendRows(*kernels_, sizes_, {0, 1, 1}, {0, 1, kTokens}, memory);
+  output_.apply(memory.mixed.view(), output, 1);
 }
 
 }  // namespace cdiff::planners

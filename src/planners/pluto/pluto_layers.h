@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "inference/attention_layers.h"
+#include "inference/transformer_layers.h"
 #include "planners/pluto/pluto_scene.h"
 
 namespace cdiff::planners {
@@ -70,7 +70,7 @@ class OwnStateEncoder {
  public:
   OwnStateEncoder(const inference::LayerWeights& weights, const inference::TransformerSizes& sizes);
   void apply(const std::array<float, kMotionNumbers>& motion, const inference::View& output,
-             inference::AttentionMemory& memory);
+             inference::TransformerMemory& memory);
 
  private:
   const inference::TransformerKernels* kernels_;
@@ -81,15 +81,9 @@ class OwnStateEncoder {
   inference::Linear key_value_;
   inference::Linear output_;
   inference::Rows tokens_;
-  inference::Rows mixed_;
 };
 
 /// A learned table as rows.
 inference::Rows tableRows(const inference::LayerWeights& weights, const std::string& name);
-
-/// to += from.
-inline void addRow(const float* from, std::int64_t count, float* to) {
-  for (std::int64_t i = 0; i < count; ++i) to[i] += from[i];
-}
 
 }  // namespace cdiff::planners

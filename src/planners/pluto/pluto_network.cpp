@@ -7,6 +7,7 @@
 namespace cdiff::planners {
 namespace {
 
+using inference::addRow;
 using inference::LayerWeights;
 using inference::PreNormAttention;
 using inference::PreNormFeedForward;
@@ -59,21 +60,20 @@ PlutoNetwork::PlutoNetwork(const PlutoModel& model, const std::vector<LanePiece>
       heading_({set, model.weights}, "heading"),
       velocity_({set, model.weights}, "velocity"),
       score_({set, model.weights}, "score"),
-      free_({set, model.weights}, "free"),
-      zeros_(model.architecture.width) {
+      free_({set, model.weights}, "free") {
   const LayerWeights weights(set, model.weights);
   const TransformerSizes sizes = plutoSizes(architecture_);
   for (std::int64_t i = 0; i < architecture_.encoder_layers; ++i) {
     const std::string name = numbered("encoder", i);
     encoder_.push_back({PreNormAttention(weights, name + ".attention", sizes),
-                        PreNormFeedForward(weights, name + ".mix", sizes)});
+                        PreNormFeedForward(weights, name + ".mix")});
   }
   for (std::int64_t i = 0; i < architecture_.decoder_layers; ++i) {
     const std::string name = numbered("decoder", i);
     decoder_.push_back({PreNormAttention(weights, name + ".lines", sizes),
                         PreNormAttention(weights, name + ".modes", sizes),
                         PreNormAttention(weights, name + ".scene", sizes),
-                        PreNormFeedForward(weights, name + ".mix", sizes)});
+                        PreNormFeedForward(weights, name + ".mix")});
   }
   encodePieces(pieces);
 }
@@ -126,7 +126,7 @@ void PlutoNetwork::encode() {
     layer.attention.attendSelf(whole, tokens_, none_, memory_);
     layer.mix.apply(tokens_, memory_);
   }
-  encoder_norm_.apply(tokens_.view(), {zeros_.data(), 0}, tokens_.view(), tokens_.rows());
+  encoder_norm_.apply(tokens_.view(), tokens_.view(), tokens_.rows());
 }
 
 /// A query for each line and mode: Linear(line, mode).
@@ -169,7 +169,7 @@ void PlutoNetwork::decode(std::int64_t lines) {
     layer.scene.attendTo(tokens_, queries_, memory_);
     layer.mix.apply(queries_, memory_);
   }
-  decoder_norm_.apply(queries_.view(), {zeros_.data(), 0}, queries_.view(), count);
+  decoder_norm_.apply(queries_.view(), queries_.view(), count);
   for (std::int64_t i = 0; i < count; ++i) {
     std::copy_n(queries_.row(i), width, joined_.row(i));
     std::copy_n(tokens_.row(0), width, joined_.row(i) + width);

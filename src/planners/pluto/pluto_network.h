@@ -79,8 +79,7 @@ class PlutoNetwork {
   inference::Rows piece_features_;  ///< by piece
   // Memory of a call.
   inference::Rows tokens_, agents_, positions_, lines_, joined_, queries_, head_, hidden_, none_;
-  inference::AlignedFloats zeros_;
-  inference::AttentionMemory memory_;
+  inference::TransformerMemory memory_;
 };
 
 }  // namespace cdiff::planners

@@ -11,7 +11,7 @@
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "planners/pluto/lane_pieces.h"
-#include "planners/pluto/pluto_architecture.h"
+#include "planners/pluto/pluto_weights.h"
 #include "planners/pluto/reference_lines.h"
 #include "planners/pluto/tracks.h"
 

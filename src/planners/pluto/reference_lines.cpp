@@ -8,7 +8,7 @@
 #include <string>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pluto/pluto_architecture.h"
+#include "planners/pluto/pluto_weights.h"
 
 namespace cdiff::planners {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planners/pluto/pluto_architecture.h"
+#include "planners/pluto/pluto_weights.h"
 
 namespace cdiff::planners {
 

@@ -2,34 +2,15 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/ppo/ppo.h"
 
-#include "core/file.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
-namespace {
-
-planning::PlannedAction stoppedFor(const planning::PlanningTask& task, const std::string& reason) {
-  const std::string& id = task.vehicle->id;
-  planning::PlannedAction action{task.slot, id, traffic::ControlAction::failSafe(), {}};
-  action.fault = "vehicle '" + id + "': " + reason + "; full braking instead";
-  return action;
-}
-
-}  // namespace
-
 void PpoOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.text(
-      {"weights", "", "Folder of its weights; a plain name is one in weights/ of the package."},
-      weights, {});
+  WeightOptions::describe(visitor);
   visitor.text(
       {"after_goal", "",
        "Once a CBV has reached its goal: PDM-Lite along its route, or on toward the goal."},
       after_goal, {"route", "goal"});
-}
-
-std::filesystem::path PpoOptions::folder() const {
-  const std::filesystem::path given(weights);
-  return given == given.filename() ? core::shareFolder() / "weights" / given : given;
 }
 
 Ppo::Ppo(const PpoOptions& options, const PdmLiteOptions& on_route,
@@ -51,7 +32,8 @@ std::vector<planning::PlannedAction> Ppo::plan(const traffic::TrafficSnapshot& s
   std::vector<planning::PlannedAction> actions;
   const std::string fault = faultOf(snapshot.ego());
   if (!fault.empty()) {
-    for (const planning::PlanningTask& task : tasks) actions.push_back(stoppedFor(task, fault));
+    for (const planning::PlanningTask& task : tasks)
+      actions.push_back(planning::failSafeAction(task, fault));
     return actions;
   }
   forgetOthers(tasks);
@@ -67,7 +49,8 @@ planning::PlannedAction Ppo::towardGoal(const traffic::TrafficSnapshot& snapshot
                                         const planning::PlanningTask& task, const PpoGoal& goal) {
   const PpoObservation observation = ppoObservation(snapshot, *snapshot.ego(), *task.vehicle, goal);
   const std::string unusable = ppoNotFinite(observation);
-  if (!unusable.empty()) return stoppedFor(task, "the " + unusable + " is not finite");
+  if (!unusable.empty())
+    return planning::failSafeAction(task, "the " + unusable + " is not finite");
   if (ppoGoalDistance(goal, task.vehicle->state) < kPpoGoalRadius)
     arrived_.insert(task.vehicle->id);
   return {task.slot, task.vehicle->id, ppoCommand(actor_.act(observation)), {}};
@@ -100,23 +83,14 @@ void Ppo::driveOn(const traffic::TrafficSnapshot& snapshot,
 }
 
 planning::PlannerDescriptor ppoDescriptor() {
-  planning::PlannerDescriptor descriptor;
-  descriptor.name = "ppo";
+  planning::PlannerDescriptor descriptor =
+      learnedDescriptor<PpoOptions>(kPpo, {"cbv_ego_nearest_goal", "tanh of the mean", false});
   descriptor.title = "PPO";
   descriptor.help = "a small network, trained by PPO to reach a point just ahead of the ego.";
   descriptor.drives_ego = false;
-  descriptor.options = planning::makePlannerOptions<PpoOptions>;
   descriptor.make = [](const planning::PlannerParts& parts) {
     return std::make_unique<Ppo>(parts.options.of<PpoOptions>(), parts.options.of<PdmLiteOptions>(),
                                  parts.vehicle, parts.context);
-  };
-  descriptor.network = [](const planning::PlannerOptionsTable& table,
-                          const guidance::GuidanceOptions&) -> planning::NetworkFacts {
-    return {table.of<PpoOptions>().weights, "cbv_ego_nearest_goal", "tanh of the mean", {}};
-  };
-  descriptor.weights_sha256 = [](const planning::PlannerOptionsTable& table) {
-    const auto file = PpoActor::weightFile(table.of<PpoOptions>().folder());
-    return core::sha256(core::readFile(file, "weight file"));
   };
   return descriptor;
 }

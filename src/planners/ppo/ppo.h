@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,14 +14,11 @@
 namespace cdiff::planners {
 
 /// Options of the planner `ppo`.
-struct PpoOptions {
-  std::string weights = "ppo";       ///< folder, or the name of one in weights/ of the package
+struct PpoOptions : WeightOptions {
   std::string after_goal = "route";  ///< route | goal: what a CBV does once it has reached its goal
 
+  PpoOptions() : WeightOptions{kPpo.planner} {}
   void describe(core::OptionsVisitor& visitor);
-  void validate() const {}
-  /// Throws InputError where the package's share folder is not found.
-  std::filesystem::path folder() const;
 };
 
 /// The PPO baseline of RIFT and FREA as a planner of CBVs: action tanh(mean) of a small network

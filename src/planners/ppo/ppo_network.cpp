@@ -5,26 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/file.h"
-#include "e2e_cdiff/core/exceptions.h"
+#include "inference/transformer_layers.h"
 
 namespace cdiff::planners {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr const char* kTraining = "train them with cdiff train --task ppo --suite FOLDER --output ";
-
-void addLayers(const std::string& network, std::int64_t outputs,
-               std::vector<inference::TensorShape>& tensors) {
+void addLayers(const std::string& network, std::int64_t outputs, inference::TensorList& list) {
   constexpr std::int64_t kHidden = PpoActor::kHidden;
-  const std::int64_t sizes[] = {static_cast<std::int64_t>(kPpoInputs), kHidden, kHidden, outputs};
-  const char* const names[] = {"first", "second", "last"};
-  for (int i = 0; i < 3; ++i) {
-    const std::string name = network + "." + names[i];
-    tensors.push_back({name + ".weight", {sizes[i + 1], sizes[i]}});
-    tensors.push_back({name + ".bias", {sizes[i + 1]}});
-  }
+  list.layer(network + ".first", {kHidden, static_cast<std::int64_t>(kPpoInputs)});
+  list.layer(network + ".second", {kHidden, kHidden});
+  list.layer(network + ".last", {outputs, kHidden});
 }
 
 PpoLayer actorLayer(const PpoActor::Weights& weights, const std::string& name) {
@@ -33,13 +23,6 @@ PpoLayer actorLayer(const PpoActor::Weights& weights, const std::string& name) {
 
 void rectify(std::array<float, PpoActor::kHidden>& values) {
   for (float& value : values) value = std::max(value, 0.0F);
-}
-
-[[noreturn]] void refuseFormat(const fs::path& file, const std::string& found) {
-  throw core::InputError("weight file '" + file.string() + "': its format is " + found +
-                         ", expected '" + PpoActor::kFormat +
-                         "': these are weights of another planner or version; name a folder that "
-                         "cdiff train --task ppo wrote");
 }
 
 }  // namespace
@@ -67,30 +50,16 @@ void PpoLayer::apply(const float* x, float* y) const {
 }
 
 std::vector<inference::TensorShape> PpoActor::tensors() {
-  std::vector<inference::TensorShape> tensors;
-  addLayers("actor", static_cast<std::int64_t>(kPpoActions), tensors);
-  tensors.push_back({"actor.log_deviation", {static_cast<std::int64_t>(kPpoActions)}});
-  addLayers("critic", 1, tensors);
-  return tensors;
+  inference::TensorList list;
+  addLayers("actor", static_cast<std::int64_t>(kPpoActions), list);
+  list.add("actor.log_deviation", {static_cast<std::int64_t>(kPpoActions)});
+  addLayers("critic", 1, list);
+  return list.take();
 }
 
-fs::path PpoActor::weightFile(const fs::path& folder) {
-  const fs::path file = folder / kFile;
-  if (core::isFile(file)) return file;
-  throw core::InputError("planner 'ppo' has no weights: there is no file '" + file.string() +
-                         "'; " + kTraining + folder.string() +
-                         ", or name a folder that holds them (ppo.weights)");
-}
-
-PpoActor::Weights PpoActor::readWeights(const fs::path& folder) {
-  const fs::path file = weightFile(folder);
-  const auto expected = [&](const std::map<std::string, std::string>& metadata) {
-    const auto format = metadata.find("format");
-    if (format == metadata.end()) refuseFormat(file, "not named");
-    if (format->second != kFormat) refuseFormat(file, "'" + format->second + "'");
-    return tensors();
-  };
-  return inference::readSafetensors(file, expected).tensors;
+PpoActor::Weights PpoActor::readWeights(const std::filesystem::path& folder) {
+  return planners::readWeights(kPpo, folder,
+                               [](const WeightMetadata&, const std::string&) { return tensors(); });
 }
 
 PpoActor::PpoActor(const Weights& weights)

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "inference/safetensors.h"
 #include "planners/ppo/ppo_rules.h"
+#include "planners/weight_files.h"
 
 namespace cdiff::planners {
+
+inline constexpr WeightKind kPpo = {"ppo", "ppo.safetensors", "e2e_cdiff.ppo.1", "--suite FOLDER"};
 
 /// A dense layer y = W x + b in float32. Sums run over the inputs in their order, so the result
 /// does not depend on compiler or instruction set as long as multiplication and addition are not
@@ -35,17 +36,12 @@ class PpoLayer {
 class PpoActor {
  public:
   static constexpr std::int64_t kHidden = 256;
-  static constexpr const char* kFile = "ppo.safetensors";    ///< in the folder of the weights
-  static constexpr const char* kFormat = "e2e_cdiff.ppo.1";  ///< its metadata key "format"
 
-  using Weights = std::map<std::string, inference::Tensor>;
+  using Weights = WeightTensors;
 
   /// Names and shapes of the weights of actor ("actor.") and critic ("critic.").
   static std::vector<inference::TensorShape> tensors();
-  /// The file in `folder`. Throws InputError with the command that trains it where there is none.
-  static std::filesystem::path weightFile(const std::filesystem::path& folder);
-  /// Throws InputError naming the file and what is wrong: see weightFile and readSafetensors;
-  /// weights of another planner are named as such.
+  /// See planners::readWeights.
   static Weights readWeights(const std::filesystem::path& folder);
 
   /// `weights` are those that tensors() names; the critic's are not looked at.

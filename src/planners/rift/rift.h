@@ -8,7 +8,7 @@ namespace cdiff::planners {
 
 /// Options of `rift`: those of `pluto` with its own weights.
 struct RiftOptions : PlutoOptions {
-  RiftOptions() { weights = "rift"; }
+  RiftOptions() { weights = kRift.planner; }
 };
 
 }  // namespace cdiff::planners

@@ -2,44 +2,14 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/rift/rift_rollout.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
-
-#include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::planners {
 namespace {
 
 constexpr std::size_t kStepsPerSecond = 10;  // steps
 constexpr std::size_t kRolloutAims = 3;      // places 1, 2 and 3 s ahead
-constexpr double kRolloutStandstill = 0.01;  // [m/s] slower than this it does not steer
 constexpr int kTicksOfStep = 2;
-
-/// planning::WindowedPid without allocation: the sum of the window is kept.
-class RingPid {
- public:
-  RingPid(double kp, double ki, double kd, std::int64_t window)
-      : kp_(kp), ki_(ki), kd_(kd), errors_(static_cast<std::size_t>(window), 0.0) {}
-
-  double update(double error) {
-    const double change = error - last_;
-    sum_ += error - errors_[next_];
-    errors_[next_] = error;
-    next_ = next_ + 1 == errors_.size() ? 0 : next_ + 1;
-    last_ = error;
-    return kp_ * error + ki_ * sum_ / static_cast<double>(errors_.size()) + kd_ * change;
-  }
-
- private:
-  double kp_;
-  double ki_;
-  double kd_;
-  std::vector<double> errors_;
-  std::size_t next_ = 0;
-  double sum_ = 0.0;
-  double last_ = 0.0;
-};
 
 /// Where a vehicle is in a rollout.
 struct Motion {
@@ -64,60 +34,43 @@ RiftPlan::RiftPlan(const PlutoTrajectory& candidate, double heading) {
 
 namespace {
 
-/// The two PIDs of one rollout.
-class RolloutPids {
- public:
-  explicit RolloutPids(const TrajectoryTrackerOptions& options)
-      : options_(options),
-        turn_(options.turn_kp, options.turn_ki, options.turn_kd, options.window),
-        speed_(options.speed_kp, options.speed_ki, options.speed_kd, options.window) {}
+/// The plan 1, 2 and 3 s ahead.
+using RolloutPlaces = std::array<Eigen::Vector2d, kRolloutAims>;
 
-  /// `aims`: the plan 1, 2 and 3 s ahead.
-  traffic::ControlAction track(const Motion& motion,
-                               const std::array<Eigen::Vector2d, kRolloutAims>& aims) {
-    double length = 0.0;
-    Eigen::Vector2d last = motion.place;
-    for (const Eigen::Vector2d& aim : aims) {
-      length += (aim - last).norm();
-      last = aim;
-    }
-    const double desired = length / static_cast<double>(kRolloutAims);
-    const bool brake =
-        desired < options_.brake_speed || motion.speed > options_.brake_ratio * desired;
-    const bool steers = !brake && motion.speed >= kRolloutStandstill;
-    const double turn = turn_.update(steers ? turnError(motion, aims) : 0.0);
-    const double drive =
-        speed_.update(std::clamp(desired - motion.speed, 0.0, options_.speed_error_limit));
-    traffic::ControlAction action;
-    action.steer = std::clamp(turn, -1.0, 1.0);
-    action.throttle = brake ? 0.0 : std::clamp(drive, 0.0, options_.max_throttle);
-    action.brake = brake ? 1.0 : 0.0;
-    return action;
+double meanSpeedOf(const Motion& motion, const RolloutPlaces& aims) {
+  double length = 0.0;
+  Eigen::Vector2d last = motion.place;
+  for (const Eigen::Vector2d& aim : aims) {
+    length += (aim - last).norm();
+    last = aim;
   }
+  return length / static_cast<double>(kRolloutAims);
+}
 
- private:
-  double turnError(const Motion& motion,
-                   const std::array<Eigen::Vector2d, kRolloutAims>& aims) const {
-    const double look_ahead =
-        std::clamp(options_.look_ahead_time * motion.speed + options_.look_ahead_distance,
-                   options_.look_ahead_minimum, options_.look_ahead_maximum);
-    Eigen::Vector2d best = Eigen::Vector2d::Zero();
-    double nearest = 0.0;
-    for (std::size_t i = 0; i < kRolloutAims; ++i) {
-      const Eigen::Vector2d away = aims[i] - motion.place;
-      const double off = std::abs(away.norm() - look_ahead);
-      if (i > 0 && off >= nearest) continue;
-      nearest = off;
-      best = away;
-    }
-    const double across = geometry::cross(motion.direction, best);
-    return std::atan2(across, motion.direction.dot(best)) / (0.5 * core::kPi);
+/// Toward the place whose distance is nearest to the look-ahead.
+double turnErrorOf(const Motion& motion, const RolloutPlaces& aims, double look_ahead) {
+  Eigen::Vector2d best = Eigen::Vector2d::Zero();
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < kRolloutAims; ++i) {
+    const Eigen::Vector2d away = aims[i] - motion.place;
+    const double off = std::abs(away.norm() - look_ahead);
+    if (i > 0 && off >= nearest) continue;
+    nearest = off;
+    best = away;
   }
+  return planning::turnErrorToward(
+      {motion.direction.dot(best), geometry::cross(motion.direction, best)});
+}
 
-  const TrajectoryTrackerOptions& options_;
-  RingPid turn_;
-  RingPid speed_;
-};
+traffic::ControlAction actionOf(const TrajectoryTrackerOptions& tracker, const Motion& motion,
+                                const RolloutPlaces& aims, planning::PlanPids& pids) {
+  const double desired = meanSpeedOf(motion, aims);
+  const bool steers =
+      !pids.brakes(motion.speed, desired) && motion.speed >= TrajectoryTracker::kStandstill;
+  const double turn_error =
+      steers ? turnErrorOf(motion, aims, tracker.lookAhead(motion.speed)) : 0.0;
+  return pids.track(motion.speed, desired, turn_error);
+}
 
 }  // namespace
 
@@ -151,16 +104,16 @@ Eigen::Vector2d directionOfTangent(double tangent) {
 RiftRollout RiftDriver::drive(const RiftPlan& plan, double heading, double speed) const {
   const dynamics::BicycleModelOptions& vehicle = model_.options();
   const double ratio = vehicle.rear_length / (vehicle.rear_length + vehicle.front_length);
-  RolloutPids pids(tracker_);
+  planning::PlanPids pids(tracker_.pids);
   RiftRollout rollout;
   Motion motion{Eigen::Vector2d::Zero(), heading, geometry::direction(heading), speed};
   rollout.heading[0] = heading;
   rollout.speed[0] = speed;
   for (std::size_t step = 0; step < kRiftSteps; ++step) {
-    std::array<Eigen::Vector2d, kRolloutAims> aims;
+    RolloutPlaces aims;
     for (std::size_t i = 0; i < kRolloutAims; ++i)
       aims[i] = plan.places[step + (i + 1) * kStepsPerSecond - 1];
-    const traffic::ControlAction action = pids.track(motion, aims);
+    const traffic::ControlAction action = actionOf(tracker_, motion, aims, pids);
     const Eigen::Vector2d slip =
         directionOfTangent(ratio * std::tan(vehicle.steering_gain * action.steer));
     for (int tick = 0; tick < kTicksOfStep; ++tick) moveOn(model_, action, slip, motion);

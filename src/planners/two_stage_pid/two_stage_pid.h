@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,23 +10,14 @@
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/diffusion/diffusion_planner.h"
+#include "planning/vehicle_memory.h"
 #include "planning/windowed_pid.h"
 
 namespace cdiff::planners {
 
 /// Gains and limits of TrajectoryTracker; defaults as published for Pluto and RIFT.
 struct TrajectoryTrackerOptions {
-  double turn_kp = 1.25;
-  double turn_ki = 0.75;
-  double turn_kd = 0.3;
-  double speed_kp = 5.0;
-  double speed_ki = 0.5;
-  double speed_kd = 1.0;
-  std::int64_t window = 20;        ///< errors in the mean, zeros at the start
-  double speed_error_limit = 1.0;  ///< [m/s]
-  double max_throttle = 1.0;
-  double brake_speed = 0.4;          ///< desired speed below which it brakes [m/s]
-  double brake_ratio = 1.1;          ///< speed / desired speed above which it brakes
+  planning::PlanPidOptions pids;
   double look_ahead_time = 0.5;      ///< [s]
   double look_ahead_distance = 2.5;  ///< at standstill, before the limits [m]
   double look_ahead_minimum = 5.0;   ///< [m]
@@ -36,23 +26,22 @@ struct TrajectoryTrackerOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError unless look_ahead_minimum <= look_ahead_maximum.
   void validate() const;
+  /// Distance of the place to aim at [m].
+  double lookAhead(double speed) const;
 };
 
-/// Makes one vehicle follow planned places (its body frame, m, one per 0.1 s) with two PIDs: the
-/// published execution of Pluto and RIFT. Output of each: kp e + ki mean(window) + kd (e - e
-/// before). One call per decision; the gains are per call, so they depend on the decision period
-/// (published: 0.1 s).
+/// Makes one vehicle follow planned places (its body frame, m, one per 0.1 s) with PlanPids: the
+/// published execution of Pluto and RIFT. One call per decision.
 ///
 /// The plan is thinned to one place a second (two a second if it is shorter than 2 s).
 ///  - Desired speed: mean length of the segments between these places, from the vehicle on, per
 ///    time.
-///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
-///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
-///  - Turn error: bearing of the place whose distance is nearest to the look-ahead
-///    clamp(0.5 v + 2.5, 5, 8) m, in units of 90 degrees; none while it stands (below 0.01
-///    m/s) or brakes.
+///  - Turn error: toward the place whose distance is nearest to the look-ahead
+///    clamp(0.5 v + 2.5, 5, 8) m; none while it stands (below kStandstill).
 class TrajectoryTracker {
  public:
+  static constexpr double kStandstill = 0.01;  ///< slower than this it does not steer [m/s]
+
   explicit TrajectoryTracker(const TrajectoryTrackerOptions& options = {});
   /// Action at `speed` [m/s] for the planned `places` [T, 2]: row t is where the vehicle is to be
   /// at (t + 1) 0.1 s. A plan without rows is one to stand still.
@@ -62,8 +51,7 @@ class TrajectoryTracker {
   double turnError(double speed, const Eigen::MatrixX2d& places) const;
 
   TrajectoryTrackerOptions options_;
-  planning::WindowedPid turn_;
-  planning::WindowedPid speed_;
+  planning::PlanPids pids_;
 };
 
 /// The diffusion planner with its denoised actions left out (the paper's two-stage variant): the
@@ -85,7 +73,7 @@ class TwoStagePid : public planning::Planner {
  private:
   std::unique_ptr<DiffusionPlanner> planner_;
   TrajectoryTrackerOptions options_;
-  std::map<std::string, TrajectoryTracker> trackers_;  ///< by vehicle
+  planning::VehicleMemory<TrajectoryTracker> trackers_;
 };
 
 }  // namespace cdiff::planners

@@ -162,17 +162,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-collection::DriverQueries queriesOf(const collection::CollectionLoop& loop) {
-  collection::DriverQueries queries;
-  queries.driver = [&](const std::string& id) -> learning::SceneDriver {
-    const auto driver = loop.driverOf(id);
-    return {driver.target_speed, driver.style.minimum_gap, driver.style.time_headway,
-            driver.style.acceleration, driver.style.deceleration};
-  };
-  queries.noisy = [&](const std::string& id) { return loop.perturbed(id); };
-  return queries;
-}
-
 void runToItsEnd(collection::CollectionLoop& loop, const std::atomic<bool>& stop) {
   const traffic::SessionStatus status = loop.run(stop);
   if (status == traffic::SessionStatus::kInterrupted) throw core::Interrupted("interrupted");
@@ -194,7 +183,7 @@ void record(const collection::CollectRequest& request, const collection::Collect
     bag->setNoiseQuery([&](const std::string& id) { return loop.perturbed(id); });
     loop.addObserver(*bag);
   }
-  if (request.scenes) loop.addObserver(scene.emplace(*setup, queriesOf(loop)));
+  if (request.scenes) loop.addObserver(scene.emplace(*setup, collection::driverQueries(loop)));
   runToItsEnd(loop, stop);
   if (bag) bag->finish();
   if (!scene) return;

@@ -38,10 +38,6 @@ std::string contentText(const std::vector<BagConnection>& connections) {
   return texts.empty() ? "no topic at all" : core::joinText(texts, ", ");
 }
 
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 RecordedTopic recordedTopic(const BagConnection& connection, const std::string& name,
@@ -62,8 +58,9 @@ std::string sessionPrefix(const std::vector<BagConnection>& connections) {
   for (const BagConnection& connection : connections) {
     const std::string& topic = connection.topic;
     const std::string fault = wrongType(connection, type);
-    if (fault.empty() && endsWith(topic, name)) return topic.substr(0, topic.size() - name.size());
-    if (connection.type == type.name || endsWith(topic, "/" + name)) wrong = fault;
+    if (fault.empty() && core::endsWith(topic, name))
+      return topic.substr(0, topic.size() - name.size());
+    if (connection.type == type.name || core::endsWith(topic, "/" + name)) wrong = fault;
   }
   if (!wrong.empty()) throw core::InputError(wrong);
   throw core::InputError("it holds no session (a message of type " + type.name + "); it holds " +

@@ -37,7 +37,7 @@ TEST(LateralController, OriginalConfigurationSteersHarder) {
   const Eigen::Vector2d aim(std::cos(angle), std::sin(angle));
   EXPECT_DOUBLE_EQ(LateralController(options).steer({}, aim), 0.46);
   // A key that is given lies above the configuration: 0.1 + 0.0106768 + 0.1378251 = 0.2485019.
-  options.lateral_kp = 1.0;
+  options.lateral.kp = 1.0;
   EXPECT_DOUBLE_EQ(LateralController(options).steer({}, aim), 0.249);
 }
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "e2e_cdiff/core/random.h"
 #include "planners/plant/plant_network.h"
+#include "support/tensors.h"
 
 namespace cdiff::planners::testing {
 
@@ -23,17 +23,7 @@ inline PlantArchitecture smallPlant() {
 
 /// Every value uniform in [-bound, bound].
 inline PlantModel drawnPlant(double bound, const PlantArchitecture& architecture = smallPlant()) {
-  PlantModel model{architecture, {}};
-  for (const inference::TensorShape& tensor : plantTensors(architecture)) {
-    const core::RandomStream random(3, tensor.name);
-    std::size_t count = 1;
-    for (const std::int64_t size : tensor.shape) count *= static_cast<std::size_t>(size);
-    inference::Tensor& values = model.weights[tensor.name] = {tensor.shape, {}};
-    for (std::size_t i = 0; i < count; ++i)
-      values.values.push_back(
-          static_cast<float>(random.uniform({0}, static_cast<std::uint32_t>(i), -bound, bound)));
-  }
-  return model;
+  return {architecture, test::uniformTensors(plantTensors(architecture), bound)};
 }
 
 /// All 0 but the bias of a step from waypoint to waypoint, (x, y) [m]: what it plans.
@@ -45,8 +35,8 @@ inline PlantModel constantPlant(double x, double y) {
 }
 
 inline void writePlant(const std::filesystem::path& folder, const PlantModel& model) {
-  inference::writeSafetensors(folder / kPlantFile,
-                              {plantMetadata(model.architecture), model.weights},
+  inference::writeSafetensors(folder / kPlant.file,
+                              {networkMetadata(kPlant, model.architecture), model.weights},
                               inference::TensorType::kF32);
 }
 

@@ -204,7 +204,7 @@ TEST_F(PlantPlannerTest, MissingWeightsAreNamedWithTheCommandThatTrainsThem) {
   EXPECT_EQ(refusal(path), "planner 'plant' has no weights: there is no file '" + path +
                                "/plant.safetensors'; train them with cdiff train --task plant "
                                "--data FOLDER --output " +
-                               path);
+                               path + ", or name a folder that holds them (plant.weights)");
 }
 
 TEST_F(PlantPlannerTest, WeightsOfAnotherPlannerOrOtherSizesAreRefused) {
@@ -212,9 +212,9 @@ TEST_F(PlantPlannerTest, WeightsOfAnotherPlannerOrOtherSizesAreRefused) {
   const PlantModel model = drawnPlant(0.1);
   testing::writePlant(folder.path(), model);
   EXPECT_EQ(refusal(folder.path().string()), "made");
-  inference::SafetensorsFile file{plantMetadata(model.architecture), model.weights};
+  inference::SafetensorsFile file{networkMetadata(kPlant, model.architecture), model.weights};
   const auto refusalOf = [&] {
-    inference::writeSafetensors(folder.path() / kPlantFile, file, inference::TensorType::kF32);
+    inference::writeSafetensors(folder.path() / kPlant.file, file, inference::TensorType::kF32);
     return refusal(folder.path().string());
   };
   file.metadata["format"] = "e2e_cdiff.denoiser.1";
@@ -223,12 +223,12 @@ TEST_F(PlantPlannerTest, WeightsOfAnotherPlannerOrOtherSizesAreRefused) {
             std::string::npos);
   file.metadata.erase("format");
   EXPECT_NE(refusalOf().find("its format is not named"), std::string::npos);
-  file.metadata = plantMetadata(model.architecture);
+  file.metadata = networkMetadata(kPlant, model.architecture);
   file.metadata["architecture"] += "depth: 3\n";
   EXPECT_NE(refusalOf().find("depth"), std::string::npos);
   PlantArchitecture wider = model.architecture;
   wider.width = 64;
-  file.metadata = plantMetadata(wider);
+  file.metadata = networkMetadata(kPlant, wider);
   EXPECT_NE(refusalOf().find("has shape"), std::string::npos);
   file.metadata.erase("architecture");
   EXPECT_NE(refusalOf().find("lacks the key 'architecture'"), std::string::npos);

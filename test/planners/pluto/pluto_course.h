@@ -13,15 +13,27 @@
 
 namespace cdiff::planners::testing {
 
+/// A network that is trained in no time.
+inline PlutoArchitecture smallPluto() {
+  PlutoArchitecture architecture;
+  architecture.width = 16;
+  architecture.heads = 1;
+  architecture.hidden = 32;
+  architecture.encoder_layers = 1;
+  architecture.decoder_layers = 1;
+  architecture.polygons = 8;
+  return architecture;
+}
+
 inline PlutoModel randomPluto(const PlutoArchitecture& architecture = {}) {
   return {architecture, cdiff::testing::randomTensors(plutoTensors(architecture))};
 }
 
 /// Into the file of `kind` in `folder`, which says that it is of `format`.
-inline void writePluto(const std::filesystem::path& folder, const PlutoKind& kind,
-                       const char* format) {
-  const PlutoModel model = randomPluto();
-  auto metadata = plutoMetadata(kind, model.architecture);
+inline void writePluto(const std::filesystem::path& folder, const WeightKind& kind,
+                       const char* format, const PlutoArchitecture& architecture = {}) {
+  const PlutoModel model = randomPluto(architecture);
+  auto metadata = networkMetadata(kind, model.architecture);
   metadata["format"] = format;
   std::filesystem::create_directories(folder);
   inference::writeSafetensors(folder / kind.file, {metadata, model.weights},

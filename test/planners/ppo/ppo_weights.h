@@ -8,30 +8,25 @@
 #include <string>
 
 #include "planners/ppo/ppo_network.h"
+#include "support/tensors.h"
 
 namespace cdiff::test {
 
 /// Every weight 0 but those of the last bias: the mean of the actor is (`acceleration`, `steer`)
 /// whatever it sees.
 inline planners::PpoActor::Weights constantPpo(float acceleration, float steer) {
-  planners::PpoActor::Weights weights;
-  for (const inference::TensorShape& tensor : planners::PpoActor::tensors()) {
-    std::size_t count = 1;
-    for (const std::int64_t size : tensor.shape) count *= static_cast<std::size_t>(size);
-    weights[tensor.name] = {tensor.shape, std::vector<float>(count, 0.0F)};
-  }
+  auto weights = uniformTensors(planners::PpoActor::tensors(), 0.0);
   weights.at("actor.last.bias").values = {acceleration, steer};
   return weights;
 }
 
 inline void writePpo(const std::filesystem::path& folder,
                      const planners::PpoActor::Weights& weights,
-                     const std::string& format = planners::PpoActor::kFormat) {
+                     const std::string& format = planners::kPpo.format) {
   inference::SafetensorsFile file;
   file.metadata = {{"format", format}};
   file.tensors = weights;
-  inference::writeSafetensors(folder / planners::PpoActor::kFile, file,
-                              inference::TensorType::kF32);
+  inference::writeSafetensors(folder / planners::kPpo.file, file, inference::TensorType::kF32);
 }
 
 }  // namespace cdiff::test

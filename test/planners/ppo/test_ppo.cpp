@@ -176,10 +176,11 @@ TEST_F(PpoTest, WeightsThatAreMissingOrOfAnotherPlannerAreRefused) {
                            "FOLDER --output " +
                            folder + ", or name a folder that holds them (ppo.weights)");
   test::writePpo(folder_.path(), test::constantPpo(0.0F, 0.0F), "e2e_cdiff.plant.1");
-  EXPECT_EQ(refusal(), "weight file '" + folder +
-                           "/ppo.safetensors': its format is 'e2e_cdiff.plant.1', expected "
-                           "'e2e_cdiff.ppo.1': these are weights of another planner or version; "
-                           "name a folder that cdiff train --task ppo wrote");
+  EXPECT_EQ(refusal(),
+            "weight file '" + folder +
+                "/ppo.safetensors': its format is 'e2e_cdiff.plant.1', not 'e2e_cdiff.ppo.1': "
+                "these are not weights of this version's planner 'ppo'; train them with cdiff "
+                "train --task ppo --suite FOLDER");
   PpoActor::Weights weights = test::constantPpo(0.0F, 0.0F);
   weights.at("actor.last.bias") = {{3}, {0.0F, 0.0F, 0.0F}};
   test::writePpo(folder_.path(), weights);

@@ -64,8 +64,8 @@ class PlainTracker {
   }
 
  private:
-  planning::WindowedPid turn_{1.25, 0.75, 0.3, 20};
-  planning::WindowedPid speed_{5.0, 0.5, 1.0, 20};
+  planning::WindowedPid turn_{{1.25, 0.75, 0.3}, 20};
+  planning::WindowedPid speed_{{5.0, 0.5, 1.0}, 20};
 };
 
 // Speeding up, holding, turning either way and stopping.

@@ -88,11 +88,11 @@ TEST(TrajectoryTracker, LookAheadLimitsOutOfOrderAreAnError) {
 
 TEST(TrajectoryTrackerOptions, ReadBackFromTheirOwnText) {
   TrajectoryTrackerOptions options;
-  options.turn_kp = 0.75;
-  options.window = 40;
+  options.pids.turn.kp = 0.75;
+  options.pids.window = 40;
   TrajectoryTrackerOptions read;
   core::loadOptions({"text", core::dumpOptions(options, true)}, read);
-  EXPECT_EQ(read.turn_kp, 0.75);
+  EXPECT_EQ(read.pids.turn.kp, 0.75);
   EXPECT_EQ(core::dumpOptions(read), core::dumpOptions(options));
 }
 

@@ -49,7 +49,7 @@ BatchOptions batchOptions(const TrainingState& state, const std::string& stage,
   const DiffusionTrainingSettings& settings = state.settings;
   BatchOptions result;
   result.stage = stage;
-  result.batch = state.run.options.batch > 0 ? state.run.options.batch : default_batch;
+  result.batch = state.run.batchSize(default_batch);
   result.route_drop = settings.route_drop;
   result.balance = settings.balance;
   result.yielding_share = settings.yielding_share;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "learning/layers.h"
 
 namespace cdiff::planners {
 namespace {

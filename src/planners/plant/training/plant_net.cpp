@@ -3,16 +3,17 @@
 #include "planners/plant/training/plant_net.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "learning/layers.h"
 
 namespace cdiff::planners {
 namespace {
 
+using learning::layerNorm;
 using learning::linear;
 using learning::linearOfRows;
 using learning::toTensor;
 
-constexpr double kEpsilon = 1e-5;
 constexpr float kMasked = -1e9F;
 
 std::int64_t countOfRows(const PlantExample& example) {
@@ -65,16 +66,6 @@ struct BatchRows {
   }
 };
 
-at::Tensor indexTensor(const std::vector<std::int64_t>& values, const at::Device& device) {
-  at::Tensor tensor = at::empty({static_cast<std::int64_t>(values.size())}, at::kLong);
-  std::copy(values.begin(), values.end(), tensor.data_ptr<std::int64_t>());
-  return tensor.to(device);
-}
-
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 PlantBatch plantBatch(const std::vector<const PlantExample*>& examples, const at::Device& device) {
@@ -84,40 +75,29 @@ PlantBatch plantBatch(const std::vector<const PlantExample*>& examples, const at
   BatchRows rows(longest);
   for (const PlantExample* example : examples) rows.add(*example);
   const auto count = static_cast<std::int64_t>(rows.unpadded.size());
+  const auto indices = [&](const std::vector<std::int64_t>& values) {
+    return learning::toIndices(values, {static_cast<std::int64_t>(values.size())}, device);
+  };
   PlantBatch batch;
   batch.tokens = toTensor(rows.values, {count, kPlantAttributes}, device);
   batch.types = toTensor(rows.types, {count, 3}, device);
-  batch.padded = indexTensor(rows.padded, device);
+  batch.padded = indices(rows.padded);
   batch.mask = toTensor(rows.mask, {moments, 1, 1, longest}, device);
-  batch.unpadded = indexTensor(rows.unpadded, device);
-  batch.first = indexTensor(rows.first, device);
+  batch.unpadded = indices(rows.unpadded);
+  batch.first = indices(rows.first);
   batch.red_light = toTensor(rows.red_light, {moments, 1}, device);
   batch.target = toTensor(rows.target, {moments, 2}, device);
   batch.driven = toTensor(rows.driven, {moments, kPlantWaypoints, 2}, device);
-  batch.places = indexTensor(rows.places, device);
-  for (std::size_t i = 0; i < rows.next.size(); ++i)
-    batch.next[i] = indexTensor(rows.next[i], device);
+  batch.places = indices(rows.places);
+  for (std::size_t i = 0; i < rows.next.size(); ++i) batch.next[i] = indices(rows.next[i]);
   return batch;
 }
 
 PlantNet::PlantNet(const PlantArchitecture& architecture, std::uint64_t seed)
     : architecture_(architecture), parameters_(core::RandomStream(seed, "plant start")) {
   constexpr double kLearnedVector = 0.02;  // bound of tokens and types that are learned
-  for (const inference::TensorShape& tensor : plantTensors(architecture)) {
-    const std::string& name = tensor.name;
-    if (endsWith(name, ".weight") && tensor.shape.size() == 2) {
-      parameters_.declareLayer(name.substr(0, name.size() - 7), tensor.shape);
-    } else if (endsWith(name, ".weight")) {
-      parameters_.declareNorm(name.substr(0, name.size() - 7), tensor.shape[0]);
-    } else if (!endsWith(name, ".bias")) {
-      parameters_.declare(name, tensor.shape, {learning::Start::Kind::kUniform, kLearnedVector});
-    }
-  }
-}
-
-at::Tensor PlantNet::norm(const std::string& name, const at::Tensor& x) const {
-  return at::layer_norm(x, {architecture_.width}, parameters_(name + ".weight"),
-                        parameters_(name + ".bias"), kEpsilon);
+  parameters_.declareAll(plantTensors(architecture),
+                         [](const std::string&) { return kLearnedVector; });
 }
 
 /// [R, width].
@@ -126,39 +106,29 @@ at::Tensor PlantNet::embed(const PlantBatch& batch) const {
   const at::Tensor learned = at::matmul(
       batch.types,
       at::stack({parameters_("cls"), parameters_("type.vehicle"), parameters_("type.route")}));
-  return norm("norm", linearOfRows(parameters_, "token", batch.tokens) * is_token + learned);
+  return layerNorm(parameters_, "norm",
+                   linearOfRows(parameters_, "token", batch.tokens) * is_token + learned);
 }
 
 at::Tensor PlantNet::layer(const std::string& name, const at::Tensor& x, const PlantBatch& batch,
                            at::Tensor& attention) const {
   const std::int64_t moments = batch.mask.size(0);
   const std::int64_t longest = batch.mask.size(3);
-  const std::int64_t width = architecture_.width;
-  const std::int64_t heads = architecture_.heads;
-  const std::int64_t head_width = width / heads;
-  const auto byHead = [&](const at::Tensor& rows) {
-    return rows.index_select(0, batch.padded)
-        .reshape({moments, longest, heads, head_width})
-        .transpose(1, 2)
-        .contiguous();
+  const auto padded = [&](const char* part) {
+    const at::Tensor rows = linearOfRows(parameters_, name + part, x);
+    return rows.index_select(0, batch.padded).reshape({moments, longest, rows.size(1)});
   };
-  const at::Tensor query = byHead(linearOfRows(parameters_, name + ".query", x));
-  const at::Tensor both = linearOfRows(parameters_, name + ".key_value", x);
-  const at::Tensor key = byHead(both.narrow(1, 0, width));
-  const at::Tensor value = byHead(both.narrow(1, width, width));
-  const at::Tensor scores =
-      at::matmul(query, key.transpose(2, 3)) / std::sqrt(static_cast<double>(head_width)) +
-      batch.mask;
-  const at::Tensor weights = at::softmax(scores, -1);
-  attention = weights.select(2, 0).mean(1);
-  const at::Tensor mixed = at::matmul(weights, value)
-                               .transpose(1, 2)
-                               .reshape({moments * longest, width})
-                               .index_select(0, batch.unpadded);
-  const at::Tensor middle =
-      norm(name + ".norm1", x + linearOfRows(parameters_, name + ".output", mixed));
+  const at::Tensor query = padded(".query");
+  const at::Tensor key_value = padded(".key_value");
+  const learning::Attended attended =
+      learning::attend(query, key_value, architecture_.heads, batch.mask);
+  attention = attended.weights.select(2, 0).mean(1);
+  const at::Tensor mixed = attended.mixed.flatten(0, 1).index_select(0, batch.unpadded);
+  const at::Tensor middle = layerNorm(parameters_, name + ".norm1",
+                                      x + linearOfRows(parameters_, name + ".output", mixed));
   const at::Tensor hidden = at::gelu(linearOfRows(parameters_, name + ".up", middle));
-  return norm(name + ".norm2", middle + linearOfRows(parameters_, name + ".down", hidden));
+  return layerNorm(parameters_, name + ".norm2",
+                   middle + linearOfRows(parameters_, name + ".down", hidden));
 }
 
 at::Tensor PlantNet::gru(const at::Tensor& input, const at::Tensor& state) const {

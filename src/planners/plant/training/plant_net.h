@@ -49,7 +49,6 @@ class PlantNet {
   at::Tensor embed(const PlantBatch& batch) const;
   at::Tensor layer(const std::string& name, const at::Tensor& x, const PlantBatch& batch,
                    at::Tensor& attention) const;
-  at::Tensor norm(const std::string& name, const at::Tensor& x) const;
   at::Tensor decode(const PlantBatch& batch, const at::Tensor& cls) const;
   at::Tensor gru(const at::Tensor& input, const at::Tensor& state) const;
 

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "core/file.h"
-#include "core/text.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "learning/samples/sample_order.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
@@ -20,24 +19,11 @@ using learning::Scene;
 
 constexpr std::size_t kStepsPerWaypoint = 5;  // decisions
 constexpr std::size_t kHorizon = kStepsPerWaypoint * kPlantWaypoints;
-constexpr double kStandingSpeed = 0.3;   // [m/s]
-constexpr double kDecisionPeriod = 0.1;  // [s]
 
 std::uint8_t binOf(double value, double low, double high, std::int64_t bins) {
   const double place = (value - low) / (high - low) * static_cast<double>(bins);
   return static_cast<std::uint8_t>(
       std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(place)), 0, bins - 1));
-}
-
-void requireTenths(const Scene& scene) {
-  for (std::size_t i = 1; i < scene.decisions.size(); ++i) {
-    const double step = scene.decisions[i].time - scene.decisions[i - 1].time;
-    if (std::abs(step - kDecisionPeriod) < 1e-6) continue;
-    throw core::InputError("scene '" + scene.name + "': its decisions are " +
-                           core::formatNumber(step) +
-                           " s apart; PlanT learns from decisions 0.1 s "
-                           "apart (key decision_period)");
-  }
 }
 
 /// Where a drive's vehicle is at a decision.
@@ -50,7 +36,7 @@ struct DrivePlace {
 class SceneExamples {
  public:
   SceneExamples(const Scene& scene, const map::RoadNetwork& network,
-                const PlantArchitecture& architecture, const PlantSampleOptions& options)
+                const PlantArchitecture& architecture, const learning::SceneSampleOptions& options)
       : scene_(scene),
         architecture_(architecture),
         options_(options),
@@ -66,14 +52,11 @@ class SceneExamples {
   }
 
   std::vector<PlantExample> make() const {
-    const auto stride =
-        static_cast<std::size_t>(std::max(1L, std::lround(options_.period / kDecisionPeriod)));
     std::vector<PlantExample> examples;
     for (std::size_t i = 0; i + kHorizon < scene_.decisions.size(); ++i) {
       for (const auto& [slot, drive] : scene_.driven[i]) {
-        const double target = scene_.drives[drive].driver.target_speed;
-        if (target < options_.lowest_speed || target > options_.highest_speed) continue;
-        const bool due = (i + static_cast<std::size_t>(slot + 1)) % stride == 0;
+        if (!options_.wants(scene_.drives[drive].driver.target_speed)) continue;
+        const bool due = (i + static_cast<std::size_t>(slot + 1)) % options_.stride() == 0;
         if (due && fit(i, drive) && !thinned(i, drive)) examples.push_back(exampleAt(i, drive));
       }
     }
@@ -101,7 +84,6 @@ class SceneExamples {
 
   /// Whether the vehicle drives by itself from a decision to the end of the horizon.
   bool fit(std::size_t begin, std::size_t drive) const {
-    constexpr double kJump = 0.5;  // [m] off the distance that its speeds explain
     const std::string& id = scene_.drives[drive].vehicle_id;
     const traffic::Vehicle* before = nullptr;
     for (std::size_t i = begin; i <= begin + kHorizon; ++i) {
@@ -109,12 +91,8 @@ class SceneExamples {
       const DrivePlace* place = placeAt(i, drive);
       if (place == nullptr || !place->vehicle->applied_action) return false;
       if (i < begin + kHorizon && scene_.disturbed.count({id, tick}) != 0) return false;
-      const traffic::VehicleState& state = place->vehicle->state;
-      if (before != nullptr) {
-        const double moved = (state.position - before->state.position).norm();
-        const double expected = 0.5 * kDecisionPeriod * (state.speed + before->state.speed);
-        if (std::abs(moved - expected) > kJump) return false;
-      }
+      if (before != nullptr && !learning::drivesOn(before->state, place->vehicle->state))
+        return false;
       before = place->vehicle;
     }
     const auto contact = contacts_.lower_bound({id, scene_.decisions[begin].tick});
@@ -124,7 +102,7 @@ class SceneExamples {
 
   bool thinned(std::size_t begin, std::size_t drive) const {
     for (std::size_t i = begin; i <= begin + kHorizon; ++i) {
-      if (placeAt(i, drive)->vehicle->state.speed > kStandingSpeed) return false;
+      if (placeAt(i, drive)->vehicle->state.speed > learning::kStanding) return false;
     }
     const core::RandomKey key{core::hashText(scene_.drives[drive].vehicle_id),
                               static_cast<std::uint32_t>(begin), 0};
@@ -158,7 +136,7 @@ class SceneExamples {
 
   const Scene& scene_;
   const PlantArchitecture& architecture_;
-  const PlantSampleOptions& options_;
+  const learning::SceneSampleOptions& options_;
   core::RandomStream thinning_;
   std::vector<map::Route> routes_;                            ///< by drive
   std::vector<std::map<std::size_t, DrivePlace>> places_;     ///< by drive, then decision
@@ -181,16 +159,6 @@ std::array<std::uint8_t, kPlantAttributes> plantBins(const PlantToken& token) {
           binOf(value(5, kPlantExtentScale), 0.0, kRange, kPlantBins[5])};
 }
 
-void PlantSampleOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"period", "s", "Between two samples of a vehicle."}, period, 0.1, 60.0);
-  visitor.number({"standing_share", "", "Part kept of samples that stand for the 2 s to come."},
-                 standing_share, 0.0, 1.0);
-  visitor.number({"lowest_target_speed", "m/s", "Drivers with a lower target speed are left out."},
-                 lowest_speed, 0.0, 100.0);
-  visitor.number({"highest_target_speed", "m/s", "Drivers with a higher one are left out."},
-                 highest_speed, 0.0, 100.0);
-}
-
 const map::RoadNetwork& PlantSampler::networkOf(const learning::Scene& scene) {
   auto& network = networks_[core::sha256(scene.network_text)];
   if (!network) {
@@ -201,7 +169,7 @@ const map::RoadNetwork& PlantSampler::networkOf(const learning::Scene& scene) {
 }
 
 std::vector<PlantExample> PlantSampler::examplesOf(const learning::Scene& scene) {
-  requireTenths(scene);
+  learning::requireScenePeriod(scene, "PlanT learns");
   return SceneExamples(scene, networkOf(scene), architecture_, options_).make();
 }
 

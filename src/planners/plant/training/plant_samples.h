@@ -30,22 +30,12 @@ inline constexpr std::uint8_t kNoBin = 255;
 /// Bins of a token of attributes (kPlantBins); values beyond the ends are in the outermost bins.
 std::array<std::uint8_t, kPlantAttributes> plantBins(const PlantToken& token);
 
-/// Which moments of a scene become samples.
-struct PlantSampleOptions {
-  double period = 0.5;           ///< between two samples of a vehicle [s]
-  double standing_share = 0.25;  ///< part kept of moments at which it stands for the 2 s to come
-  double lowest_speed = 0.0;     ///< of drivers whose target speed lies in between [m/s]
-  double highest_speed = 100.0;  ///< [m/s]
-
-  void describe(core::OptionsVisitor& visitor);
-};
-
 /// Makes PlanT's samples of scenes: every period a moment of each driven vehicle, if for the 2 s to
 /// come it drives by itself, without noise, fault, contact or jump. The waypoints are where it then
 /// was: after noise, where the expert steered back to.
 class PlantSampler {
  public:
-  PlantSampler(const PlantArchitecture& architecture, const PlantSampleOptions& options)
+  PlantSampler(const PlantArchitecture& architecture, const learning::SceneSampleOptions& options)
       : architecture_(architecture), options_(options) {}
 
   std::vector<PlantExample> examplesOf(const learning::Scene& scene);
@@ -54,7 +44,7 @@ class PlantSampler {
   const map::RoadNetwork& networkOf(const learning::Scene& scene);
 
   PlantArchitecture architecture_;
-  PlantSampleOptions options_;
+  learning::SceneSampleOptions options_;
   std::map<std::string, std::unique_ptr<map::RoadNetwork>> networks_;  ///< by SHA-256 of the text
 };
 

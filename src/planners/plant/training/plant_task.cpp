@@ -2,10 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/plant/training/plant_task.h"
 
-#include <cmath>
-
 #include "core/text.h"
-#include "learning/samples/sample_order.h"
 
 namespace cdiff::planners {
 namespace {
@@ -40,30 +37,18 @@ PlantWaypoints atConstantSpeed(double speed) {
   return places;
 }
 
-class ImitationOfWaypoints : public learning::Stage {
+class ImitationOfWaypoints : public learning::EvenStage {
  public:
   explicit ImitationOfWaypoints(PlantTrainingState& state)
-      : state_(state),
-        order_(
-            state.run.dataset.training(),
-            std::vector<double>(state.run.dataset.training().size(), 1.0), batchSize(),
-            core::RandomStream(static_cast<std::uint64_t>(state.run.options.seed), "plant order")) {
-  }
-
-  const std::string& name() const override { return name_; }
-  std::vector<learning::TrainedPart> parts() override {
-    return {{"network", &state_.net.parameters()}};
-  }
-  std::int64_t batchSize() const override {
-    return state_.run.options.batch > 0 ? state_.run.options.batch : kPlantBatch;
-  }
-  std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
+      : EvenStage(state.run, kPlantStage, {PlantTask::kPart, &state.net.parameters()}, kPlantBatch,
+                  "plant order"),
+        state_(state) {}
 
   /// Mean absolute error of the waypoints' coordinates [m] plus the mean of the cross entropies of
   /// the six attributes 0.5 s later.
   learning::Loss loss(std::int64_t step) override {
     std::vector<const PlantExample*> examples;
-    for (const std::size_t index : order_.at(step)) examples.push_back(&state_.examples[index]);
+    for (const std::size_t index : samplesOf(step)) examples.push_back(&state_.examples[index]);
     const PlantBatch batch = plantBatch(examples, state_.run.device);
     const PlantNet::Result result = state_.net.forward(batch);
     const at::Tensor waypoints = (result.waypoints - batch.driven).abs().mean();
@@ -99,44 +84,12 @@ class ImitationOfWaypoints : public learning::Stage {
   }
 
  private:
-  std::string name_ = kPlantStage;
   PlantTrainingState& state_;
-  learning::SampleOrder order_;
 };
-
-std::string plantTable(const Measures& held_out) {
-  std::string table =
-      "Distance to where the expert drove: mean over 0.5, 1.0, 1.5 and 2.0 s, and at 2 s [m].\n\n"
-      "| Prediction | mean | at 2 s |\n|---|---|---|\n";
-  const std::pair<const char*, const char*> rows[] = {
-      {"PlanT", ""}, {"stands", "standing_"}, {"keeps its speed straight on", "constant_speed_"}};
-  for (const auto& [title, prefix] : rows) {
-    table += "| " + std::string(title) + " | " +
-             core::formatFixed(held_out.at(std::string(prefix) + "ade_m"), 3) + " | " +
-             core::formatFixed(held_out.at(std::string(prefix) + "fde_m"), 3) + " |\n";
-  }
-  return table;
-}
 
 }  // namespace
 
-learning::TaskTexts PlantTask::texts() const { return {kPlantStage, std::to_string(kPlantBatch)}; }
-
-std::vector<learning::StageInfo> PlantTask::stages() const {
-  return {{kPlantStage, {}, true, {}, ""}};
-}
-
-std::vector<std::string> PlantTask::allStages() const { return {kPlantStage}; }
-
-std::vector<learning::PartSource> PlantTask::model() const {
-  return {{"network", "a network", {kPlantStage}, kPlantStage}};
-}
-
-std::vector<std::string> PlantTask::fields() const {
-  std::vector<std::string> names;
-  for (const learning::FieldSpec& field : plantFields().fields) names.push_back(field.name);
-  return names;
-}
+PlantTask::PlantTask() : NetworkTask({kPlant, "PlanT", kPlantStage, kPlantBatch, plantTensors}) {}
 
 std::vector<learning::Sample> PlantTask::samplesOf(const learning::Scene& scene) {
   if (!sampler_) sampler_.emplace(settings.architecture, settings.samples);
@@ -159,37 +112,25 @@ void PlantTask::start(const learning::TrainingRun& run) {
       run, settings.architecture, PlantNet(settings.architecture, seed), {}});
   for (std::size_t i = 0; i < run.dataset.size(); ++i)
     state_->examples.push_back(toExample(run.dataset.sample(i)));
-  if (!run.options.init.empty()) {
-    const PlantModel model = readPlantModel(run.options.init);
-    state_->net.parameters().load(model.weights, run.options.init);
-  }
-  state_->net.parameters().moveTo(run.device);
-}
-
-nlohmann::json PlantTask::facts() const {
-  return {{"architecture", core::dumpOptions(settings.architecture)}};
-}
-
-std::vector<learning::TrainedPart> PlantTask::parts() {
-  return {{"network", &state_->net.parameters()}};
+  loadWeights(run);
 }
 
 std::unique_ptr<learning::Stage> PlantTask::makeStage(const std::string&) {
   return std::make_unique<ImitationOfWaypoints>(*state_);
 }
 
-learning::TrainedModel PlantTask::finish() {
-  learning::TrainedModel model;
-  model.files = {{kPlantFile,
-                  {plantMetadata(state_->architecture), state_->net.parameters().values()},
-                  true,
-                  ""}};
-  model.held_out = ImitationOfWaypoints(*state_).judge();
-  model.settings = {{"architecture", core::dumpOptions(state_->architecture)},
-                    {"samples", core::dumpOptions(settings.samples)}};
-  model.title = "PlanT";
-  model.measures = plantTable(model.held_out);
-  return model;
+std::string PlantTask::table(const Measures& held_out) const {
+  std::string table =
+      "Distance to where the expert drove: mean over 0.5, 1.0, 1.5 and 2.0 s, and at 2 s [m].\n\n"
+      "| Prediction | mean | at 2 s |\n|---|---|---|\n";
+  const std::pair<const char*, const char*> rows[] = {
+      {"PlanT", ""}, {"stands", "standing_"}, {"keeps its speed straight on", "constant_speed_"}};
+  for (const auto& [title, prefix] : rows) {
+    table += "| " + std::string(title) + " | " +
+             core::formatFixed(held_out.at(std::string(prefix) + "ade_m"), 3) + " | " +
+             core::formatFixed(held_out.at(std::string(prefix) + "fde_m"), 3) + " |\n";
+  }
+  return table;
 }
 
 learning::TaskDescriptor plantTraining() {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "learning/task.h"
 #include "learning/task_registry.h"
+#include "planners/network_task.h"
 #include "planners/plant/training/plant_net.h"
 #include "planners/plant/training/plant_samples.h"
 
@@ -17,7 +17,7 @@ namespace cdiff::planners {
 /// What the training of PlanT asks beyond the options of every training.
 struct PlantTrainingSettings {
   PlantArchitecture architecture;
-  PlantSampleOptions samples;
+  learning::SceneSampleOptions samples;
 
   void describe(core::OptionsVisitor& visitor) {
     architecture.describe(visitor);
@@ -35,27 +35,18 @@ struct PlantTrainingState {
 
 /// The training of PlanT: it imitates the waypoints of the vehicles that were driven in scenes, in
 /// one stage, `imitation`.
-class PlantTask : public learning::Task {
+class PlantTask : public NetworkTask<PlantTrainingSettings> {
  public:
-  learning::TaskTexts texts() const override;
-  std::vector<learning::StageInfo> stages() const override;
-  std::vector<std::string> allStages() const override;
-  std::vector<learning::PartSource> model() const override;
-  std::vector<std::string> weightFiles() const override { return {kPlantFile}; }
-  std::vector<std::string> fields() const override;
+  PlantTask();
   learning::SampleSchema sceneFields() const override { return plantFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
-  void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
-  void validate() const override { settings.architecture.validate(); }
-
   void start(const learning::TrainingRun& run) override;
-  nlohmann::json facts() const override;
-  std::vector<learning::TrainedPart> parts() override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
-  learning::TrainedModel finish() override;
 
-  PlantTrainingSettings settings;
+ protected:
+  learning::ParameterSet& parameters() override { return state_->net.parameters(); }
+  std::string table(const learning::Measures& held_out) const override;
 
  private:
   std::optional<PlantSampler> sampler_;

@@ -14,12 +14,6 @@ constexpr float kAbsent = -1e9F;
 using Counts = std::vector<std::int64_t>;
 using Floats = std::vector<float>;
 
-at::Tensor countTensor(const Counts& values, at::IntArrayRef shape, const at::Device& device) {
-  at::Tensor tensor = at::empty(shape, at::kLong);
-  std::copy(values.begin(), values.end(), tensor.data_ptr<std::int64_t>());
-  return tensor.to(device);
-}
-
 std::size_t sizeOf(std::int64_t value) { return static_cast<std::size_t>(value); }
 
 /// Fills a batch, moment after moment.
@@ -168,7 +162,7 @@ PlutoBatch BatchRows::tensors(const at::Device& device) const {
     return learning::toTensor(values, shape, device);
   };
   const auto counts = [&](const Counts& values, at::IntArrayRef shape) {
-    return countTensor(values, shape, device);
+    return learning::toIndices(values, shape, device);
   };
   PlutoBatch batch;
   batch.motion = floats(motion_, {b_, kMotionNumbers});

@@ -2,20 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/pluto/training/pluto_net.h"
 
-#include <cmath>
-
 #include "e2e_cdiff/core/angle.h"
+#include "learning/layers.h"
 
 namespace cdiff::planners {
 namespace {
 
-constexpr double kNormEpsilon = 1e-5;
-
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-std::string layerOf(const std::string& tensor) { return tensor.substr(0, tensor.size() - 7); }
+using learning::layerNorm;
 
 /// Of a convolution over time with a kernel of 3, max(0, x) after it: [N, in, T] -> [N, out, T'].
 at::Tensor timeConvolved(const learning::ParameterSet& parameters, const std::string& name,
@@ -32,17 +25,9 @@ PlutoNet::PlutoNet(const PlutoArchitecture& architecture, std::uint64_t seed)
     : architecture_(architecture), parameters_(core::RandomStream(seed, "pluto start")) {
   constexpr double kTable = 0.1;      // bound of learned rows
   constexpr double kFrequency = 4.0;  // of learned frequencies
-  for (const inference::TensorShape& tensor : plutoTensors(architecture)) {
-    const std::string& name = tensor.name;
-    if (name.rfind("table.", 0) == 0) {
-      const double bound = name == "table.position.frequency" ? kFrequency : kTable;
-      parameters_.declare(name, tensor.shape, {learning::Start::Kind::kUniform, bound});
-    } else if (endsWith(name, ".weight") && tensor.shape.size() > 1) {
-      parameters_.declareLayer(layerOf(name), tensor.shape);
-    } else if (endsWith(name, ".weight")) {
-      parameters_.declareNorm(layerOf(name), tensor.shape[0]);
-    }
-  }
+  parameters_.declareAll(plutoTensors(architecture), [](const std::string& name) {
+    return name == "table.position.frequency" ? kFrequency : kTable;
+  });
 }
 
 at::Tensor PlutoNet::rows(const std::string& table_name, const at::Tensor& indices) const {
@@ -51,22 +36,12 @@ at::Tensor PlutoNet::rows(const std::string& table_name, const at::Tensor& indic
   return table(table_name).index_select(0, indices.flatten()).reshape(shape);
 }
 
-at::Tensor PlutoNet::norm(const std::string& name, const at::Tensor& x) const {
-  return at::layer_norm(x, {x.size(-1)}, parameters_(name + ".weight"), parameters_(name + ".bias"),
-                        kNormEpsilon);
-}
-
-/// A linear layer on the last axis.
 at::Tensor PlutoNet::dense(const std::string& name, const at::Tensor& x) const {
-  std::vector<std::int64_t> shape = x.sizes().vec();
-  const at::Tensor y =
-      learning::linear(parameters_, name, x.reshape({x.numel() / x.size(-1), x.size(-1)}));
-  shape.back() = y.size(1);
-  return y.reshape(shape);
+  return learning::dense(parameters_, name, x);
 }
 
 at::Tensor PlutoNet::mlp(const std::string& name, const at::Tensor& x) const {
-  return dense(name + ".out", at::relu(norm(name + ".norm", dense(name + ".in", x))));
+  return learning::mlp(parameters_, name, x);
 }
 
 /// points [N, L, channels], mask [N, L, 1] or undefined -> [N, width].
@@ -94,7 +69,9 @@ at::Tensor PlutoNet::own(const PlutoBatch& batch) const {
   const at::Tensor scaled = batch.motion.unsqueeze(2) * table("own.gain");
   const at::Tensor tokens = place + at::constant_pad_nd(scaled, {0, 0, 1, 0});
   const at::Tensor query = table("own.query").expand({moments, 1, -1});
-  return dense("own.output", attend(query, dense("own.key_value", tokens), batch.motion_mask));
+  const at::Tensor key_value = dense("own.key_value", tokens);
+  return dense("own.output",
+               learning::attend(query, key_value, architecture_.heads, batch.motion_mask).mixed);
 }
 
 /// [B, A, width].
@@ -119,43 +96,21 @@ at::Tensor PlutoNet::polygons(const PlutoBatch& batch) const {
          rows("polygon.light", batch.light) + batch.limit * table("polygon.limit");
 }
 
-/// query [B, Q, width], keys and values [B, K, 2 width], mask [B, 1, 1, K] or undefined.
-at::Tensor PlutoNet::attend(const at::Tensor& query, const at::Tensor& key_value,
-                            const at::Tensor& mask) const {
-  const std::int64_t width = architecture_.width;
-  const std::int64_t head_width = width / architecture_.heads;
-  const auto byHead = [&](const at::Tensor& x) {
-    return x.reshape({x.size(0), x.size(1), architecture_.heads, head_width})
-        .transpose(1, 2)
-        .contiguous();
-  };
-  const at::Tensor key = byHead(key_value.narrow(2, 0, width));
-  const at::Tensor value = byHead(key_value.narrow(2, width, width));
-  at::Tensor scores =
-      at::matmul(byHead(query), key.transpose(2, 3)) / std::sqrt(static_cast<double>(head_width));
-  if (mask.defined()) scores = scores + mask;
-  return at::matmul(at::softmax(scores, -1), value)
-      .transpose(1, 2)
-      .reshape({query.size(0), query.size(1), width});
-}
-
-/// What self-attention adds to x [B, N, width].
+/// What attention to `context` adds to x [B, N, width]; to itself where that is undefined.
 at::Tensor PlutoNet::attention(const std::string& name, const at::Tensor& x,
-                               const at::Tensor& position, const at::Tensor& mask) const {
-  at::Tensor normed = norm(name + ".norm", x);
+                               const at::Tensor& position, const at::Tensor& context,
+                               const at::Tensor& mask) const {
+  at::Tensor normed = layerNorm(parameters_, name + ".norm", x);
   if (position.defined()) normed = normed + position;
+  const at::Tensor query = dense(name + ".query", normed);
+  const at::Tensor key_value = dense(name + ".key_value", context.defined() ? context : normed);
   return dense(name + ".output",
-               attend(dense(name + ".query", normed), dense(name + ".key_value", normed), mask));
-}
-
-at::Tensor PlutoNet::crossAttention(const std::string& name, const at::Tensor& x,
-                                    const at::Tensor& context, const at::Tensor& mask) const {
-  return dense(name + ".output", attend(dense(name + ".query", norm(name + ".norm", x)),
-                                        dense(name + ".key_value", context), mask));
+               learning::attend(query, key_value, architecture_.heads, mask).mixed);
 }
 
 at::Tensor PlutoNet::feedForward(const std::string& name, const at::Tensor& x) const {
-  return dense(name + ".down", at::gelu(dense(name + ".up", norm(name + ".norm", x))));
+  return dense(name + ".down",
+               at::gelu(dense(name + ".up", layerNorm(parameters_, name + ".norm", x))));
 }
 
 /// [B, R x 12, width].
@@ -176,15 +131,15 @@ at::Tensor PlutoNet::decode(const PlutoBatch& batch, const at::Tensor& tokens) c
   for (std::int64_t i = 0; i < architecture_.decoder_layers; ++i) {
     const std::string name = "decoder." + std::to_string(i);
     const at::Tensor by_mode = q.transpose(1, 2).reshape({b * kPlutoModes, r, width});
-    q = q + attention(name + ".lines", by_mode, {}, line_mask)
+    q = q + attention(name + ".lines", by_mode, {}, {}, line_mask)
                 .reshape({b, kPlutoModes, r, width})
                 .transpose(1, 2);
-    q = q + attention(name + ".modes", q.flatten(0, 1), table("mode.position"), {})
+    q = q + attention(name + ".modes", q.flatten(0, 1), table("mode.position"), {}, {})
                 .reshape({b, r, kPlutoModes, width});
-    q = q + crossAttention(name + ".scene", q.flatten(1, 2), tokens, batch.mask).reshape(q.sizes());
+    q = q + attention(name + ".scene", q.flatten(1, 2), {}, tokens, batch.mask).reshape(q.sizes());
     q = q + feedForward(name + ".mix", q);
   }
-  const at::Tensor normed = norm("decoder.norm", q.flatten(1, 2));
+  const at::Tensor normed = layerNorm(parameters_, "decoder.norm", q.flatten(1, 2));
   return dense("join", at::cat({normed, tokens.narrow(1, 0, 1).expand_as(normed)}, 2));
 }
 
@@ -196,10 +151,10 @@ PlutoNet::Features PlutoNet::forward(const PlutoBatch& batch, const LayerFactors
       const std::size_t index = 2 * static_cast<std::size_t>(i) + half;
       return index < factors.size() ? change * factors[index] : change;
     };
-    x = x + kept(attention(name + ".attention", x, {}, batch.mask), 0);
+    x = x + kept(attention(name + ".attention", x, {}, {}, batch.mask), 0);
     x = x + kept(feedForward(name + ".mix", x), 1);
   }
-  const at::Tensor tokens = norm("encoder.norm", x);
+  const at::Tensor tokens = layerNorm(parameters_, "encoder.norm", x);
   return {tokens, decode(batch, tokens)};
 }
 

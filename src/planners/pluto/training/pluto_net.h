@@ -46,7 +46,6 @@ class PlutoNet {
  private:
   at::Tensor table(const std::string& name) const { return parameters_("table." + name); }
   at::Tensor rows(const std::string& table_name, const at::Tensor& indices) const;
-  at::Tensor norm(const std::string& name, const at::Tensor& x) const;
   at::Tensor dense(const std::string& name, const at::Tensor& x) const;
   at::Tensor mlp(const std::string& name, const at::Tensor& x) const;
   at::Tensor pointNet(const std::string& name, const at::Tensor& points,
@@ -55,12 +54,8 @@ class PlutoNet {
   at::Tensor own(const PlutoBatch& batch) const;
   at::Tensor agents(const PlutoBatch& batch) const;
   at::Tensor polygons(const PlutoBatch& batch) const;
-  at::Tensor attend(const at::Tensor& query, const at::Tensor& key_value,
-                    const at::Tensor& mask) const;
   at::Tensor attention(const std::string& name, const at::Tensor& x, const at::Tensor& position,
-                       const at::Tensor& mask) const;
-  at::Tensor crossAttention(const std::string& name, const at::Tensor& x, const at::Tensor& context,
-                            const at::Tensor& mask) const;
+                       const at::Tensor& context, const at::Tensor& mask) const;
   at::Tensor feedForward(const std::string& name, const at::Tensor& x) const;
   at::Tensor decode(const PlutoBatch& batch, const at::Tensor& tokens) const;
 

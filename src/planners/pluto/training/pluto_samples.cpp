@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/random.h"
+#include "learning/samples/sample_order.h"
 
 namespace cdiff::planners {
 namespace {
@@ -14,15 +15,6 @@ namespace {
 constexpr std::size_t kFutureSteps = static_cast<std::size_t>(kPlutoSteps);
 constexpr std::size_t kFreeOfNoise = 10;  // decisions
 constexpr std::size_t kLongNoise = 10;    // decisions
-constexpr double kStandingSpeed = 0.3;    // [m/s]
-
-/// Whether a vehicle moved between two decisions as its speeds say.
-bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& after) {
-  constexpr double kJump = 0.5;  // [m]
-  const double moved = (after.position - before.position).norm();
-  const double expected = 0.5 * kPlutoPeriod * (after.speed + before.speed);
-  return std::abs(moved - expected) <= kJump;
-}
 
 /// Whether the noise at a decision lasts longer than 1 s from there on.
 bool stopIsForced(const PlutoDrive& drive, std::size_t decision) {
@@ -41,7 +33,7 @@ std::size_t stepsOf(const PlutoScene& scene, const PlutoDrive& drive, std::size_
     if (step == 0) continue;
     const bool there = i < scene.frames().size() && drive.places.count(i) != 0;
     const TrackPoint* after = there ? scene.frames()[i].find(drive.vehicle) : nullptr;
-    if (after == nullptr || before == nullptr || !drivesOn(before->state, after->state) ||
+    if (after == nullptr || before == nullptr || !learning::drivesOn(before->state, after->state) ||
         scene.touches(drive.vehicle, i, i))
       return step - 1;
     if (stopIsForced(drive, i)) return step;
@@ -53,7 +45,7 @@ std::size_t stepsOf(const PlutoScene& scene, const PlutoDrive& drive, std::size_
 bool standsFor(const PlutoScene& scene, const PlutoDrive& drive, std::size_t begin,
                std::size_t steps) {
   for (std::size_t i = begin; i <= begin + steps; ++i) {
-    if (scene.frames()[i].find(drive.vehicle)->state.speed > kStandingSpeed) return false;
+    if (scene.frames()[i].find(drive.vehicle)->state.speed > learning::kStanding) return false;
   }
   return true;
 }
@@ -71,15 +63,9 @@ Eigen::Matrix<float, 1, kPlutoChannels> rowOf(const geometry::Pose2d& frame,
 }  // namespace
 
 void PlutoSampleOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"period", "s", "Between two samples of a vehicle."}, period, 0.1, 60.0);
-  visitor.number({"standing_share", "", "Part kept of samples that stand for all time to come."},
-                 standing_share, 0.0, 1.0);
+  SceneSampleOptions::describe(visitor);
   visitor.number({"least_future", "s", "Least time of undisturbed driving behind a sample."},
                  least_future, 1.0, 8.0);
-  visitor.number({"lowest_target_speed", "m/s", "Drivers with a lower target speed are left out."},
-                 lowest_speed, 0.0, 100.0);
-  visitor.number({"highest_target_speed", "m/s", "Drivers with a higher one are left out."},
-                 highest_speed, 0.0, 100.0);
 }
 
 namespace {
@@ -108,17 +94,14 @@ void choosePlace(const std::vector<ReferenceLine>& lines, const traffic::Vehicle
 
 std::vector<PlutoPlace> plutoPlaces(const PlutoScene& scene, std::uint32_t number,
                                     const PlutoSampleOptions& options) {
-  const auto stride =
-      static_cast<std::size_t>(std::max(1L, std::lround(options.period / kPlutoPeriod)));
   const auto least = static_cast<std::size_t>(std::lround(options.least_future / kPlutoPeriod));
   const core::RandomStream thinning(core::hashText(scene.name()), "pluto_standing");
   std::vector<PlutoPlace> places;
   for (std::size_t d = 0; d < scene.drives().size(); ++d) {
     const PlutoDrive& drive = scene.drives()[d];
-    if (drive.target_speed < options.lowest_speed || drive.target_speed > options.highest_speed)
-      continue;
+    if (!options.wants(drive.target_speed)) continue;
     for (const auto& [decision, arc_length] : drive.places) {
-      if ((decision + d) % stride != 0) continue;
+      if ((decision + d) % options.stride() != 0) continue;
       const std::size_t steps = stepsOf(scene, drive, decision);
       if (steps < least) continue;
       const core::RandomKey key{d, static_cast<std::uint32_t>(decision), 0};

@@ -15,12 +15,8 @@
 namespace cdiff::planners {
 
 /// Which moments of a scene become samples.
-struct PlutoSampleOptions {
-  double period = 0.5;           ///< between two samples of a vehicle [s]
-  double standing_share = 0.25;  ///< part kept of moments at which it stands all the time to come
-  double least_future = 3.0;     ///< of undisturbed driving [s]
-  double lowest_speed = 0.0;     ///< of drivers whose target speed lies in between [m/s]
-  double highest_speed = 100.0;  ///< [m/s]
+struct PlutoSampleOptions : learning::SceneSampleOptions {
+  double least_future = 3.0;  ///< of undisturbed driving [s]
 
   void describe(core::OptionsVisitor& visitor);
 };

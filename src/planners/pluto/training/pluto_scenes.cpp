@@ -3,26 +3,12 @@
 #include "planners/pluto/training/pluto_scenes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/file.h"
-#include "core/text.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {
 namespace {
-
-void requirePeriod(const learning::Scene& scene) {
-  for (std::size_t i = 1; i < scene.decisions.size(); ++i) {
-    const double step = scene.decisions[i].time - scene.decisions[i - 1].time;
-    if (std::abs(step - kPlutoPeriod) < 1e-6) continue;
-    throw core::InputError("scene '" + scene.name + "': decisions " + std::to_string(i - 1) +
-                           " and " + std::to_string(i) + " are " + core::formatNumber(step) +
-                           " s apart; Pluto and RIFT learn from decisions 0.1 s apart: collect it "
-                           "with decision_period 0.1");
-  }
-}
 
 bool sameSignals(const std::vector<traffic::SignalState>& left,
                  const std::vector<traffic::SignalState>& right) {
@@ -35,7 +21,7 @@ bool sameSignals(const std::vector<traffic::SignalState>& left,
 
 PlutoScene::PlutoScene(const learning::Scene& scene, std::shared_ptr<const PlutoWorld> world)
     : name_(scene.name), world_(std::move(world)) {
-  requirePeriod(scene);
+  learning::requireScenePeriod(scene, "Pluto and RIFT learn");
   for (const traffic::TrafficSnapshot& snapshot : scene.decisions) {
     frames_.push_back(frameOf(snapshot, vehicles_));
     if (signals_.empty() || !sameSignals(signals_.back(), snapshot.signals))

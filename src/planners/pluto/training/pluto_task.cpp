@@ -3,7 +3,6 @@
 #include "planners/pluto/training/pluto_task.h"
 
 #include "core/text.h"
-#include "learning/samples/sample_order.h"
 #include "planners/pluto/training/pluto_judge.h"
 #include "planners/pluto/training/pluto_losses.h"
 
@@ -12,10 +11,6 @@ namespace {
 
 constexpr const char* kPlutoStage = "imitation";
 constexpr std::int64_t kPlutoBatch = 32;
-
-core::RandomStream plutoStream(const PlutoTrainingState& state, const char* name) {
-  return core::RandomStream(static_cast<std::uint64_t>(state.run.options.seed), name);
-}
 
 /// The moments of a step, with those that are changed for the contrast behind them.
 struct StepExamples {
@@ -33,24 +28,14 @@ struct StepExamples {
   }
 };
 
-class ImitationOfPlans : public learning::Stage {
+class ImitationOfPlans : public learning::EvenStage {
  public:
   explicit ImitationOfPlans(PlutoTrainingState& state)
-      : state_(state),
-        order_(state.run.dataset.training(),
-               std::vector<double>(state.run.dataset.training().size(), 1.0), batchSize(),
-               plutoStream(state, "pluto order")),
-        dropout_(plutoStream(state, "pluto dropout")),
-        changes_(plutoStream(state, "pluto changes")) {}
-
-  const std::string& name() const override { return name_; }
-  std::vector<learning::TrainedPart> parts() override {
-    return {{"network", &state_.net.parameters()}};
-  }
-  std::int64_t batchSize() const override {
-    return state_.run.options.batch > 0 ? state_.run.options.batch : kPlutoBatch;
-  }
-  std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
+      : EvenStage(state.run, kPlutoStage, {PlutoTask::kPart, &state.net.parameters()}, kPlutoBatch,
+                  "pluto order"),
+        state_(state),
+        dropout_(state.run.stream("pluto dropout")),
+        changes_(state.run.stream("pluto changes")) {}
 
   learning::Loss loss(std::int64_t step) override {
     const StepExamples examples = examplesOf(step);
@@ -77,7 +62,7 @@ class ImitationOfPlans : public learning::Stage {
   StepExamples examplesOf(std::int64_t step) {
     StepExamples examples;
     std::uint64_t row = 0;
-    for (const std::size_t index : order_.at(step)) {
+    for (const std::size_t index : samplesOf(step)) {
       const PlutoPlace& place = state_.places[index];
       const PlutoScene& scene = state_.scenes[place.scene];
       const std::int64_t anchor =
@@ -130,9 +115,7 @@ class ImitationOfPlans : public learning::Stage {
     return factors;
   }
 
-  std::string name_ = kPlutoStage;
   PlutoTrainingState& state_;
-  learning::SampleOrder order_;
   core::RandomStream dropout_;
   core::RandomStream changes_;
 };
@@ -153,23 +136,7 @@ void PlutoTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  contrast_share, 0.0, 1.0);
 }
 
-learning::TaskTexts PlutoTask::texts() const { return {kPlutoStage, std::to_string(kPlutoBatch)}; }
-
-std::vector<learning::StageInfo> PlutoTask::stages() const {
-  return {{kPlutoStage, {}, true, {}, ""}};
-}
-
-std::vector<std::string> PlutoTask::allStages() const { return {kPlutoStage}; }
-
-std::vector<learning::PartSource> PlutoTask::model() const {
-  return {{"network", "a network", {kPlutoStage}, kPlutoStage}};
-}
-
-std::vector<std::string> PlutoTask::fields() const {
-  std::vector<std::string> names;
-  for (const learning::FieldSpec& field : plutoFields().fields) names.push_back(field.name);
-  return names;
-}
+PlutoTask::PlutoTask() : NetworkTask({kPluto, "Pluto", kPlutoStage, kPlutoBatch, plutoTensors}) {}
 
 std::vector<learning::Sample> PlutoTask::samplesOf(const learning::Scene& scene) {
   if (!worlds_) worlds_.emplace(settings.architecture);
@@ -194,37 +161,15 @@ void PlutoTask::start(const learning::TrainingRun& run) {
       new PlutoTrainingState{run, settings, PlutoNet(settings.architecture, seed), scenes_, {}});
   for (std::size_t i = 0; i < run.dataset.size(); ++i)
     state_->places.push_back(toPlutoPlace(run.dataset.sample(i)));
-  if (!run.options.init.empty()) {
-    const PlutoModel model = readPlutoModel(kPluto, run.options.init);
-    state_->net.parameters().load(model.weights, run.options.init);
-  }
-  state_->net.parameters().moveTo(run.device);
-}
-
-nlohmann::json PlutoTask::facts() const {
-  return {{"architecture", core::dumpOptions(settings.architecture)}};
-}
-
-std::vector<learning::TrainedPart> PlutoTask::parts() {
-  return {{"network", &state_->net.parameters()}};
+  loadWeights(run);
 }
 
 std::unique_ptr<learning::Stage> PlutoTask::makeStage(const std::string&) {
   return std::make_unique<ImitationOfPlans>(*state_);
 }
 
-learning::TrainedModel PlutoTask::finish() {
-  learning::TrainedModel model;
-  model.files = {{kPluto.file,
-                  {plutoMetadata(kPluto, settings.architecture), state_->net.parameters().values()},
-                  true,
-                  ""}};
-  model.held_out = ImitationOfPlans(*state_).judge();
-  model.settings = {{"architecture", core::dumpOptions(settings.architecture)},
-                    {"samples", core::dumpOptions(settings.samples)}};
-  model.title = "Pluto";
-  model.measures = plutoTable(model.held_out);
-  return model;
+std::string PlutoTask::table(const learning::Measures& held_out) const {
+  return plutoTable(held_out);
 }
 
 learning::TaskDescriptor plutoTraining() {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "learning/task.h"
 #include "learning/task_registry.h"
+#include "planners/network_task.h"
 #include "planners/pluto/training/pluto_net.h"
 #include "planners/pluto/training/pluto_scenes.h"
 
@@ -37,27 +37,18 @@ struct PlutoTrainingState {
 
 /// The training of Pluto: it imitates the vehicles that were driven in scenes, in one stage,
 /// `imitation`.
-class PlutoTask : public learning::Task {
+class PlutoTask : public NetworkTask<PlutoTrainingSettings> {
  public:
-  learning::TaskTexts texts() const override;
-  std::vector<learning::StageInfo> stages() const override;
-  std::vector<std::string> allStages() const override;
-  std::vector<learning::PartSource> model() const override;
-  std::vector<std::string> weightFiles() const override { return {kPluto.file}; }
-  std::vector<std::string> fields() const override;
+  PlutoTask();
   learning::SampleSchema sceneFields() const override { return plutoFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
-  void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
-  void validate() const override { settings.architecture.validate(); }
-
   void start(const learning::TrainingRun& run) override;
-  nlohmann::json facts() const override;
-  std::vector<learning::TrainedPart> parts() override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
-  learning::TrainedModel finish() override;
 
-  PlutoTrainingSettings settings;
+ protected:
+  learning::ParameterSet& parameters() override { return state_->net.parameters(); }
+  std::string table(const learning::Measures& held_out) const override;
 
  private:
   std::optional<PlutoWorlds> worlds_;

@@ -115,7 +115,7 @@ PpoAction PpoEpisodeLog::decide(const std::string& id, std::uint64_t tick,
 planning::PlannedAction PpoEpisodeLog::act(const traffic::TrafficSnapshot& snapshot,
                                            const planning::PlanningTask& task) {
   const std::string& id = task.vehicle->id;
-  planning::PlannedAction planned{task.slot, id, traffic::ControlAction::failSafe(), {}};
+  planning::PlannedAction planned = planning::failSafeAction(task);
   if (snapshot.ego() == nullptr) return planned;
   Open& open = open_[id];
   open.pending.observation = ppoObservation(snapshot, *snapshot.ego(), *task.vehicle, goal_);

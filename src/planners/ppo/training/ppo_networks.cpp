@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
+#include "learning/layers.h"
 
 namespace cdiff::planners {
 namespace {

@@ -6,12 +6,9 @@
 #include <chrono>
 #include <ctime>
 
-#include "planners/ppo/training/advantages.h"
-
 namespace cdiff::planners {
 namespace {
 
-constexpr std::int64_t kMinibatch = 256;
 constexpr double kAdamEpsilon = 1e-5;
 
 at::Tensor toRows(const std::vector<double>& values, const at::Device& device) {
@@ -98,10 +95,7 @@ std::vector<learning::TrainedPart> PpoStage::parts() {
   return {{"actor", &training_.networks.actor()}, {"critic", &training_.networks.critic()}};
 }
 
-std::int64_t PpoStage::batchSize() const {
-  const std::int64_t asked = training_.run.options.batch;
-  return asked > 0 ? asked : kMinibatch;
-}
+std::int64_t PpoStage::batchSize() const { return training_.run.batchSize(kBatch); }
 
 std::int64_t PpoStage::stepsAnIteration() const {
   const std::int64_t steps =
@@ -142,8 +136,7 @@ learning::Loss PpoStage::loss(std::int64_t step) {
 }
 
 std::vector<std::size_t> PpoStage::samplesOf(std::int64_t step) {
-  const core::RandomStream random(static_cast<std::uint64_t>(training_.run.options.seed),
-                                  "ppo minibatches");
+  const core::RandomStream random = training_.run.stream("ppo minibatches");
   const auto count = static_cast<std::size_t>(
       buffer_.actions.defined() ? buffer_.actions.size(0) : training_.settings.collector.buffer);
   std::vector<std::size_t> rows;

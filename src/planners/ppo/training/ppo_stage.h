@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "learning/task.h"
+#include "planners/ppo/training/advantages.h"
 #include "planners/ppo/training/collector.h"
 #include "planners/ppo/training/ppo_networks.h"
 
@@ -102,6 +103,7 @@ class PpoStage : public learning::Stage {
 
  public:
   static constexpr const char* kStage = "policy";
+  static constexpr std::int64_t kBatch = 256;
 };
 
 }  // namespace cdiff::planners

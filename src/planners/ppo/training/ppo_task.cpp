@@ -65,19 +65,12 @@ std::string riseText(const PpoDifference& rise) {
          ", " + formatFixed(rise.high, 2) + "]";
 }
 
-class PpoTask : public learning::Task {
+class PpoTask : public learning::OneStageTask {
  public:
-  learning::TaskTexts texts() const override { return {PpoStage::kStage, "256"}; }
-  std::vector<learning::StageInfo> stages() const override {
-    return {{PpoStage::kStage, {}, true, {}, ""}};
-  }
-  std::vector<std::string> allStages() const override { return {PpoStage::kStage}; }
-  std::vector<learning::PartSource> model() const override {
-    return {{"actor", "an actor", {PpoStage::kStage}, PpoStage::kStage},
-            {"critic", "a critic", {PpoStage::kStage}, PpoStage::kStage}};
-  }
-  std::vector<std::string> weightFiles() const override { return {PpoActor::kFile}; }
-  std::vector<std::string> fields() const override { return {}; }
+  PpoTask()
+      : OneStageTask(PpoStage::kStage, PpoStage::kBatch,
+                     {{"actor", "an actor"}, {"critic", "a critic"}}) {}
+  std::vector<std::string> weightFiles() const override { return {kPpo.file}; }
   bool needsSamples() const override { return false; }
   void setDefaults(learning::TrainingOptions& options) const override;
   void describe(core::OptionsVisitor& visitor) override;
@@ -196,10 +189,7 @@ std::string PpoTask::measuresText(const learning::Measures& held_out) const {
 
 learning::TrainedModel PpoTask::finish() {
   learning::TrainedModel model;
-  model.files = {{PpoActor::kFile,
-                  {{{"format", PpoActor::kFormat}}, training_->networks.weights()},
-                  true,
-                  ""}};
+  model.files = {{kPpo.file, {{{"format", kPpo.format}}, training_->networks.weights()}, true, ""}};
   model.held_out = PpoStage(*training_).judge();
   model.settings = facts();
   model.settings["data"] = {

@@ -7,13 +7,13 @@
 #include <numeric>
 
 #include "e2e_cdiff/core/random.h"
+#include "learning/samples/sample_order.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {
 namespace {
 
 constexpr double kNeighborRadius = 60.0;     // [m]
-constexpr double kRiftStanding = 0.3;        // [m/s]
 constexpr std::size_t kProfileLength = 100;  // [m]
 
 std::vector<traffic::Vehicle> neighborsOf(const traffic::TrafficSnapshot& snapshot,
@@ -46,18 +46,19 @@ std::vector<double> ranksOf(const std::vector<double>& values) {
 }  // namespace
 
 std::vector<RiftMoment> riftMoments(const learning::Scene& scene, const PlutoScene& tracks,
-                                    std::uint32_t number, const RiftSampleOptions& options) {
-  const auto stride =
-      static_cast<std::size_t>(std::max(1L, std::lround(options.period / kPlutoPeriod)));
+                                    std::uint32_t number,
+                                    const learning::SceneSampleOptions& options) {
   const core::RandomStream thinning(core::hashText(tracks.name()), "rift_standing");
   std::vector<RiftMoment> moments;
   for (std::size_t d = 0; d < tracks.drives().size(); ++d) {
+    if (!options.wants(tracks.drives()[d].target_speed)) continue;
     for (const auto& [decision, arc_length] : tracks.drives()[d].places) {
-      if ((decision + d) % stride != 0) continue;
+      if ((decision + d) % options.stride() != 0) continue;
       const traffic::TrafficSnapshot& snapshot = scene.decisions[decision];
       const traffic::Vehicle* own = snapshot.find(scene.drives[d].vehicle_id);
       const core::RandomKey key{d, static_cast<std::uint32_t>(decision), 0};
-      if (own->state.speed < kRiftStanding && thinning.uniform(key, 0) >= options.standing_share)
+      if (own->state.speed < learning::kStanding &&
+          thinning.uniform(key, 0) >= options.standing_share)
         continue;
       moments.push_back(
           {{number, static_cast<std::uint32_t>(decision), static_cast<std::uint32_t>(d), 0},

@@ -17,16 +17,11 @@ struct RiftMoment {
   std::vector<traffic::Vehicle> neighbors;  ///< within 60 m on its level, in the snapshot's order
 };
 
-/// Which moments of a scene become states.
-struct RiftSampleOptions {
-  double period = 0.5;           ///< between two of a vehicle [s]
-  double standing_share = 0.25;  ///< part kept of those at which it stands
-};
-
 /// Every period a moment of each driven vehicle; `scene` is what `tracks` was made of, `number` its
 /// place in the list of scenes.
 std::vector<RiftMoment> riftMoments(const learning::Scene& scene, const PlutoScene& tracks,
-                                    std::uint32_t number, const RiftSampleOptions& options);
+                                    std::uint32_t number,
+                                    const learning::SceneSampleOptions& options);
 
 /// The candidates of a state: what the score head reads of each, Pluto's logits, simulated returns.
 struct RiftGroup {

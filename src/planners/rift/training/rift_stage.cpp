@@ -8,12 +8,12 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
+#include "learning/layers.h"
 
 namespace cdiff::planners {
 namespace {
 
 constexpr float kNoCandidate = -1e9F;
-constexpr double kRiftNormEpsilon = 1e-5;
 
 /// 0, 1, ... count - 1 in an order drawn from the stream.
 std::vector<std::size_t> shuffled(std::size_t count, const core::RandomStream& random,
@@ -25,10 +25,6 @@ std::vector<std::size_t> shuffled(std::size_t count, const core::RandomStream& r
     std::swap(order[i - 1], order[random.index(key, 0, i)]);
   }
   return order;
-}
-
-core::RandomStream riftStream(const RiftTrainingState& state, const char* name) {
-  return core::RandomStream(static_cast<std::uint64_t>(state.run.options.seed), name);
 }
 
 /// Sums over judged states of one policy.
@@ -60,10 +56,7 @@ struct PolicySums {
 }  // namespace
 
 at::Tensor riftScores(const learning::ParameterSet& head, const at::Tensor& features) {
-  const at::Tensor hidden = learning::linear(head, "score.in", features);
-  const at::Tensor normed = at::layer_norm(hidden, {hidden.size(1)}, head("score.norm.weight"),
-                                           head("score.norm.bias"), kRiftNormEpsilon);
-  return learning::linear(head, "score.out", at::relu(normed)).squeeze(1);
+  return learning::mlp(head, "score", features).squeeze(1);
 }
 
 double riftRate(double first, std::int64_t step, std::int64_t batches, std::int64_t epochs) {
@@ -113,9 +106,7 @@ RiftBuffer::RiftBuffer(const std::vector<RiftGroup>& groups, std::int64_t width,
 
 RiftStage::RiftStage(RiftTrainingState& state) : state_(state) {}
 
-std::int64_t RiftStage::batchSize() const {
-  return state_.run.options.batch > 0 ? state_.run.options.batch : kRiftBatch;
-}
+std::int64_t RiftStage::batchSize() const { return state_.run.batchSize(kRiftBatch); }
 
 /// The samples of a buffer are gathered by the weights of its start.
 learning::StageRules RiftStage::rules() const {
@@ -131,7 +122,7 @@ std::int64_t RiftStage::batches() const {
 /// Indices in the data set; every training moment comes once before any comes again.
 std::vector<std::size_t> RiftStage::momentsOf(std::int64_t buffer) const {
   const std::vector<std::size_t>& training = state_.run.dataset.training();
-  const core::RandomStream random = riftStream(state_, "rift moments");
+  const core::RandomStream random = state_.run.stream("rift moments");
   const auto wanted = static_cast<std::size_t>(state_.settings.buffer);
   std::vector<std::size_t> moments;
   std::vector<std::size_t> order;
@@ -151,7 +142,7 @@ std::vector<std::size_t> RiftStage::momentsOf(std::int64_t buffer) const {
 std::vector<std::int64_t> RiftStage::rowsOf(std::int64_t step) const {
   const std::int64_t epoch = step / batches();  // over all buffers
   const auto order = shuffled(static_cast<std::size_t>(state_.settings.buffer),
-                              riftStream(state_, "rift order"), static_cast<std::uint32_t>(epoch));
+                              state_.run.stream("rift order"), static_cast<std::uint32_t>(epoch));
   const auto begin = static_cast<std::size_t>(step % batches() * batchSize());
   const std::size_t end = std::min(order.size(), begin + static_cast<std::size_t>(batchSize()));
   return {order.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -182,9 +173,8 @@ learning::Loss RiftStage::loss(std::int64_t step) {
   const std::int64_t buffer = step / stepsOfBuffer();
   if (gathered_ != buffer) gather(buffer);
   const std::vector<std::int64_t> rows = rowsOf(step);
-  at::Tensor indices = at::empty({static_cast<std::int64_t>(rows.size())}, at::kLong);
-  std::copy(rows.begin(), rows.end(), indices.data_ptr<std::int64_t>());
-  indices = indices.to(state_.run.device);
+  const at::Tensor indices =
+      learning::toIndices(rows, {static_cast<std::int64_t>(rows.size())}, state_.run.device);
   const auto chosen = [&](const at::Tensor& all) { return all.index_select(0, indices); };
   const at::Tensor features = chosen(buffer_->features);
   RiftRows part;

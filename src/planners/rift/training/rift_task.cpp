@@ -4,22 +4,18 @@
 
 #include <filesystem>
 
-#include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "planners/rift/rift.h"
 #include "planners/rift/training/rift_stage.h"
 
 namespace cdiff::planners {
 namespace {
 
 std::filesystem::path startingFolder(const std::string& init) {
-  PlutoOptions named;
-  named.weights = init;
-  return named.folder();
+  return WeightOptions{init}.folder();
 }
 
 /// Of Pluto, or of an earlier fine-tuning where there is one.
-const PlutoKind& startingKind(const std::string& init) {
+const WeightKind& startingKind(const std::string& init) {
   return std::filesystem::exists(startingFolder(init) / kRift.file) ? kRift : kPluto;
 }
 
@@ -38,9 +34,7 @@ learning::ParameterSet headOf(const PlutoModel& model) {
 }  // namespace
 
 void RiftTrainingSettings::describe(core::OptionsVisitor& visitor) {
-  visitor.number({"period", "s", "Between two states of a vehicle."}, samples.period, 0.1, 60.0);
-  visitor.number({"standing_share", "", "Part kept of states at which the vehicle stands."},
-                 samples.standing_share, 0.0, 1.0);
+  samples.describe(visitor);
   visitor.text({"objective", "", "RIFT's, or GRPO's: no dual clip, but a divergence."}, objective,
                {"rift", "grpo"});
   visitor.number({"kl_weight", "", "Weight of the divergence from Pluto in grpo."}, kl_weight, 0.0,
@@ -57,23 +51,7 @@ RiftObjective RiftTrainingSettings::objectiveOf() const {
   return made;
 }
 
-learning::TaskTexts RiftTask::texts() const { return {kRiftStage, std::to_string(kRiftBatch)}; }
-
-std::vector<learning::StageInfo> RiftTask::stages() const {
-  return {{kRiftStage, {}, true, {}, ""}};
-}
-
-std::vector<std::string> RiftTask::allStages() const { return {kRiftStage}; }
-
-std::vector<learning::PartSource> RiftTask::model() const {
-  return {{"head", "a score head", {kRiftStage}, kRiftStage}};
-}
-
-std::vector<std::string> RiftTask::fields() const {
-  std::vector<std::string> names;
-  for (const learning::FieldSpec& field : plutoFields().fields) names.push_back(field.name);
-  return names;
-}
+RiftTask::RiftTask() : OneStageTask(kRiftStage, kRiftBatch, {{"head", "a score head"}}) {}
 
 /// The scenes' moments; what networks make of them waits until the weights are known.
 std::vector<learning::Sample> RiftTask::samplesOf(const learning::Scene& scene) {
@@ -104,15 +82,14 @@ void RiftTask::start(const learning::TrainingRun& run) {
   if (run.options.init.empty())
     throw core::InputError("task 'rift' fine-tunes weights of 'pluto'; --init must name them");
   const std::filesystem::path folder = startingFolder(run.options.init);
-  const PlutoKind& kind = startingKind(run.options.init);
+  const WeightKind& kind = startingKind(run.options.init);
   const PlutoModel model = readPlutoModel(kind, folder);
   learning::ParameterSet head = headOf(model);
   head.moveTo(run.device);
   const dynamics::BicycleModelOptions vehicle;
-  state_.reset(new RiftTrainingState{
-      run, settings, model,
-      core::sha256(core::readFile(plutoWeightFile(kind, folder), "weight file")), std::move(head),
-      RiftGroups(model, vehicle), scenes_, moments_});
+  state_.reset(new RiftTrainingState{run, settings, model, weightSha256(kind, folder),
+                                     std::move(head), RiftGroups(model, vehicle), scenes_,
+                                     moments_});
   const std::int64_t each = RiftStage(*state_).stepsOfBuffer();
   if (run.options.steps % each != 0) {
     throw core::InputError("steps is " + std::to_string(run.options.steps) + "; a multiple of " +
@@ -135,7 +112,7 @@ learning::TrainedModel RiftTask::finish() {
   for (const auto& [name, tensor] : state_->head.values()) weights[name] = tensor;
   learning::TrainedModel model;
   model.files = {
-      {kRift.file, {plutoMetadata(kRift, state_->model.architecture), weights}, true, ""}};
+      {kRift.file, {networkMetadata(kRift, state_->model.architecture), weights}, true, ""}};
   model.held_out = RiftStage(*state_).judge();
   model.settings = {{"settings", core::dumpOptions(settings)}};
   model.title = "RIFT";

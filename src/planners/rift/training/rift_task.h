@@ -16,7 +16,7 @@ namespace cdiff::planners {
 
 /// What the fine-tuning of RIFT asks beyond the options of every training.
 struct RiftTrainingSettings {
-  RiftSampleOptions samples;
+  learning::SceneSampleOptions samples;
   std::string objective = "rift";  ///< rift | grpo
   double kl_weight = 0.2;          ///< of `grpo`
   std::int64_t buffer = 4096;      ///< states gathered at a time
@@ -41,19 +41,14 @@ struct RiftTrainingState {
 /// The fine-tuning of RIFT: Pluto's score head learns by simulated returns, in one stage,
 /// `fine_tune`, which gathers states and trains on them by turns. It can be resumed where states
 /// are to be gathered anew.
-class RiftTask : public learning::Task {
+class RiftTask : public learning::OneStageTask {
  public:
-  learning::TaskTexts texts() const override;
-  std::vector<learning::StageInfo> stages() const override;
-  std::vector<std::string> allStages() const override;
-  std::vector<learning::PartSource> model() const override;
+  RiftTask();
   std::vector<std::string> weightFiles() const override { return {kRift.file}; }
-  std::vector<std::string> fields() const override;
   learning::SampleSchema sceneFields() const override { return plutoFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
   void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
-  void validate() const override {}
 
   /// Throws InputError for steps that are no multiple of a buffer's.
   void start(const learning::TrainingRun& run) override;

@@ -15,6 +15,7 @@ namespace {
 
 using learning::toTensor;
 using learning::toVector;
+using test::relativeDifference;
 
 using diffusion::Architecture;
 using diffusion::Model;
@@ -27,18 +28,6 @@ std::vector<float> draws(std::size_t count, const char* name) {
   for (std::size_t i = 0; i < count; ++i)
     values.push_back(static_cast<float>(random.normal({}, static_cast<std::uint32_t>(i))));
   return values;
-}
-
-/// Largest difference relative to the largest value.
-double difference(const std::vector<float>& ours, const std::vector<float>& reference) {
-  EXPECT_EQ(ours.size(), reference.size());
-  double largest = 0.0;
-  double apart = 0.0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    largest = std::max(largest, std::abs(static_cast<double>(reference[i])));
-    apart = std::max(apart, std::abs(static_cast<double>(ours[i]) - reference[i]));
-  }
-  return apart / largest;
 }
 
 class Inference : public ::testing::Test {
@@ -86,8 +75,8 @@ TEST_F(Inference, ActionHeadAndItsPullBackAgree) {
     std::vector<float> pulled(noisy.size());
     ours_.predictActions(noisy.data(), k, actions.data());
     ours_.pullBackActions(gradient.data(), pulled.data());
-    EXPECT_LT(difference(actions, toVector(expected.detach())), 1e-5) << k;
-    EXPECT_LT(difference(pulled, toVector(input.grad())), 1e-4) << k;
+    EXPECT_LT(relativeDifference(actions, toVector(expected.detach())), 1e-5) << k;
+    EXPECT_LT(relativeDifference(pulled, toVector(input.grad())), 1e-4) << k;
   }
 }
 
@@ -101,8 +90,8 @@ TEST_F(Inference, StateHeadAndItsPullBackAgree) {
   std::vector<float> pulled(actions.size());
   ours_.predictStates(actions.data(), 30, states.data());
   ours_.pullBackStates(gradient.data(), pulled.data());
-  EXPECT_LT(difference(states, toVector(expected.detach())), 1e-5);
-  EXPECT_LT(difference(pulled, toVector(input.grad())), 1e-5);
+  EXPECT_LT(relativeDifference(states, toVector(expected.detach())), 1e-5);
+  EXPECT_LT(relativeDifference(pulled, toVector(input.grad())), 1e-5);
 }
 
 TEST_F(Inference, ImageEncoderAgrees) {
@@ -121,7 +110,7 @@ TEST_F(Inference, ImageEncoderAgrees) {
   }
   diffusion::ImageEncoder ours(model_);
   const at::Tensor expected = net.forward(toTensor(planes, {1, 3, 96, 160}, at::kCPU));
-  EXPECT_LT(difference(ours.encode(image), toVector(expected)), 1e-4);
+  EXPECT_LT(relativeDifference(ours.encode(image), toVector(expected)), 1e-4);
 }
 
 }  // namespace

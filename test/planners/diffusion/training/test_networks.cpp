@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "learning/layers.h"
 #include "learning/small_samples.h"
 #include "planners/diffusion/training/networks.h"
 

@@ -1,52 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-#include <sstream>
-
-#include "core/file.h"
 #include "diffusion/model.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "learning/small_samples.h"
-#include "learning/stopping_buffer.h"
-#include "learning/trainer.h"
-#include "learning/training_folder.h"
+#include "learning/training_fixture.h"
 #include "planners/diffusion/training/diffusion_task.h"
 
 namespace cdiff::planners {
 namespace {
 
 /// Eight samples, small networks, every sample in every batch.
-class DiffusionTrainingTest : public testing::Test {
+class DiffusionTrainingTest : public test::TrainingFixture {
  protected:
-  DiffusionTrainingTest() : training_(makeTraining()) {
-    std::filesystem::create_directories(folder_.path() / "data");
-    test::writeShard(folder_.path() / "data" / "a.shard", 8);
-    training_.options.data = (folder_.path() / "data").string();
-    training_.options.output = (folder_.path() / "model").string();
+  DiffusionTrainingTest() : training_(trainingOf(diffusionTraining(), "model")) {
+    test::writeShard(path("data") / "a.shard", 8);
     settings().architecture = test::smallArchitecture();
     training_.options.validation_share = 0.0;
     training_.options.batch = 8;
-    training_.options.device = "cpu";
     training_.options.warm_up = 5;
     training_.options.learning_rate = 2e-3;
     training_.options.validation_every = 100000;
-    training_.options.report_every = 0.0;
   }
 
-  static learning::Training makeTraining() {
-    learning::TaskRegistry tasks;
-    tasks.add(diffusionTraining());
-    return tasks.training();
-  }
   DiffusionTrainingSettings& settings() {
     return dynamic_cast<DiffusionTask&>(*training_.task).settings;
   }
   void run(const std::string& stage, std::int64_t steps) {
     training_.options.stage = stage;
     training_.options.steps = steps;
-    learning::train(training_, stop_, log_);
+    train(training_);
   }
   /// What a run that is refused says.
   std::string refusal(const std::string& stage) {
@@ -64,10 +45,7 @@ class DiffusionTrainingTest : public testing::Test {
     return learning::readCheckpoint(output(stage + ".checkpoint")).facts.at("steps");
   }
 
-  test::TemporaryFolder folder_;
   learning::Training training_;
-  std::atomic<bool> stop_{false};
-  std::ostringstream log_;
 };
 
 TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
@@ -76,8 +54,7 @@ TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
   run("encoder", 3);
   run("fine_tune", 1);
   run("denoiser", 300);
-  const auto training =
-      nlohmann::json::parse(core::readFile(folder_.path() / "model" / "training.json", "record"));
+  const nlohmann::json training = record("model");
   EXPECT_EQ(training.at("data").at("samples"), 8);
   EXPECT_EQ(training.at("stages").at("denoiser").at("steps"), 300);
   EXPECT_EQ(training.at("stages").at("encoder").at("steps"), 3);
@@ -85,39 +62,30 @@ TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
   // w_t / 12 = 0.26 on the steer; fitted samples cost far less.
   EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.2);
   EXPECT_LT(training.at("held_out").at("sample_ade_m").get<double>(), 0.5);
-  const diffusion::Model model = diffusion::loadModel((folder_.path() / "model").string());
+  const diffusion::Model model = diffusion::loadModel(path("model").string());
   EXPECT_EQ(model.spread.rows(), 8);
   EXPECT_GT(model.spread.minCoeff(), 0.0);
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "model" / "model_card.md"));
+  EXPECT_TRUE(std::filesystem::exists(path("model") / "model_card.md"));
 }
 
 TEST_F(DiffusionTrainingTest, ResumedEncoderEqualsAnUninterruptedOneToTheBit) {
   run("encoder", 4);
-  const std::filesystem::path path = folder_.path() / "model" / "encoder.checkpoint";
-  const learning::Checkpoint expected = learning::readCheckpoint(path);
-  test::StoppingBuffer buffer(stop_, "encoder step 2/4");
-  std::ostream log(&buffer);
+  training_.options.output = path("resumed").string();
   training_.options.stage = "encoder";
-  training_.options.overwrite = true;
-  EXPECT_THROW(learning::train(training_, stop_, log), core::Interrupted);
-  EXPECT_EQ(learning::readCheckpoint(path).facts.at("steps"), 2);
-  stop_ = false;
-  training_.options.overwrite = false;
+  trainUntil(training_, "encoder step 2/4");
+  EXPECT_EQ(stepsOf("encoder"), 2);
   training_.options.resume = true;
   run("encoder", 4);
-  const learning::Checkpoint found = learning::readCheckpoint(path);
-  ASSERT_EQ(found.tensors.size(), expected.tensors.size());
-  for (const auto& [name, tensor] : expected.tensors)
-    EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
+  expectSameCheckpoints("model", "resumed", "encoder");
 }
 
 TEST_F(DiffusionTrainingTest, AnInitialModelBringsItsNormalizerAndMustFit) {
   run("encoder", 1);
   run("denoiser", 1);
   const diffusion::Normalizer expected = diffusion::loadModel(training_.options.output).normalizer;
-  test::writeShard(folder_.path() / "data" / "b.shard", 4);  // other data, another fit
+  test::writeShard(path("data") / "b.shard", 4);  // other data, another fit
   training_.options.init = training_.options.output;
-  training_.options.output = (folder_.path() / "second").string();
+  training_.options.output = path("second").string();
   run("denoiser", 1);
   EXPECT_EQ(diffusion::loadModel(training_.options.output).normalizer.mean, expected.mean);
   EXPECT_EQ(diffusion::loadModel(training_.options.output).normalizer.scale, expected.scale);
@@ -140,7 +108,7 @@ TEST_F(DiffusionTrainingTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne
   run("denoiser", 1);
   const diffusion::Model initial = diffusion::loadModel(training_.options.output);
   training_.options.init = training_.options.output;
-  training_.options.output = (folder_.path() / "tuned").string();
+  training_.options.output = path("tuned").string();
   run("fine_tune", 2);
   const diffusion::Model tuned = diffusion::loadModel(training_.options.output);
   const auto sameValues = [](const auto& left, const auto& right) {
@@ -217,7 +185,7 @@ TEST_F(DiffusionTrainingTest, SaysWhatIsMissing) {
   EXPECT_THROW(run("denoiser", 1), core::InputError);
   EXPECT_THROW(run("export", 1), core::InputError);
   EXPECT_THROW(run("decoder", 1), core::InputError);
-  training_.options.data = folder_.path() / "nothing";
+  training_.options.data = path("nothing").string();
   EXPECT_THROW(run("encoder", 1), core::InputError);
 }
 

@@ -12,7 +12,8 @@ namespace {
 using learning::Scene;
 using test::smallScene;
 
-std::vector<PlantExample> examplesOf(const Scene& scene, const PlantSampleOptions& options = {}) {
+std::vector<PlantExample> examplesOf(const Scene& scene,
+                                     const learning::SceneSampleOptions& options = {}) {
   return PlantSampler({}, options).examplesOf(scene);
 }
 
@@ -20,7 +21,7 @@ std::vector<PlantExample> examplesOf(const Scene& scene, const PlantSampleOption
 // (slot -1), those of "a", which is driven from decision 2 on, at 4, 9 ... 39.
 TEST(PlantSamples, EveryHalfSecondAMomentOfEachDrivenVehicle) {
   EXPECT_EQ(examplesOf(smallScene()).size(), 8U + 8U);
-  PlantSampleOptions options;
+  learning::SceneSampleOptions options;
   options.period = 1.0;  // the ego's at 0, 10, 20, 30, those of "a" at 9, 19, 29, 39
   EXPECT_EQ(examplesOf(smallScene(), options).size(), 4U + 4U);
 }
@@ -89,7 +90,7 @@ TEST(PlantSamples, OfMomentsAtWhichItStandsAShareIsKept) {
       scene.decisions[i].vehicles[n].state.position.x() = 10.0 + 30.0 * static_cast<double>(n);
     }
   }
-  PlantSampleOptions options;
+  learning::SceneSampleOptions options;
   options.standing_share = 1.0;
   const std::size_t all = examplesOf(scene, options).size();
   EXPECT_EQ(all, 116U + 116U);
@@ -102,7 +103,7 @@ TEST(PlantSamples, OfMomentsAtWhichItStandsAShareIsKept) {
 TEST(PlantSamples, DriversWithAnotherTargetSpeedAreLeftOut) {
   Scene scene = smallScene();
   scene.drives[1].driver.target_speed = 11.0;
-  PlantSampleOptions options;
+  learning::SceneSampleOptions options;
   options.highest_speed = 9.0;
   EXPECT_EQ(examplesOf(scene, options).size(), 8U);
   options.lowest_speed = 8.5;

@@ -2,8 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "learning/small_scene.h"
+#include "planners/pluto/pluto_course.h"
 #include "planners/pluto/training/pluto_losses.h"
-#include "planners/pluto/training/small_scene.h"
 
 namespace cdiff::planners {
 namespace {
@@ -28,7 +29,7 @@ class PlutoLosses : public ::testing::Test {
     return areaLoss(plan, at::ones({1, kPlutoSteps, 1}), {&example_}).item<double>();
   }
 
-  learning::Scene recorded_ = testing::smallScene("small", 15.0);
+  learning::Scene recorded_ = test::platoonScene("small", 15.0);
   PlutoWorlds worlds_{smallPluto()};
   PlutoScene scene_;
   PlutoPlace place_ = {0, 40, 1, 80};

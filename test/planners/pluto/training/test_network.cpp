@@ -11,21 +11,11 @@
 namespace cdiff::planners {
 namespace {
 
+using test::relativeDifference;
 using testing::straight;
 using testing::vehicleAt;
 
 constexpr double kAgreement = 1e-4;
-
-double difference(const std::vector<float>& ours, const std::vector<float>& reference) {
-  EXPECT_EQ(ours.size(), reference.size());
-  double largest = 0.0;
-  double apart = 0.0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    largest = std::max(largest, std::abs(static_cast<double>(reference[i])));
-    apart = std::max(apart, std::abs(static_cast<double>(ours[i]) - reference[i]));
-  }
-  return apart / largest;
-}
 
 /// Random numbers in the place of a scene on a network of 40 lanes.
 class PlutoNetworkTest : public ::testing::Test {
@@ -85,15 +75,17 @@ class PlutoNetworkTest : public ::testing::Test {
       const PlutoOutput output = ours.forward(examples[i]->input);
       const auto count = static_cast<std::int64_t>(output.logits.size());
       const at::Tensor queries = features.queries[row].narrow(0, 0, count);
-      EXPECT_LT(difference(output.features, learning::toVector(queries)), kAgreement) << i;
-      EXPECT_LT(difference(output.logits, learning::toVector(net_.scores(queries))), kAgreement);
+      EXPECT_LT(relativeDifference(output.features, learning::toVector(queries)), kAgreement) << i;
+      EXPECT_LT(relativeDifference(output.logits, learning::toVector(net_.scores(queries))),
+                kAgreement);
       std::vector<float> plans;
       for (const PlutoTrajectory& candidate : output.candidates)
         plans.insert(plans.end(), candidate.data(), candidate.data() + candidate.size());
-      EXPECT_LT(difference(plans, learning::toVector(net_.trajectories(queries))), kAgreement);
+      EXPECT_LT(relativeDifference(plans, learning::toVector(net_.trajectories(queries))),
+                kAgreement);
       const std::vector<float> free(output.free.data(), output.free.data() + output.free.size());
       const at::Tensor own = features.tokens[row].narrow(0, 0, 1);
-      EXPECT_LT(difference(free, learning::toVector(net_.freePlans(own))), kAgreement);
+      EXPECT_LT(relativeDifference(free, learning::toVector(net_.freePlans(own))), kAgreement);
     }
   }
 

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/small_scene.h"
+#include "planners/pluto/pluto_course.h"
 #include "planners/pluto/training/pluto_examples.h"
-#include "planners/pluto/training/small_scene.h"
 
 namespace cdiff::planners {
 namespace {
@@ -28,7 +29,13 @@ class PlutoSamples : public ::testing::Test {
     return found;
   }
 
-  learning::Scene recorded_ = testing::smallScene("small", 15.0);
+  static PlutoTarget targetOf(const PlutoScene& scene, const PlutoPlace& place) {
+    const PlutoMoment moment = scene.moment(place.decision, place.drive);
+    return plutoTarget(scene, place, moment.point().state.pose(),
+                       scene.world().builder.linesOf(moment));
+  }
+
+  learning::Scene recorded_ = test::platoonScene("small", 15.0);
   PlutoSampleOptions options_;
 };
 
@@ -108,10 +115,7 @@ TEST_F(PlutoSamples, AStopThatBeginsInTheLastSecondCutsAFuture) {
 // "a" drives 0.6 m in 0.1 s: 48 m in 8 s, so mode 4 of the route's line.
 TEST_F(PlutoSamples, TheTargetIsWhereTheVehicleWas) {
   const PlutoScene scene = sceneOf();
-  const PlutoPlace place = ofDrive(placesOf(scene), 1).front();
-  const PlutoMoment moment = scene.moment(place.decision, place.drive);
-  const auto lines = scene.world().builder.linesOf(moment);
-  const PlutoTarget target = plutoTarget(scene, place, moment.point().state.pose(), lines);
+  const PlutoTarget target = targetOf(scene, ofDrive(placesOf(scene), 1).front());
   EXPECT_EQ(target.line, 0U);
   EXPECT_EQ(target.mode, 4U);
   for (Eigen::Index i = 0; i < kPlutoSteps; ++i) {
@@ -124,10 +128,7 @@ TEST_F(PlutoSamples, TheTargetIsWhereTheVehicleWas) {
 // Only 3 s are known: 18 m, and 5 s more at 6 m/s.
 TEST_F(PlutoSamples, ACutFutureIsLedOnForItsMode) {
   const PlutoScene scene = sceneOf();
-  const PlutoPlace place = {0, 120, 1, 30};
-  const PlutoMoment moment = scene.moment(place.decision, place.drive);
-  const PlutoTarget target =
-      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  const PlutoTarget target = targetOf(scene, {0, 120, 1, 30});
   EXPECT_EQ(target.mode, 4U);
   EXPECT_EQ(target.steps, 30);
   EXPECT_EQ(target.future(30, 0), 0.0F);
@@ -146,10 +147,7 @@ TEST_F(PlutoSamples, ACutFutureIsLedOnAlongTheRoad) {
       drive.route_points[i] = {100.0, static_cast<double>(i) - 100.0, 0.0};
   }
   const PlutoScene scene = sceneOf();
-  const PlutoPlace place = {0, 40, 1, 30};
-  const PlutoMoment moment = scene.moment(place.decision, place.drive);
-  const PlutoTarget target =
-      plutoTarget(scene, place, moment.point().state.pose(), scene.world().builder.linesOf(moment));
+  const PlutoTarget target = targetOf(scene, {0, 40, 1, 30});
   EXPECT_EQ(target.line, 0U);
   EXPECT_EQ(target.mode, 4U);
 }

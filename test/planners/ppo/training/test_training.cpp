@@ -2,22 +2,11 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 // The training of PPO goes all the way on two small networks: collected, trained, judged,
 // interrupted, resumed, exported.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-#include <sstream>
-
-#include "core/file.h"
-#include "e2e_cdiff/core/exceptions.h"
-#include "learning/stopping_buffer.h"
 #include "learning/task.h"
-#include "learning/task_registry.h"
-#include "learning/trainer.h"
-#include "learning/training_folder.h"
+#include "learning/training_fixture.h"
 #include "planners/ppo/ppo_network.h"
 #include "planners/ppo/training/training_routes.h"
 #include "suite/suite_route.h"
-#include "support/temporary_folder.h"
 
 namespace cdiff::planners {
 
@@ -60,19 +49,14 @@ void writeSuite(const fs::path& folder) {
   core::writeFileAtomically(folder / "suite.yaml", suite::manifestText(suite));
 }
 
-class PpoTrainingTest : public ::testing::Test {
+class PpoTrainingTest : public test::TrainingFixture {
  protected:
-  PpoTrainingTest() { writeSuite(folder_.path() / "suite"); }
+  PpoTrainingTest() { writeSuite(path("suite")); }
 
   /// Three iterations of two steps.
   learning::Training start(const std::string& output, const std::vector<std::string>& set = {}) {
-    learning::TaskRegistry tasks;
-    tasks.add(ppoTraining());
-    learning::Training training = tasks.training("ppo");
-    training.options.output = (folder_.path() / output).string();
-    training.options.device = "cpu";
-    training.options.report_every = 0.0;
-    std::vector<std::string> all = {"suite=" + (folder_.path() / "suite").string(),
+    learning::Training training = trainingOf(ppoTraining(), output);
+    std::vector<std::string> all = {"suite=" + path("suite").string(),
                                     "steps=6",
                                     "batch=32",
                                     "buffer=64",
@@ -84,84 +68,54 @@ class PpoTrainingTest : public ::testing::Test {
     for (const std::string& assignment : all) core::overrideOption(assignment, "test", training);
     return training;
   }
-  std::string errorOf(const learning::Training& training) {
-    try {
-      learning::train(training, stop_, log_);
-    } catch (const core::InputError& error) {
-      return error.what();
-    }
-    return "trained";
-  }
-  learning::Checkpoint checkpoint(const std::string& output) const {
-    return learning::readCheckpoint(folder_.path() / output / "policy.checkpoint");
-  }
-  void expectSameWeights(const std::string& left, const std::string& right) const {
-    const learning::Checkpoint expected = checkpoint(left);
-    const learning::Checkpoint found = checkpoint(right);
-    ASSERT_EQ(found.tensors.size(), 4U * 13U);  // weight, two moments and average of 13 tensors
-    for (const auto& [name, tensor] : expected.tensors)
-      EXPECT_TRUE(at::equal(found.tensors.at(name), tensor)) << name;
-  }
-
-  test::TemporaryFolder folder_;
-  std::atomic<bool> stop_{false};
-  std::ostringstream log_;
 };
 
 TEST_F(PpoTrainingTest, TrainsJudgesAndExports) {
-  learning::train(start("model"), stop_, log_);
-  const PpoActor actor(PpoActor::readWeights(folder_.path() / "model"));
+  train(start("model"));
+  const PpoActor actor(PpoActor::readWeights(path("model")));
   EXPECT_NE(actor.deviation()[0], 1.0F);  // moved from its start
-  const auto record =
-      nlohmann::json::parse(core::readFile(folder_.path() / "model" / "training.json", "record"));
-  EXPECT_EQ(record.at("stages").at("policy").at("steps"), 6);
-  EXPECT_EQ(record.at("data").at("networks"), 2);
-  EXPECT_EQ(record.at("data").at("held_out_networks"), 1);
-  EXPECT_GE(record.at("held_out").at("goal_share").get<double>(), 0.0);
-  const std::string curves =
-      core::readFile(folder_.path() / "model" / "curves.csv", "training curves");
+  const nlohmann::json written = record("model");
+  EXPECT_EQ(written.at("stages").at("policy").at("steps"), 6);
+  EXPECT_EQ(written.at("data").at("networks"), 2);
+  EXPECT_EQ(written.at("data").at("held_out_networks"), 1);
+  EXPECT_GE(written.at("held_out").at("goal_share").get<double>(), 0.0);
+  const std::string curves = text("model", "curves.csv");
   for (const char* row : {"policy,1,", "policy,3,", "policy,5,", "episode_return",
                           "episode_goal_share", "held_out_return"})
     EXPECT_NE(curves.find(row), std::string::npos) << row;
-  const std::string card = core::readFile(folder_.path() / "model" / "model_card.md", "card");
+  const std::string card = text("model", "model_card.md");
   EXPECT_NE(card.find("1 routes on 1 networks of the suite 'tiny'"), std::string::npos) << card;
 }
 
 // Stopped after its second iteration, whose checkpoint is on disk; resumed with another number of
 // threads.
 TEST_F(PpoTrainingTest, AResumedTrainingEqualsAnUninterruptedOneToTheBit) {
-  learning::train(start("whole"), stop_, log_);
-  test::StoppingBuffer buffer(stop_, "policy step 4/6");
-  std::ostream log(&buffer);
-  EXPECT_THROW(learning::train(start("resumed"), stop_, log), core::Interrupted);
-  EXPECT_EQ(checkpoint("resumed").facts.at("steps"), 4);
-  stop_ = false;
-  learning::train(start("resumed", {"resume=true", "workers=2"}), stop_, log_);
-  expectSameWeights("whole", "resumed");
+  train(start("whole"));
+  trainUntil(start("resumed"), "policy step 4/6");
+  EXPECT_EQ(checkpoint("resumed", "policy").facts.at("steps"), 4);
+  train(start("resumed", {"resume=true", "workers=2"}));
+  EXPECT_EQ(checkpoint("whole", "policy").tensors.size(), 4U * 13U)
+      << "weight, two moments and average of 13 tensors";
+  expectSameCheckpoints("whole", "resumed", "policy");
 }
 
 // A stop within an iteration lets it finish.
 TEST_F(PpoTrainingTest, AStopWaitsForTheEndOfTheIteration) {
-  test::StoppingBuffer buffer(stop_, "policy step 3/6");
-  std::ostream log(&buffer);
-  EXPECT_THROW(learning::train(start("model"), stop_, log), core::Interrupted);
-  EXPECT_EQ(checkpoint("model").facts.at("steps"), 4);
+  trainUntil(start("model"), "policy step 3/6");
+  EXPECT_EQ(checkpoint("model", "policy").facts.at("steps"), 4);
 }
 
 // A kill in the second iteration leaves the checkpoint of the first, and rows of the curves beyond
 // it, the last of them cut off.
 TEST_F(PpoTrainingTest, AKillLosesTheIterationAtWorkOnly) {
-  learning::train(start("whole"), stop_, log_);
-  test::StoppingBuffer buffer(stop_, "policy step 2/6");
-  std::ostream log(&buffer);
-  EXPECT_THROW(learning::train(start("killed"), stop_, log), core::Interrupted);
-  EXPECT_EQ(checkpoint("killed").facts.at("steps"), 2);
-  const fs::path curves = folder_.path() / "killed" / "curves.csv";
+  train(start("whole"));
+  trainUntil(start("killed"), "policy step 2/6");
+  EXPECT_EQ(checkpoint("killed", "policy").facts.at("steps"), 2);
+  const fs::path curves = path("killed") / "curves.csv";
   core::writeFileAtomically(curves, core::readFile(curves, "curves") +
                                         "policy,3,9.0,episode_return,77.0\npolicy,3,9.0,epi");
-  stop_ = false;
-  learning::train(start("killed", {"resume=true"}), stop_, log_);
-  expectSameWeights("whole", "killed");
+  train(start("killed", {"resume=true"}));
+  expectSameCheckpoints("whole", "killed", "policy");
   const std::string rows = core::readFile(curves, "curves");
   EXPECT_EQ(rows.find("77.0"), std::string::npos);
   std::size_t returns = 0;
@@ -173,23 +127,23 @@ TEST_F(PpoTrainingTest, AKillLosesTheIterationAtWorkOnly) {
 
 TEST_F(PpoTrainingTest, RefusesWhatCannotBeTrained) {
   EXPECT_NE(
-      errorOf(start("m", {"suite="})).find("suite, the route suite to learn on, is not given"),
+      trainingText(start("m", {"suite="})).find("suite, the route suite to learn on, is not given"),
       std::string::npos);
-  EXPECT_NE(errorOf(start("m", {"data=somewhere"})).find("makes its samples itself"),
+  EXPECT_NE(trainingText(start("m", {"data=somewhere"})).find("makes its samples itself"),
             std::string::npos);
-  EXPECT_NE(errorOf(start("m", {"simulator=sumo", "workers=2"})).find("needs workers 1"),
+  EXPECT_NE(trainingText(start("m", {"simulator=sumo", "workers=2"})).find("needs workers 1"),
             std::string::npos);
   for (const char* suite : {"development", "sealed_a", "sealed_b"}) {
-    EXPECT_NE(errorOf(start("m", {std::string("suite=") + suite})).find("is for evaluation"),
+    EXPECT_NE(trainingText(start("m", {std::string("suite=") + suite})).find("is for evaluation"),
               std::string::npos)
         << suite;
   }
 }
 
 TEST_F(PpoTrainingTest, RefusesToResumeWithOtherSettings) {
-  learning::train(start("model"), stop_, log_);
+  train(start("model"));
   for (const char* change : {"environments=3", "discount=0.9", "buffer=96"}) {
-    EXPECT_NE(errorOf(start("model", {"resume=true", change})).find("--resume cannot go on"),
+    EXPECT_NE(trainingText(start("model", {"resume=true", change})).find("--resume cannot go on"),
               std::string::npos)
         << change;
   }

@@ -1,131 +1,102 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <gtest/gtest.h>
-
-#include <sstream>
-
-#include "core/file.h"
-#include "learning/stopping_buffer.h"
-#include "learning/task_registry.h"
-#include "learning/trainer.h"
-#include "learning/training_folder.h"
-#include "planners/pluto/training/small_scene.h"
+#include "learning/small_scene.h"
+#include "learning/training_fixture.h"
+#include "planners/pluto/pluto_course.h"
 #include "planners/rift/training/rift_stage.h"
-#include "support/random_model.h"
-#include "support/temporary_folder.h"
 
 namespace cdiff::planners {
 namespace {
 
 /// Two sessions of the small scene, and a small Pluto with random weights. Buffers of 24 states,
 /// two passes in batches of 8: 6 steps each.
-class RiftTraining : public ::testing::Test {
+class RiftTraining : public test::TrainingFixture {
  protected:
   RiftTraining() {
-    for (const char* name : {"one", "two"}) {
-      const auto file = folder_.path() / "data" / (std::string(name) + ".scene");
-      std::filesystem::create_directories(file.parent_path());
-      learning::writeScene(file, testing::smallScene(name, 6.0));
-    }
-    std::filesystem::create_directories(init());
-    const PlutoArchitecture sizes = testing::smallPluto();
-    inference::writeSafetensors(
-        init() / kPluto.file,
-        {plutoMetadata(kPluto, sizes), cdiff::testing::randomTensors(plutoTensors(sizes))},
-        inference::TensorType::kF16);
+    for (const char* name : {"one", "two"}) test::writePlatoonScene(path("data"), name, 6.0);
+    testing::writePluto(init(), kPluto, kPluto.format, testing::smallPluto());
   }
-  std::filesystem::path init() const { return folder_.path() / "pluto"; }
+  std::filesystem::path init() const { return path("pluto"); }
   learning::Training start(const std::string& output, const std::string& objective = "rift") {
-    learning::TaskRegistry tasks;
-    tasks.add(riftTraining());
-    learning::Training training = tasks.training("rift");
+    learning::Training training = trainingOf(riftTraining(), output);
     RiftTrainingSettings& settings = dynamic_cast<RiftTask&>(*training.task).settings;
     settings.buffer = 24;
     settings.epochs = 2;
     settings.objective = objective;
-    training.options.data = (folder_.path() / "data").string();
-    training.options.output = (folder_.path() / output).string();
     training.options.init = init().string();
-    training.options.device = "cpu";
     training.options.steps = 18;
     training.options.batch = 8;
     training.options.learning_rate = 1e-2;
     training.options.validation_share = 0.5;
     training.options.validation_samples = 10;
-    training.options.report_every = 0.0;
     return training;
   }
   nlohmann::json heldOut(const std::string& output) const {
-    const auto path = learning::checkpointPath((folder_.path() / output).string(), kRiftStage);
-    return learning::readCheckpoint(path).facts.at("held_out");
+    return checkpoint(output, kRiftStage).facts.at("held_out");
   }
-  std::string errorOf(const learning::Training& training) {
-    try {
-      learning::train(training, stop_, log_);
-    } catch (const core::InputError& error) {
-      return error.what();
-    }
-    return "trained";
-  }
-
-  test::TemporaryFolder folder_;
-  std::atomic<bool> stop_{false};
-  std::ostringstream log_;
 };
 
 TEST_F(RiftTraining, RaisesTheExpectedReturnAndTouchesTheScoreHeadAlone) {
-  learning::train(start("model"), stop_, log_);
+  train(start("model"));
   const auto held_out = heldOut("model");
   EXPECT_GT(held_out.at("expected_return").get<double>(),
             held_out.at("pluto_expected_return").get<double>());
   EXPECT_GE(held_out.at("largest_return").get<double>(), held_out.at("best_return").get<double>());
   const PlutoModel before = readPlutoModel(kPluto, init());
-  const PlutoModel after = readPlutoModel(kRift, folder_.path() / "model");
+  const PlutoModel after = readPlutoModel(kRift, path("model"));
   for (const auto& [name, tensor] : before.weights)
     EXPECT_EQ(tensor.values == after.weights.at(name).values, !ofScoreHead(name)) << name;
 }
 
 TEST_F(RiftTraining, TheOtherObjectiveTrainsToo) {
-  learning::train(start("model", "grpo"), stop_, log_);
-  EXPECT_NE(core::readFile(folder_.path() / "model" / "training.json", "record").find("grpo"),
-            std::string::npos);
+  train(start("model", "grpo"));
+  EXPECT_NE(text("model", "training.json").find("grpo"), std::string::npos);
 }
 
 // Interrupted at step 9, in the middle of the second buffer: it stops at that buffer's end.
 TEST_F(RiftTraining, AResumedTrainingGoesOnFromTheLastWholeBuffer) {
-  learning::train(start("whole"), stop_, log_);
-  test::StoppingBuffer buffer(stop_, "fine_tune step 9/18");
-  std::ostream log(&buffer);
-  EXPECT_THROW(learning::train(start("parted"), stop_, log), core::Interrupted);
-  const auto path = learning::checkpointPath((folder_.path() / "parted").string(), kRiftStage);
-  EXPECT_EQ(learning::readCheckpoint(path).facts.at("steps"), 12);
-  stop_ = false;
+  train(start("whole"));
+  trainUntil(start("parted"), "fine_tune step 9/18");
+  EXPECT_EQ(checkpoint("parted", kRiftStage).facts.at("steps"), 12);
   learning::Training again = start("parted");
   again.options.resume = true;
-  learning::train(again, stop_, log_);
-  const PlutoModel first = readPlutoModel(kRift, folder_.path() / "whole");
-  const PlutoModel second = readPlutoModel(kRift, folder_.path() / "parted");
-  for (const auto& [name, tensor] : first.weights)
-    EXPECT_EQ(tensor.values, second.weights.at(name).values) << name;
+  train(again);
+  expectSameCheckpoints("whole", "parted", kRiftStage);
 }
 
 TEST_F(RiftTraining, StepsMustMakeWholeBuffers) {
   learning::Training training = start("model");
   training.options.steps = 20;
-  EXPECT_EQ(errorOf(training), "steps is 20; a multiple of 6, the steps of a buffer, was expected");
+  EXPECT_EQ(trainingText(training),
+            "steps is 20; a multiple of 6, the steps of a buffer, was expected");
 }
 
 TEST_F(RiftTraining, WithoutWeightsItNamesThem) {
   learning::Training training = start("model");
-  training.options.init = (folder_.path() / "none").string();
-  EXPECT_NE(errorOf(training).find("planner 'pluto' has no weights"), std::string::npos);
+  training.options.init = path("none").string();
+  EXPECT_NE(trainingText(training).find("planner 'pluto' has no weights"), std::string::npos);
 }
 
 TEST_F(RiftTraining, AnotherObjectiveIsNoResumption) {
-  learning::train(start("model"), stop_, log_);
+  train(start("model"));
   learning::Training other = start("model", "grpo");
   other.options.resume = true;
-  EXPECT_NE(errorOf(other).find("--resume cannot go on from it"), std::string::npos);
+  EXPECT_NE(trainingText(other).find("--resume cannot go on from it"), std::string::npos);
+}
+
+// Three vehicles are driven, at target speeds of 5, 6 and 7 m/s, over decisions 0 to 60. Every
+// fifth is a state: the ego's at 0, 5 ... 60, those of "a" at 4, 9 ... 59.
+TEST(RiftMoments, DriversWithAnotherTargetSpeedAreLeftOut) {
+  const learning::Scene recorded = test::platoonScene("small", 6.0);
+  PlutoWorlds worlds(testing::smallPluto());
+  const PlutoScene scene(recorded, worlds.of(recorded));
+  learning::SceneSampleOptions options;
+  EXPECT_EQ(riftMoments(recorded, scene, 0, options).size(), 13U + 12U + 12U);
+  options.lowest_speed = 5.5;
+  options.highest_speed = 6.5;
+  const std::vector<RiftMoment> chosen = riftMoments(recorded, scene, 0, options);
+  EXPECT_EQ(chosen.size(), 12U);
+  for (const RiftMoment& moment : chosen) EXPECT_EQ(moment.place.drive, 1U);
 }
 
 // Rates within a buffer of 32 steps (16 epochs of 2): warm-up over 6 steps, then from 1e-4 down to
