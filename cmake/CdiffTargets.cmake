@@ -68,6 +68,20 @@ function(cdiff_program name)
   endif()
 endfunction()
 
+# Most of the time of a test's compilation goes into headers that all tests read: they are compiled once, and once more together with
+# those of the tensor library for tests of trainings. All tests have the flags of these two targets.
+set(CDIFF_TEST_FLAGS ${CDIFF_PRIVATE_HEADERS} ${CDIFF_WARNINGS} -ffp-contract=off -O1)
+function(cdiff_test_headers name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "int main() {}\n")
+  add_executable(${name} EXCLUDE_FROM_ALL ${source})
+  target_compile_options(${name} PRIVATE ${CDIFF_TEST_FLAGS})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest)
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Core> <algorithm> <cmath> <fstream> <functional> <limits> <map> <set>
+                                            <string> <vector> ${ARG_HEADERS})
+endfunction()
+
 # cdiff_nightly(TEST...): tests of this folder that only `scripts/test --nightly` runs, by their names in ctest.
 function(cdiff_nightly)
   foreach(test ${ARGN})
@@ -83,8 +97,13 @@ function(cdiff_gtest name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/test)
   # Compiling tests takes longer than running them: little optimization halves that.
-  target_compile_options(${name} PRIVATE ${CDIFF_PRIVATE_HEADERS} ${CDIFF_WARNINGS} -ffp-contract=off -O1)
+  target_compile_options(${name} PRIVATE ${CDIFF_TEST_FLAGS})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  if("${ARG_LINK}" MATCHES "_learning|_training")
+    target_precompile_headers(${name} REUSE_FROM e2e_cdiff_tensor_test_headers)
+  else()
+    target_precompile_headers(${name} REUSE_FROM e2e_cdiff_test_headers)
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
