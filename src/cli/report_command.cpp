@@ -11,6 +11,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison.h"
 #include "evaluation/matrix.h"
+#include "evaluation/pedal_use.h"
 #include "page/training_pages.h"
 
 namespace cdiff::cli {
@@ -22,6 +23,7 @@ using core::InputError;
 struct ReportArguments {
   std::string tables;
   std::string training;
+  std::string pedals;
   std::vector<std::string> folders;
   std::vector<std::string> measures;
   std::string factor;
@@ -93,8 +95,14 @@ int makeTables(const fs::path& results) {
 
 int report(const ReportArguments& arguments) {
   const int asked = (arguments.tables.empty() ? 0 : 1) + (arguments.folders.empty() ? 0 : 1) +
-                    (arguments.training.empty() ? 0 : 1);
-  if (asked != 1) throw InputError("give one of --compare A B, --tables DIR and --training DIR");
+                    (arguments.training.empty() ? 0 : 1) + (arguments.pedals.empty() ? 0 : 1);
+  if (asked != 1) {
+    throw InputError("give one of --compare A B, --tables DIR, --training DIR and --pedals DIR");
+  }
+  if (!arguments.pedals.empty()) {
+    std::cout << evaluation::pedalMarkdown(evaluation::pedalCounts(arguments.pedals));
+    return ExitCode::kPassed;
+  }
   if (!arguments.training.empty()) {
     const fs::path page = writeTrainingPage(arguments.training);
     std::cout << "curves of the training: " << page.string() << "\n";
@@ -133,7 +141,8 @@ fs::path writeTrainingPage(const fs::path& folder) {
 void addReportCommand(CLI::App& program, int& exit_code) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = program.add_subcommand(
-      "report", "Compare evaluations run by run; make their tables again; draw a training");
+      "report",
+      "Compare evaluations run by run; make their tables again; draw a training; count pedals");
   command
       ->add_option("--compare", arguments->folders,
                    "Result folders A and B of `cdiff evaluate`, or one with --factor")
@@ -142,6 +151,9 @@ void addReportCommand(CLI::App& program, int& exit_code) {
                       "Write tables/, figures/ and index.html of this result folder again");
   command->add_option("--training", arguments->training,
                       "Draw the curves of this output folder of `cdiff train`, also while it runs");
+  command->add_option("--pedals", arguments->pedals,
+                      "Print which pedals CBVs were driven with, from the traces of this result "
+                      "folder of `cdiff run` or `cdiff evaluate`");
   command->add_option("--factor", arguments->factor, "Compare the levels of this factor");
   command->add_option("--baseline", arguments->baseline, "Level that the others are compared with");
   command->add_option("--figure", arguments->measures, "Only this measure; may be repeated")

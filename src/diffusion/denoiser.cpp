@@ -31,9 +31,46 @@ void LearnedStateBranch::pullBack(const float* state_gradient, float* action_gra
   denoiser_.pullBackStates(state_gradient, action_gradient);
 }
 
+/// `values` of the contexts with their routes become the mix with other_.
+void RouteScaledDenoiser::mixInto(float* values) {
+  for (std::size_t i = 0; i < other_.size(); ++i)
+    values[i] = other_[i] + scale_ * (values[i] - other_[i]);
+}
+
+void RouteScaledDenoiser::setContexts(const std::vector<Context>& contexts) {
+  with_route_.setContexts(contexts);
+  std::vector<Context> without = contexts;
+  for (Context& context : without) context.route.clear();
+  without_route_.setContexts(without);
+  rows_ = contexts.size() * static_cast<std::size_t>(architecture().horizon);
+}
+
+void RouteScaledDenoiser::predictActions(const float* noisy, int k, float* actions) {
+  other_.resize(rows_ * kActionColumns);
+  with_route_.predictActions(noisy, k, actions);
+  without_route_.predictActions(noisy, k, other_.data());
+  mixInto(actions);
+}
+
+void RouteScaledDenoiser::pullBackActions(const float* action_gradient, float* noisy_gradient) {
+  other_.resize(rows_ * kRolloutColumns);
+  with_route_.pullBackActions(action_gradient, noisy_gradient);
+  without_route_.pullBackActions(action_gradient, other_.data());
+  mixInto(noisy_gradient);
+}
+
+void RouteScaledDenoiser::predictStates(const float* actions, int k, float* states) {
+  with_route_.predictStates(actions, k, states);
+}
+
+void RouteScaledDenoiser::pullBackStates(const float* state_gradient, float* action_gradient) {
+  with_route_.pullBackStates(state_gradient, action_gradient);
+}
+
 ExactStateBranch::ExactStateBranch(const dynamics::BicycleModelOptions& vehicle,
-                                   const Normalizer& normalizer, std::vector<double> speeds)
-    : rollout_(vehicle), normalizer_(normalizer), speeds_(std::move(speeds)) {
+                                   const Normalizer& normalizer, std::vector<double> speeds,
+                                   dynamics::ThrottleResponse response)
+    : rollout_(vehicle, response), normalizer_(normalizer), speeds_(std::move(speeds)) {
   last_.assign(speeds_.size(), traffic::Rollout::Zero(normalizer.mean.rows(), kRolloutColumns));
 }
 

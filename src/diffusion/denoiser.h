@@ -62,13 +62,40 @@ class LearnedStateBranch : public StateBranch {
   Denoiser& denoiser_;
 };
 
+/// Classifier-free guidance on the route: actions x_u + w (x_c - x_u), x_c of the contexts as they
+/// are, x_u of the same without their routes, w = `scale`; 0 is without route, 1 with it, above 1
+/// beyond it. States are those of the actions, which no route decides. Normalized.
+class RouteScaledDenoiser : public Denoiser {
+ public:
+  /// Two denoisers of the same model; both must outlive it.
+  RouteScaledDenoiser(Denoiser& with_route, Denoiser& without_route, double scale)
+      : with_route_(with_route), without_route_(without_route), scale_(static_cast<float>(scale)) {}
+
+  const Architecture& architecture() const override { return with_route_.architecture(); }
+  void setContexts(const std::vector<Context>& contexts) override;
+  void predictActions(const float* noisy, int k, float* actions) override;
+  void pullBackActions(const float* action_gradient, float* noisy_gradient) override;
+  void predictStates(const float* actions, int k, float* states) override;
+  void pullBackStates(const float* state_gradient, float* action_gradient) override;
+
+ private:
+  void mixInto(float* values);
+
+  Denoiser& with_route_;
+  Denoiser& without_route_;
+  float scale_;
+  std::size_t rows_ = 0;      ///< B x T
+  std::vector<float> other_;  ///< of without_route_, as large as what it is mixed with
+};
+
 /// States of the actions as they are executed (dynamics::makeExecutable) by ActionRollout through
 /// the normalizer; `speeds` [m/s] of the batch. The gradient is that of the rollout without the
 /// choice of a pedal (straight-through): also the pedal that does not act yet can be moved.
 class ExactStateBranch : public StateBranch {
  public:
   ExactStateBranch(const dynamics::BicycleModelOptions& vehicle, const Normalizer& normalizer,
-                   std::vector<double> speeds);
+                   std::vector<double> speeds,
+                   dynamics::ThrottleResponse response = dynamics::ThrottleResponse::kFitted);
   void predict(const float* actions, int k, float* states) override;
   void pullBack(const float* state_gradient, float* action_gradient) override;
 

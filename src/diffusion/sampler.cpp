@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/text.h"
+#include "diffusion/few_step_solver.h"
 #include "diffusion/sampling_batch.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -20,7 +21,7 @@ using traffic::kStateColumns;
 /// alpha_bar at K and K - 1 is so small that a few-step sampler divides by almost nothing there.
 constexpr int kSkippedSteps = 2;
 
-int firstDdimStep(int diffusion_steps) { return std::max(1, diffusion_steps - kSkippedSteps); }
+int firstFewStep(int diffusion_steps) { return std::max(1, diffusion_steps - kSkippedSteps); }
 
 /// One run over a batch.
 class Run {
@@ -39,15 +40,14 @@ class Run {
   /// reverse step draws.
   void start(int k, bool warm);
   void ddpm(CleanObjective* objective);
-  void ddim(const std::vector<int>& steps, const SamplerOptions& options,
-            const traffic::Rollout& spread, CleanObjective* objective);
+  void fewSteps(const std::vector<int>& steps, const SamplerOptions& options,
+                const traffic::Rollout& spread, CleanObjective* objective);
   std::vector<SampledTrajectory> take();
 
  private:
   float normal(std::size_t sample, int k, std::size_t cell) const;
   bool guidesAny(const CleanObjective* objective, int k) const;
   void reverse(int k, const std::vector<float>* gradient);
-  void jump(int from, int to);
   void countGuided(const CleanObjective& objective, int k, const std::vector<bool>& clipped);
 
   Denoiser& denoiser_;
@@ -133,23 +133,6 @@ void Run::ddpm(CleanObjective* objective) {
   batch_.predictStates(branch_, 1);
 }
 
-/// DDIM: the noise that the clean prediction implies is kept.
-void Run::jump(int from, int to) {
-  const double signal = std::sqrt(schedule_.alphaBar(from));
-  const double sigma = std::sqrt(1.0 - schedule_.alphaBar(from));
-  const double next_signal = std::sqrt(schedule_.alphaBar(to));
-  const double next_sigma = std::sqrt(1.0 - schedule_.alphaBar(to));
-  for (std::size_t b = 0; b < batch_.count(); ++b) {
-    const Trajectory clean = batch_.clean(b);
-    float* noisy = batch_.noisy(b);
-    for (std::size_t i = 0; i < batch_.cells(); ++i) {
-      const double x = clean.data()[i];
-      const double epsilon = (noisy[i] - signal * x) / sigma;
-      noisy[i] = static_cast<float>(next_signal * x + next_sigma * epsilon);
-    }
-  }
-}
-
 /// r_k of the actions [T, 3].
 std::vector<float> proximalRadius(double alpha_bar, const traffic::Rollout& spread) {
   std::vector<float> radius;
@@ -163,8 +146,9 @@ std::vector<float> proximalRadius(double alpha_bar, const traffic::Rollout& spre
   return radius;
 }
 
-void Run::ddim(const std::vector<int>& steps, const SamplerOptions& options,
-               const traffic::Rollout& spread, CleanObjective* objective) {
+void Run::fewSteps(const std::vector<int>& steps, const SamplerOptions& options,
+                   const traffic::Rollout& spread, CleanObjective* objective) {
+  const std::unique_ptr<FewStepSolver> solver = makeFewStepSolver(options.solver, schedule_);
   const ProximalOptions proximal{static_cast<int>(options.inner_iterations), options.trust_region};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const int k = steps[i];
@@ -173,7 +157,7 @@ void Run::ddim(const std::vector<int>& steps, const SamplerOptions& options,
       const std::vector<float> radius = proximalRadius(schedule_.alphaBar(k), spread);
       countGuided(*objective, k, proximalStep(proximal, radius, k, branch_, *objective, batch_));
     }
-    if (i + 1 < steps.size()) jump(k, steps[i + 1]);
+    if (i + 1 < steps.size()) solver->step(k, steps[i + 1], batch_);
   }
 }
 
@@ -187,7 +171,12 @@ std::vector<SampledTrajectory> Run::take() {
 void SamplerOptions::describe(core::OptionsVisitor& visitor) {
   visitor.text({"mode", "", "How trajectories are denoised."}, mode,
                {"paper", "real_time", "unguided"});
-  visitor.integer({"steps", "", "Denoising steps of real_time."}, steps, 1, 1000);
+  visitor.text({"solver", "", "Solver of real_time: first order, or second order of equal cost."},
+               solver, fewStepSolverNames());
+  visitor.integer({"steps", "", "Denoising steps of real_time, evenly spaced."}, steps, 1, 1000);
+  visitor.integer({"clean_up_steps", "",
+                   "Steps of real_time after these, each at half of the diffusion step before."},
+                  clean_up_steps, 0, 10);
   visitor.integer({"inner_iterations", "", "Descent steps of each proximal step of real_time."},
                   inner_iterations, 1, 50);
   visitor.flag({"warm_start", "", "real_time: start from the previous plan where it still fits."},
@@ -197,49 +186,72 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"warm_steps", "", "Denoising steps of a warm start."}, warm_steps, 1, 1000);
 }
 
-void SamplerOptions::validate(int diffusion_steps) const {
-  const auto require = [&](const char* key, std::int64_t value, int most, const char* why) {
-    if (value <= most) return;
-    throw core::InputError(
-        "key 'diffusion.sampler." + std::string(key) + "' is " + std::to_string(value) +
-        "; the model has K = " + std::to_string(diffusion_steps) + " diffusion steps" + why +
-        ", so at most " + std::to_string(most) + " is expected");
-  };
-  require("steps", steps, firstDdimStep(diffusion_steps), " and real_time begins two below K");
-  require("warm_start_step", warm_start_step, diffusion_steps, "");
-  if (warm_start && mode != "real_time") {
-    throw core::InputError(
-        "key 'diffusion.sampler.warm_start' is on; only mode real_time starts "
-        "warm, and mode is " +
-        mode);
+namespace {
+
+/// `count` steps evenly spaced from `first` down, the last one `first` / `count`.
+std::vector<int> evenSteps(int first, int count) {
+  std::vector<int> steps;
+  for (int i = 0; i < count; ++i) {
+    steps.push_back(
+        static_cast<int>(std::lround(static_cast<double>(first) * (count - i) / count)));
   }
+  return steps;
+}
+
+void requireAtMost(const char* key, std::int64_t value, int most, const std::string& why) {
+  if (value <= most) return;
+  throw core::InputError("key 'diffusion.sampler." + std::string(key) + "' is " +
+                         std::to_string(value) + "; " + why + ", so at most " +
+                         std::to_string(most) + " is expected");
+}
+
+/// Throws InputError for a key that only mode real_time heeds.
+void requireRealTime(const char* key, const char* what, const std::string& mode) {
+  if (mode == "real_time") return;
+  throw core::InputError("key 'diffusion.sampler." + std::string(key) + "' is " + what +
+                         "; only mode real_time heeds it, and mode is " + mode);
+}
+
+}  // namespace
+
+void SamplerOptions::validate(int diffusion_steps) const {
+  const std::string model =
+      "the model has K = " + std::to_string(diffusion_steps) + " diffusion steps";
+  requireAtMost("steps", steps, firstFewStep(diffusion_steps),
+                model + " and real_time begins two below K");
+  requireAtMost("warm_start_step", warm_start_step, diffusion_steps, model);
+  if (warm_start) requireRealTime("warm_start", "on", mode);
+  if (solver != SamplerOptions().solver) requireRealTime("solver", solver.c_str(), mode);
+  if (clean_up_steps > 0) requireRealTime("clean_up_steps", "above 0", mode);
   if (warm_steps > warm_start_step) {
     throw core::InputError("key 'diffusion.sampler.warm_steps' is " + std::to_string(warm_steps) +
                            "; expected at most warm_start_step (" +
                            std::to_string(warm_start_step) + ")");
   }
+  for (const bool warm : {false, true}) {
+    if (mode != "real_time" || (warm && !warm_start)) continue;
+    const std::vector<int> visited = visitedSteps(diffusion_steps, warm);
+    const auto even = static_cast<std::size_t>(warm ? warm_steps : steps);
+    const auto halved = static_cast<int>(std::log2(visited[even - 1]));
+    requireAtMost("clean_up_steps", clean_up_steps, halved,
+                  "the steps before end at " + std::to_string(visited[even - 1]) +
+                      ", which can be halved " + std::to_string(halved) + " times");
+  }
+}
+
+std::vector<int> SamplerOptions::visitedSteps(int diffusion_steps, bool warm) const {
+  if (mode != "real_time") return evenSteps(diffusion_steps, diffusion_steps);
+  const int first = warm ? static_cast<int>(warm_start_step) : firstFewStep(diffusion_steps);
+  std::vector<int> visited =
+      evenSteps(first, std::min(first, static_cast<int>(warm ? warm_steps : steps)));
+  for (std::int64_t i = 0; i < clean_up_steps; ++i) visited.push_back(visited.back() / 2);
+  return visited;
 }
 
 Sampler::Sampler(const SamplerOptions& options, const NoiseSchedule& schedule,
                  const traffic::Rollout& spread, const core::RandomStream& noise)
     : options_(options), schedule_(schedule), spread_(spread), noise_(noise) {
   options_.validate(schedule.steps());
-}
-
-std::vector<int> Sampler::visitedSteps(bool warm) const {
-  std::vector<int> steps;
-  if (options_.mode != "real_time") {
-    for (int k = schedule_.steps(); k >= 1; --k) steps.push_back(k);
-    return steps;
-  }
-  const int first =
-      warm ? static_cast<int>(options_.warm_start_step) : firstDdimStep(schedule_.steps());
-  const int count = std::min(first, static_cast<int>(warm ? options_.warm_steps : options_.steps));
-  for (int i = 0; i < count; ++i) {
-    steps.push_back(
-        static_cast<int>(std::lround(static_cast<double>(first) * (count - i) / count)));
-  }
-  return steps;
 }
 
 std::vector<SampledTrajectory> Sampler::sample(Denoiser& denoiser, StateBranch& states,
@@ -255,7 +267,7 @@ std::vector<SampledTrajectory> Sampler::sample(Denoiser& denoiser, StateBranch& 
   const std::vector<int> steps = visitedSteps(warm);
   run.start(steps.front(), warm);
   if (options_.mode == "real_time")
-    run.ddim(steps, options_, spread_, objective);
+    run.fewSteps(steps, options_, spread_, objective);
   else
     run.ddpm(options_.mode == "unguided" ? nullptr : objective);
   return run.take();

@@ -14,11 +14,13 @@
 
 namespace cdiff::diffusion {
 
-/// How trajectories are sampled: mode, number of steps, proximal step and warm start (counts
-/// without unit).
+/// How trajectories are sampled: mode, solver, number of steps, proximal step and warm start
+/// (counts without unit).
 struct SamplerOptions {
-  std::string mode = "real_time";     ///< paper | real_time | unguided
-  std::int64_t steps = 10;            ///< steps of mode `real_time`
+  std::string mode = "real_time";   ///< paper | real_time | unguided
+  std::string solver = "ddim";      ///< of mode `real_time`: ddim | dpmpp_2m
+  std::int64_t steps = 10;          ///< evenly spaced steps of mode `real_time`
+  std::int64_t clean_up_steps = 0;  ///< real_time: steps after them, each at half of the one before
   std::int64_t inner_iterations = 4;  ///< iterations of the proximal step
   double trust_region = 2.0;          ///< c; a matter of guidance, so its options set it
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits
@@ -28,6 +30,8 @@ struct SamplerOptions {
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError; `diffusion_steps` is K of the model.
   void validate(int diffusion_steps) const;
+  /// Diffusion steps that the mode visits, in order, for a cold or a warm start.
+  std::vector<int> visitedSteps(int diffusion_steps, bool warm) const;
 };
 
 /// J of one sample of the batch on clean normalized trajectories.
@@ -60,9 +64,10 @@ struct SampledTrajectory {
 ///  - `paper`: DDPM over all K steps, tau^{k-1} ~ N(mu_theta - beta_k g^k, beta_k I), g^k the
 ///    gradient of J(tau^0_hat(tau^k, k, c)) with respect to tau^k through network and state branch
 ///    (paper eq. 8); no noise is added at k = 1.
-///  - `real_time`: DDIM over few steps with a proximal step on the clean prediction, x' = argmin
-///    J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c r_k per element, r_k^2 =
-///    s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s = spread given the context.
+///  - `real_time`: few steps of a solver (few_step_solver.h) with a proximal step on the clean
+///    prediction, x' = argmin J(x) + |x - x_hat|^2 / (2 r_k^2) on the actions, |x' - x_hat| <= c
+///    r_k per element, r_k^2 = s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s =
+///    spread given the context.
 ///  - `unguided`: DDPM over all K steps without J.
 /// One per planner; keeps references.
 class Sampler {
@@ -77,7 +82,9 @@ class Sampler {
                                         const std::vector<SampleRequest>& requests,
                                         CleanObjective* objective) const;
   /// Diffusion steps that the mode visits, in order, for a cold or a warm start.
-  std::vector<int> visitedSteps(bool warm) const;
+  std::vector<int> visitedSteps(bool warm) const {
+    return options_.visitedSteps(schedule_.steps(), warm);
+  }
 
  private:
   SamplerOptions options_;

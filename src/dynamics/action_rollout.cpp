@@ -124,13 +124,14 @@ double within(double derivative, double action, double low, double high) {
 
 }  // namespace
 
-ActionRollout::ActionRollout(const BicycleModelOptions& options) : model_(options) {}
+ActionRollout::ActionRollout(const BicycleModelOptions& options, ThrottleResponse response)
+    : model_(options), response_(response) {}
 
 void ActionRollout::rollOut(double initial_speed, Rollout& rollout) const {
   State state{0.0, 0.0, 0.0, initial_speed};
   const double rear_length = model_.options().rear_length;
   for (Eigen::Index row = 0; row < rollout.rows(); ++row) {
-    const ControlAction action = clampedAction(rollout, row);
+    const ControlAction action = commanded(state.speed, clampedAction(rollout, row));
     const double slip = model_.slip(action.steer);
     const double turn = std::sin(slip);
     for (int tick = 0; tick < kTicksPerRow; ++tick) {
@@ -153,10 +154,10 @@ void ActionRollout::pullBack(double initial_speed, const Rollout& rollout,
     adjoint.y += gradient(row, traffic::kRolloutY);
     adjoint.heading += gradient(row, traffic::kRolloutHeading);
     adjoint.speed += gradient(row, traffic::kRolloutSpeed);
-    const ControlAction action = clampedAction(rollout, row);
+    const State start = stateBefore(initial_speed, rollout, row);
+    const ControlAction action = commanded(start.speed, clampedAction(rollout, row));
     const SlipResponse slip = model_.slipResponse(action.steer);
-    const ActionAdjoint sum =
-        pullBackRow(model_, stateBefore(initial_speed, rollout, row), action, slip.slip, adjoint);
+    const ActionAdjoint sum = pullBackRow(model_, start, action, slip.slip, adjoint);
     gradient(row, kRolloutThrottle) +=
         within(sum.throttle, rollout(row, kRolloutThrottle), 0.0, 1.0);
     gradient(row, kRolloutSteer) +=

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include "dynamics/throttle_response.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 
@@ -18,10 +19,11 @@ void makeExecutable(traffic::Rollout& rollout);
 
 /// The exact state branch: states s_1..s_T that the vehicle dynamics gives for actions a_0..a_{T-1}
 /// from (0, 0, 0, v_0) in the body frame, and its adjoint. One row is 0.1 s, two steps of
-/// BicycleModel.
+/// BicycleModel, under the action that is commanded at its start (commandedAction).
 class ActionRollout {
  public:
-  explicit ActionRollout(const BicycleModelOptions& options = {});
+  explicit ActionRollout(const BicycleModelOptions& options = {},
+                         ThrottleResponse response = ThrottleResponse::kFitted);
 
   /// Fills the state columns of `rollout` from its action columns; actions out of range count as
   /// clamped to it. The heading is not wrapped.
@@ -30,12 +32,19 @@ class ActionRollout {
   /// Adds to the action columns of `gradient` what its state columns (dJ/ds) mean for the actions:
   /// dJ/da += (ds/da)^T dJ/ds at `rollout`, whose states rollOut() made. Zero for actions at or
   /// beyond a bound that descent (along -dJ/da) points out of; beyond a bound that it points into,
-  /// the derivative at the bound. Zero for throttle below 0.3 (the response is flat there).
+  /// the derivative at the bound. Zero for throttle below 0.3, and with the monotone response below
+  /// u_0(v) (the response is flat there).
   void pullBack(double initial_speed, const traffic::Rollout& rollout,
                 traffic::Rollout& gradient) const;
 
+  /// What is commanded at `speed` [m/s] for an action, by the response of this rollout.
+  traffic::ControlAction commanded(double speed, const traffic::ControlAction& action) const {
+    return commandedAction(model_, response_, speed, action);
+  }
+
  private:
   BicycleModel model_;
+  ThrottleResponse response_;
 };
 
 // The action that the vehicle dynamics needs for a motion: the inverse of BicycleModel over 0.1 s,

@@ -175,7 +175,9 @@ std::string objectivesText(const guidance::GuidanceOptions& guidance) {
         entry.gradient_cap > 0.0 ? " (cap " + core::formatNumber(entry.gradient_cap) + ")" : "";
     parts.push_back(entry.name + " " + core::formatNumber(entry.weight) + cap);
   }
-  return parts.empty() ? "no objectives" : "objectives " + core::joinText(parts, ", ");
+  if (parts.empty()) return "no objectives";
+  return "objectives " + core::joinText(parts, ", ") +
+         (guidance.last_step > 1 ? " down to k = " + std::to_string(guidance.last_step) : "");
 }
 
 std::string plannerText(const std::string& role, const std::string& name,

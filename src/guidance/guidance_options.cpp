@@ -57,15 +57,18 @@ void requireStep(const std::string& key, std::int64_t step, int diffusion_steps)
 }
 
 /// Throws InputError when the sampler visits no diffusion step of the objective's window.
-void requireVisit(const WeightedObjective& entry, const std::string& key,
-                  const std::vector<int>& visited) {
+void requireVisit(const GuidanceOptions& options, const WeightedObjective& entry,
+                  const std::string& group, const std::vector<int>& visited) {
   std::vector<std::string> names;
   for (const int step : visited) {
-    if (entry.actsAt(step)) return;
+    if (options.acts(entry, step)) return;
     names.push_back(std::to_string(step));
   }
-  throw InputError("key '" + key + ".last_step' is " + std::to_string(entry.last_step) +
-                   " and first_step is " + std::to_string(entry.first_step) +
+  const bool own = entry.last_step >= options.last_step;
+  throw InputError("key '" + group + (own ? entry.name + "." : "") + "last_step' is " +
+                   std::to_string(own ? entry.last_step : options.last_step) + " and first_step " +
+                   (own ? "" : "of '" + entry.name + "' ") + "is " +
+                   std::to_string(entry.first_step) +
                    "; the sampler visits none of these diffusion steps, so the objective would "
                    "never act; visited: " +
                    core::joinText(names, ", "));
@@ -95,7 +98,8 @@ GuidanceOptions::GuidanceOptions() {
   }
 }
 
-GuidanceOptions::GuidanceOptions(const GuidanceOptions& other) : trust_region(other.trust_region) {
+GuidanceOptions::GuidanceOptions(const GuidanceOptions& other)
+    : trust_region(other.trust_region), last_step(other.last_step) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -106,6 +110,7 @@ GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   GuidanceOptions copy(other);
   objectives = std::move(copy.objectives);
   trust_region = copy.trust_region;
+  last_step = copy.last_step;
   return *this;
 }
 
@@ -130,6 +135,9 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
       {"trust_region", "",
        "Farthest that a step of sampler mode real_time moves an action, in units of r_k."},
       trust_region, kLeastRegion, kLargestRegion);
+  visitor.integer({"last_step", "",
+                   "No objective acts at diffusion steps below this one, whatever its window."},
+                  last_step, 1, kLastDiffusionStep);
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }
@@ -139,6 +147,10 @@ void GuidanceOptions::validate(const std::string& group) const {
   if (!(trust_region >= kLeastRegion && trust_region <= kLargestRegion)) {
     throw InputError("key '" + group + "trust_region' is " + core::formatNumber(trust_region) +
                      "; expected a number in [0.01, 100]");
+  }
+  if (last_step < 1) {
+    throw InputError("key '" + group + "last_step' is " + std::to_string(last_step) +
+                     "; diffusion steps count down to 1, so at least 1 is expected");
   }
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }
@@ -150,7 +162,8 @@ void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int
     const std::string key = group + entry.name;
     requireStep(key + ".first_step", entry.first_step, diffusion_steps);
     requireStep(key + ".last_step", entry.last_step, diffusion_steps);
-    requireVisit(entry, key, visited);
+    requireStep(group + "last_step", last_step, diffusion_steps);
+    requireVisit(*this, entry, group, visited);
   }
 }
 

@@ -24,7 +24,7 @@ TotalObjective::TotalObjective(const GuidanceOptions& options, const GuidanceSce
 
 bool TotalObjective::actsAt(int diffusion_step) const {
   for (const WeightedObjective& entry : options_.objectives) {
-    if (entry.actsAt(diffusion_step)) return true;
+    if (options_.acts(entry, diffusion_step)) return true;
   }
   return false;
 }
@@ -36,7 +36,7 @@ double TotalObjective::evaluate(int diffusion_step, const Rollout& rollout, cons
   step_ = diffusion_step;
   double total = 0.0;
   for (std::size_t i = 0; i < options_.objectives.size(); ++i) {
-    if (!options_.objectives[i].actsAt(diffusion_step)) continue;
+    if (!options_.acts(options_.objectives[i], diffusion_step)) continue;
     if (!first_call && shares_[i] == 0.0) continue;
     const double value = weighted(i, rollout);
     const double norm = normOf(part_, scale);

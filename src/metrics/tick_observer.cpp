@@ -74,10 +74,11 @@ std::optional<double> TickObserver::edgeDistance(const Vehicle& vehicle) const {
 }
 
 double TickObserver::wantedSpeed(const Vehicle& vehicle) const {
-  if (options_.network == nullptr || !vehicle.state.position.allFinite())
-    return options_.target_speed;
+  const double target =
+      options_.cbv_target_speed ? options_.cbv_target_speed(vehicle.id) : options_.target_speed;
+  if (options_.network == nullptr || !vehicle.state.position.allFinite()) return target;
   const std::optional<double> limit = speedLimit(vehicle, *options_.network);
-  return std::min(options_.target_speed, limit.value_or(options_.target_speed));
+  return std::min(target, limit.value_or(target));
 }
 
 /// By the role now, or at the last tick for a vehicle that this contact removed. Call before

@@ -111,6 +111,18 @@ std::optional<VehicleRole> roleOf(const std::string& text) {
   return std::nullopt;
 }
 
+/// The last three cells; nullopt for a cell that is no number. Empty ones are no action.
+std::optional<std::optional<traffic::ControlAction>> actionOf(
+    const std::vector<std::string>& cells) {
+  if (cells[7].empty() && cells[8].empty() && cells[9].empty())
+    return std::optional<traffic::ControlAction>();
+  const auto throttle = core::parseNumber(cells[7]);
+  const auto steer = core::parseNumber(cells[8]);
+  const auto brake = core::parseNumber(cells[9]);
+  if (!throttle || !steer || !brake) return std::nullopt;
+  return traffic::ControlAction{*throttle, *steer, *brake};
+}
+
 std::optional<TraceRow> traceRowOf(std::string_view line) {
   const std::vector<std::string> cells = core::csvCells(line);
   if (cells.size() != 10) return std::nullopt;
@@ -120,8 +132,11 @@ std::optional<TraceRow> traceRowOf(std::string_view line) {
   const auto y = core::parseNumber(cells[4]);
   const auto heading = core::parseNumber(cells[5]);
   const auto speed = core::parseNumber(cells[6]);
-  if (!tick || *tick < 0.0 || !role || !x || !y || !heading || !speed) return std::nullopt;
-  return TraceRow{static_cast<std::uint64_t>(*tick), cells[1], *role, {*x, *y}, *heading, *speed};
+  const auto action = actionOf(cells);
+  if (!tick || *tick < 0.0 || !role || !x || !y || !heading || !speed || !action)
+    return std::nullopt;
+  return TraceRow{
+      static_cast<std::uint64_t>(*tick), cells[1], *role, {*x, *y}, *heading, *speed, *action};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ struct TraceRow {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< center of the box [m]
   double heading = 0.0;                                ///< [rad]
   double speed = 0.0;                                  ///< [m/s]
+  std::optional<traffic::ControlAction> action;        ///< that led here; absent: SUMO drove
 };
 
 /// All rows in the file's order: by tick, the ego first, then CBVs. Throws InputError naming file

@@ -112,6 +112,7 @@ Json selectionObject(const CbvRecord& record, const SessionResult& result) {
                  {"selected_tick", record.selected_tick},
                  {"selected_seconds", secondsOf(record.selected_tick, step)},
                  {"interaction_score", record.interaction_score},
+                 {"target_speed_mps", setup.cbvTargetSpeed(record.vehicle_id)},
                  {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
                  {"decisions_driven", record.decisions_driven},
                  {"released_tick", nullptr},

@@ -182,7 +182,7 @@ bool CbvPlannerRos::handle(const Snapshot& message, bool superseded) {
 void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
                          const msgs::CbvSelection& message) {
   const cbv::CbvSelection selection = fromMsg(message, setup_->network());
-  const auto tasks = session::cbvTasks(snapshot, selection, setup_->options().target_speed);
+  const auto tasks = session::cbvTasks(snapshot, selection, *setup_);
   if (tasks.empty()) return;
   const PlannerDecision decision = graph().cbvs_see
                                        ? planSeeing(*planner_, snapshot, tasks, images_)

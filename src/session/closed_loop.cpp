@@ -57,12 +57,13 @@ void requireLockstep(const ScenarioOptions& options) {
 }
 
 std::vector<PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
-                                   const cbv::CbvSelection& selection, double target_speed) {
+                                   const cbv::CbvSelection& selection, const SessionSetup& setup) {
   std::vector<PlanningTask> tasks;
   for (const cbv::CbvAssignment& assignment : selection.assignments) {
     const traffic::Vehicle* vehicle = snapshot.find(assignment.vehicle_id);
     if (vehicle == nullptr) continue;
-    tasks.push_back({assignment.slot, vehicle, &assignment.conflict_aware_route, target_speed});
+    tasks.push_back({assignment.slot, vehicle, &assignment.conflict_aware_route,
+                     setup.cbvTargetSpeed(vehicle->id)});
   }
   return tasks;
 }
@@ -175,7 +176,7 @@ ClosedLoop::Decision ClosedLoop::decide() {
   ask(*parts_.ego_planner, "ego:" + options.ego_planner,
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
   ask(*parts_.cbv_planner, "cbv:" + options.cbv_planner,
-      cbvTasks(snapshot, decision.selection, options.target_speed), decision);
+      cbvTasks(snapshot, decision.selection, setup_), decision);
   if (parts_.image_wish) renderWishes(decision);
   return decision;
 }

@@ -19,10 +19,10 @@ namespace cdiff::session {
 void requireLockstep(const ScenarioOptions& options);
 
 /// Tasks of the CBV planner at a decision: one per assigned slot whose vehicle is in the snapshot,
-/// in slot order.
+/// in slot order, each with the target speed that `setup` has for the vehicle.
 std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& snapshot,
                                              const cbv::CbvSelection& selection,
-                                             double target_speed);
+                                             const SessionSetup& setup);
 /// Task of the ego planner; empty when the ego is gone.
 std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                              const map::Route& route, double target_speed);

@@ -180,6 +180,7 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
 void ScenarioOptions::describeTime(core::OptionsVisitor& visitor) {
   visitor.number({"target_speed", "m/s", "Speed that planners aim at, capped by the lane's limit."},
                  target_speed, 0.5, 40.0);
+  visitor.group({"cbv_target_speed", "", "Target speed of each CBV."}, cbv_target_speed);
   visitor.number({"simulation_step", "s", "Simulation step."}, simulation_step, 0.05, 0.1);
   visitor.number({"decision_period", "s", "Time between decisions."}, decision_period, 0.05, 1.0);
   visitor.number({"real_time_factor", "",
@@ -197,6 +198,7 @@ void ScenarioOptions::validate() const {
   planner_options.validate();
   guidance.validate("guidance.");
   ego_guidance.validate("ego_guidance.");
+  cbv_target_speed.validate();
   camera.validate();
   vehicle.validate();
   metrics.validate();

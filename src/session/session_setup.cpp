@@ -68,6 +68,11 @@ std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {
   return std::make_unique<simulation::SumoSimulator>(options_.sumo, session, network_);
 }
 
+double SessionSetup::cbvTargetSpeed(const std::string& vehicle_id) const {
+  return session::cbvTargetSpeed(options_.cbv_target_speed, options_.target_speed,
+                                 static_cast<std::uint64_t>(options_.seed), vehicle_id);
+}
+
 metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   metrics::SessionMetricsOptions options;
   options.simulation_step = options_.simulation_step;
@@ -78,6 +83,11 @@ metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   options.mode = options_.mode;
   options.infractions = options_.protocol.infractions;
   options.target_speed = options_.target_speed;
+  options.cbv_target_speed =
+      [speeds = options_.cbv_target_speed, constant = options_.target_speed,
+       seed = static_cast<std::uint64_t>(options_.seed)](const std::string& vehicle_id) {
+        return session::cbvTargetSpeed(speeds, constant, seed, vehicle_id);
+      };
   options.network = &network_;
   options.metrics = options_.metrics;
   return options;

@@ -44,6 +44,8 @@ class SessionSetup {
   /// SUMO with the network, the demand file and the lights of the scenario. Throws InputError and
   /// SimulatorError as it does.
   std::unique_ptr<simulation::SumoSimulator> makeSimulator() const;
+  /// v* of a CBV before the lane's limit [m/s].
+  double cbvTargetSpeed(const std::string& vehicle_id) const;
   /// What the session is measured by, in every deployment.
   metrics::SessionMetricsOptions metricsOptions() const;
   /// Ticks from one decision to the next.

@@ -154,6 +154,25 @@ TEST(GuidanceOptions, AWindowThatCannotActIsRefused) {
   expectParts(windowError(49, 11, visited), {"98, 50, 10"});
 }
 
+TEST(GuidanceOptions, TheLastStepOfAllIsReadCheckedAndCopied) {
+  const GuidanceOptions options = optionsFrom("last_step: 8\nspeed:\n  weight: 1\n");
+  EXPECT_EQ(options.last_step, 8);
+  EXPECT_EQ(GuidanceOptions(options).last_step, 8);
+  GuidanceOptions assigned;
+  EXPECT_EQ(assigned.last_step, 1);
+  assigned = options;
+  EXPECT_EQ(assigned.last_step, 8);
+  expectParts(errorOf("last_step: 0\n"), {"last_step", "0"});
+  EXPECT_NO_THROW(options.validateWindows(100, {98, 10, 5}, "guidance."));
+  try {
+    options.validateWindows(100, {7, 5}, "guidance.");
+    FAIL() << "no step from 8 on is visited";
+  } catch (const core::InputError& error) {
+    expectParts(error.what(), {"'guidance.last_step' is 8", "of 'speed'", "7, 5"});
+  }
+  EXPECT_THROW(options.validateWindows(7, {7, 5}, "guidance."), core::InputError);
+}
+
 TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
   const std::map<std::string, std::set<std::string>> expected = {
       {"ablation_all", {"speed", "drivable_area", "collision_avoidance"}},

@@ -140,6 +140,21 @@ TEST(TotalObjective, WindowsOpenAndClose) {
   EXPECT_EQ(total.score(rollout).value, 9.0 * test::kRows);  // whatever the window
 }
 
+TEST(TotalObjective, TheLastStepOfAllClosesEveryWindow) {
+  GuidanceWorld world;
+  GuidanceOptions options = withWeights(1.0, 0.0, 0.0);
+  options.last_step = 8;
+  const Rollout rollout = test::standing(0.0, 0.0, 0.0, 5.0);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 8).value, 9.0 * test::kRows);
+  EXPECT_EQ(evaluate(options, world.scene(), rollout, 7).value, 0.0);
+  const TotalObjective total(options, world.scene());
+  EXPECT_TRUE(total.actsAt(8));
+  EXPECT_FALSE(total.actsAt(7));
+  EXPECT_EQ(total.score(rollout).value, 9.0 * test::kRows);
+  options.find("speed").last_step = 30;  // an own window that ends before stays
+  EXPECT_FALSE(TotalObjective(options, world.scene()).actsAt(29));
+}
+
 TEST(TotalObjective, CapsTheNormInNormalizedUnits) {
   GuidanceWorld world;
   GuidanceOptions options = withWeights(0.5, 0.0, 0.0);

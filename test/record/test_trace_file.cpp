@@ -42,7 +42,9 @@ TEST(TraceFile, ReadsBackWhatTheWriterWrote) {
     EXPECT_EQ(rows[i].position, vehicle.state.position);  // to the last bit
     EXPECT_EQ(rows[i].heading, vehicle.state.heading);
     EXPECT_EQ(rows[i].speed, vehicle.state.speed);
+    EXPECT_EQ(rows[i].action, vehicle.applied_action);
   }
+  EXPECT_TRUE(rows[1].action);
 }
 
 TEST(TraceFile, NamesTheLineThatIsDamaged) {
@@ -50,8 +52,9 @@ TEST(TraceFile, NamesTheLineThatIsDamaged) {
   EXPECT_NE(errorOf("a,b\n").find("is no trace"), std::string::npos);
   EXPECT_EQ(errorOf(head), "");
   EXPECT_EQ(errorOf(head + "0,ego,ego,1,2,0,3,,,\n"), "");
-  for (const char* line : {"0,ego,ego,1,2,0,3,,,", "0,ego,ego,1,2,0,nan,,,\n",
-                           "0,ego,bus,1,2,0,3,,,\n", "0,ego,ego,1,2\n"}) {
+  for (const char* line :
+       {"0,ego,ego,1,2,0,3,,,", "0,ego,ego,1,2,0,nan,,,\n", "0,ego,bus,1,2,0,3,,,\n",
+        "0,ego,ego,1,2\n", "0,ego,ego,1,2,0,3,0.5,,0\n", "0,ego,ego,1,2,0,3,0.5,0,x\n"}) {
     const std::string error = errorOf(head + "0,ego,ego,1,2,0,3,,,\n" + line);
     EXPECT_NE(error.find("trace.csv:3: no row of a trace"), std::string::npos) << line << error;
   }

@@ -42,11 +42,18 @@ struct GuidanceOptions {
   /// Farthest that a proximal step (sampler mode real_time) moves an action, in units of the spread
   /// r_k (diffusion/sampler.h).
   double trust_region = 2.0;
+  /// No objective acts at k below it, whatever its own window: the steps after it are the model's
+  /// alone, so that what guidance did last is denoised once more.
+  std::int64_t last_step = 1;
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);
   /// Whether an objective of this name has a weight; false for an unknown name.
   bool isActive(const std::string& name) const;
+  /// Whether an objective of these options acts at a diffusion step: by its window and last_step.
+  bool acts(const WeightedObjective& entry, int diffusion_step) const {
+    return diffusion_step >= last_step && entry.actsAt(diffusion_step);
+  }
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError; `group` is put before the keys that it names ("guidance.").
   void validate(const std::string& group = "") const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,8 @@ struct SessionMetricsOptions {
   double ttc_limit = 3600.0;              ///< a longer 2D-TTC counts as never [s]
   double post_encroachment_limit = 10.0;  ///< a longer time counts as never [s]
   double target_speed = 8.0;              ///< that CBVs aim at, capped by the lane's limit [m/s]
+  /// The same of each CBV by its id; empty: target_speed for all.
+  std::function<double(const std::string& vehicle_id)> cbv_target_speed{};
   const map::RoadNetwork* network =
       nullptr;             ///< for that limit and the ego's infractions; nullptr: without
   MetricsOptions metrics;  ///< what the scenario asks for

@@ -16,29 +16,6 @@
 
 namespace cdiff::planners {
 
-void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.text({"model", "", "Shipped model, or folder with its weight files."}, model, {});
-  visitor.text(
-      {"conditioning", "",
-       "What the network is given: image and route, the image alone, or the image alone where "
-       "collision_seeking has a weight."},
-      conditioning, {"image_route", "image", "by_guidance"});
-  visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
-               state_branch, {"learned", "exact"});
-  visitor.integer({"candidates", "", "Samples per vehicle and decision."}, candidates, 1, 64);
-  visitor.number({"hysteresis", "", "Share of the score by which another mode must be better."},
-                 hysteresis, 0.0, 1.0);
-  visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
-                 frozen_image_time, 0.1, 60.0);
-  visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);
-}
-
-std::string DiffusionOptions::conditioningUnder(const guidance::GuidanceOptions& guidance) const {
-  if (conditioning != "by_guidance") return conditioning;
-  const bool attacks = sampler.mode != "unguided" && guidance.isActive("collision_seeking");
-  return attacks ? "image" : "image_route";
-}
-
 namespace {
 
 using diffusion::SampledTrajectory;
@@ -69,14 +46,25 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       denoiser_(model_),
       sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
-      exact_(vehicle) {
+      exact_(vehicle, dynamics::throttleResponse(options.response)) {
+  options_.validate();
   guidance_.validate(guidance_group);
+  if (conditions_on_route_ && options.route_scale != 1.0) {
+    routeless_ = std::make_unique<diffusion::CpuDenoiser>(model_);
+    scaled_ = std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_,
+                                                               options.route_scale);
+  }
   if (options.sampler.mode != "unguided") {
     guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
   }
 }
 
 DiffusionPlanner::~DiffusionPlanner() = default;
+
+diffusion::Denoiser& DiffusionPlanner::denoiser() {
+  if (scaled_) return *scaled_;
+  return denoiser_;
+}
 
 std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTask& task,
                                                      std::uint64_t tick, Memory& memory) {
@@ -95,10 +83,11 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
 std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
     const std::vector<diffusion::Context>& contexts) {
   if (options_.state_branch == "learned")
-    return std::make_unique<diffusion::LearnedStateBranch>(denoiser_);
+    return std::make_unique<diffusion::LearnedStateBranch>(denoiser());
   std::vector<double> speeds;
   for (const diffusion::Context& context : contexts) speeds.push_back(context.speed);
-  return std::make_unique<diffusion::ExactStateBranch>(vehicle_, model_.normalizer, speeds);
+  return std::make_unique<diffusion::ExactStateBranch>(
+      vehicle_, model_.normalizer, speeds, dynamics::throttleResponse(options_.response));
 }
 
 /// Samples one batch: all candidates of all `situations`.
@@ -119,10 +108,10 @@ void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& 
       objectives.push_back(situation->objectives[candidate].get());
     }
   }
-  denoiser_.setContexts(contexts);
+  denoiser().setContexts(contexts);
   const auto branch = stateBranch(contexts);
   GuidedBatch guided(model_.normalizer, objectives);
-  const auto samples = sampler_.sample(denoiser_, *branch, requests, &guided);
+  const auto samples = sampler_.sample(denoiser(), *branch, requests, &guided);
   const auto candidates = static_cast<std::size_t>(options_.candidates);
   for (std::size_t i = 0; i < situations.size(); ++i)
     choose(*situations[i], samples, i * candidates);
@@ -153,18 +142,20 @@ planning::PlannedAction DiffusionPlanner::actionOf(const Situation& situation) c
   const traffic::VehicleState& start = task.vehicle->state;
   Rollout driven = situation.plan;
   dynamics::makeExecutable(driven);
-  planning::PlannedAction planned{
-      task.slot, task.vehicle->id, dynamics::executableAction(situation.plan, 0), {}};
+  exact_.rollOut(start.speed, driven);
+  planning::PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
   planned.guidance = situation.report;
   for (Eigen::Index row = 0; row < driven.rows(); ++row) {
-    const traffic::ControlAction action = dynamics::executableAction(situation.plan, row);
+    const double speed = row == 0 ? start.speed : driven(row - 1, traffic::kRolloutSpeed);
+    const traffic::ControlAction action =
+        exact_.commanded(speed, dynamics::executableAction(situation.plan, row));
     traffic::VehicleState state = start;
     state.position = start.pose().toMap(situation.plan.row(row).head<2>().transpose());
     state.heading = core::wrapAngle(start.heading + situation.plan(row, traffic::kRolloutHeading));
     state.speed = std::max(0.0, situation.plan(row, traffic::kRolloutSpeed));
     planned.rollout.push_back({state, action});
   }
-  exact_.rollOut(start.speed, driven);
+  planned.action = planned.rollout.front().action;
   planned.state_mismatch =
       (driven.leftCols<2>() - situation.plan.leftCols<2>()).rowwise().norm().maxCoeff();
   return planned;
@@ -228,61 +219,6 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
     if (situations[i]) conclude(snapshot.tick, *situations[i], actions[i]);
   }
   return actions;
-}
-
-namespace {
-
-std::string samplingText(const DiffusionOptions& options) {
-  const diffusion::SamplerOptions& sampler = options.sampler;
-  const std::string candidates =
-      options.candidates == 1 ? "1 sample" : std::to_string(options.candidates) + " samples";
-  if (sampler.mode == "unguided") return "DDPM over all K steps without guidance, " + candidates;
-  if (sampler.mode == "paper")
-    return "DDPM over all K steps, gradient through the network, " + candidates;
-  return "DDIM over " + std::to_string(sampler.steps) + " steps, proximal guidance" +
-         (sampler.warm_start ? ", warm start, " : ", ") + candidates;
-}
-
-planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
-                                    const guidance::GuidanceOptions& guidance) {
-  const auto& options = table.of<DiffusionOptions>();
-  return {options.model,
-          options.conditioningUnder(guidance),
-          samplingText(options),
-          {{"encoder_instruction_set", diffusion::ImageEncoder::instructionSet()},
-           {"denoiser_instruction_set",
-            diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())}}};
-}
-
-}  // namespace
-
-std::unique_ptr<DiffusionPlanner> makeDiffusionPlanner(const planning::PlannerParts& parts) {
-  auto planner =
-      std::make_unique<DiffusionPlanner>(parts.options.of<DiffusionOptions>(), parts.guidance,
-                                         parts.vehicle, parts.context, parts.guidance_group);
-  const diffusion::Architecture& sizes = planner->model().architecture;
-  const rendering::CameraOptions& camera = parts.camera;
-  if (camera.width == sizes.image_width && camera.height == sizes.image_height) return planner;
-  throw core::InputError("the camera's size is " + sizeText(camera.width, camera.height) +
-                         " (keys camera.width, camera.height); model '" + planner->model().name +
-                         "' sees " + sizeText(sizes.image_width, sizes.image_height));
-}
-
-planning::PlannerDescriptor diffusionDescriptor() {
-  planning::PlannerDescriptor descriptor;
-  descriptor.name = "diffusion";
-  descriptor.title = "E2E-CDiff";
-  descriptor.help = "guided diffusion of states and actions from the front view.";
-  descriptor.cameras = {"front"};
-  descriptor.guided = true;
-  descriptor.cbv_node = "diffusion_planner_node";
-  descriptor.options = planning::makePlannerOptions<DiffusionOptions>;
-  descriptor.make = makeDiffusionPlanner;
-  descriptor.network = networkFacts;
-  descriptor.weights_sha256 = [](const planning::PlannerOptionsTable& table) {
-    return diffusion::modelFilesSha256(table.of<DiffusionOptions>().model);
-  };
-  return descriptor;
 }
 
 }  // namespace cdiff::planners

@@ -25,15 +25,19 @@ struct DiffusionOptions {
   std::string model = "default";  ///< shipped model or folder of the weight files
   /// image_route | image (the paper's) | by_guidance
   std::string conditioning = "by_guidance";
+  /// w of classifier-free guidance on the route: 0 without, 1 with it, between and beyond a mix
+  double route_scale = 1.0;
   std::string state_branch = "learned";  ///< learned | exact
+  std::string response = "fitted";       ///< of the executed throttle: fitted | monotone
   std::int64_t candidates = 1;           ///< samples per vehicle
   double hysteresis = 0.1;               ///< a new mode must be better by this share of the score
   double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
-  /// Every value that `describe` admits is fine here; the model has its say when it is read.
-  void validate() const {}
+  /// Throws InputError for a route_scale where no vehicle is given its route; the model has its say
+  /// when it is read.
+  void validate() const;
   /// What `conditioning` comes to under a guidance: by_guidance is image where collision_seeking
   /// has a weight (an attacker that knows its route stops in its lane before the ego
   /// instead of driving at it), image_route elsewhere and where the sampler's mode is unguided.
@@ -50,7 +54,8 @@ struct DiffusionOptions {
 ///    nearest other vehicle, for the ego;
 ///  - attackers are not given their route (DiffusionOptions::conditioningUnder);
 ///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
-///    brake the larger one acts;
+///    brake the larger one acts; with response `monotone` a throttle that would slow the vehicle is
+///    commanded as 0 (dynamics::commandedAction);
 ///  - of several candidates the one with the lowest weighted objective drives, unless the one
 ///    nearest to the previous plan is no worse by `hysteresis`.
 class DiffusionPlanner : public planning::Planner {
@@ -84,6 +89,7 @@ class DiffusionPlanner : public planning::Planner {
                                          const planning::PlanningTask& task, Memory& memory);
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
+  diffusion::Denoiser& denoiser();
   std::unique_ptr<diffusion::StateBranch> stateBranch(
       const std::vector<diffusion::Context>& contexts);
   void solve(std::uint64_t tick, const std::vector<Situation*>& situations);
@@ -102,6 +108,8 @@ class DiffusionPlanner : public planning::Planner {
   diffusion::NoiseSchedule schedule_;
   diffusion::ImageEncoder encoder_;
   diffusion::CpuDenoiser denoiser_;
+  std::unique_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
+  std::unique_ptr<diffusion::RouteScaledDenoiser> scaled_;  ///< likewise
   diffusion::Sampler sampler_;
   dynamics::ActionRollout exact_;
   planning::RouteFollower ego_follower_;

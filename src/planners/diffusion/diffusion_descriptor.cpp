@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+// What is known of the diffusion planner before one is made: its options and its descriptor.
+#include "core/text.h"
+#include "diffusion/few_step_solver.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/diffusion/diffusion_planner.h"
+
+namespace cdiff::planners {
+
+void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
+  visitor.text({"model", "", "Shipped model, or folder with its weight files."}, model, {});
+  visitor.text(
+      {"conditioning", "",
+       "What the network is given: image and route, the image alone, or the image alone where "
+       "collision_seeking has a weight."},
+      conditioning, {"image_route", "image", "by_guidance"});
+  visitor.number(
+      {"route_scale", "",
+       "Of vehicles that are given their route: 0 ignores it, 1 heeds it, above 1 more."},
+      route_scale, 0.0, 5.0);
+  visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
+               state_branch, {"learned", "exact"});
+  visitor.text({"response", "",
+                "Of the executed throttle: as the dynamics was fitted, or monotone: one that would "
+                "slow the vehicle coasts."},
+               response, {"fitted", "monotone"});
+  visitor.integer({"candidates", "", "Samples per vehicle and decision."}, candidates, 1, 64);
+  visitor.number({"hysteresis", "", "Share of the score by which another mode must be better."},
+                 hysteresis, 0.0, 1.0);
+  visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
+                 frozen_image_time, 0.1, 60.0);
+  visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);
+}
+
+void DiffusionOptions::validate() const {
+  if (route_scale == 1.0 || conditioning != "image") return;
+  throw core::InputError("key 'diffusion.route_scale' is " + core::formatNumber(route_scale) +
+                         ", and conditioning 'image' gives no vehicle its route; expected 1, or "
+                         "conditioning 'image_route'");
+}
+
+std::string DiffusionOptions::conditioningUnder(const guidance::GuidanceOptions& guidance) const {
+  if (conditioning != "by_guidance") return conditioning;
+  const bool attacks = sampler.mode != "unguided" && guidance.isActive("collision_seeking");
+  return attacks ? "image" : "image_route";
+}
+
+namespace {
+
+std::string samplerText(const diffusion::SamplerOptions& sampler) {
+  if (sampler.mode == "unguided") return "DDPM over all K steps without guidance";
+  if (sampler.mode == "paper") return "DDPM over all K steps, gradient through the network";
+  return diffusion::fewStepSolverTitle(sampler.solver) + " over " +
+         std::to_string(sampler.steps + sampler.clean_up_steps) + " steps, proximal guidance" +
+         (sampler.warm_start ? ", warm start" : "");
+}
+
+std::string samplingText(const DiffusionOptions& options) {
+  const std::string candidates =
+      options.candidates == 1 ? "1 sample" : std::to_string(options.candidates) + " samples";
+  return samplerText(options.sampler) + ", " + candidates +
+         (options.response == "fitted" ? "" : ", " + options.response + " response");
+}
+
+std::string conditioningText(const DiffusionOptions& options,
+                             const guidance::GuidanceOptions& guidance) {
+  const std::string conditioning = options.conditioningUnder(guidance);
+  if (options.route_scale == 1.0 || conditioning != "image_route") return conditioning;
+  return conditioning + ", route scale " + core::formatNumber(options.route_scale);
+}
+
+planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
+                                    const guidance::GuidanceOptions& guidance) {
+  const auto& options = table.of<DiffusionOptions>();
+  return {options.model,
+          conditioningText(options, guidance),
+          samplingText(options),
+          {{"encoder_instruction_set", diffusion::ImageEncoder::instructionSet()},
+           {"denoiser_instruction_set",
+            diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())}}};
+}
+
+}  // namespace
+
+std::unique_ptr<DiffusionPlanner> makeDiffusionPlanner(const planning::PlannerParts& parts) {
+  auto planner =
+      std::make_unique<DiffusionPlanner>(parts.options.of<DiffusionOptions>(), parts.guidance,
+                                         parts.vehicle, parts.context, parts.guidance_group);
+  const diffusion::Architecture& sizes = planner->model().architecture;
+  const rendering::CameraOptions& camera = parts.camera;
+  if (camera.width == sizes.image_width && camera.height == sizes.image_height) return planner;
+  throw core::InputError("the camera's size is " + sizeText(camera.width, camera.height) +
+                         " (keys camera.width, camera.height); model '" + planner->model().name +
+                         "' sees " + sizeText(sizes.image_width, sizes.image_height));
+}
+
+planning::PlannerDescriptor diffusionDescriptor() {
+  planning::PlannerDescriptor descriptor;
+  descriptor.name = "diffusion";
+  descriptor.title = "E2E-CDiff";
+  descriptor.help = "guided diffusion of states and actions from the front view.";
+  descriptor.cameras = {"front"};
+  descriptor.guided = true;
+  descriptor.cbv_node = "diffusion_planner_node";
+  descriptor.options = planning::makePlannerOptions<DiffusionOptions>;
+  descriptor.make = makeDiffusionPlanner;
+  descriptor.network = networkFacts;
+  descriptor.weights_sha256 = [](const planning::PlannerOptionsTable& table) {
+    return diffusion::modelFilesSha256(table.of<DiffusionOptions>().model);
+  };
+  return descriptor;
+}
+
+}  // namespace cdiff::planners

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dynamics/throttle_response.h"
+#include "e2e_cdiff/core/exceptions.h"
+#include "planners/model_course.h"
+#include "planners/registry.h"
+
+namespace cdiff::planners {
+namespace {
+
+using dynamics::PedalUse;
+using planning::PlannedAction;
+
+/// Plans of the random model, whose throttles are spread over the whole range.
+class ActionOptions : public testing::ModelCourse {
+ protected:
+  std::vector<PlannedAction> plansOf(const DiffusionOptions& options) {
+    goTo(0);
+    return makeDiffusion(options)->plan(snapshot_, tasks());
+  }
+};
+
+bool sameActions(const PlannedAction& left, const PlannedAction& right) {
+  if (left.rollout.size() != right.rollout.size() || !(left.action == right.action)) return false;
+  for (std::size_t row = 0; row < left.rollout.size(); ++row) {
+    if (!(left.rollout[row].action == right.rollout[row].action)) return false;
+  }
+  return true;
+}
+
+/// Rows of a plan by what their pedals do at the speed that the dynamics has there.
+std::size_t notches(const PlannedAction& planned, const traffic::VehicleState& start) {
+  const dynamics::BicycleModel model;
+  double speed = start.speed;
+  std::size_t count = 0;
+  for (const planning::RolloutPoint& point : planned.rollout) {
+    if (pedalUse(model, speed, point.action) == PedalUse::kNotch) ++count;
+    for (int tick = 0; tick < 2; ++tick) speed = model.nextSpeed(speed, point.action);
+  }
+  return count;
+}
+
+TEST_F(ActionOptions, TheMonotoneResponseCommandsNoThrottleThatBrakes) {
+  for (const char* branch : {"learned", "exact"}) {
+    DiffusionOptions options = optionsOf("real_time", branch);
+    const auto fitted = plansOf(options);
+    options.response = "monotone";
+    const auto monotone = plansOf(options);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      found += notches(fitted[i], snapshot_.vehicles[i + 1].state);
+      EXPECT_EQ(notches(monotone[i], snapshot_.vehicles[i + 1].state), 0U) << branch;
+      EXPECT_EQ(monotone[i].action, monotone[i].rollout.front().action);
+    }
+    EXPECT_GT(found, 0U) << branch;
+  }
+}
+
+/// With the learned head the response is a matter of execution: planned states and all commands
+/// outside the notch stay as they are.
+TEST_F(ActionOptions, TheResponseActsAtExecutionAlone) {
+  DiffusionOptions options = optionsOf();
+  const auto fitted = plansOf(options);
+  options.response = "monotone";
+  const auto monotone = plansOf(options);
+  std::size_t changed = 0;
+  for (std::size_t row = 0; row < fitted[0].rollout.size(); ++row) {
+    const planning::RolloutPoint& before = fitted[0].rollout[row];
+    const planning::RolloutPoint& after = monotone[0].rollout[row];
+    EXPECT_EQ(before.state.position, after.state.position);
+    EXPECT_EQ(before.state.speed, after.state.speed);
+    if (before.action == after.action) continue;
+    ++changed;
+    EXPECT_GE(before.action.throttle, 0.3);
+    EXPECT_EQ(after.action.throttle, 0.0);
+    EXPECT_EQ(after.action.steer, before.action.steer);
+  }
+  EXPECT_GT(changed, 0U);
+}
+
+TEST_F(ActionOptions, RouteScaleGoesFromTheImageAloneToTheRoute) {
+  DiffusionOptions options = optionsOf();
+  options.conditioning = "image_route";
+  const auto with_route = plansOf(options);
+  options.route_scale = 0.0;
+  const auto ignored = plansOf(options);
+  options.route_scale = 0.5;
+  const auto half = plansOf(options);
+  options.route_scale = 1.0;
+  options.conditioning = "image";
+  const auto image = plansOf(options);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_FALSE(sameActions(with_route[i], image[i]));
+    EXPECT_TRUE(sameActions(ignored[i], image[i]));
+    EXPECT_FALSE(sameActions(half[i], image[i]));
+    EXPECT_FALSE(sameActions(half[i], with_route[i]));
+  }
+}
+
+TEST_F(ActionOptions, RouteScaleWithoutARouteIsRefused) {
+  DiffusionOptions options = optionsOf();
+  options.conditioning = "image";
+  EXPECT_NO_THROW(options.validate());
+  options.route_scale = 0.5;
+  EXPECT_THROW(options.validate(), core::InputError);
+  EXPECT_THROW(makeDiffusion(options), core::InputError);
+}
+
+TEST_F(ActionOptions, SolverAndLastStepReachThePlan) {
+  DiffusionOptions options = optionsOf();
+  std::vector<PlannedAction> seen = {plansOf(options)[0]};
+  options.sampler.solver = "dpmpp_2m";
+  seen.push_back(plansOf(options)[0]);
+  options.sampler.clean_up_steps = 2;
+  seen.push_back(plansOf(options)[0]);
+  guidance_.last_step = 8;
+  seen.push_back(plansOf(options)[0]);
+  EXPECT_TRUE(sameActions(seen.back(), plansOf(options)[0]));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    EXPECT_EQ(seen[i].fault, "");
+    for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(sameActions(seen[i], seen[j])) << i << j;
+  }
+}
+
+TEST_F(ActionOptions, RecordsSaySamplerResponseAndRouteScale) {
+  planning::PlannerOptionsTable table = defaultOptions();
+  const auto facts = [&] { return findPlanner("diffusion")->network(table, guidance_); };
+  EXPECT_EQ(facts().sampling, "DDIM over 10 steps, proximal guidance, 1 sample");
+  EXPECT_EQ(facts().conditioning, "image_route");
+  auto& options = table.of<DiffusionOptions>();
+  options.sampler.solver = "dpmpp_2m";
+  options.sampler.clean_up_steps = 2;
+  options.response = "monotone";
+  options.route_scale = 0.5;
+  EXPECT_EQ(facts().sampling,
+            "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample, monotone response");
+  EXPECT_EQ(facts().conditioning, "image_route, route scale 0.5");
+}
+
+}  // namespace
+}  // namespace cdiff::planners
