@@ -94,7 +94,7 @@ TEST(ImageConversions, WrongImagesAreErrorsThatNameTheTopic) {
 TEST(ImageConversions, CameraInfoIsThePinhole) {
   std_msgs::Header header;
   header.frame_id = "bg_7/camera_optical";
-  const sensor_msgs::CameraInfo info = toCameraInfoMsg({}, header);
+  const sensor_msgs::CameraInfo info = toCameraInfoMsg(rendering::frontCamera({}), header);
   // 160 x 96, 90 degrees: f = 80 / tan 45 degrees, center (159 / 2, 95 / 2).
   const double f = 80.0 / std::tan(std::atan(1.0));
   EXPECT_NEAR(info.K[0], f, 1e-12);
@@ -148,7 +148,7 @@ class PlanSeeing : public ::testing::Test {
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
   std::vector<planning::PlanningTask> tasks = {{1, &snapshot.vehicles[1], nullptr},
                                                {3, &snapshot.vehicles[2], nullptr}};
-  ImageInbox inbox{{}, 0.05};
+  ImageInbox inbox{session::VehicleRigs(), 0.05};
   SeeingPlanner planner;
 };
 
@@ -211,7 +211,7 @@ TEST_F(PlanSeeing, StatisticsCountFaultsByKindAndMissedDeadlines) {
 }
 
 TEST(ImageInbox, ForgetsOlderTicksOnly) {
-  ImageInbox inbox({}, 0.05);
+  ImageInbox inbox(session::VehicleRigs(), 0.05);
   inbox.add(0, plainImage(2, "a", 1));
   inbox.add(0, plainImage(4, "a", 2));
   inbox.forgetBefore(4);
