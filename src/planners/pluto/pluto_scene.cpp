@@ -16,6 +16,7 @@ namespace {
 // What a number of 1 stands for.
 constexpr double kPlutoPlaceScale = 80.0;        // [m]
 constexpr double kPlutoLineScale = 20.0;         // [m]
+constexpr double kPlutoOwnScale = 10.0;          // [m]
 constexpr double kPlutoExtentScale = 10.0;       // [m]
 constexpr double kPlutoSpeedScale = 10.0;        // [m/s]
 constexpr double kPlutoAccelerationScale = 4.0;  // [m/s^2]
@@ -119,11 +120,13 @@ PlutoLine plutoLine(const geometry::Pose2d& frame, const ReferenceLine& line) {
     const geometry::Pose2d& pose = line.poses[i];
     const std::size_t next = std::min(i + kLineTokenStride, line.poses.size() - 1);
     const Eigen::Vector2d place = first.toBody(pose.position);
+    const Eigen::Vector2d seen = frame.toBody(pose.position);
     const Eigen::Vector2d step = turned(first, line.poses[next].position - pose.position);
     const double heading = pose.heading - first.heading;
     for (const double value :
          {place.x() / kPlutoLineScale, place.y() / kPlutoLineScale, step.x() / kLineTokenStride,
-          step.y() / kLineTokenStride, std::cos(heading), std::sin(heading)})
+          step.y() / kLineTokenStride, std::cos(heading), std::sin(heading),
+          seen.x() / kPlutoOwnScale, seen.y() / kPlutoOwnScale})
       token.points.push_back(static_cast<float>(value));
   }
   return token;

@@ -18,7 +18,7 @@
 namespace cdiff::planners {
 
 inline constexpr std::int64_t kAgentChannels = 9;     ///< of a difference
-inline constexpr std::int64_t kLineChannels = 6;      ///< of a point of a reference line
+inline constexpr std::int64_t kLineChannels = 8;      ///< of a point of a reference line
 inline constexpr std::int64_t kLineTokenPoints = 41;  ///< at most: one every 3 m
 inline constexpr std::size_t kLineTokenStride = 3;    ///< [m]
 inline constexpr std::int64_t kAgentKinds = 3;        ///< traffic::VehicleClass
@@ -57,7 +57,7 @@ struct PlutoPolygon {
 };
 
 /// A reference line in the frame of its first pose: place / 20 m, step to the next point [m] / 3,
-/// cos and sin of the heading.
+/// cos and sin of the heading; and place in the vehicle's frame / 10 m.
 struct PlutoLine {
   PlutoPose pose;             ///< of its first point, in the vehicle's frame
   std::vector<float> points;  ///< [n, kLineChannels], every 3 m

@@ -140,5 +140,18 @@ TEST_F(PlutoSceneTest, MotionIsThatOfTheVehicle) {
   EXPECT_EQ(result.lines[0].points.size(), 41U * kLineChannels);
 }
 
+// Of a vehicle 1 m to the left of its lane and turned by 0.1 to the left, the line lies to the
+// right.
+TEST_F(PlutoSceneTest, ALineIsGivenAsTheVehicleSeesIt) {
+  decide({vehicleAt("own", 10.0, 1.0, 0.1, 5.0)});
+  const PlutoInput result = input();
+  ASSERT_EQ(result.lines.size(), 1U);
+  const float* second = result.lines[0].points.data() + kLineChannels;  // 3 m ahead
+  const double expected[] = {0.15, 0.0, 1.0, 0.0, 1.0, 0.0};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(second[i], expected[i], 1e-5) << i;
+  EXPECT_NEAR(second[6], (3.0 * std::cos(0.1) - std::sin(0.1)) / 10.0, 1e-5);
+  EXPECT_NEAR(second[7], (-3.0 * std::sin(0.1) - std::cos(0.1)) / 10.0, 1e-5);
+}
+
 }  // namespace
 }  // namespace cdiff::planners

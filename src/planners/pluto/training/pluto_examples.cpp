@@ -12,6 +12,7 @@ namespace cdiff::planners {
 namespace {
 
 constexpr std::size_t kLookAhead = 40;  // decisions in which vehicles interact
+constexpr double kShift = 5.0;          // along the route that a disturbance may lead to [m]
 
 // Elements of the draws of a sample.
 constexpr std::uint32_t kNoiseDraw = 0;  // and the five that follow
@@ -65,26 +66,6 @@ bool isFree(const PlutoMoment& moment, const traffic::VehicleState& state) {
       return false;
   }
   return true;
-}
-
-void disturbOwn(ChangedMoment& changed, const ExampleDraws& draws) {
-  const double limits[] = {1.0, 0.75, 0.35, 1.0, 0.5, 0.2};
-  const TrackPoint before = changed.own();
-  double share = 1.0;
-  for (int halvings = 0; halvings <= 5; ++halvings, share *= 0.5) {
-    double noise[6];
-    for (std::uint32_t i = 0; i < 6; ++i)
-      noise[i] = share * draws.uniform(kNoiseDraw + i, -limits[i], limits[i]);
-    TrackPoint& own = changed.own();
-    own = before;
-    own.state.position = before.state.pose().toMap({noise[0], noise[1]});
-    own.state.heading = core::wrapAngle(before.state.heading + noise[2]);
-    own.state.speed = std::max(0.0, before.state.speed + noise[3]);
-    own.acceleration = before.acceleration + static_cast<float>(noise[4]);
-    own.steer = std::clamp(before.steer + static_cast<float>(noise[5]), -1.0F, 1.0F);
-    if (isFree(changed.moment, own.state)) return;
-  }
-  changed.own() = before;
 }
 
 /// A red light that the vehicle stands before: its place in the list of lights and its link.
@@ -156,6 +137,31 @@ void ChangedMoment::remove(const std::set<std::uint32_t>& gone) {
   }
 }
 
+void disturbOwn(ChangedMoment& changed, const OwnDisturbance& most, const ExampleDraws& draws) {
+  const double limits[] = {most.along, most.across,       most.turn,
+                           most.speed, most.acceleration, most.steer};
+  const TrackPoint before = changed.own();
+  TrackPoint& own = changed.own();
+  double share = 1.0;
+  for (int halvings = 0; halvings <= 5; ++halvings, share *= 0.5) {
+    double noise[6];
+    for (std::uint32_t i = 0; i < 6; ++i)
+      noise[i] = share * draws.uniform(kNoiseDraw + i, -limits[i], limits[i]);
+    own = before;
+    own.state.position = before.state.pose().toMap({noise[0], noise[1]});
+    own.state.heading = core::wrapAngle(before.state.heading + noise[2]);
+    own.state.speed = std::max(0.0, before.state.speed + noise[3]);
+    own.acceleration = before.acceleration + static_cast<float>(noise[4]);
+    own.steer = std::clamp(before.steer + static_cast<float>(noise[5]), -1.0F, 1.0F);
+    if (!isFree(changed.moment, own.state)) continue;
+    const double place = changed.moment.arc_length;
+    changed.moment.arc_length = planning::extendedProjection(
+        *changed.moment.route, own.state.position, place - kShift, place + kShift);
+    return;
+  }
+  own = before;
+}
+
 PlutoExample plutoExample(const PlutoScene& scene, const PlutoPlace& place,
                           const PlutoMoment& moment, bool imitates) {
   const PlutoSceneBuilder& builder = scene.world().builder;
@@ -195,7 +201,7 @@ std::set<std::uint32_t> interactingVehicles(const PlutoScene& scene, const Pluto
 std::unique_ptr<ChangedMoment> positiveMoment(const PlutoScene& scene, const PlutoPlace& place,
                                               const ExampleDraws& draws) {
   auto changed = std::make_unique<ChangedMoment>(scene.moment(place.decision, place.drive));
-  disturbOwn(*changed, draws);
+  disturbOwn(*changed, {}, draws);
   if (draws.uniform(kDropsDraw, 0.0, 1.0) >= 0.5) return changed;
   const std::set<std::uint32_t> needed = interactingVehicles(scene, place);
   const double share = draws.uniform(kDropShareDraw, 0.1, 1.0);

@@ -54,10 +54,23 @@ struct ExampleDraws {
 /// another time (Cheng et al. 2024, III-D): it follows them, waits for them or crosses their way.
 std::set<std::uint32_t> interactingVehicles(const PlutoScene& scene, const PlutoPlace& place);
 
+/// The largest changes of a vehicle's own state.
+struct OwnDisturbance {
+  double along = 1.0;         ///< [m]
+  double across = 0.75;       ///< [m]
+  double turn = 0.35;         ///< [rad]
+  double speed = 1.0;         ///< [m/s]
+  double acceleration = 0.5;  ///< [m/s^2]
+  double steer = 0.2;
+};
+
+/// Changes the own state by up to `most`, evenly drawn, halved up to five times until the box is
+/// free of others, then not at all; the place on the route follows.
+void disturbOwn(ChangedMoment& changed, const OwnDisturbance& most, const ExampleDraws& draws);
+
 /// A moment in which the same way is right: place, heading, speed, acceleration and steer change by
-/// up to 1.0 m along, 0.75 m across, 0.35 rad, 1 m/s, 0.5 m/s^2 and 0.2, halved up to five times
-/// until the box is free, then not at all; half of them lose 10 to 100 % of the vehicles that do
-/// not interact.
+/// up to OwnDisturbance's defaults; half of them lose 10 to 100 % of the vehicles that do not
+/// interact.
 std::unique_ptr<ChangedMoment> positiveMoment(const PlutoScene& scene, const PlutoPlace& place,
                                               const ExampleDraws& draws);
 

@@ -20,6 +20,19 @@ at::Tensor meanSmoothL1(const at::Tensor& values, const at::Tensor& targets,
   return errors.sum() / weights.sum().clamp_min(1.0);
 }
 
+/// Trajectories [B, 80, 6] whose places [m] are along the headings of `targets` and, `kAcross`
+/// times, to the left of them: what leads off the road counts more than what is early or late.
+at::Tensor alongAndAcross(const at::Tensor& values, const at::Tensor& targets) {
+  constexpr double kAcross = 4.0;
+  const at::Tensor x = values.select(2, 0);
+  const at::Tensor y = values.select(2, 1);
+  const at::Tensor cosine = targets.select(2, 2);
+  const at::Tensor sine = targets.select(2, 3);
+  return at::cat({at::stack({x * cosine + y * sine, kAcross * (y * cosine - x * sine)}, 2),
+                  values.narrow(2, 2, kPlutoChannels - 2)},
+                 2);
+}
+
 /// Excess of circles over the signed distance, and its gradient, at the places of a plan.
 struct AreaRows {
   std::vector<float> excess;     ///< [B, 80, 3]
@@ -139,7 +152,8 @@ learning::Loss plutoLoss(const PlutoNet& net, const PlutoBatch& batch,
   const at::Tensor plans = net.trajectories(features.queries.gather(1, place).squeeze(1));
   learning::Loss loss;
   loss.terms = {
-      {"plan", meanSmoothL1(plans, batch.future, weights)},
+      {"plan", meanSmoothL1(alongAndAcross(plans, batch.future),
+                            alongAndAcross(batch.future, batch.future), weights)},
       {"score", scoreLoss(net, batch, features.queries)},
       {"forecast", forecastLoss(net, batch, features.tokens)},
       {"free", meanSmoothL1(net.freePlans(own), batch.future.narrow(2, 0, kFreeChannels), weights)},

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/pluto/training/pluto_net.h"
 
+#include <cmath>
+#include <vector>
+
 #include "e2e_cdiff/core/angle.h"
 #include "learning/layers.h"
 
@@ -19,15 +22,29 @@ at::Tensor timeConvolved(const learning::ParameterSet& parameters, const std::st
       .squeeze(3);
 }
 
+/// Evenly spaced in their logarithms: of places from a period of 160 m to one of 2 m, finer than
+/// what tells a vehicle beside its lane from one on it; of headings from 4 pi to pi / 4 [3, 16].
+at::Tensor firstFrequencies() {
+  constexpr double kLowest = 0.5;
+  constexpr double kHighestOfPlaces = 40.0;
+  constexpr double kHighestOfHeadings = 8.0;
+  std::vector<float> values;
+  for (const double highest : {kHighestOfPlaces, kHighestOfPlaces, kHighestOfHeadings}) {
+    for (std::int64_t i = 0; i < kPlutoFrequencies; ++i) {
+      const double share = static_cast<double>(i) / static_cast<double>(kPlutoFrequencies - 1);
+      values.push_back(static_cast<float>(kLowest * std::pow(highest / kLowest, share)));
+    }
+  }
+  return learning::toTensor(values, {kPoseNumbers, kPlutoFrequencies}, at::kCPU);
+}
+
 }  // namespace
 
 PlutoNet::PlutoNet(const PlutoArchitecture& architecture, std::uint64_t seed)
     : architecture_(architecture), parameters_(core::RandomStream(seed, "pluto start")) {
-  constexpr double kTable = 0.1;      // bound of learned rows
-  constexpr double kFrequency = 4.0;  // of learned frequencies
-  parameters_.declareAll(plutoTensors(architecture), [](const std::string& name) {
-    return name == "table.position.frequency" ? kFrequency : kTable;
-  });
+  constexpr double kTable = 0.1;  // bound of learned rows
+  parameters_.declareAll(plutoTensors(architecture), [](const std::string&) { return kTable; });
+  table("position.frequency").copy_(firstFrequencies());
 }
 
 at::Tensor PlutoNet::rows(const std::string& table_name, const at::Tensor& indices) const {

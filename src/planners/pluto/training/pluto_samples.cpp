@@ -50,6 +50,45 @@ bool standsFor(const PlutoScene& scene, const PlutoDrive& drive, std::size_t beg
   return true;
 }
 
+/// How a frame is led back to the way that was recorded (map frame, m): offsets to the left of it
+/// and along it, over the distance driven.
+class WayBack {
+ public:
+  WayBack(const traffic::VehicleState& recorded, const geometry::Pose2d& frame)
+      : length_(std::clamp(kRecoveryTime * recorded.speed, kLeastRecovery, kLongestRecovery)) {
+    const Eigen::Vector2d place = recorded.pose().toBody(frame.position);
+    along_ = place.x();
+    across_ = place.y();
+    slope_ = std::tan(
+        std::clamp(core::angleDifference(frame.heading, recorded.heading), -kMostTurn, kMostTurn));
+  }
+
+  /// Where it then is in place of a recorded state, `driven` behind the first one.
+  traffic::VehicleState at(const traffic::VehicleState& recorded, double driven) const {
+    const double share = driven / length_;
+    if (share >= 1.0) return recorded;
+    const double rest = 1.0 - share;
+    const double fade = rest * rest * (1.0 + 2.0 * share);
+    const double offset = across_ * fade + slope_ * driven * rest * rest;
+    const double slope =
+        -6.0 * across_ * share * rest / length_ + slope_ * rest * (rest - 2.0 * share);
+    traffic::VehicleState state = recorded;
+    state.position = recorded.pose().toMap({along_ * fade, offset});
+    state.heading = recorded.heading + std::atan(slope);
+    return state;
+  }
+
+ private:
+  static constexpr double kRecoveryTime = 2.0;      // [s]
+  static constexpr double kLeastRecovery = 10.0;    // [m]
+  static constexpr double kLongestRecovery = 20.0;  // [m]
+  static constexpr double kMostTurn = 1.2;          // [rad]
+  double length_;
+  double along_ = 0.0;
+  double across_ = 0.0;
+  double slope_ = 0.0;
+};
+
 Eigen::Matrix<float, 1, kPlutoChannels> rowOf(const geometry::Pose2d& frame,
                                               const traffic::VehicleState& state) {
   const Eigen::Vector2d place = frame.toBody(state.position);
@@ -120,14 +159,18 @@ PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
   const std::uint32_t vehicle = scene.drives()[place.drive].vehicle;
   PlutoTarget target;
   target.steps = place.steps;
-  const traffic::VehicleState* last = nullptr;
+  traffic::VehicleState last = scene.frames()[place.decision].find(vehicle)->state;
+  const WayBack way(last, frame);
+  double driven = 0.0;
   for (std::int64_t step = 0; step < target.steps; ++step) {
     const std::size_t i = place.decision + 1 + static_cast<std::size_t>(step);
-    last = &scene.frames()[i].find(vehicle)->state;
-    target.future.row(step) = rowOf(frame, *last);
-    target.elevations[static_cast<std::size_t>(step)] = last->elevation;
+    const traffic::VehicleState& next = scene.frames()[i].find(vehicle)->state;
+    driven += (next.position - last.position).norm();
+    last = next;
+    target.future.row(step) = rowOf(frame, way.at(last, driven));
+    target.elevations[static_cast<std::size_t>(step)] = last.elevation;
   }
-  choosePlace(lines, *last, target);
+  choosePlace(lines, last, target);
   return target;
 }
 

@@ -44,7 +44,9 @@ struct PlutoTarget {
   std::size_t mode = 0;  ///< of it: 10 m of arc length each, up to where the end lies
 };
 
-/// `frame`: pose that the network is to plan from, the vehicle's own or a changed one. Where the
+/// `frame`: pose that the network is to plan from, the vehicle's own or a disturbed one, from which
+/// the future leads back to the recorded way: the offset e over the distance s driven is the cubic
+/// with e and de/ds of the frame at 0 and none of both at L = 2 s x speed, 10 to 20 m. Where the
 /// future is cut, the end is where its last speed leads along the line.
 PlutoTarget plutoTarget(const PlutoScene& scene, const PlutoPlace& place,
                         const geometry::Pose2d& frame, const std::vector<ReferenceLine>& lines);

@@ -35,7 +35,8 @@ class ImitationOfPlans : public learning::EvenStage {
                   "pluto order"),
         state_(state),
         dropout_(state.run.stream("pluto dropout")),
-        changes_(state.run.stream("pluto changes")) {}
+        changes_(state.run.stream("pluto changes")),
+        disturbances_(state.run.stream("pluto disturbances")) {}
 
   learning::Loss loss(std::int64_t step) override {
     const StepExamples examples = examplesOf(step);
@@ -65,18 +66,29 @@ class ImitationOfPlans : public learning::EvenStage {
     for (const std::size_t index : samplesOf(step)) {
       const PlutoPlace& place = state_.places[index];
       const PlutoScene& scene = state_.scenes[place.scene];
-      const std::int64_t anchor =
-          examples.add(plutoExample(scene, place, scene.moment(place.decision, place.drive), true));
-      const ExampleDraws draws{changes_, {row++, static_cast<std::uint32_t>(step), 0}};
-      if (contrasts(step)) addTriplet(scene, place, draws, anchor, examples);
+      const core::RandomKey key{row++, static_cast<std::uint32_t>(step), 0};
+      ChangedMoment changed(scene.moment(place.decision, place.drive));
+      disturbOften(changed, key);
+      const std::int64_t anchor = examples.add(plutoExample(scene, place, changed.moment, true));
+      if (contrasts(step)) addTriplet(scene, place, {changes_, key}, anchor, examples);
     }
     return examples;
   }
 
-  static void addTriplet(const PlutoScene& scene, const PlutoPlace& place,
-                         const ExampleDraws& draws, std::int64_t anchor, StepExamples& examples) {
+  /// Off the way that was driven with the chance that the settings name.
+  void disturbOften(ChangedMoment& changed, const core::RandomKey& key) const {
+    constexpr std::uint32_t kChance = 6;  // behind the elements that disturbOwn draws
+    if (disturbances_.uniform(key, kChance) < state_.settings.disturbed_share)
+      disturbOwn(changed, state_.settings.disturbance, {disturbances_, key});
+  }
+
+  /// Anchors and negatives are disturbed alike, so that no contrast is learned from that.
+  void addTriplet(const PlutoScene& scene, const PlutoPlace& place, const ExampleDraws& draws,
+                  std::int64_t anchor, StepExamples& examples) {
     const auto negative = negativeMoment(scene, place, draws);
     if (negative == nullptr) return;
+    const core::RandomKey& key = draws.key;
+    disturbOften(*negative, {key.vehicle, key.decision, 1});
     const auto positive = positiveMoment(scene, place, draws);
     const std::int64_t first = examples.add(plutoExample(scene, place, positive->moment, true));
     const std::int64_t second = examples.add(plutoExample(scene, place, negative->moment, false));
@@ -118,6 +130,7 @@ class ImitationOfPlans : public learning::EvenStage {
   PlutoTrainingState& state_;
   core::RandomStream dropout_;
   core::RandomStream changes_;
+  core::RandomStream disturbances_;
 };
 
 }  // namespace
@@ -132,6 +145,13 @@ void PlutoTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  history_dropout, 0.0, 1.0);
   visitor.number({"layer_dropout", "", "Chance that a step of the encoder is left out."},
                  layer_dropout, 0.0, 0.9);
+  visitor.number({"disturbed_share", "",
+                  "Chance that a moment is one off the way that was driven, with a way back."},
+                 disturbed_share, 0.0, 1.0);
+  visitor.number({"disturbed_across", "m", "Most that such a moment is off to the side."},
+                 disturbance.across, 0.0, 5.0);
+  visitor.number({"disturbed_turn", "rad", "Most that such a moment is turned."}, disturbance.turn,
+                 0.0, 1.0);
   visitor.number({"contrast_share", "", "Last part of the steps that learns from triplets, too."},
                  contrast_share, 0.0, 1.0);
 }

@@ -9,6 +9,7 @@
 
 #include "learning/task_registry.h"
 #include "planners/network_task.h"
+#include "planners/pluto/training/pluto_examples.h"
 #include "planners/pluto/training/pluto_net.h"
 #include "planners/pluto/training/pluto_scenes.h"
 
@@ -21,6 +22,8 @@ struct PlutoTrainingSettings {
   double motion_dropout = 0.75;  ///< chance that speed, acceleration or steer is not shown
   double history_dropout = 0.1;  ///< chance that less of the history is shown, as after a start
   double layer_dropout = 0.1;    ///< chance that a step of the encoder is left out
+  double disturbed_share = 0.5;  ///< chance that a moment is one off the way, to lead back from
+  OwnDisturbance disturbance{1.0, 2.0, 0.35, 1.5, 1.0, 0.3};
   double contrast_share = 1.0 / 3.0;  ///< last part of the steps that learns from triplets, too
 
   void describe(core::OptionsVisitor& visitor);

@@ -186,6 +186,50 @@ TEST_F(PlutoSamples, APositiveIsDisplacedWithinItsLimitsAndKeepsTheWay) {
   EXPECT_TRUE(moved);
 }
 
+// "a" drives 0.6 m in 0.1 s along y = 0. Of a frame 1.5 m to the left and turned by 0.2 to the
+// left, 2 s x 6 m/s = 12 m lead back: first on in its own direction, then the way that was
+// recorded.
+TEST_F(PlutoSamples, AWayOffTheRecordedOneLeadsBackToIt) {
+  const PlutoScene scene = sceneOf();
+  const PlutoPlace place = {0, 20, 1, 80};
+  ChangedMoment changed(scene.moment(20, 1));
+  geometry::Pose2d frame = changed.moment.point().state.pose();
+  const Eigen::Vector2d start = frame.position;
+  frame.position.y() += 1.5;
+  frame.heading = 0.2;
+  const PlutoTarget target =
+      plutoTarget(scene, place, frame, scene.world().builder.linesOf(changed.moment));
+  const auto placeAt = [&](Eigen::Index row) {
+    return frame.toMap(target.future.row(row).head<2>().transpose().cast<double>());
+  };
+  EXPECT_NEAR(target.future(0, 0), 0.6, 0.02) << "on from where it is";
+  EXPECT_NEAR(target.future(0, 1), 0.0, 0.03);
+  EXPECT_NEAR(placeAt(9).x(), start.x() + 6.0, 1e-3);
+  // e(s) = 1.5 (1 - 3 u^2 + 2 u^3) + tan(0.2) s (1 - u)^2 with u = 6 m / 12 m.
+  EXPECT_NEAR(placeAt(9).y(), 0.75 + std::tan(0.2) * 1.5, 1e-3);
+  const double slope = -1.5 * 1.5 / 12.0 - 0.25 * std::tan(0.2);
+  EXPECT_NEAR(std::atan2(target.future(9, 3), target.future(9, 2)), std::atan(slope) - 0.2, 1e-4);
+  for (const Eigen::Index row : {19, 40, 79}) {
+    EXPECT_NEAR(placeAt(row).x(), start.x() + 0.6 * static_cast<double>(row + 1), 1e-3);
+    EXPECT_NEAR(placeAt(row).y(), 0.0, 1e-3);
+  }
+}
+
+// A vehicle that is put 2 m ahead is 2 m farther on its route: its line begins there.
+TEST_F(PlutoSamples, ADisturbedVehicleIsWhereItIsOnItsRoute) {
+  const PlutoScene scene = sceneOf();
+  const double place = scene.moment(20, 1).arc_length;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    ChangedMoment changed(scene.moment(20, 1));
+    const double x = changed.own().state.position.x();
+    disturbOwn(changed, {2.0, 1.0, 0.3, 0.0, 0.0, 0.0}, {kChanges, {i, 0, 0}});
+    const double moved = changed.own().state.position.x() - x;
+    EXPECT_NEAR(changed.moment.arc_length, place + moved, 1e-6);
+    const auto lines = scene.world().builder.linesOf(changed.moment);
+    EXPECT_NEAR(lines[0].poses[0].position.x(), x + moved, 1e-6);
+  }
+}
+
 // "ego" at 5 m/s never comes within reach of "a" 25 m ahead at 6 m/s in 4 s, but would drive where
 // "a" was: it interacts with it.
 TEST_F(PlutoSamples, WhoDrivesAheadInteracts) {
