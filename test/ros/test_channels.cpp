@@ -8,6 +8,7 @@
 #include "e2e_cdiff/GuidanceReport.h"
 #include "ros/bags/recorded_channels.h"
 #include "ros/lockstep/tick_answers.h"
+#include "ros/messages/channel_conversions.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/topics.h"
 #include "ros/sample_messages.h"
