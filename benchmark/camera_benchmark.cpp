@@ -56,15 +56,32 @@ void benchmarkCamera(Figures& figures) {
   figures.push_back({"Town05_camera_set_up",
                      1e3 * secondsOf([&] { camera.emplace(rendering::CameraOptions(), network); }),
                      "ms", ""});
-  std::vector<double> times;
+  const auto rigOf = [&](const char* preset) {
+    rendering::RigOptions options;
+    options.preset = preset;
+    return rendering::RigRenderer(rendering::rigOf(options, {}), network);
+  };
+  rendering::RigRenderer three = rigOf(rendering::kFrontThreeRig);
+  rendering::RigRenderer six = rigOf(rendering::kBench2driveRig);
+  std::vector<double> one_ms, three_ms, six_ms, labeled_ms;
   for (std::uint32_t place = 0; place < kViews; ++place) {
     const traffic::TrafficSnapshot snapshot = sceneOf(network, place);
+    const traffic::Vehicle& vehicle = snapshot.vehicles.front();
     for (int round = 0; round < kRounds; ++round) {
-      times.push_back(1e3 *
-                      secondsOf([&] { camera->render(snapshot, snapshot.vehicles.front()); }));
+      one_ms.push_back(1e3 * secondsOf([&] { camera->render(snapshot, vehicle); }));
+      three_ms.push_back(1e3 * secondsOf([&] { three.render(snapshot, vehicle); }));
+      six_ms.push_back(1e3 * secondsOf([&] { six.render(snapshot, vehicle); }));
+      labeled_ms.push_back(1e3 * secondsOf([&] {
+                             six.render(snapshot, vehicle, rendering::Labels::kClassesAndInstances);
+                           }));
     }
   }
-  figures.push_back({"Town05_camera_160x96_p50", median(times), "ms", "<=1"});
+  figures.push_back({"Town05_camera_160x96_p50", median(one_ms), "ms", "<=1"});
+  figures.push_back({"Town05_front_three_160x96_p50", median(three_ms), "ms", ""});
+  figures.push_back({"Town05_bench2drive_six_160x96_p50", median(six_ms), "ms", ""});
+  figures.push_back({"Town05_bench2drive_six_labeled_160x96_p50", median(labeled_ms), "ms", ""});
+  figures.push_back(
+      {"Town05_bench2drive_six_over_camera", median(six_ms) / median(one_ms), "times", "<=4"});
 }
 
 }  // namespace cdiff::benchmark

@@ -112,7 +112,6 @@ Json selectionObject(const CbvRecord& record, const SessionResult& result) {
                  {"selected_tick", record.selected_tick},
                  {"selected_seconds", secondsOf(record.selected_tick, step)},
                  {"interaction_score", record.interaction_score},
-                 {"target_speed_mps", setup.cbvTargetSpeed(record.vehicle_id)},
                  {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
                  {"decisions_driven", record.decisions_driven},
                  {"released_tick", nullptr},
@@ -122,6 +121,8 @@ Json selectionObject(const CbvRecord& record, const SessionResult& result) {
                  {"route_completion_percent", record.routeCompletionPercent()},
                  {"conflict_point_passed", record.conflict_point_passed},
                  {"route_completed", record.routeCompleted()}};
+  if (setup.options().cbv_target_speed.drawn())
+    object["target_speed_mps"] = setup.cbvTargetSpeed(record.vehicle_id);
   if (record.released_tick) object["released_tick"] = *record.released_tick;
   if (const auto other = contactPartner(record, result)) object["contact_with"] = *other;
   return object;

@@ -88,9 +88,9 @@ metrics::SessionMetricsOptions SessionSetup::metricsOptions() const {
   options.infractions = options_.protocol.infractions;
   options.target_speed = options_.target_speed;
   options.cbv_target_speed =
-      [speeds = options_.cbv_target_speed, constant = options_.target_speed,
+      [speeds = options_.cbv_target_speed, fixed = options_.target_speed,
        seed = static_cast<std::uint64_t>(options_.seed)](const std::string& vehicle_id) {
-        return session::cbvTargetSpeed(speeds, constant, seed, vehicle_id);
+        return session::cbvTargetSpeed(speeds, fixed, seed, vehicle_id);
       };
   options.network = &network_;
   options.metrics = options_.metrics;

@@ -9,8 +9,8 @@
 namespace cdiff::session {
 
 void CbvSpeedOptions::describe(core::OptionsVisitor& visitor) {
-  visitor.text({"distribution", "", "constant: target_speed for all; normal: one draw per CBV."},
-               distribution, {"constant", "normal"});
+  visitor.text({"distribution", "", "fixed: target_speed for all; normal: one draw per CBV."},
+               distribution, {"fixed", "normal"});
   visitor.number({"mean", "m/s", "Mean of the normal distribution."}, mean, 0.5, 40.0);
   visitor.number({"deviation", "m/s", "Its standard deviation before the cut."}, deviation, 0.01,
                  20.0);
@@ -32,9 +32,9 @@ void CbvSpeedOptions::validate() const {
 
 /// Of a range that holds the mean and is as wide as the deviation at least a third of the draws lie
 /// inside, so that the loop ends.
-double cbvTargetSpeed(const CbvSpeedOptions& options, double constant, std::uint64_t seed,
+double cbvTargetSpeed(const CbvSpeedOptions& options, double fixed, std::uint64_t seed,
                       const std::string& vehicle_id) {
-  if (options.distribution == "constant") return constant;
+  if (!options.drawn()) return fixed;
   const core::RandomStream random(seed, "cbv_target_speed");
   const core::RandomKey key{core::hashText(vehicle_id), 0, 0};
   for (std::uint32_t element = 0;; ++element) {

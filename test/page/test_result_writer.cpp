@@ -244,6 +244,16 @@ TEST(ResultWriter, SummaryNamesWhatSpeedsAreComparedWith) {
   EXPECT_EQ(encroachments[0].contains("reason"), encroachments[0]["seconds"].is_null());
 }
 
+TEST(ResultWriter, SummaryNamesADrawnTargetSpeed) {
+  session::ScenarioOptions options = test::sampleOptions();
+  options.cbv_target_speed.distribution = "normal";
+  const test::TemporaryFolder scratch;
+  runSample(scratch, SessionStatus::kTimedOut, options);
+  const Json summary = summaryOf(scratch);
+  EXPECT_EQ(summary["cbv"]["selections"][0]["target_speed_mps"],
+            session::cbvTargetSpeed(options.cbv_target_speed, 8.0, 7, "bg_1"));  // seed 7
+}
+
 TEST(ResultWriter, SummaryReportsWhatHappened) {
   const test::TemporaryFolder scratch;
   runSample(scratch, SessionStatus::kTimedOut);

@@ -11,7 +11,7 @@
 namespace cdiff::session {
 namespace {
 
-constexpr double kConstant = 8.0;
+constexpr double kFixed = 8.0;
 
 CbvSpeedOptions normal() {
   CbvSpeedOptions options;
@@ -20,15 +20,15 @@ CbvSpeedOptions normal() {
 }
 
 TEST(CbvTargetSpeed, IsTheScenariosUnlessDrawn) {
-  EXPECT_EQ(cbvTargetSpeed(CbvSpeedOptions(), kConstant, 1, "bg_1"), kConstant);
-  EXPECT_EQ(ScenarioOptions().cbv_target_speed.distribution, "constant");
+  EXPECT_EQ(cbvTargetSpeed(CbvSpeedOptions(), kFixed, 1, "bg_1"), kFixed);
+  EXPECT_EQ(ScenarioOptions().cbv_target_speed.distribution, "fixed");
 }
 
 TEST(CbvTargetSpeed, IsAMatterOfSeedAndVehicleAlone) {
-  const double speed = cbvTargetSpeed(normal(), kConstant, 1, "bg_1");
+  const double speed = cbvTargetSpeed(normal(), kFixed, 1, "bg_1");
   EXPECT_EQ(cbvTargetSpeed(normal(), 5.0, 1, "bg_1"), speed);
-  EXPECT_NE(cbvTargetSpeed(normal(), kConstant, 2, "bg_1"), speed);
-  EXPECT_NE(cbvTargetSpeed(normal(), kConstant, 1, "bg_2"), speed);
+  EXPECT_NE(cbvTargetSpeed(normal(), kFixed, 2, "bg_1"), speed);
+  EXPECT_NE(cbvTargetSpeed(normal(), kFixed, 1, "bg_2"), speed);
 }
 
 // N(7, 1.8^2) cut at -1.944 and +1.944 deviations: symmetric, so the mean stays 7; the variance of
@@ -40,7 +40,7 @@ TEST(CbvTargetSpeed, FollowsTheCutNormalDistribution) {
   double sum = 0.0;
   double square = 0.0;
   for (int i = 0; i < kDraws; ++i) {
-    const double speed = cbvTargetSpeed(normal(), kConstant, 1, "bg_" + std::to_string(i));
+    const double speed = cbvTargetSpeed(normal(), kFixed, 1, "bg_" + std::to_string(i));
     ASSERT_GE(speed, 3.5);
     ASSERT_LE(speed, 10.5);
     sum += speed;
@@ -102,9 +102,9 @@ TEST(CbvTargetSpeed, TasksAndMetricsHaveIt) {
     EXPECT_EQ(task.target_speed, drawn.cbvTargetSpeed(task.vehicle->id));
     EXPECT_EQ(task.target_speed, options.cbv_target_speed(task.vehicle->id));
   }
-  const SessionSetup constant = setupWith({});
-  for (const auto& task : cbvTasks(slots.snapshot, slots.selection, constant))
-    EXPECT_EQ(task.target_speed, constant.options().target_speed);
+  const SessionSetup fixed = setupWith({});
+  for (const auto& task : cbvTasks(slots.snapshot, slots.selection, fixed))
+    EXPECT_EQ(task.target_speed, fixed.options().target_speed);
 }
 
 TEST(CbvTargetSpeed, ABadRangeIsAnErrorOfTheScenario) {
