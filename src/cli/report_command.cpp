@@ -29,7 +29,8 @@ struct ReportArguments {
   std::string csv;
 };
 
-/// Throws InputError for what is no batch, and says of a single session what to run instead.
+/// Throws InputError for a folder that is not a batch; for a single session it names what to run
+/// instead.
 evaluation::RunSet readBatch(const std::string& folder) {
   if (core::isFile(fs::path(folder) / "session.yaml")) {
     throw InputError(

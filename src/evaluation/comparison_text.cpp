@@ -59,7 +59,7 @@ std::string ratioText(const MeasureComparison& measure, bool with_interval) {
          ", " + (std::isfinite(interval.high) ? core::formatFixed(interval.high, 2) : "inf") + "]";
 }
 
-/// What a reader has to know of one row.
+/// Caveats for the reader about one row.
 std::string noteOf(const MeasureComparison& measure, bool with_intervals) {
   std::vector<std::string> notes;
   for (const auto& [side, estimate] : {std::pair{"A", &measure.a}, std::pair{"B", &measure.b}}) {

@@ -128,7 +128,7 @@ struct TransformerSizes {
   std::int64_t heads = 8;
   std::int64_t hidden = 1024;  ///< of the feed-forward network
 
-  /// Throws InputError naming the key that is no such multiple.
+  /// Throws InputError naming the key that is not such a multiple.
   void validate() const;
 };
 
@@ -194,7 +194,7 @@ class FeedForward {
   Linear down_;
 };
 
-/// A layer of a transformer's encoder, normalization last (Vaswani et al. 2017, as BERT has it):
+/// A layer of a transformer's encoder, normalization last (Vaswani et al. 2017, as in BERT):
 /// x = LN(x + W_o attention(x)), x = LN(x + W_2 gelu(W_1 x)). Tensors: NAME.query, NAME.key_value
 /// (keys, then values), NAME.output, NAME.norm1, NAME.up, NAME.down, NAME.norm2.
 class TransformerLayer {

@@ -92,7 +92,7 @@ inline void transposeKeys(const AttentionCall& call, const float* key, std::int6
   }
 }
 
-/// weights = softmax of the first `keys` scores, 0 behind them; the sum runs first to last.
+/// weights = softmax of the first `keys` scores, 0 after them; the sum runs first to last.
 template <class V>
 void softmaxRow(float* scores, std::int64_t keys, std::int64_t padded) {
   float largest = scores[0];

@@ -11,7 +11,7 @@
 
 namespace cdiff::planners {
 
-/// What a NetworkTask trains and how it is called.
+/// What a NetworkTask trains, and its names.
 template <class Architecture>
 struct NetworkTaskTexts {
   WeightKind kind;

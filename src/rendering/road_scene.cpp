@@ -159,7 +159,7 @@ std::size_t SpatialGrid::cellOf(const Eigen::Vector3d& point) const {
 void SpatialGrid::visible(const View& view, std::vector<int>& found) const {
   found.clear();
   if (bounds_.empty()) return;
-  // Things and cells reach less than two cells beyond the cell of their center.
+  // Spheres and cells reach less than two cells beyond the cell of their center.
   const Eigen::Vector2d offset = (view.eye().head<2>() - origin_) / kCellSize;
   const double reach = view.farDistance() / kCellSize + 2.0;
   const int first_column = cellIndex(offset.x() - reach, columns_);

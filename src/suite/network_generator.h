@@ -155,7 +155,7 @@ RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws);
 
 // The kinds of networks, and the roads that lead to a junction.
 
-/// Width of every lane [m], as networks/netconvert.netccfg has it.
+/// Width of every lane [m], as in networks/netconvert.netccfg.
 inline constexpr double kLaneWidth = 3.5;
 
 RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws);

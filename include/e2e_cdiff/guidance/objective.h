@@ -21,8 +21,8 @@ struct OtherMotion {
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
 };
 
-/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
-/// frame, SI units).
+/// What guidance objectives know about the planned vehicle and its surroundings at one decision
+/// (map frame, SI units).
 struct GuidanceScene {
   traffic::VehicleState
       state;  ///< state of the planned vehicle, which is the body frame of rollouts
@@ -70,7 +70,7 @@ class Objective {
   virtual std::unique_ptr<Objective> clone() const = 0;
 };
 
-/// What is known of a guidance objective before one is made.
+/// What is known about a guidance objective before one is made.
 struct ObjectiveDescriptor {
   std::string name;  ///< in guidance profiles, snake_case
   std::string help;  ///< one sentence: what a plan does to lower it

@@ -115,7 +115,7 @@ struct TableSettings {
   std::string text;               ///< see settingsOf
 };
 
-/// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
+/// A cell of a filled table: the paper's value beside ours, and on how many runs ours is based.
 struct TableCell {
   PaperFigure paper;
   PaperFigure repository;             ///< RIFT's
@@ -142,7 +142,7 @@ inline constexpr const char* kNoRunHasIt = "no run has this measure";
 
 Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs);
 
-/// Whether a row shows its intervals: each of its figures stands on kLeastRoutes routes or more.
+/// Whether a row shows its intervals: each of its values is based on kLeastRoutes routes or more.
 bool showsIntervals(const std::vector<TableCell>& row);
 /// Whether any row, or not every row with a figure, does.
 bool anyIntervals(const Table& table);

@@ -25,7 +25,7 @@ struct ShardHeader {
   std::map<std::string, std::string> facts;  ///< where the data come from
 };
 
-/// In the present version.
+/// In the current version.
 std::string headerText(const ShardHeader& header);
 /// Throws InputError naming `source` for another version and for a header that is malformed.
 ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
@@ -109,7 +109,7 @@ std::vector<std::filesystem::path> findDataFiles(const std::filesystem::path& fo
                                                  const std::string& extension);
 std::vector<std::filesystem::path> findShards(const std::filesystem::path& folder);
 
-/// The field of every sample that says of which session it is: a u64, such as core::hashText of the
+/// The field of every sample that names its session: a u64, such as core::hashText of the
 /// session's name.
 constexpr const char* kSessionField = "session";
 

@@ -35,7 +35,7 @@ class RecordedSession {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
 
-  /// Throws InputError naming the file when it is no bag, or holds no session that can be read.
+  /// Throws InputError naming the file when it is not a bag, or holds no session that can be read.
   explicit RecordedSession(const std::filesystem::path& bag,
                            RecordedImages images = RecordedImages::kSeen);
   ~RecordedSession();

@@ -59,7 +59,7 @@ class SilenceWatch {
   double last_look_ = 0.0;
 };
 
-/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
+/// What the traffic simulator knows about the other nodes from their TickAck messages: ready, last
 /// tick acknowledged, finished, in error, when last heard.
 class ParticipantBook {
  public:

@@ -10,7 +10,7 @@
 
 namespace cdiff::planners {
 
-// Features of all samples by the present encoder, kept in files so that an interrupted run goes
+// Features of all samples by the current encoder, kept in files so that an interrupted run goes
 // on.
 
 /// Reads or computes them; kFeatureFile in the output folder. Throws core::Interrupted after
