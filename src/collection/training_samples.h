@@ -112,8 +112,8 @@ struct DisplacedSample {
 /// Makes recovery samples: a recorded vehicle is put beside its route and drives back. The image
 /// and the route tokens are those of the displaced place, throttle and brake are as recorded, the
 /// steering is PDM-Lite's toward the route, and the states are what the vehicle dynamics makes of
-/// these actions (rows in the frame of the displaced vehicle, SI units). Called by samplesOf
-/// for a share of the samples.
+/// these actions (rows in the frame of the displaced vehicle, SI units). Called by samplesOf for a
+/// share of the samples.
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.

@@ -10,8 +10,7 @@
 
 namespace cdiff::inference {
 
-// Layer normalization, attention and GELU for one vector type V (linkage as in
-// kernel_templates.h).
+// Layer normalization, attention and GELU for one vector type V (linkage as in kernel_templates.h).
 
 namespace {
 

@@ -147,8 +147,8 @@ constexpr MeasureDefinition kRiftUncomfortable = {
     "",
 };
 
-/// Rates and distance of CBVs as in RIFT's code, from decision ticks; at most one collision
-/// per vehicle, at any tick.
+/// Rates and distance of CBVs as in RIFT's code, from decision ticks; at most one collision per
+/// vehicle, at any tick.
 class RiftRates final : public Metric {
  public:
   explicit RiftRates(double decision_period) : decision_period_(decision_period) {}

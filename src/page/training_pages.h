@@ -11,8 +11,8 @@
 
 namespace cdiff::page {
 
-// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did,
-// from above in its own frame (meters, forward is up, route green), by kind of driving.
+// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did, from
+// above in its own frame (meters, forward is up, route green), by kind of driving.
 
 /// A table's row: what is counted, how often, its share.
 struct CountRow {

@@ -64,8 +64,8 @@ struct Motion {
   Series yaw_acceleration;  ///< [rad/s^2]
 };
 
-/// As in the challenge: central differences of places and headings, and of those again. The
-/// first and last states have no speed, the first and last two no acceleration.
+/// As in the challenge: central differences of places and headings, and of those again. The first
+/// and last states have no speed, the first and last two no acceleration.
 Motion centralMotion(const Track& track);
 
 /// States that a smoothed derivative is made of.
@@ -97,8 +97,8 @@ struct MovingBox {
   double speed = 0.0;  ///< along its heading [m/s]
 };
 
-/// Gap along its heading to the nearest vehicle ahead of its front divided by the closing speed,
-/// at most 5 s [s]. Ahead: headings differ by at most 75 degrees, 10 degrees where they overlap
+/// Gap along its heading to the nearest vehicle ahead of its front divided by the closing speed, at
+/// most 5 s [s]. Ahead: headings differ by at most 75 degrees, 10 degrees where they overlap
 /// laterally by less than 0.5 m; the lateral extents overlap.
 double timeToCollision(const MovingBox& self, const std::vector<MovingBox>& others);
 

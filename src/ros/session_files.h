@@ -61,8 +61,7 @@ session::SessionRequest sessionRequest(const Parameters& parameters);
 session::ScenarioOptions requestedScenario(const Parameters& parameters);
 
 // Where a session of the node graph puts its files, and the result folder that the traffic
-// simulator writes when the metrics node cannot: a session always leaves a result that can be
-// read.
+// simulator writes when the metrics node cannot: a session always leaves a result that can be read.
 
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";

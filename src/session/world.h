@@ -45,8 +45,8 @@ class BackgroundTraffic {
 /// tick; decides nothing.
 class World {
  public:
-  /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterward
-  /// `snapshot()` is tick 0. `setup` must outlive the world.
+  /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterward `snapshot()`
+  /// is tick 0. `setup` must outlive the world.
   explicit World(const SessionSetup& setup);
   /// The same in another simulator, which knows the setup's network.
   World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimulator> simulator);

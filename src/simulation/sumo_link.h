@@ -19,8 +19,8 @@
 
 namespace cdiff::simulation {
 
-// SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an
-// angle in degrees clockwise from north; we by the center of its box and a heading in radians
+// SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an angle
+// in degrees clockwise from north; we by the center of its box and a heading in radians
 // counter-clockwise from east. center = front - L/2 (cos, sin)(heading).
 
 /// Heading of a navigation angle [deg], in (-pi, pi] [rad].

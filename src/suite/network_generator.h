@@ -135,8 +135,8 @@ double lengthOf(const Line& line);
 /// when it fails.
 std::string buildNetwork(const RoadPlan& plan, const std::filesystem::path& folder);
 
-// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
-// districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
+// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short districts;
+// angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
 
 /// What kind of junction or road a generated network consists of.
 enum class NetworkKind { kCrossing, kRoundabout, kMerge, kDistrict };

@@ -34,8 +34,8 @@ std::vector<std::string> scenarioFiles(const Suite& suite);
 /// Names of the shipped suites, sorted.
 std::vector<std::string> shippedSuites();
 
-// What is held out of all training: sealed suites, and those that ship with the package, wherever
-// a copy of them lies.
+// What is held out of all training: sealed suites, and those that ship with the package, wherever a
+// copy of them lies.
 
 /// Throws InputError naming the suite when it is held out. Called by everything that trains on
 /// routes.

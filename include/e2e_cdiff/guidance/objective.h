@@ -31,8 +31,8 @@ struct GuidanceScene {
   const map::DrivableArea* drivable_area = nullptr;  ///< never null
   const map::Route* route = nullptr;                 ///< null: no route
   double route_arc_length = 0.0;                     ///< arc length of the vehicle on its route [m]
-  /// The vehicle that collision objectives are about (the ego, for a CBV); null: none
-  /// or seek.
+  /// The vehicle that collision objectives are about (the ego, for a CBV); null: there is none to
+  /// avoid or seek.
   const OtherMotion* other = nullptr;
   std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level
 };

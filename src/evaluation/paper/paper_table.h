@@ -15,8 +15,8 @@ namespace cdiff::evaluation {
 // The systems that the paper compares, by their names there and here, and the levels that runs of
 // them have in a batch.
 
-/// A system of the paper, whether a planner with its title is registered or not. The paper's own
-/// is there once by each method of config/methods that tables show.
+/// A system of the paper, whether a planner with its title is registered or not. The paper's own is
+/// there once by each method of config/methods that tables show.
 struct PaperSystem {
   const char* title;   ///< as the descriptor of its planner has it
   const char* name;    ///< in the table

@@ -45,8 +45,8 @@ std::size_t choosePlan(const std::vector<traffic::Rollout>& plans,
                        const std::vector<guidance::Score>& scores,
                        const std::optional<traffic::Rollout>& previous, double hysteresis);
 
-/// The plan of a vehicle's last decision, shifted to the current one (rollouts [T, 7], 0.1 s a
-/// row, body frame, SI units).
+/// The plan of a vehicle's last decision, shifted to the current one (rollouts [T, 7], 0.1 s a row,
+/// body frame, SI units).
 class LastPlan {
  public:
   /// `plan` was made at `tick` in the frame of `start`; `route` may be nullptr.
