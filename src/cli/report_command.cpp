@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/matrix.h"
 #include "page/training_pages.h"
 

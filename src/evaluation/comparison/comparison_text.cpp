@@ -4,7 +4,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/metric_registry.h"
 
