@@ -45,7 +45,7 @@ struct TrainingStage {
 };
 
 /// The stages of a `curves.csv`, in order of appearance; an incomplete last row, which a kill
-/// leaves, is passed over. Throws InputError naming `source` and the line of anything else that is
+/// leaves, is skipped. Throws InputError naming `source` and the line of anything else that is
 /// no such file.
 std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std::string& source);
 

@@ -26,7 +26,7 @@ struct TrackState {
   double elevation = 0.0;                              ///< [m]
 };
 
-/// One vehicle without gaps.
+/// The states of one vehicle at consecutive steps, without gaps (map frame, SI units).
 struct Track {
   std::string id;
   std::string role = {};  ///< who drives it, as a trace says; empty in recorded traffic
@@ -108,7 +108,7 @@ Course courseOf(const Recording& recording, const std::vector<Motion>& motions, 
                 std::size_t begin, std::size_t end);
 
 /// Columns that a file of recorded traffic must have, in any order: recording, vehicle, t [s], x, y
-/// [m], heading [rad], length, width [m]. Others are passed over: speeds and accelerations are
+/// [m], heading [rad], length, width [m]. Others are skipped: speeds and accelerations are
 /// differentiated again from x and y.
 const std::vector<std::string>& recordedColumns();
 

@@ -45,7 +45,7 @@ class Parameters {
 /// Notes on the parameter server that this node has refused the input of its roslaunch, and said
 /// why.
 void noteRefusal();
-/// Whether a node of the same roslaunch has noted that; takes the note away.
+/// Whether a node of the same roslaunch has left such a note; removes it.
 bool takeRefusal();
 
 /// The arguments of the roslaunch that started this process, which are the simulator's parameters;

@@ -160,8 +160,8 @@ class SumoLink {
 
 // What a session gives to SUMO, and which file is at fault when SUMO refuses it.
 
-/// Starts SUMO and connects. Throws InputError naming the file that is missing, or that SUMO
-/// refuses, with SUMO's own sentence.
+/// Starts SUMO and connects. Throws InputError naming the file that is missing or that SUMO
+/// refuses, with SUMO's own message.
 std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session);
 
 /// Whether a sentence of SUMO names ('...') something that the session's demand defines.

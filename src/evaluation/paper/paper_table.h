@@ -144,8 +144,9 @@ Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& 
 
 /// Whether a row shows its intervals: each of its values is based on kLeastRoutes routes or more.
 bool showsIntervals(const std::vector<TableCell>& row);
-/// Whether any row, or not every row with a figure, does.
+/// Whether any row shows its intervals.
 bool anyIntervals(const Table& table);
+/// Whether a row with values shows none.
 bool anyRowWithout(const Table& table);
 
 /// Why nothing stands where runs with these levels would: "on the roadmap" (a planner of the paper

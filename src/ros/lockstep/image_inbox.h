@@ -38,7 +38,7 @@ class ImageInbox {
   std::map<std::uint64_t, std::map<int, sensor_msgs::Image::ConstPtr>> images_;
 };
 
-/// A decision of a planner.
+/// The outcome of one planning call.
 struct PlannerDecision {
   std::vector<planning::PlannedAction> actions;  ///< one per task, in their order
   double latency_ms = 0.0;                       ///< wall time of the planning call
