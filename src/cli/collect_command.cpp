@@ -151,7 +151,8 @@ int convertBags(const CollectArguments& arguments) {
   return ExitCode::kPassed;
 }
 
-/// Whether everything that the request asks of the session lies there; a bag alone is made anew.
+/// Whether every file that the request asks for exists; a session of which only a bag is asked is
+/// always driven again.
 bool isDone(const CollectRequest& request, const std::string& name) {
   if (!request.images && !request.scenes) return false;
   const bool samples = fs::exists(collection::shardFile(request, name)) &&

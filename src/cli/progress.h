@@ -13,8 +13,8 @@
 namespace cdiff::cli {
 
 /// Progress of a session on standard error, for `cdiff run`: simulated time, pace (x real time),
-/// time left at most. Rewrites one line on a terminal, every 0.2 s; elsewhere prints a line every
-/// 10 s of wall time.
+/// and the wall time left at most. On a terminal it rewrites one line every 0.2 s; elsewhere it
+/// prints a line every 10 s of wall time.
 class Progress : public session::SessionObserver {
  public:
   /// `time_limit`: the protocol's limit of simulated time [s].
@@ -29,11 +29,11 @@ class Progress : public session::SessionObserver {
 };
 
 /// Progress of a batch on standard error, for `cdiff evaluate`: runs done and failed, pace (x real
-/// time), wall time left. Rewrites one line on a terminal; elsewhere prints a line per run.
+/// time), wall time left. On a terminal it rewrites one line; elsewhere it prints a line per run.
 class BatchProgress {
  public:
   explicit BatchProgress(std::size_t total);
-  /// Prints one line on the runs that a resumed batch still has to do for one cause.
+  /// Prints one line about the runs that a resumed batch must repeat for the same cause.
   void repeated(const std::string& cause, const std::vector<std::string>& ids) const;
   /// A run has ended; `resumed`: it was complete before this batch started.
   void ended(const evaluation::RunRecord& record, bool resumed);

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/matrix.h"
 #include "evaluation/pedal_use.h"
 #include "page/training_pages.h"
@@ -31,7 +31,8 @@ struct ReportArguments {
   std::string csv;
 };
 
-/// Throws InputError for what is no batch, and says of a single session what to run instead.
+/// Throws InputError for a folder that is not a batch; for a single session it names what to run
+/// instead.
 evaluation::RunSet readBatch(const std::string& folder) {
   if (core::isFile(fs::path(folder) / "session.yaml")) {
     throw InputError(

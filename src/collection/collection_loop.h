@@ -22,8 +22,8 @@ namespace cdiff::collection {
 /// record shows how the planner recovers and starts.
 class PerturbedPlanner : public planning::Planner {
  public:
-  /// Draws are keyed by vehicle id and count of its bursts. `decision_period` [s] decides whether a
-  /// decision was left out.
+  /// Draws are keyed by vehicle id and number of its bursts. `decision_period` [s] decides whether
+  /// a decision was left out.
   PerturbedPlanner(std::unique_ptr<planning::Planner> planner, const CollectionOptions& options,
                    std::uint64_t seed, double decision_period);
 
@@ -96,8 +96,8 @@ class ImageSchedule {
 class CollectionLoop {
  public:
   /// `setup` must outlive the loop. `images`: whether records hold what vehicles see, as
-  /// ImageSchedule has it. Throws InputError for unknown planners, planners that need images, and a
-  /// real_time_factor.
+  /// ImageSchedule defines it. Throws InputError for unknown planners, planners that need images,
+  /// and a real_time_factor.
   CollectionLoop(const session::SessionSetup& setup, const CollectionOptions& options, bool images);
   CollectionLoop(const CollectionLoop&) = delete;
   CollectionLoop& operator=(const CollectionLoop&) = delete;

@@ -23,14 +23,16 @@ void requireOrder(const char* low_key, double low, const char* high_key, double 
                          ", more than " + high_key + " (" + core::formatNumber(high) + ")");
 }
 
-// Elements of a session's draws.
+// Elements of a session's draws: its lights and its traffic density.
 constexpr std::uint32_t kLights = 0;
 constexpr std::uint32_t kDensity = 1;
 
+// Protocol of collection: it ends a session early only when the ego is stuck or has left its route.
 constexpr double kEgoBlockedTime = 60.0;    // [s]
 constexpr double kEgoDeviation = 100.0;     // [m]
-constexpr double kCollectionWarmUp = 20.0;  // [s]
+constexpr double kCollectionWarmUp = 20.0;  // [s] of traffic before the first tick, at most
 
+/// Applies the key=value assignments of --set.
 void override(CollectSettings& settings, const std::vector<std::string>& set) {
   for (const std::string& assignment : set) core::overrideOption(assignment, "--set", settings);
 }
@@ -165,8 +167,8 @@ session::ScenarioOptions collectionScenario(session::ScenarioOptions scenario,
   scenario.protocol.deviation_percent = 100.0;
   const bool own_lights = random.uniform(key, kLights) < options.program_lights_share;
   scenario.lights = own_lights ? "program" : "green";
-  const bool file = scenario.demand != "generated" && scenario.demand != "none";
-  if (file && scenario.seed % 2 != 0) scenario.demand = "generated";
+  const bool from_file = scenario.demand != "generated" && scenario.demand != "none";
+  if (from_file && scenario.seed % 2 != 0) scenario.demand = "generated";
   const double density =
       random.uniform(key, kDensity, options.minimum_density, options.maximum_density);
   scenario.traffic.density = std::llround(density);

@@ -49,7 +49,7 @@ struct CollectionOptions {
   double minimum_deceleration = 2.0;  ///< least b of an even vehicle [m/s^2]
   double maximum_deceleration = 4.0;  ///< largest b of an even vehicle [m/s^2]
   double radius = 150.0;              ///< vehicles within this distance of the ego are driven [m]
-  double spacing = 12.0;              ///< wished between driven vehicles when they are chosen [m]
+  double spacing = 12.0;              ///< desired between driven vehicles when they are chosen [m]
   double minimum_route = 120.0;       ///< shorter routes are not taken [m]
   double route_length = 250.0;        ///< length of a vehicle's route, where the network allows [m]
   double route_end = 40.0;            ///< released with less of its route left [m]

@@ -97,7 +97,7 @@ std::uint8_t maneuverOf(const learning::DrivingSample& sample, bool standing) {
   return turned < -kTurn ? 2 : 0;
 }
 
-/// For a sample that comes to stand or stands.
+/// For a sample whose vehicle stops or stands still.
 std::uint8_t stopReasonOf(const SampleSurroundings& around, const std::string& id) {
   constexpr double kLightDistance = 40.0;     // [m]
   constexpr double kLeaderDistance = 25.0;    // [m]

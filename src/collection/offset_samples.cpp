@@ -45,6 +45,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
                                               arc_length + reach);
     const double aim_arc_length = arc_length + planners::lookAheadDistance(state.speed);
     auto row = rollout.row(static_cast<Eigen::Index>(t));
+    // Throttle and brake as recorded; steering toward the route.
     const traffic::ControlAction action{
         row(traffic::kRolloutThrottle),
         controller.steer(state.pose(), planning::extendedPositionAt(around.route, aim_arc_length)),

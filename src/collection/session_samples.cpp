@@ -21,9 +21,11 @@ using core::InputError;
 struct Place {
   DriveKey drive;
   double arc_length = 0.0;    ///< as planners see it [m]
-  std::size_t decisions = 0;  ///< that it has been driven before this one
+  std::size_t decisions = 0;  ///< before this one at which it was driven
 };
 
+/// Makes the training samples of one driven session and adds them to the statistics (samplesOf in
+/// training_samples.h); one object per session.
 class SampleMaker {
  public:
   SampleMaker(const DrivenSession& session, const DatasetOptions& options,
@@ -58,7 +60,7 @@ class SampleMaker {
   }
 
  private:
-  /// Follows every drive along its route, decision by decision, as its planner did.
+  /// Finds the arc length of every drive on its route at each decision, as its planner did.
   void followAll() {
     std::map<DriveKey, std::pair<planning::RouteFollower, std::size_t>> followers;
     for (const traffic::TrafficSnapshot& snapshot : session_.decisions) {
@@ -74,6 +76,8 @@ class SampleMaker {
     }
   }
 
+  /// Appends the sample of an image, and perhaps a displaced one; returns why there is none, or
+  /// nullptr.
   const char* tryImage(const DrivenImage& image, std::vector<learning::DrivingSample>& samples) {
     const auto at = index_.find(image.image.tick);
     const auto place = places_.find({image.image.tick, image.slot});
@@ -97,7 +101,8 @@ class SampleMaker {
     return nullptr;
   }
 
-  /// Beside the last sample, for a share of those that move, what it would be beside its route.
+  /// For a share of the moving vehicles, appends a second sample: the last one with its vehicle
+  /// displaced from its route (OffsetSamples).
   void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
                     std::vector<learning::DrivingSample>& samples) {
     constexpr double kSlow = 2.0;  // [m/s]
@@ -128,9 +133,10 @@ class SampleMaker {
                      std::to_string(wanted.image_height));
   }
 
-  /// Why the vehicle did not drive by itself from a decision to the end of the horizon, or nullptr.
+  /// Why the decisions from `begin` to the end of the horizon make no sample (not driven by its
+  /// planner, disturbed, jumped or in contact), or nullptr.
   const char* unfit(std::size_t begin, int slot, const DriveKey& drive) const {
-    constexpr double kJump = 0.5;  // [m] off the distance that its speeds explain
+    constexpr double kJump = 0.5;  // [m] between distance moved and that from the speeds
     const traffic::Vehicle* before = nullptr;
     for (std::size_t i = begin; i <= begin + horizon_; ++i) {
       const traffic::TrafficSnapshot& snapshot = session_.decisions[i];
@@ -160,6 +166,7 @@ class SampleMaker {
                        [&](std::uint64_t tick) { return tick >= first && tick <= last; });
   }
 
+  /// The sample without image and kinds; rows in the frame of the vehicle at `begin` (SI units).
   learning::DrivingSample sampleAt(std::size_t begin, const Place& place) const {
     const traffic::TrafficSnapshot& snapshot = session_.decisions[begin];
     const std::string& id = place.drive.first;
@@ -188,7 +195,7 @@ class SampleMaker {
     return sample;
   }
 
-  /// Whether noise or the take-over of the vehicle lies at most 2 s back.
+  /// Whether a disturbance or the take-over of the vehicle lies at most 2 s back.
   bool recovers(std::size_t begin, const Place& place) const {
     constexpr std::size_t kMemory = 20;  // decisions
     if (place.drive.first != session_.decisions[begin].vehicles.front().id &&
@@ -201,6 +208,7 @@ class SampleMaker {
     return false;
   }
 
+  /// Draws whether a sample of a vehicle that only stands is kept.
   bool keepsStanding(const learning::DrivingSample& sample) const {
     const core::RandomKey key{core::hashText(sample.vehicle),
                               static_cast<std::uint32_t>(sample.tick), 0};
@@ -214,9 +222,9 @@ class SampleMaker {
   core::RandomStream thinning_;
   core::RandomStream offsets_;
   OffsetSamples offset_samples_;
-  std::map<std::uint64_t, std::size_t> index_;  ///< of decisions, by tick
-  std::map<std::pair<std::uint64_t, int>, Place> places_;
-  std::set<std::string> driven_;
+  std::map<std::uint64_t, std::size_t> index_;             ///< of the decision, by tick
+  std::map<std::pair<std::uint64_t, int>, Place> places_;  ///< by tick and slot
+  std::set<std::string> driven_;                           ///< ids of vehicles
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace cdiff::collection {
 /// turns and lane changes; lengths in meters.
 struct RandomRouteOptions {
   double minimum_length = 120.0;
-  double length = 250.0;            ///< wished; shorter where the network ends
+  double length = 250.0;            ///< desired; shorter where the network ends
   double lane_change_share = 0.15;  ///< share of changes on lanes of over 60 m
 };
 

@@ -89,8 +89,8 @@ struct RecordedDrive {
 
 /// Samples of the drive called `name` in order of time; each minute is a session of its own, so
 /// that whole minutes are held out in training. An image gives one if odometry (and controls, where
-/// named) goes on for the whole horizon, forwards: what goes back is dropped, for the vehicle
-/// dynamics knows no reverse. Actions that are inferred are those of the vehicle dynamics
+/// named) goes on for the whole horizon, forward: reversing is dropped, because the vehicle
+/// dynamics cannot reverse. Actions that are inferred are those of the vehicle dynamics
 /// (dynamics/action_rollout.h). Throws InputError where there is no image or no sample.
 std::vector<learning::DrivingSample> samplesOf(const RecordedDrive& drive, const std::string& name,
                                                const DriveOptions& drive_options,
@@ -112,8 +112,8 @@ struct DisplacedSample {
 /// Makes recovery samples: a recorded vehicle is put beside its route and drives back. The image
 /// and the route tokens are those of the displaced place, throttle and brake are as recorded, the
 /// steering is PDM-Lite's toward the route, and the states are what the vehicle dynamics makes of
-/// these actions (rows in the frame of the displaced vehicle, SI units). Called by samplesOf
-/// for a share of the samples.
+/// these actions (rows in the frame of the displaced vehicle, SI units). Called by samplesOf for a
+/// share of the samples.
 class OffsetSamples {
  public:
   /// `setup` and `options` must outlive this object.

@@ -38,8 +38,8 @@ struct Attribute {
 /// An attribute without a value, such as "hidden".
 Attribute flag(const char* name);
 
-/// A file of the source tree (style sheet, script) that the build embeds in the library
-/// (cmake/CdiffAssets.cmake).
+/// The content of a file of the source tree (style sheet, script), which the build embeds in the
+/// library (cmake/CdiffAssets.cmake).
 class Asset {
  public:
   template <std::size_t N>
@@ -97,7 +97,7 @@ Markup jsonElement(const std::string& id, std::string_view json);
 /// and [ escaped, so that it starts no HTML, link or further cell.
 std::string markdownText(std::string_view text);
 
-/// Texts of whole files, with their declarations.
+/// Whole files: HTML or XML with its declaration.
 std::string htmlDocument(const Markup& head, const Markup& body);
 std::string xmlDocument(const Markup& root);
 

@@ -20,13 +20,13 @@ inline bool isSnakeCase(std::string_view name) {
   return name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
 }
 
-/// A table of things by name, to which plug-ins add while the program runs.
+/// A table of entries by name, to which plug-ins add while the program runs.
 /// Descriptors (a struct with `name`) in the order in which they were added, with who added each.
 /// What it holds stays where it is.
 template <class Descriptor>
 class Registry {
  public:
-  /// `kind` names the things in messages ("planner"); `package` are those of this package.
+  /// `kind` names the entries in messages ("planner"); `package` are those of this package.
   Registry(std::string kind, std::vector<Descriptor> package) : kind_(std::move(kind)) {
     for (Descriptor& descriptor : package) add(std::move(descriptor), "package e2e_cdiff");
   }

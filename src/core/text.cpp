@@ -40,7 +40,7 @@ std::string now(const char* format) {
 constexpr char kMark = '\'';
 
 /// Whether a spreadsheet would compute the text: what starts with = + - @, a tab or a line end and
-/// is no number. Marks before that count too, so that texts read back as they were.
+/// is not a number. Marks before that count too, so that texts read back as they were.
 bool isFormula(const std::string& text) {
   const std::size_t first = text.find_first_not_of(kMark);
   if (first == std::string::npos) return false;

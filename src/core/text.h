@@ -15,7 +15,7 @@ namespace cdiff::core {
 /// Shortest decimal that reads back to the same double; "nan", "inf" and "-inf" for the rest.
 std::string formatNumber(double value);
 
-/// `value` with a fixed count of decimals, for people.
+/// `value` with a fixed number of decimals, for people.
 std::string formatFixed(double value, int decimals);
 
 /// The whole text as a finite double; nullopt when anything else is in it.
@@ -25,24 +25,26 @@ std::optional<double> parseNumber(std::string_view text);
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
 /// Like nearestName, but empty unless at most a third of the letters differ or the known name
-/// contains `name`: fit for "did you mean".
+/// contains `name`: close enough to suggest.
 std::string closeName(const std::string& name, const std::vector<std::string>& known);
 
-/// "; did you mean 'NAME'?" of the close name, or nothing.
+/// "; did you mean 'NAME'?" with the close name; empty when there is none.
 std::string didYouMean(const std::string& name, const std::vector<std::string>& known);
 
-/// At most `length` bytes of `text`, "..." behind them where it is longer: for quoting in messages.
+/// `text` cut to at most `length` bytes; "..." follows where it was longer. For quotes in messages.
 std::string shortened(const std::string& text, std::size_t length = 80);
 
-/// `text` with every character that is not a letter, digit, '_', '-' or '.' replaced by '_', and no
-/// leading dots: safe as the name of a file.
+/// `text` with every character that is not a letter, digit, '_', '-' or '.' replaced by '_', and
+/// without leading dots: safe as a file name.
 std::string fileName(std::string text);
 
 /// Parts of `text` between separators; runs of separators count as one, no empty parts.
 std::vector<std::string> splitText(std::string_view text, char separator);
 
-/// The parts with a separator between them.
+/// Whether `text` ends with `end`.
 bool endsWith(std::string_view text, std::string_view end);
+
+/// The parts with a separator between them.
 std::string joinText(const std::vector<std::string>& parts, std::string_view separator);
 
 // The local time of the wall clock as text, to the second.
@@ -53,9 +55,9 @@ std::string timeText();
 /// For the name of a file or folder: "20260131_140509".
 std::string timeForFileName();
 
-// Rows of comma-separated values as RFC 4180 has them: cells are quoted only where they must be.
-// A text that a spreadsheet would compute (it starts with = + - @, a tab or a line end and is no
-// number) gets an apostrophe in front, which reading takes away again.
+// Rows of comma-separated values as in RFC 4180: cells are quoted only where they must be. A text
+// that a spreadsheet would evaluate as a formula (it starts with = + - @, a tab or a line end and
+// is not a number) is prefixed with an apostrophe, which reading removes.
 
 /// `text` as one cell.
 std::string csvCell(const std::string& text);
@@ -66,17 +68,17 @@ std::string csvNumber(const std::optional<double>& value);
 /// The cells as one row with its line end.
 std::string csvRow(const std::vector<std::string>& cells);
 
-/// Cells of a row without its line end, empty ones included.
+/// Cells of a row, including empty ones; `row` has no line end.
 std::vector<std::string> csvCells(std::string_view row);
 
 /// A row in the text of a file.
 struct CsvRow {
   std::string_view text;  ///< without its line end; line ends in quoted cells are part of it
   std::size_t line = 1;   ///< in which it starts
-  bool ended = false;     ///< whether a line end closes it: one that is cut off has none
+  bool ended = false;     ///< whether a line end follows; false for a row that was cut off
 };
 
-/// All rows of a text that outlives them; no row follows the last line end.
+/// All rows of a text, which must outlive them; no row follows the last line end.
 std::vector<CsvRow> csvRows(std::string_view text);
 
 }  // namespace cdiff::core

@@ -15,37 +15,40 @@ namespace {
 
 constexpr double kTick = BicycleModel::kTick;
 constexpr double kKmhPerMps = 3.6;      // [km/h per m/s]
-constexpr double kDriveThrottle = 0.3;  // below it the fit leaves the speed as it is
-constexpr double kStandstill = 1e-3;    // [m/s] a braking car slower than this stands
+constexpr double kDriveThrottle = 0.3;  // below it the fitted model keeps the speed
+constexpr double kStandstill = 1e-3;    // [m/s] below it a braking car stops
 
-/// Speed [km/h] one tick later under a throttle of at least kDriveThrottle.
+/// Speed [km/h] one tick after speed v [km/h] under a throttle u of at least kDriveThrottle.
 double drivenSpeed(double v, double u) {
   return 0.963873001 * v + 4.37535692e-4 * v * v - 0.380192912 * u + 1.74950069 * u * u +
          0.0916787414 * v * u - 0.0705461530 * v * u * u - 1.05996152e-3 * v * v * u +
          6.71079346e-4 * v * v * u * u;
 }
 
+/// d drivenSpeed / d v.
 double drivenSpeedByV(double v, double u) {
   return 0.963873001 + 2.0 * 4.37535692e-4 * v + 0.0916787414 * u - 0.0705461530 * u * u -
          2.0 * 1.05996152e-3 * v * u + 2.0 * 6.71079346e-4 * v * u * u;
 }
 
+/// d drivenSpeed / d u [km/h].
 double drivenSpeedByU(double v, double u) {
   return -0.380192912 + 2.0 * 1.74950069 * u + 0.0916787414 * v - 2.0 * 0.0705461530 * v * u -
          1.05996152e-3 * v * v + 2.0 * 6.71079346e-4 * v * v * u;
 }
 
-/// Speed [km/h] one tick later under full brake, before the cap (Horner's scheme; no constant
-/// term).
+/// Coefficients of brakedSpeed, highest power first; there is no constant term.
 constexpr double kBrakeFit[] = {-4.91381935e-12, 2.44419284e-9, -4.90357228e-7, 5.06587474e-5,
                                 -2.83832427e-3,  8.20967431e-2, 9.31711370e-3};
 
+/// Speed [km/h] one tick after speed v [km/h] under full brake, before the cap (Horner's scheme).
 double brakedSpeed(double v) {
   double value = 0.0;
   for (const double coefficient : kBrakeFit) value = (value + coefficient) * v;
   return value;
 }
 
+/// d brakedSpeed / d v.
 double brakedSpeedByV(double v) {
   double value = 0.0;
   double derivative = 0.0;
@@ -56,6 +59,7 @@ double brakedSpeedByV(double v) {
   return derivative;
 }
 
+/// Number of ticks in `duration` [s].
 long tickCount(double duration) {
   const double ticks = duration / kTick;
   if (!std::isfinite(ticks) || ticks < -1e-6 || std::abs(ticks - std::round(ticks)) > 1e-6) {
@@ -123,7 +127,7 @@ SpeedResponse BicycleModel::speedResponse(double speed,
   const double uncapped = brakedSpeed(v) - v;
   const double brake = std::clamp(uncapped, strongest, 0.0);
   const double raw = (v + (1.0 - action.brake) * drive + action.brake * brake) / kKmhPerMps;
-  const bool stands = response.speed == 0.0 && raw > 0.0;  // the last millimeter per second
+  const bool stands = response.speed == 0.0 && raw > 0.0;  // stopped from below kStandstill
   if (raw < 0.0 || raw > options_.max_speed || stands) return response;
   const double drive_by_v = driven ? drivenSpeedByV(v, action.throttle) - 1.0 : 0.0;
   const double brake_by_v = uncapped == brake ? brakedSpeedByV(v) - 1.0 : 0.0;

@@ -22,7 +22,7 @@ struct RunProtocol {
 /// A resolved scenario: the value of each field as YAML, by its full key.
 using Settings = std::map<std::string, std::string>;
 
-/// Under what the runs of a result folder were driven.
+/// The conditions under which the runs of a result folder were driven.
 struct BatchConditions {
   std::string suite;                             ///< name of the route suite; empty: none
   std::map<std::string, RunProtocol> protocols;  ///< of complete runs, by id

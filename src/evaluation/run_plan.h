@@ -63,7 +63,7 @@ struct PlannedRun {
 
 /// Scenarios outermost, repetitions innermost. `source` names the matrix in errors. Throws
 /// InputError for an empty matrix, one of more than 100,000 runs, an unknown scenario, planner or
-/// profile, a seed that is no whole number, a variant that is not "name: key=value ...", and
+/// profile, a seed that is not a whole number, a variant that is not "name: key=value ...", and
 /// everything a scenario can have wrong.
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source);
 

@@ -35,7 +35,7 @@ struct SummaryFacts {
   Measures measures;
 };
 
-/// Throws InputError naming `source` for a text that is no summary.
+/// Throws InputError naming `source` for a text that is not a summary.
 SummaryFacts readSummary(const std::string& text, const std::string& source);
 
 /// What happened to one planned run: record.json in its folder, written whole before the batch
@@ -73,7 +73,7 @@ std::string causeToRepeat(const RunRecord& earlier, const PlannedRun& planned);
 RunRecord recordOf(const PlannedRun& run);
 
 std::string recordJson(const RunRecord& record);
-/// nullopt when the file is absent. Throws InputError naming a file that is no record.
+/// nullopt when the file is absent. Throws InputError naming a file that is not a record.
 std::optional<RunRecord> readRecord(const std::filesystem::path& file);
 /// Records of a batch's result folder by id. Throws InputError when it holds none, or one that is
 /// damaged.
@@ -82,7 +82,7 @@ std::vector<RunRecord> readRecords(const std::filesystem::path& results);
 /// Numbers of a summary.json by JSON pointer (`MeasureDefinition::place`); lists are left out.
 using SummaryNumbers = std::map<std::string, double>;
 
-/// Throws InputError naming `source` for a text that is no JSON object.
+/// Throws InputError naming `source` for a text that is not a JSON object.
 SummaryNumbers summaryNumbers(const std::string& text, const std::string& source);
 
 /// The runs of a batch with all numbers of their summaries, from which tables and figures are made.

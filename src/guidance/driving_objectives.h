@@ -22,8 +22,8 @@ class SpeedObjective : public Objective {
 
 /// J_area = sum_t mean_p max(0, margin - d_A(p))^2 [m^2], d_A = signed distance to the border of
 /// the drivable area at the vehicle's elevation, positive inside; p = center of the box at row t
-/// (paper III-D1, "Drivable Area Guidance", eq. 10), or also the middles of its front and
-/// rear. Beyond the border the pull grows with the distance, so there is no dead zone outside.
+/// (paper III-D1, "Drivable Area Guidance", eq. 10), or also the middles of its front and rear.
+/// Beyond the border the pull grows with the distance, so there is no dead zone outside.
 class DrivableAreaObjective : public Objective {
  public:
   double margin = 1.2;            ///< delta_margin [m]: half a width of 1.8 m + 0.3 m

@@ -13,7 +13,7 @@
 
 namespace cdiff::inference {
 
-/// Floats that begin at a cache line, zero at first.
+/// Floats aligned to a cache line, initially zero.
 class AlignedFloats {
  public:
   AlignedFloats() = default;

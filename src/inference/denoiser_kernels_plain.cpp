@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The kernels for any CPU, on the compiler's generic vectors; a multiplication and an addition
-/// take the place of the fused ones.
+/// The kernels for any CPU, on the compiler's generic vector types. Without a fused multiply-add, a
+/// product is rounded before the sum.
 #include "inference/transformer_templates.h"
 
 namespace cdiff::inference {

@@ -13,9 +13,8 @@
 
 namespace cdiff::inference {
 
-// Feature maps of one image in oneDNN memory, float32, [1, channels, height, width] stored
-// channels last or in blocks of 8 or 16 channels, whichever this machine's convolutions work best
-// on.
+// Feature maps of one image in oneDNN memory, float32, [1, channels, height, width] stored channels
+// last or in blocks of 8 or 16 channels, whichever this machine's convolutions work best on.
 
 /// Shape [channels, height, width] of a feature map.
 struct MapShape {

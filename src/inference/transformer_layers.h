@@ -14,10 +14,11 @@
 namespace cdiff::inference {
 
 // Layers of transformers and recurrent heads at run time, float32, on the kernels of one
-// instruction set. Rows of several sequences lie one after the other; what comes out of a row is
-// the same to the last bit whatever lies in the other sequences.
+// instruction set. Rows of several sequences are stored one after the other; the result for a row
+// is the same to the last bit whatever the other sequences hold.
 
-/// What layers are built from; all must outlive them but the tensors.
+/// What layers are built from. The kernels must outlive the layers; the tensors need not, they are
+/// copied.
 struct LayerWeights {
   const DenoiserKernels& linear;
   const TransformerKernels& kernels;
@@ -39,7 +40,7 @@ class TensorList {
   void layer(const std::string& name, const std::vector<std::int64_t>& shape);
   void norm(const std::string& name, std::int64_t channels) { layer(name, {channels}); }
   void mlp(const std::string& name, std::int64_t in, std::int64_t hidden, std::int64_t out);
-  /// Of MultiHeadAttention.
+  /// The tensors of a MultiHeadAttention.
   void attention(const std::string& name, std::int64_t width);
   void feedForward(const std::string& name, std::int64_t width, std::int64_t hidden);
   std::vector<TensorShape> take() { return std::move(tensors_); }
@@ -48,11 +49,12 @@ class TensorList {
   std::vector<TensorShape> tensors_;
 };
 
-/// Rows x channels of float32 in memory of its own, channels padded to kChannelMultiple with zeros.
+/// A float32 matrix [rows, channels] that owns its memory; channels are padded with zeros to a
+/// multiple of kChannelMultiple.
 class Rows {
  public:
   Rows() = default;
-  /// Makes room; what was there is lost unless only the count of rows falls.
+  /// Makes room; the content is lost unless only the number of rows decreases.
   void resize(std::int64_t rows, std::int64_t channels);
   View view(std::int64_t row = 0, std::int64_t channel = 0) const {
     return {values_.data() + row * stride_ + channel, stride_};
@@ -68,7 +70,7 @@ class Rows {
   std::int64_t stride_ = 0;
 };
 
-/// to += from.
+/// Adds `count` values element by element: to += from.
 inline void addRow(const float* from, std::int64_t count, float* to) {
   for (std::int64_t i = 0; i < count; ++i) to[i] += from[i];
 }
@@ -93,7 +95,7 @@ class LayerNorm {
  public:
   LayerNorm(const LayerWeights& weights, const std::string& name);
   void apply(const View& input, const View& added, const View& output, std::int64_t rows) const;
-  /// With nothing added.
+  /// output = LayerNorm(input).
   void apply(const View& input, const View& output, std::int64_t rows) const {
     apply(input, {zeros_.data(), 0}, output, rows);
   }
@@ -126,11 +128,11 @@ struct TransformerSizes {
   std::int64_t heads = 8;
   std::int64_t hidden = 1024;  ///< of the feed-forward network
 
-  /// Throws InputError naming the key that is no such multiple.
+  /// Throws InputError naming the key that is not such a multiple.
   void validate() const;
 };
 
-/// Memory that the layers of a network share.
+/// Scratch buffers that the layers of a network share.
 struct TransformerMemory {
   Rows normed;
   Rows query;
@@ -151,9 +153,10 @@ struct RowSpan {
   std::int64_t count = 0;
 };
 
-/// Scaled dot-product attention of several heads (Vaswani et al. 2017) between rows that are in
-/// memory: of the rows `queries` of memory.query to the rows `keys` of memory.key_value (keys, then
-/// values). Writes memory.weights, and memory.mixed at `queries`; the rows must be there.
+/// Scaled dot-product attention of several heads (Vaswani et al. 2017) between rows that are
+/// already projected: the rows `queries` of memory.query attend to the rows `keys` of
+/// memory.key_value (keys, then values). Writes memory.weights, and memory.mixed at `queries`; both
+/// must have been resized.
 void attendRows(const TransformerKernels& kernels, const TransformerSizes& sizes,
                 const RowSpan& queries, const RowSpan& keys, TransformerMemory& memory);
 
@@ -191,7 +194,7 @@ class FeedForward {
   Linear down_;
 };
 
-/// A layer of a transformer's encoder, normalization last (Vaswani et al. 2017, as BERT has it):
+/// A layer of a transformer's encoder, normalization last (Vaswani et al. 2017, as in BERT):
 /// x = LN(x + W_o attention(x)), x = LN(x + W_2 gelu(W_1 x)). Tensors: NAME.query, NAME.key_value
 /// (keys, then values), NAME.output, NAME.norm1, NAME.up, NAME.down, NAME.norm2.
 class TransformerLayer {
@@ -199,11 +202,12 @@ class TransformerLayer {
   TransformerLayer(const LayerWeights& weights, const std::string& name,
                    const TransformerSizes& sizes);
 
-  /// In place; `begins`: the first row of each sequence, then the count of all rows.
+  /// In place; `begins`: the first row of each sequence, then the number of all rows.
   void forward(const std::vector<std::int64_t>& begins, const Rows& x,
                TransformerMemory& memory) const;
-  /// The first row of each sequence alone, to memory.first; the mean over heads of the weights by
-  /// which it attends to its sequence's rows comes to `attention`, sequence after sequence.
+  /// Only the first row of each sequence, written to memory.first; `attention` receives the weights
+  /// with which it attends to the rows of its sequence, averaged over heads, sequence after
+  /// sequence.
   void forwardFirst(const std::vector<std::int64_t>& begins, const Rows& x,
                     TransformerMemory& memory, std::vector<float>& attention) const;
 
@@ -228,7 +232,7 @@ class PreNormAttention {
   /// position.rows() rows of x, repeated from there on.
   void attendSelf(const std::vector<RowSpan>& spans, const Rows& x, const Rows& position,
                   TransformerMemory& memory) const;
-  /// All rows of x attend to those of `context`, which come normalized.
+  /// All rows of x attend to those of `context`, which are already normalized.
   void attendTo(const Rows& context, const Rows& x, TransformerMemory& memory) const;
 
  private:
@@ -247,9 +251,9 @@ class PreNormFeedForward {
   FeedForward mix_;
 };
 
-/// A gated recurrent unit (Cho et al. 2014, with the reset gate behind the matrix as libtorch has
-/// it): r, z = sigmoid(W_i x + b_i + W_h h + b_h), n = tanh(W_i x + b_i + r (W_h h + b_h)),
-/// h' = (1 - z) n + z h. Tensors NAME.input and NAME.state with the rows of r, z, n.
+/// A gated recurrent unit (Cho et al. 2014, with the reset gate applied after the matrix product,
+/// as in libtorch): r, z = sigmoid(W_i x + b_i + W_h h + b_h), n = tanh(W_i x + b_i + r (W_h h +
+/// b_h)), h' = (1 - z) n + z h. Tensors NAME.input and NAME.state with the rows of r, z, n.
 class GruCell {
  public:
   GruCell(const LayerWeights& weights, const std::string& name);

@@ -10,8 +10,7 @@
 
 namespace cdiff::inference {
 
-// Layer normalization, attention and GELU for one vector type V (linkage as in
-// kernel_templates.h).
+// Layer normalization, attention and GELU for one vector type V (linkage as in kernel_templates.h).
 
 namespace {
 
@@ -92,7 +91,7 @@ inline void transposeKeys(const AttentionCall& call, const float* key, std::int6
   }
 }
 
-/// weights = softmax of the first `keys` scores, 0 behind them; the sum runs first to last.
+/// weights = softmax of the first `keys` scores, 0 after them; the sum runs first to last.
 template <class V>
 void softmaxRow(float* scores, std::int64_t keys, std::int64_t padded) {
   float largest = scores[0];

@@ -80,7 +80,7 @@ void NormalizedConvolution::pullBack(std::int64_t sample, const View& output_gra
 ResidualBlock::ResidualBlock(const LayerSource& source, const std::string& name,
                              const ChannelLayout& inputs, const Connection& connection,
                              std::int64_t injection)
-    : connection_(connection),
+    : Layer(connection),
       injection_(injection),
       rows_(connection.output.signal->value.rows()),
       first_(source, name + ".block1", inputs, rows_),
@@ -140,7 +140,7 @@ void ResidualBlock::pullBack(std::int64_t sample) {
 
 PlainConvolution::PlainConvolution(const LayerSource& source, const std::string& name,
                                    const Spacing& spacing, const Connection& connection)
-    : connection_(connection) {
+    : Layer(connection) {
   const Tensor& weight = tensorNamed(source.tensors, name + ".weight");
   const Filter filter =
       spacing.spread ? Filter::ofTransposedConvolution(weight) : Filter::ofConvolution(weight);
@@ -148,8 +148,6 @@ PlainConvolution::PlainConvolution(const LayerSource& source, const std::string&
                        &tensorNamed(source.tensors, name + ".bias"));
   reversed_.emplace(source.kernels, filter.transposed(), spacing.reversed());
 }
-
-void PlainConvolution::resize(std::int64_t) {}
 
 void PlainConvolution::forward(std::int64_t sample, const float*) {
   convolution_->apply(connection_.input.value(sample), connection_.output.value(sample),
@@ -163,7 +161,7 @@ void PlainConvolution::pullBack(std::int64_t sample) {
 
 HeadBlock::HeadBlock(const LayerSource& source, const std::string& name,
                      const ChannelLayout& inputs, const Connection& connection)
-    : connection_(connection),
+    : Layer(connection),
       block_(source, name, inputs, connection.output.signal->value.rows()),
       zeros_(block_.outputs().padded()) {}
 

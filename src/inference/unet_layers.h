@@ -49,25 +49,29 @@ struct LayerSource {
   std::int64_t halo;
 };
 
+/// The signals that a layer reads and writes.
+struct Connection {
+  Port input;
+  Port output;
+  /// A later layer reads the input, too: gradients are added to the input's.
+  bool shared_input = false;
+};
+
 /// A layer of the U-Net that works on one sample of a batch at a time and keeps what its pull-back
 /// needs.
 class Layer {
  public:
+  explicit Layer(const Connection& connection) : connection_(connection) {}
   virtual ~Layer() = default;
-  /// Makes room for a batch.
-  virtual void resize(std::int64_t samples) = 0;
+  /// Makes room for a batch, where a layer keeps anything.
+  virtual void resize(std::int64_t /*samples*/) {}
   /// `injection`: the sample's row of injections.
   virtual void forward(std::int64_t sample, const float* injection) = 0;
   /// From the gradient at the output to that at the input, at the last forward.
   virtual void pullBack(std::int64_t sample) = 0;
-};
 
-/// Between which signals a layer stands.
-struct Connection {
-  Port input;
-  Port output;
-  /// Another, later layer reads the input too: add to its gradient.
-  bool shared_input = false;
+ protected:
+  Connection connection_;
 };
 
 /// Mish(GN(convolution(input))) + added.
@@ -114,7 +118,6 @@ class ResidualBlock : public Layer {
  private:
   void buildSkip(const LayerSource& source, const std::string& name, const ChannelLayout& inputs);
 
-  Connection connection_;
   std::int64_t injection_;
   std::int64_t rows_;
   NormalizedConvolution first_;
@@ -130,12 +133,10 @@ class PlainConvolution : public Layer {
   PlainConvolution(const LayerSource& source, const std::string& name, const Spacing& spacing,
                    const Connection& connection);
 
-  void resize(std::int64_t samples) override;
   void forward(std::int64_t sample, const float* injection) override;
   void pullBack(std::int64_t sample) override;
 
  private:
-  Connection connection_;
   std::optional<Convolution> convolution_;
   std::optional<Convolution> reversed_;
 };
@@ -151,7 +152,6 @@ class HeadBlock : public Layer {
   void pullBack(std::int64_t sample) override;
 
  private:
-  Connection connection_;
   NormalizedConvolution block_;
   AlignedFloats zeros_;
 };

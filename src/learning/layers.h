@@ -27,7 +27,7 @@ at::Tensor layerNorm(const ParameterSet& parameters, const std::string& name, co
 /// inference::Mlp on the last axis.
 at::Tensor mlp(const ParameterSet& parameters, const std::string& name, const at::Tensor& x);
 
-/// What attention mixes, and the weights by which it does.
+/// Output of attention, and its weights.
 struct Attended {
   at::Tensor mixed;    ///< [B, Q, width]
   at::Tensor weights;  ///< [B, heads, Q, K]

@@ -76,7 +76,8 @@ struct PartSource {
   std::string first;  ///< stage to train first where none is there; empty: the part starts over
 };
 
-/// What is known of a stage before it runs: its name, the parts it starts with, and what it leaves.
+/// What is known about a stage before it runs: its name, the parts it starts with, and what it
+/// leaves.
 struct StageInfo {
   std::string name;
   std::vector<PartSource> starts;  ///< what the stage starts with
@@ -154,7 +155,7 @@ class Task {
   virtual ~Task() = default;
 
   virtual TaskTexts texts() const = 0;
-  /// In the order in which they are trained; `export` and `all` are no names of stages.
+  /// In the order in which they are trained; `export` and `all` are not names of stages.
   virtual std::vector<StageInfo> stages() const = 0;
   /// Names of the stages that `all` trains under the task's options.
   virtual std::vector<std::string> allStages() const = 0;

@@ -10,7 +10,7 @@
 
 namespace cdiff::learning {
 
-/// What is known of a task before it is made: name, help and constructor.
+/// What is known about a task before it is made: name, help and constructor.
 struct TaskDescriptor {
   std::string name;  ///< value of --task
   std::string help;  ///< what is trained, a sentence without its full stop

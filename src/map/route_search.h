@@ -53,13 +53,13 @@ class LaneSearch {
   Arrival arrivalAt(const LanePosition& goal) const;
   std::optional<LanePath> pathTo(const LanePosition& goal) const;
 
-  /// Driven length from the start to the start of a lane [m]: negative beside the start,
-  /// infinity when not reached; for the start's own lane that of the way round.
+  /// Driven length from the start to the start of a lane [m]: negative beside the start, infinity
+  /// when not reached; for the start's own lane that of the way round.
   double lengthToStart(LaneIndex lane) const;
 
  private:
-  // Node n < lane count: lane n entered at its start. Node lane count + n: lane n abreast of
-  // the start.
+  // Node n < lane count: lane n entered at its start. Node lane count + n: lane n abreast of the
+  // start.
   std::size_t count() const { return network_.lanes().size(); }
   LaneIndex laneOf(std::size_t node) const {
     return static_cast<LaneIndex>(node < count() ? node : node - count());
@@ -101,8 +101,8 @@ void appendPath(const RoadNetwork& network, const LanePath& path, double start, 
 /// Throws InputError when the route is shorter than 1 cm.
 Route buildRoute(const RoadNetwork& network, const std::vector<LaneStretch>& drive);
 
-// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each
-// point of a row.
+// Lanes that a point (map frame [m]) may lie on, and the cheapest choice of one lane for each point
+// of a row.
 
 /// A lane that a point may lie on.
 struct LaneCandidate {

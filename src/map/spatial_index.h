@@ -12,7 +12,7 @@ namespace cdiff::map {
 /// Uniform grid over the segments of the centerlines of all lanes that allow cars (map frame [m]);
 /// answers which lanes pass near a point.
 struct RoadNetwork::SpatialIndex {
-  /// What is asked for.
+  /// What a query searches for.
   struct Query {
     Eigen::Vector2d position = Eigen::Vector2d::Zero();
     double radius = 0.0;                                            ///< [m]

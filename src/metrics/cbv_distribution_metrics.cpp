@@ -135,13 +135,13 @@ const MeasureDefinition known::kSpeedWasserstein = {
 
 namespace {
 
-constexpr double kBackgroundRadius = 150.0;  // [m] speeds of background vehicles are sampled within
+constexpr double kBackgroundRadius = 150.0;  // [m] around the ego, for the sampled vehicles
 
 /// Speeds of CBVs against a target: background vehicles of the session, a normal distribution, or
 /// given samples.
 class SpeedWasserstein final : public Metric {
  public:
-  /// Throws InputError for samples that are no numbers.
+  /// Throws InputError for samples that are not numbers.
   explicit SpeedWasserstein(const MetricsOptions& options) : options_(options) {
     if (options.speed_target == "file") target_ = options.samples();
   }

@@ -18,8 +18,8 @@ namespace cdiff::metrics {
 const std::deque<MetricDescriptor>& metricDescriptors();
 
 /// Measures of all metrics, in the order of summary.json: by metric, but in a group of measures
-/// ("/metrics/GROUP/NAME/value") by name. Every place is filled in. A registration
-/// invalidates references.
+/// ("/metrics/GROUP/NAME/value") by name. Every place is filled in. A registration invalidates
+/// references.
 const std::vector<MeasureDefinition>& measureDefinitions();
 /// nullptr for an unknown name.
 const MeasureDefinition* findMeasure(const std::string& name);

@@ -124,8 +124,8 @@ std::optional<double> rootOf(const std::optional<double>& variance) {
   return variance ? std::optional<double>(std::sqrt(*variance)) : std::nullopt;
 }
 
-/// Speed, acceleration and jerk of CBVs as RIFT's code has them: from histograms in which sample i
-/// of an n-tick life counts n - i times. n counts values before that.
+/// Speed, acceleration and jerk of CBVs as in RIFT's code: from histograms in which sample i of an
+/// n-tick life counts n - i times. n counts values before that.
 class RiftMotion final : public Metric {
  public:
   explicit RiftMotion(double decision_period) : decision_period_(decision_period) {}

@@ -59,7 +59,7 @@ constexpr MeasureDefinition kActVariance = {
     "",
 };
 
-/// Times to collision as RIFT's code has them: in bins below 5 s at ego speeds of 3 to 10 m/s.
+/// Times to collision as in RIFT's code: in bins below 5 s at ego speeds of 3 to 10 m/s.
 class RiftInteraction final : public Metric {
  public:
   void observe(const MetricTick& tick) override {
@@ -147,8 +147,8 @@ constexpr MeasureDefinition kRiftUncomfortable = {
     "",
 };
 
-/// Rates and distance of CBVs as RIFT's code has them, from decision ticks; at most one collision
-/// per vehicle, at any tick.
+/// Rates and distance of CBVs as in RIFT's code, from decision ticks; at most one collision per
+/// vehicle, at any tick.
 class RiftRates final : public Metric {
  public:
   explicit RiftRates(double decision_period) : decision_period_(decision_period) {}

@@ -12,7 +12,7 @@ namespace cdiff::metrics {
 
 namespace {
 
-/// Share of the decisions, and the mean 2D-TTC over them.
+/// Definition of a share of the decisions [%].
 constexpr MeasureDefinition shareMeasure(const char* name, const char* label,
                                          const char* definition) {
   return {name,
@@ -25,6 +25,7 @@ constexpr MeasureDefinition shareMeasure(const char* name, const char* label,
           "RIFT takes all vehicles.",
           1};
 }
+/// Definition of a mean 2D-TTC over such decisions [s].
 constexpr MeasureDefinition meanMeasure(const char* name, const char* label,
                                         const char* definition) {
   return {name,
@@ -64,7 +65,8 @@ constexpr MeasureDefinition kTtcBackgroundMean = meanMeasure(
     "ttc_background_set_mean_s", "2D-TTC of background vehicles not ahead in the lane, mean",
     "Mean 2D-TTC over the decisions of ttc_background_share_percent.");
 
-/// Who it is that sets the ego's 2D-TTC.
+/// Which vehicle sets the ego's 2D-TTC at decisions: one ahead in the ego's lane, another CBV, or
+/// another background vehicle.
 class Ttc2dPartner final : public Metric {
  public:
   explicit Ttc2dPartner(const MetricContext& context)
@@ -95,11 +97,12 @@ class Ttc2dPartner final : public Metric {
   }
 
  private:
+  /// Whether the center of `other` lies on the ego's lane ahead of the ego, headed like its route.
   bool isAhead(const traffic::Vehicle& ego, const traffic::Vehicle& other,
                double ego_arc_length) const {
-    constexpr double kDetour = 1.5;  // longest way on the route for a straight distance
+    constexpr double kDetour = 1.5;  // largest distance along the route / straight distance
     constexpr double kAngle = core::degreesToRadians(45.0);
-    constexpr double kUsualHalf = 1.6;  // [m] without a network
+    constexpr double kUsualHalfWidth = 1.6;  // [m] of a lane, without a network
     if (route_.empty()) return false;
     const geometry::Polyline& path = route_.path();
     const double here =
@@ -107,7 +110,7 @@ class Ttc2dPartner final : public Metric {
     const double end = std::min(here + kDetour * radius_, path.length());
     const geometry::Projection there = path.project(other.state.position, here, end);
     const double half = network_ == nullptr
-                            ? kUsualHalf
+                            ? kUsualHalfWidth
                             : 0.5 * network_->lane(route_.laneAt(there.arc_length)).width;
     return there.arc_length > here && there.distance <= half &&
            std::abs(core::angleDifference(other.state.heading, there.heading)) <= kAngle;
@@ -125,7 +128,7 @@ class Ttc2dPartner final : public Metric {
   SampleStatistics following_;
   SampleStatistics cbvs_;
   SampleStatistics background_;
-  TickShare following_cbv_;  ///< of all decisions with a time
+  TickShare following_cbv_;  ///< of all decisions with a 2D-TTC
 };
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace cdiff::page {
 
-// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did,
-// from above in its own frame (meters, forward is up, route green), by kind of driving.
+// Pictures of training samples as one HTML page: what the vehicle saw beside what it then did, from
+// above in its own frame (meters, forward is up, route green), by kind of driving.
 
 /// A table's row: what is counted, how often, its share.
 struct CountRow {
@@ -45,7 +45,7 @@ struct TrainingStage {
 };
 
 /// The stages of a `curves.csv`, in order of appearance; an incomplete last row, which a kill
-/// leaves, is passed over. Throws InputError naming `source` and the line of anything else that is
+/// leaves, is skipped. Throws InputError naming `source` and the line of anything else that is
 /// no such file.
 std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std::string& source);
 

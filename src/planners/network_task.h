@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace cdiff::planners {
 
-/// What a NetworkTask trains and how it is called.
+/// What a NetworkTask trains, and its names.
 template <class Architecture>
 struct NetworkTaskTexts {
   WeightKind kind;
@@ -18,14 +19,17 @@ struct NetworkTaskTexts {
   std::string stage;
   std::int64_t batch;  ///< where the options give none
   std::vector<inference::TensorShape> (*tensors)(const Architecture&);
+  learning::SampleSchema (*fields)();  ///< of the samples made from scenes
 };
 
 /// The training of a planner whose weights are one network, which learns from samples of scenes in
-/// one stage. `Settings` hold the `architecture` of the network and what is chosen as `samples`.
-template <class Settings>
+/// one stage. `Settings` hold the `architecture` of the network and what is chosen as `samples`;
+/// `State` holds what a run works on, its network as `net`.
+template <class Settings, class State>
 class NetworkTask : public learning::OneStageTask {
  public:
   std::vector<std::string> weightFiles() const override { return {texts_.kind.file}; }
+  learning::SampleSchema sceneFields() const override { return texts_.fields(); }
   void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
   void validate() const override { settings.architecture.validate(); }
   nlohmann::json facts() const override {
@@ -64,11 +68,14 @@ class NetworkTask : public learning::OneStageTask {
       parameters().load(readNetwork(texts_.kind, init, texts_.tensors).weights, init);
     parameters().moveTo(run.device);
   }
-  virtual learning::ParameterSet& parameters() = 0;
   /// Measures in the model card, Markdown.
   virtual std::string table(const learning::Measures& held_out) const = 0;
 
+  std::unique_ptr<State> state_;  ///< made by `start`
+
  private:
+  learning::ParameterSet& parameters() { return state_->net.parameters(); }
+
   NetworkTaskTexts<Architecture> texts_;
 };
 

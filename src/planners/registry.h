@@ -13,7 +13,7 @@ namespace cdiff::planners {
 // The table of planners, for ego and CBVs alike: those of this package (the list in
 // src/planners/CMakeLists.txt) and those that plug-ins add.
 
-/// Adds a planner to the table; `source` says who does ("library /x/libmine.so"). Throws InputError
+/// Adds a planner to the table; `source` names who does ("library /x/libmine.so"). Throws InputError
 /// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
 /// and a camera that its rig does not have.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
@@ -21,7 +21,7 @@ void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& 
 /// nullptr for an unknown name. "NAME+NAME..." are several planners of CBVs by slot
 /// (planner_by_slot.h).
 const planning::PlannerDescriptor* findPlanner(const std::string& name);
-/// All, sorted by name.
+/// All planners, sorted by name.
 std::vector<const planning::PlannerDescriptor*> registeredPlanners();
 /// Who registered a planner; "" for an unknown name.
 std::string sourceOf(const std::string& name);
@@ -56,7 +56,7 @@ void requireRig(const std::string& key, const std::string& name, const RigChoice
 /// Name of the planner with this title; "" when there is none.
 std::string plannerTitled(const std::string& title);
 
-/// Planners of a scenario that names none.
+/// Planners of a scenario that does not name any.
 extern const char* const kDefaultEgoPlanner;
 extern const char* const kDefaultCbvPlanner;
 

@@ -20,7 +20,8 @@ bool isFinite(const traffic::VehicleState& state);
 /// Why a vehicle cannot be driven along its route: its state is not finite, or it has no route;
 /// empty where it can.
 std::string faultOf(const PlanningTask& task);
-/// Likewise where every vehicle of the snapshot is looked at and must be finite.
+/// The same, and also a vehicle of the snapshot whose state is not finite: for planners that look
+/// at all of them.
 std::string faultOf(const traffic::TrafficSnapshot& snapshot, const PlanningTask& task);
 
 /// The vehicle whose center is nearest to that of `vehicle`; nullptr when it is alone.

@@ -20,16 +20,17 @@
 
 namespace cdiff::realism {
 
-/// Another selector up to its first hand-over; from there on only the vehicles of that hand-over
-/// stay selected, as long as the other selector keeps them.
+/// Wraps another selector: returns its selections up to the first hand-over; from then on only the
+/// vehicles of that hand-over stay selected, for as long as the other selector keeps them. Used by
+/// continueSession.
 class HandOverSelector : public cbv::VehicleSelector {
  public:
-  /// `hands_over` false: the first hand-over is noted, but not made.
+  /// `hands_over` false: the first hand-over is remembered in first(), but not made.
   HandOverSelector(std::unique_ptr<cbv::VehicleSelector> inner, bool hands_over);
 
   void observe(const traffic::TrafficSnapshot& snapshot) override { inner_->observe(snapshot); }
   cbv::CbvSelection update(const traffic::TrafficSnapshot& snapshot) override;
-  /// Assignments of the first hand-over; empty before.
+  /// Assignments of the first hand-over; empty before it.
   const std::vector<cbv::CbvAssignment>& first() const { return first_; }
 
  private:
@@ -40,13 +41,13 @@ class HandOverSelector : public cbv::VehicleSelector {
   std::vector<cbv::CbvAssignment> first_;
 };
 
-/// Adds the vehicles of a snapshot to a recording as its next step. A vehicle that was not in the
-/// step before starts a track; so does one whose role changed where `by_role`.
+/// Builds a recording, one step per snapshot (map frame, SI units). A vehicle that was not in the
+/// previous step starts a new track; with `by_role`, so does one whose role has changed.
 class RecordingBuilder {
  public:
   explicit RecordingBuilder(bool by_role) : by_role_(by_role) {}
   void add(const traffic::TrafficSnapshot& snapshot);
-  /// Notes which vehicles of a snapshot, that of the latest step or of a tick after it, overlap.
+  /// Records which vehicles overlap in a snapshot, that of the latest step or of a tick after it.
   void noteContacts(const traffic::TrafficSnapshot& snapshot);
   std::size_t steps() const { return steps_; }
   Recording take() { return std::move(recording_); }
@@ -60,8 +61,8 @@ class RecordingBuilder {
   std::map<std::string, std::size_t> latest_;  ///< track of each vehicle
 };
 
-/// Keeps all decisions of a session or its bag as a recording with roles, and the contacts of every
-/// tick.
+/// Records all decisions of a session, live or from its bag, with the vehicles' roles, and the
+/// contacts of every tick.
 class SessionRecorder : public session::SessionObserver {
  public:
   void observe(const session::TickRecord& record) override;
@@ -71,10 +72,12 @@ class SessionRecorder : public session::SessionObserver {
   RecordingBuilder builder_{true};
 };
 
-/// Follows a session to its first hand-over and for some steps on, then stops it.
+/// Records the course of the vehicles of a session's first hand-over for some steps of 0.1 s
+/// (features as in Continuation), then stops the session. Used by continueSession.
 class CourseRecorder : public session::SessionObserver {
  public:
-  /// `stop` is set when the last step was seen. All references must outlive the recorder.
+  /// Sets `stop` after `steps` steps. `sumo_drives`: the vehicles stay with SUMO, so they are
+  /// followed whatever their role. All references must outlive the recorder.
   CourseRecorder(const session::SessionSetup& setup, const HandOverSelector& selector,
                  std::size_t steps, bool sumo_drives, std::atomic<bool>& stop);
 
@@ -85,22 +88,25 @@ class CourseRecorder : public session::SessionObserver {
   const std::string& error() const { return error_; }
 
  private:
-  /// What is noted of one object at every tick.
+  /// What is recorded of one vehicle of the hand-over at every tick. An indicator is 1 if it was
+  /// true at any tick since the last step, else 0.
   struct Object {
     std::string id;
     metrics::StopLines lines;
     bool gone = false;
-    double collided = 0.0;  ///< since the last step
-    double off_road = 0.0;
-    double red_light = 0.0;
-    std::size_t red_lights = 0;  ///< so far
+    double collided = 0.0;       ///< indicator
+    double off_road = 0.0;       ///< indicator
+    double red_light = 0.0;      ///< indicator
+    std::size_t red_lights = 0;  ///< run so far
     Course course = {};          ///< indicators and features of the map, step by step
   };
 
   void handOver(const traffic::TrafficSnapshot& snapshot);
   void hash(const traffic::TrafficSnapshot& snapshot);
   void note(const traffic::TrafficSnapshot& snapshot, Object& object) const;
+  /// Appends the indicators and `edge`, the signed distance to the road's edge [m], to its course.
   static void closeStep(double edge, Object& object);
+  /// Largest signed distance of a corner to the drivable area's border, positive outside [m].
   double edgeDistance(const traffic::Vehicle& vehicle) const;
   const traffic::Vehicle* find(const traffic::TrafficSnapshot& snapshot,
                                const Object& object) const;

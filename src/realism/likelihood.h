@@ -57,7 +57,7 @@ using Course = std::array<Series, kFeatures>;
 class Histogram {
  public:
   explicit Histogram(const FeatureDefinition& feature);
-  /// NaN is passed over.
+  /// NaN is skipped.
   void add(double value);
   /// ln((count + pseudo-count) / (samples + bins x pseudo-count)) of the value's bin.
   double logProbability(double value) const;

@@ -30,8 +30,8 @@ struct PooledOptions {
 std::vector<Course> pooledCourses(std::vector<Recording> recordings, const std::string& role,
                                   const PooledOptions& options = {});
 
-/// Likelihood of each feature of the logged courses under the simulated ones. Absent where there
-/// is nothing simulated or logged.
+/// Likelihood of each feature of the logged courses under the simulated ones. Absent where there is
+/// nothing simulated or logged.
 Likelihoods pooledLikelihoods(const std::vector<Course>& logged,
                               const std::vector<Course>& simulated);
 

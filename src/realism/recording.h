@@ -26,7 +26,7 @@ struct TrackState {
   double elevation = 0.0;                              ///< [m]
 };
 
-/// One vehicle without gaps.
+/// The states of one vehicle at consecutive steps, without gaps (map frame, SI units).
 struct Track {
   std::string id;
   std::string role = {};  ///< who drives it, as a trace says; empty in recorded traffic
@@ -64,8 +64,8 @@ struct Motion {
   Series yaw_acceleration;  ///< [rad/s^2]
 };
 
-/// As the challenge has it: central differences of places and headings, and of those again. The
-/// first and last states have no speed, the first and last two no acceleration.
+/// As in the challenge: central differences of places and headings, and of those again. The first
+/// and last states have no speed, the first and last two no acceleration.
 Motion centralMotion(const Track& track);
 
 /// States that a smoothed derivative is made of.
@@ -97,8 +97,8 @@ struct MovingBox {
   double speed = 0.0;  ///< along its heading [m/s]
 };
 
-/// Gap along its heading to the nearest vehicle ahead of its front divided by the closing speed,
-/// at most 5 s [s]. Ahead: headings differ by at most 75 degrees, 10 degrees where they overlap
+/// Gap along its heading to the nearest vehicle ahead of its front divided by the closing speed, at
+/// most 5 s [s]. Ahead: headings differ by at most 75 degrees, 10 degrees where they overlap
 /// laterally by less than 0.5 m; the lateral extents overlap.
 double timeToCollision(const MovingBox& self, const std::vector<MovingBox>& others);
 
@@ -108,8 +108,8 @@ Course courseOf(const Recording& recording, const std::vector<Motion>& motions, 
                 std::size_t begin, std::size_t end);
 
 /// Columns that a file of recorded traffic must have, in any order: recording, vehicle, t [s], x, y
-/// [m], heading [rad], length, width [m]. Others are passed over: speeds and accelerations are
-/// differentiated anew from x and y.
+/// [m], heading [rad], length, width [m]. Others are skipped: speeds and accelerations are
+/// differentiated again from x and y.
 const std::vector<std::string>& recordedColumns();
 
 /// Recorded traffic from a CSV file: rows of a vehicle lie together in order of time, 0.1 s apart.
@@ -126,7 +126,7 @@ std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::pa
 /// step. The trace holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m
 /// x 1.8 m (generated demand: 4.2 x 1.75 to 5.2 x 1.95), so that contacts of ego and CBVs are taken
 /// from summary.json, too, where it is there. Throws InputError for a folder without trace.csv or
-/// session.yaml, a damaged file, and for a simulation step of which 0.1 s is no multiple.
+/// session.yaml, a damaged file, and for a simulation step that does not divide 0.1 s.
 Recording readResult(const std::filesystem::path& folder);
 
 }  // namespace cdiff::realism

@@ -61,7 +61,7 @@ struct TraceRow {
 };
 
 /// All rows in the file's order: by tick, the ego first, then CBVs. Throws InputError naming file
-/// and line for anything that is no trace.
+/// and line for anything that is not a trace.
 std::vector<TraceRow> readTrace(const std::filesystem::path& file);
 
 /// Throws InputError when another process writes into the folder, or when it holds anything of a

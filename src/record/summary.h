@@ -28,7 +28,7 @@ void addPlainMeasure(Json& object, const std::string& key, const metrics::Measur
 void addMeasures(Json& object, const std::string& section,
                  const metrics::SessionMeasures& measures);
 
-/// What summary.json says of the CBVs: their measures, selections, plans and faults.
+/// What summary.json says about the CBVs: their measures, selections, plans and faults.
 Json cbvObject(const SessionResult& result);
 
 // Text of summary.json: the session's measures under fixed keys in a fixed order; an absent measure

@@ -20,7 +20,7 @@ namespace cdiff::rendering {
 constexpr double kNearPlane = 0.25;
 
 /// Pose of a camera on a vehicle: transforms the map frame into the optical frame (x right, y down,
-/// z forward [m]). Made anew for each image by RigRenderer.
+/// z forward [m]). RigRenderer makes one for each image.
 class View {
  public:
   /// `far_distance`: farthest ground and vehicles that are drawn [m].
@@ -39,7 +39,7 @@ class View {
   Eigen::Vector3d toCamera(const Eigen::Vector3d& point) const {
     return directionToCamera(point - eye_);
   }
-  /// Whether a ball (map frame [m]) may be visible: not behind the camera, beside its view, or
+  /// Whether a sphere (map frame [m]) may be visible: not behind the camera, beside its view, or
   /// beyond the far distance.
   bool maySee(const Eigen::Vector3d& center, double radius) const;
   const Eigen::Vector3d& eye() const { return eye_; }  ///< map frame [m]

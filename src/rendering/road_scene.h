@@ -13,16 +13,16 @@
 
 namespace cdiff::rendering {
 
-/// A ball that holds a thing.
+/// A sphere that encloses a surface or marking (map frame [m]).
 struct Bound {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0.0;
 };
 
-/// The ball around the middle of the points' box.
+/// The sphere around the points' axis-aligned bounding box.
 Bound boundOf(const Eigen::Vector3d* points, int count);
 
-/// Finds things near the view: things sorted into square cells by their center.
+/// Finds what a view may see: bounding spheres, sorted into square cells by their centers.
 class SpatialGrid {
  public:
   SpatialGrid() = default;
@@ -47,17 +47,17 @@ class SpatialGrid {
   CellRange cellsAround(const std::vector<View>& views) const;
   void visibleIn(std::size_t cell, const View& view, std::vector<int>& found) const;
   std::vector<Bound> bounds_;
-  std::vector<int> items_;               ///< by cell
-  std::vector<std::size_t> cell_begin_;  ///< of each cell in items_, and the end
+  std::vector<int> items_;               ///< indices of spheres, by cell
+  std::vector<std::size_t> cell_begin_;  ///< first item of each cell in items_, then their number
   std::vector<Bound> cell_bounds_;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   int columns_ = 0;
   int rows_ = 0;
 };
 
-// Triangles of a simple polygon by cutting ears off, in the plane; heights are kept.
+// Triangulation of a simple polygon by ear clipping in the xy plane; elevations are kept.
 
-/// Triangles that fill the outline (either turning direction); a rest that is not simple is filled
+/// Triangles that fill the outline (either orientation); a remainder that is not simple is filled
 /// as a fan.
 std::vector<std::array<Eigen::Vector3d, 3>> triangulate(std::vector<Eigen::Vector3d> outline);
 
@@ -67,8 +67,8 @@ struct Surface {
   int count = 4;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< normal, not of unit length
   Color color = kAsphalt;
-  double rank = rank::kRoad;
-  bool two_sided = false;  ///< the same color from below
+  double rank = rank::kRoad;  ///< larger wins where surfaces coincide (canvas.h)
+  bool two_sided = false;     ///< drawn in the same color from below
   SceneClass kind = SceneClass::kRoad;
 };
 
@@ -76,12 +76,12 @@ struct Surface {
 struct Marking {
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();
   Eigen::Vector3d end = Eigen::Vector3d::Zero();
-  Eigen::Vector3d side = Eigen::Vector3d::Zero();  ///< half its width to the left
+  Eigen::Vector3d side = Eigen::Vector3d::Zero();  ///< half its width, pointing left
   Color color = kWhitePaint;
 };
 
-/// What lies on the ground and never changes: asphalt of lanes and junctions, pavements, markings;
-/// computed once from the network, drawn where a view may see it.
+/// The static ground of a network: asphalt of lanes and junctions, pavements, markings (map frame
+/// [m]). Computed once from the network; FrontCamera draws what its view may see.
 class RoadScene {
  public:
   explicit RoadScene(const map::RoadNetwork& network);
@@ -92,7 +92,7 @@ class RoadScene {
  private:
   void drawSurface(const Surface& surface, const View& view, Canvas& canvas) const;
 
-  /// Farthest first: thin lines are transparent.
+  /// Sorts the visible markings, farthest first, because thin lines are drawn transparent.
   void sortMarkings(const View& view, std::vector<int>& markings);
 
   std::vector<Surface> surfaces_;
@@ -104,19 +104,19 @@ class RoadScene {
   std::vector<std::pair<double, int>> by_distance_;  ///< buffer of sortMarkings
 };
 
-/// Draws a painted line if it is seen from above.
+/// Draws a painted line unless it is seen from below.
 void drawMarking(const Marking& marking, double rank, const View& view, Canvas& canvas);
 
 /// A painted line between two points, `width` wide [m].
 Marking markingBetween(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, double width,
                        Color color);
 
-// Borders of a lane: points beside its centerline that fit together at bends.
+// Borders of a lane: points beside its centerline that join without gaps at bends.
 
-/// A cross-section of a lane.
+/// A cross-section of a lane (map frame [m]).
 struct CrossSection {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  Eigen::Vector2d left = Eigen::Vector2d::Zero();  ///< where 1 m to the left lies, at bends longer
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();  ///< to 1 m left of the line; longer at bends
   double arc_length = 0.0;                         ///< [m]
 
   /// The point `lateral` meters to the left.
@@ -125,26 +125,28 @@ struct CrossSection {
   }
 };
 
-/// Cross-sections from arc length `begin` to `end`: both, every point of the line between them, and
-/// more so that neighbors are at most `spacing` apart.
+/// Cross-sections at the arc lengths `begin` and `end` [m], at every point of the line between
+/// them, and at enough others that neighbors are at most `spacing` [m] apart.
 std::vector<CrossSection> crossSections(const geometry::Polyline& line, double begin, double end,
                                         double spacing);
 
 // The markings of a network's lanes: solid white lines at the road's edges, dashed white ones
 // between lanes of one direction, solid yellow ones beside lanes of the other direction.
 
-/// What a piece of a lane's outer border is: the road's edge, the centerline to the lanes of the
-/// other direction, or nothing (it lies on another lane).
+/// The kind of a piece of a lane's outer border: the road's edge, the centerline toward lanes of
+/// the opposite direction, or none (it lies on another lane).
 enum class Border { kEdge, kCenter, kNone };
 
-/// `point` lies on the border, `heading` is the lane's there.
+/// The kind of border at `point` (map frame [m]), which lies on it; `heading` is the lane's there
+/// [rad].
 Border borderAt(const map::RoadNetwork& network, const map::Lane& lane,
                 const Eigen::Vector3d& point, double heading);
 
+/// All markings of the network.
 std::vector<Marking> laneMarkings(const map::RoadNetwork& network);
 
-/// What stands beside roads that lie higher than their surroundings: grass slopes down to the
-/// lowest road near, or the side of a bridge's deck where a lower road is in the way.
+/// The sides of roads that lie above their surroundings: grass slopes down to the lowest road
+/// nearby, or the sides of a bridge's deck where a lower road is in the way.
 std::vector<Surface> roadSides(const map::RoadNetwork& network);
 
 }  // namespace cdiff::rendering

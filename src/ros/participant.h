@@ -26,7 +26,7 @@ namespace cdiff::ros {
 /// How a node's session came to its end.
 enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped };
 
-/// What a result says of the traffic simulator that left, or fell silent for `timeout` [s].
+/// What a result says about a traffic simulator that left, or fell silent for `timeout` [s].
 std::string simulatorFault(Ending ending, double timeout);
 
 /// What every node but the traffic simulator has in common: it waits for the session, reports when
@@ -139,7 +139,7 @@ class Observer : public Participant {
   using Participant::Participant;
 
  protected:
-  /// Listens to all that the table of channels says of answers and reports for an observer of this
+  /// Listens to all that the table of channels lists as answers and reports for an observer of this
   /// part; from now on a decision is complete with all that the table asks for.
   void listenToAnswers(Party party, const session::ScenarioOptions& options);
   /// Whether all answers to a tick are here, or nothing more of it will come: in lockstep when it

@@ -19,8 +19,8 @@
 
 namespace cdiff::ros {
 
-/// How a planner fares over a session: latency [ms], batch size, age of images, faults by
-/// kind, calls that took longer than the decision period. For /diagnostics.
+/// How a planner fares over a session: latency [ms], batch size, age of images, faults by kind,
+/// calls that took longer than the decision period. For /diagnostics.
 class PlannerStatistics {
  public:
   /// `decision_period` [s]: a call that takes longer in wall time misses its deadline.

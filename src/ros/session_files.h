@@ -45,7 +45,7 @@ class Parameters {
 /// Notes on the parameter server that this node has refused the input of its roslaunch, and said
 /// why.
 void noteRefusal();
-/// Whether a node of the same roslaunch has noted that; takes the note away.
+/// Whether a node of the same roslaunch has left such a note; removes it.
 bool takeRefusal();
 
 /// The arguments of the roslaunch that started this process, which are the simulator's parameters;
@@ -61,8 +61,7 @@ session::SessionRequest sessionRequest(const Parameters& parameters);
 session::ScenarioOptions requestedScenario(const Parameters& parameters);
 
 // Where a session of the node graph puts its files, and the result folder that the traffic
-// simulator writes when the metrics node cannot: a session always leaves a result that can be
-// read.
+// simulator writes when the metrics node cannot: a session always leaves a result that can be read.
 
 /// "roslaunch", as results name this deployment.
 inline constexpr const char* kDeployment = "roslaunch";

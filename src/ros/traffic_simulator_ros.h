@@ -117,8 +117,8 @@ class TrafficSimulatorRos {
   PacedAnswers paced_answers_;
   std::map<int, AnyMessage> early_controls_;  ///< by slot: come before their rollouts
   std::optional<DecisionBook>
-      decisions_;                        ///< set by the constructor; used where answers may be late
-  bool recorded_ = true;                 ///< whether the record of the present decision is out
+      decisions_;         ///< set by the constructor; used where answers may be late
+  bool recorded_ = true;  ///< whether the record of the current decision was published
   std::set<std::string> late_planners_;  ///< whose first late answer is recorded as a fault
   std::deque<::e2e_cdiff::TrafficSnapshot::ConstPtr> unsettled_;  ///< from an open decision on
   MessageGate gate_;

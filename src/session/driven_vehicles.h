@@ -35,10 +35,10 @@ class DrivenVehicles {
   /// Does nothing for a vehicle that is none of ours.
   void remove(const std::string& id);
 
-  /// Takes the actions of a decision. Full braking takes the place of an invalid one; answers a
-  /// text for each of these.
+  /// Takes the actions of a decision. Full braking replaces an invalid one; returns a text for each
+  /// of these.
   std::vector<std::string> command(const std::vector<planning::PlannedAction>& actions);
-  /// Moves all of them by one simulation step [s]; who has no action yet brakes fully.
+  /// Moves all of them by one simulation step [s]; a vehicle without an action brakes fully.
   void move(double step);
 
   /// As the simulator is to move them.

@@ -14,9 +14,9 @@
 
 namespace cdiff::session {
 
-/// The options in `folder`/NAME.yaml, a folder of shipped presets (protocols, methods). Throws
-/// InputError for another name: `refusal` ("protocol preset 'x' is not known"), the nearest shipped
-/// name and all of them.
+/// Reads the options in `folder`/NAME.yaml, a folder of shipped presets (protocols, methods).
+/// Throws InputError for an unknown name: the text `refusal` ("protocol preset 'x' is not known"),
+/// then the nearest shipped name and a list of all.
 template <class Options>
 Options loadPreset(const std::filesystem::path& folder, const std::string& name,
                    const std::string& refusal) {

@@ -50,7 +50,7 @@ std::string methodText(const MethodUse& method);
 // Samples of one quantity from a file, in the file's unit: one number a line, or the JSON that
 // `cdiff metric shapiro_wilk` reads.
 
-/// Lines: one finite number each; empty lines and what follows '#' are passed over. JSON (the file
+/// Lines: one finite number each; empty lines and what follows '#' are skipped. JSON (the file
 /// starts with '{'): {"cases": [{"x": [...]}, ...]}, the samples of all cases together. Throws
 /// InputError naming file, line (or case) and what was expected, also for a file without a sample.
 std::vector<double> readSamples(const std::filesystem::path& file);

@@ -45,13 +45,13 @@ class BackgroundTraffic {
 /// tick; decides nothing.
 class World {
  public:
-  /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterward
-  /// `snapshot()` is tick 0. `setup` must outlive the world.
+  /// Drives the warm-up in SUMO, as the setup starts it, and places the ego: afterward `snapshot()`
+  /// is tick 0. `setup` must outlive the world.
   explicit World(const SessionSetup& setup);
   /// The same in another simulator, which knows the setup's network.
   World(const SessionSetup& setup, std::unique_ptr<simulation::TrafficSimulator> simulator);
 
-  /// The world at the present tick.
+  /// The world at the current tick.
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
   /// Goes to the next tick. At a decision tick give the selection and the actions decided; between
@@ -102,7 +102,7 @@ class World {
   ProtocolMonitor monitor_;
   traffic::TrafficSnapshot snapshot_;
   std::vector<traffic::Fault> pending_faults_;
-  std::vector<std::string> leaving_;  ///< in contact at the present tick
+  std::vector<std::string> leaving_;  ///< in contact at the current tick
   TakeOverDisturbance disturbance_;   ///< may be empty
 };
 

@@ -138,7 +138,7 @@ constexpr double kStartMargin =
 constexpr double kOutOfSight = 60.0;    ///< from the ego, once the session runs [m]
 constexpr double kRouteLength = 800.0;  ///< [m]
 constexpr double kUsualSpeed =
-    8.0;  ///< wished at the start, or 0.7 of the limit when that is more [m/s]
+    8.0;  ///< desired at the start, or 0.7 of the limit when that is more [m/s]
 constexpr int kTriesPerCall = 12;
 
 constexpr std::array<traffic::VehicleDimensions, 4> kSizes = {

@@ -45,15 +45,15 @@ class DemandRouter {
 struct Insertion {
   map::LaneIndex lane = map::kNoLane;
   double front = 0.0;  ///< place of the front bumper along the lane [m]
-  double speed = 0.0;  ///< wished [m/s]
+  double speed = 0.0;  ///< desired [m/s]
   traffic::VehicleDimensions dimensions;
 };
 
 /// Pose of the center of a vehicle that starts there.
 traffic::VehicleState stateAt(const map::RoadNetwork& network, const Insertion& insertion);
 
-/// The speed to start with: as wished, less behind a leader or before the lane's end; nullopt where
-/// a gap to a vehicle is too small.
+/// The speed to start with: the desired one, less behind a leader or before the lane's end; nullopt
+/// where a gap to a vehicle is too small.
 std::optional<double> freeSpeed(const map::RoadNetwork& network, const Insertion& insertion,
                                 const std::vector<traffic::Vehicle>& vehicles);
 
@@ -117,11 +117,10 @@ class DemandGenerator {
   EdgeGraph edges_;
   DemandRouter router_;
   std::vector<Start> starts_;
-  std::uint32_t draws_ = 0;  ///< attempts so far: the counter of the random stream
-  std::uint32_t count_ = 0;  ///< vehicles so far
-  std::vector<traffic::Vehicle>
-      announced_;             ///< returned in this step, not yet among the present ones
-  double fingerprint_ = 0.0;  ///< of the present vehicles at the last call
+  std::uint32_t draws_ = 0;                  ///< attempts so far: the counter of the random stream
+  std::uint32_t count_ = 0;                  ///< vehicles so far
+  std::vector<traffic::Vehicle> announced_;  ///< returned in this step, not yet in the simulation
+  double fingerprint_ = 0.0;                 ///< of the vehicles in the simulation at the last call
 };
 
 }  // namespace cdiff::simulation

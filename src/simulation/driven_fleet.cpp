@@ -17,7 +17,7 @@ namespace {
 
 using SumoVehicle = libtraci::Vehicle;
 
-constexpr double kGivenRouteLength = 250.0;  ///< set ahead of the present edge [m]
+constexpr double kGivenRouteLength = 250.0;  ///< set ahead of the current edge [m]
 constexpr double kRouteRefresh = 100.0;      ///< a new route is set when less is left [m]
 constexpr double kFarOff = 3.0;              ///< SUMO's vehicle is put to its place beyond this [m]
 constexpr double kCatchUp = 4.0;             ///< share of the distance made up per second [1/s]

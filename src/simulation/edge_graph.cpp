@@ -218,7 +218,7 @@ std::vector<int> DrivenRoute::edgesFrom(int current, double length) const {
   std::optional<std::size_t> index = routeIndexOf(current, route_edges_);
   if (!index && progress_edge_ < route_edges_.size() &&
       graph_->connected(current, route_edges_[progress_edge_])) {
-    index = progress_edge_ - 1;  // just before the route: goes on with its present edge
+    index = progress_edge_ - 1;  // just before the route: continues with its current edge
   }
   if (index) {
     for (std::size_t i = *index + 1; i < route_edges_.size(); ++i) {

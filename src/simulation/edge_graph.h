@@ -53,8 +53,7 @@ class EdgeGraph {
   bool connected(int from, int to) const;
   /// Whether a lane belongs to a route: to one of its edges, or between two that follow each other.
   bool onRoute(map::LaneIndex lane, const std::vector<int>& edges) const;
-  /// The lane that follows `lane` on a route; kNoLane where the route needs another
-  /// lane, or ends.
+  /// The lane that follows `lane` on a route; kNoLane where the route needs another lane, or ends.
   map::LaneIndex nextLane(map::LaneIndex lane, const std::vector<int>& edges) const;
   /// Adds edges at the end, straight on where it can, until they measure `length` [m] and are at
   /// least two; fewer where the network ends. No edge twice: SUMO would take one pass for the

@@ -21,19 +21,20 @@ struct LaneTrafficOptions {
   double hardest_deceleration = 8.0;  ///< [m/s^2]
   double minimum_gap = 2.5;           ///< s0 [m]
   double time_headway = 1.0;          ///< T [s]
-  double route_length = 500.0;        ///< driven before a vehicle leaves, less where lanes end [m]
+  double route_length = 500.0;        ///< after which a vehicle leaves; less where lanes end [m]
 };
 
-/// Background traffic in this process, without SUMO: each vehicle follows a route along lanes by
-/// the intelligent driver model (Treiber et al. 2000), dv/dt = a [1 - (v/v0)^4 - (s*/s)^2], s* = s0
-/// + v T + v dv / (2 sqrt(a b)), behind whatever is on its path. Many times as fast as SUMO, and as
-/// many of it as one likes may run in a process, each in its own thread; made for training that
-/// needs millions of decisions, not for evaluation.
+/// Background traffic in this process, without SUMO (map frame, SI units): each vehicle follows a
+/// route along lanes by the intelligent driver model (Treiber et al. 2000), dv/dt = a [1 - (v/v0)^4
+/// - (s*/s)^2], s* = s0 + v T + v dv / (2 sqrt(a b)), behind whatever is on its path. It is many
+/// times faster than SUMO, and any number of instances can run in one process, each in its own
+/// thread; made for training that needs millions of decisions (planners/ppo/training), not for
+/// evaluation.
 ///
-/// Simpler than SUMO: no lane changes but those that the route needs; traffic lights are green; at
-/// junctions a vehicle yields to whom it would meet within two seconds, to vehicles that we drive
-/// always, to others where they come first (ties by id); two that stand across each other's path go
-/// on through each other. The same calls give the same traffic.
+/// Simpler than SUMO: vehicles change lanes only where their route requires it; traffic lights are
+/// green. At a junction a vehicle yields to those that it would meet within two seconds: always to
+/// vehicles that we drive, to others if they arrive first (ties by id). Two vehicles that block
+/// each other's path drive through each other. The same calls give the same traffic.
 class LaneTraffic : public TrafficSimulator {
  public:
   /// `graph` must outlive the object; `step` is the simulation step [s].
@@ -43,7 +44,8 @@ class LaneTraffic : public TrafficSimulator {
   void addDriven(const std::string& id, const traffic::VehicleDimensions& dimensions,
                  const DrivenVehicle& start) override;
   void takeOver(const std::string& id) override;
-  /// Along the route that it was driven on; false, and removed, more than 2 m or 30 degrees off it.
+  /// The vehicle continues along the route that it was driven on; if it is more than 2 m or 30
+  /// degrees off that route, it is removed and the result is false.
   bool release(const DrivenVehicle& vehicle) override;
   bool addBackground(const std::string& id, const std::vector<std::string>& edges,
                      double depart_position, int depart_lane, double depart_speed,
@@ -59,11 +61,11 @@ class LaneTraffic : public TrafficSimulator {
   struct Car {
     SimulatedVehicle state;
     bool ours = false;
-    map::Route route;          ///< of ours: not used
+    map::Route route;          ///< not used for ours
     double place = 0.0;        ///< arc length of the center [m]
     double offset = 0.0;       ///< to the left of the route, decaying after a release [m]
-    double turned = 0.0;       ///< heading against the route, likewise [rad]
-    double limit_share = 1.0;  ///< of the lane's limit that it drives at
+    double turned = 0.0;       ///< heading relative to the route, decaying likewise [rad]
+    double limit_share = 1.0;  ///< desired speed / speed limit of the lane
     map::LaneIndex lane = map::kNoLane;
 
     double front() const { return place + 0.5 * state.dimensions.length; }
@@ -77,7 +79,8 @@ class LaneTraffic : public TrafficSimulator {
     double gap = 0.0;
     double speed = 0.0;
   };
-  /// Lanes from a place along SUMO edges; empty where they do not follow each other.
+  /// Lanes along SUMO edges from `arc_length` [m] on `lane` of the first edge; empty where the
+  /// edges are not connected.
   map::LanePath lanesAlong(const std::vector<std::string>& edges, int lane,
                            double arc_length) const;
   Car& carOf(const std::string& id);

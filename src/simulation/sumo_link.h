@@ -19,8 +19,8 @@
 
 namespace cdiff::simulation {
 
-// SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an
-// angle in degrees clockwise from north; we by the center of its box and a heading in radians
+// SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an angle
+// in degrees clockwise from north; we by the center of its box and a heading in radians
 // counter-clockwise from east. center = front - L/2 (cos, sin)(heading).
 
 /// Heading of a navigation angle [deg], in (-pi, pi] [rad].
@@ -160,8 +160,8 @@ class SumoLink {
 
 // What a session gives to SUMO, and which file is at fault when SUMO refuses it.
 
-/// Starts SUMO and connects. Throws InputError naming the file that is missing, or that SUMO
-/// refuses, with SUMO's own sentence.
+/// Starts SUMO and connects. Throws InputError naming the file that is missing or that SUMO
+/// refuses, with SUMO's own message.
 std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session);
 
 /// Whether a sentence of SUMO names ('...') something that the session's demand defines.

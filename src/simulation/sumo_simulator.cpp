@@ -18,8 +18,8 @@
 namespace cdiff::simulation {
 namespace {
 
-// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest
-// deceleration, 8 right of way, 16 red lights.
+// Bits of SUMO's speed mode: 1 safe speed, 2 largest acceleration, 4 largest deceleration, 8 right
+// of way, 16 red lights.
 constexpr int kUsualSpeedMode = 31;
 constexpr int kDisregardRightOfWay = 23;
 

@@ -12,12 +12,12 @@
 
 namespace cdiff::simulation {
 
-/// How SUMO is started and how long it may take [s of wall time].
+/// How SUMO is started and how long it may take.
 struct SumoOptions {
   std::string binary = "sumo";    ///< program to start
   double start_timeout = 20.0;    ///< until SUMO answers [s of wall time]
-  double step_timeout = 10.0;     ///< a step that takes longer is a frozen SUMO [s of wall time]
-  double match_threshold = 20.0;  ///< match threshold of moveToXY [m]
+  double step_timeout = 10.0;     ///< a step that takes longer: SUMO is frozen [s of wall time]
+  double match_threshold = 20.0;  ///< largest distance to the lane that moveToXY matches [m]
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -34,13 +34,13 @@ struct SumoSession {
   std::filesystem::path log_folder;  ///< SUMO's error log; a temporary folder when empty
 };
 
-/// TrafficSimulator over SUMO through libtraci: owns the SUMO process, subscribes instead of
-/// asking, and turns every way in which SUMO can fail into a SimulatorError that quotes SUMO's own
-/// log; into an InputError where the network or the demand is at fault.
+/// TrafficSimulator on SUMO through libtraci (units and frames as in the base class): owns the SUMO
+/// process and reads it by subscriptions. Every failure of SUMO becomes a SimulatorError that
+/// quotes SUMO's own log, or an InputError where the network or the demand is at fault.
 class SumoSimulator : public TrafficSimulator {
  public:
   /// Starts SUMO and connects. `network` must outlive the simulator. Throws InputError that names
-  /// network or demand and quotes SUMO when it refuses one of them (also crashing over it).
+  /// the network or the demand and quotes SUMO when SUMO refuses one of them or crashes on it.
   SumoSimulator(const SumoOptions& options, const SumoSession& session,
                 const map::RoadNetwork& network);
   /// Ends the SUMO process that it started, and only that one.

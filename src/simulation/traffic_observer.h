@@ -69,10 +69,10 @@ class RightOfWay {
   /// `signals`: all lights with their 'g' states. `network` must outlive the object.
   RightOfWay(const map::RoadNetwork& network, const std::vector<traffic::SignalState>& signals);
 
-  /// Changes after a step of `step` seconds. No vehicle may go while another moves in the
-  /// junction or toward it. To ours, traffic always yields: while one of ours comes, only those go
-  /// that stand ahead of it on its own edge, and other grants end. A queue ahead of ours at a light
-  /// has priority ('G') until ours is the first.
+  /// Changes after a step of `step` seconds. No vehicle may go while another moves in the junction
+  /// or toward it. To ours, traffic always yields: while one of ours comes, only those go that
+  /// stand ahead of it on its own edge, and other grants end. A queue ahead of ours at a light has
+  /// priority ('G') until ours is the first.
   RightOfWayChanges update(const std::vector<SimulatedVehicle>& vehicles, const IsDriven& is_driven,
                            double step);
 

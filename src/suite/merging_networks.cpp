@@ -17,8 +17,8 @@ constexpr double kAfter = 130.0;   ///< and after the last [m]
 /// One direction of the main road with its on-ramp.
 class Carriageway {
  public:
-  /// `middle`: the main road's middle in driving direction, the added lane from `begin` to
-  /// `end` of it.
+  /// `middle`: the main road's middle in driving direction, the added lane from `begin` to `end` of
+  /// it.
   Carriageway(std::string name, const Line& middle, double begin, double end, int lanes)
       : name_(std::move(name)),
         left_(beside(middle, -kMedian)),

@@ -135,8 +135,8 @@ double lengthOf(const Line& line);
 /// when it fails.
 std::string buildNetwork(const RoadPlan& plan, const std::filesystem::path& folder);
 
-// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short
-// districts; angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
+// Road networks drawn at random: crossings and T junctions, roundabouts, on-ramps, short districts;
+// angles, lanes, limits, bends and elevation come from the draws (SI units, map frame).
 
 /// What kind of junction or road a generated network consists of.
 enum class NetworkKind { kCrossing, kRoundabout, kMerge, kDistrict };
@@ -155,7 +155,7 @@ RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws);
 
 // The kinds of networks, and the roads that lead to a junction.
 
-/// Width of every lane [m], as networks/netconvert.netccfg has it.
+/// Width of every lane [m], as in networks/netconvert.netccfg.
 inline constexpr double kLaneWidth = 3.5;
 
 RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws);

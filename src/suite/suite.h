@@ -14,8 +14,8 @@ namespace cdiff::suite {
 /// A route suite: a folder with suite.yaml (its routes), networks/NAME/ and scenarios/ROUTE.yaml.
 struct Suite {
   std::string name;
-  std::int64_t seed = 1;  ///< it was generated from
-  bool sealed = false;    ///< nothing is chosen on it; see seal.h
+  std::int64_t seed = 1;  ///< root seed from which it was generated
+  bool sealed = false;    ///< no choice of design or setting may be made on it; see seal.h
   std::vector<SuiteRoute> routes;
   std::filesystem::path folder;
 
@@ -34,16 +34,17 @@ std::vector<std::string> scenarioFiles(const Suite& suite);
 /// Names of the shipped suites, sorted.
 std::vector<std::string> shippedSuites();
 
-// What is held out of all training: sealed suites, and those that ship with the package, wherever
-// a copy of them lies.
+// What is held out of all training: sealed suites, and those that ship with the package, wherever a
+// copy of them lies.
 
-/// Throws InputError naming the suite when it is one of them. Whatever learns on routes calls it.
+/// Throws InputError naming the suite when it is held out. Called by everything that trains on
+/// routes.
 void requireForTraining(const Suite& suite);
-/// The same for the suites that scenario files, SUITE/scenarios/NAME.yaml, belong to; names of
-/// scenarios and other files belong to none. Whatever makes training data calls it.
+/// The same for the suites to which scenario files, SUITE/scenarios/NAME.yaml, belong; names of
+/// scenarios and other files belong to none. Called by everything that makes training data.
 void requireForTraining(const std::vector<std::string>& scenarios);
 
-/// The manifest suite.yaml, a line for each route.
+/// Text of the manifest suite.yaml, one line per route.
 std::string manifestText(const Suite& suite);
 
 }  // namespace cdiff::suite

@@ -39,7 +39,7 @@ constexpr double kLongestRoute = 200.0;  ///< [m]
 
 /// A route along a planned path, 80 to 200 m long, its length and its part before the junction
 /// drawn; name, network, density and seed are left to the caller. nullopt when the path has no lane
-/// connection, is too short or too long, changes lanes, turns by an angle that is no maneuver
+/// connection, is too short or too long, changes lanes, turns by an angle that is not a maneuver
 /// (left and right: 45 to 135 degrees; straight: up to 25 degrees), or meets no other stream.
 std::optional<SuiteRoute> planRoute(const map::LaneGraph& graph, const PlannedPath& path,
                                     Draws& draws);

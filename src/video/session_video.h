@@ -53,7 +53,7 @@ class VideoEncoder {
   std::filesystem::path temporary_;
   std::unique_ptr<core::GuardedProcess> process_;
   int input_ = -1;                ///< our end of the socket
-  core::ProcessOutput messages_;  ///< what the program says of errors
+  core::ProcessOutput messages_;  ///< error output of the program
 };
 
 /// Name of the video in the result folder.

@@ -13,7 +13,7 @@
 #include "core/file.h"
 #include "core/markup.h"
 #include "evaluation/batch_report.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_records.h"
 #include "page/outside_texts.h"

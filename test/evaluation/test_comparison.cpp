@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/run_records.h"

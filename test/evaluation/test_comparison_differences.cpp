@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

@@ -14,7 +14,7 @@ namespace cdiff::core {
 // overriding and writing them all go through that description, whatever the values come from (YAML
 // file, `--set`, ROS parameter).
 
-/// What a field is called and means.
+/// Name, unit and meaning of a field.
 struct FieldInfo {
   const char* key;   ///< snake_case key
   const char* unit;  ///< unit, or "" for a plain number or text

@@ -45,7 +45,7 @@ struct SlipResponse {
 ///    slows it while one just below does not: use the brake to slow down.
 ///  - brake 1: the fit's polynomial, the change limited to [-max_deceleration, 0]; below 1 mm/s it
 ///    stands.
-///  - between (the fit knows no partial brake): change = (1 - brake) x change of the throttle +
+///  - between (the fit has no partial brake): change = (1 - brake) x change of the throttle +
 ///    brake x change of full brake.
 class BicycleModel {
  public:

@@ -87,8 +87,8 @@ struct SearchWindow {
 class Polyline {
  public:
   Polyline() = default;
-  /// Neighboring points nearer than 1 mm in the plane are merged. Throws InputError with fewer
-  /// than two distinct points or a non-finite coordinate.
+  /// Neighboring points nearer than 1 mm in the plane are merged. Throws InputError with fewer than
+  /// two distinct points or a non-finite coordinate.
   explicit Polyline(const std::vector<Eigen::Vector3d>& points);
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }

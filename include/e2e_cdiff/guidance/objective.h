@@ -21,8 +21,8 @@ struct OtherMotion {
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
 };
 
-/// What guidance objectives know of the planned vehicle and its surroundings at one decision (map
-/// frame, SI units).
+/// What guidance objectives know about the planned vehicle and its surroundings at one decision
+/// (map frame, SI units).
 struct GuidanceScene {
   traffic::VehicleState
       state;  ///< state of the planned vehicle, which is the body frame of rollouts
@@ -31,8 +31,8 @@ struct GuidanceScene {
   const map::DrivableArea* drivable_area = nullptr;  ///< never null
   const map::Route* route = nullptr;                 ///< null: no route
   double route_arc_length = 0.0;                     ///< arc length of the vehicle on its route [m]
-  /// The vehicle that collision objectives are about (the ego, for a CBV); null: none
-  /// or seek.
+  /// The vehicle that collision objectives are about (the ego, for a CBV); null: there is none to
+  /// avoid or seek.
   const OtherMotion* other = nullptr;
   std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level
 };
@@ -70,7 +70,7 @@ class Objective {
   virtual std::unique_ptr<Objective> clone() const = 0;
 };
 
-/// What is known of a guidance objective before one is made.
+/// What is known about a guidance objective before one is made.
 struct ObjectiveDescriptor {
   std::string name;  ///< in guidance profiles, snake_case
   std::string help;  ///< one sentence: what a plan does to lower it

@@ -31,7 +31,7 @@ enum class Subject { kEgo, kCbvs, kEgoAndOthers };
 enum class Pooling {
   kByUnit,     ///< unit "count": kCount; "1/km": kRate; "%": kShare; else kMean
   kMean,       ///< mean of the sessions' values
-  kStatistic,  ///< the same, of a value that says something of a session's samples as a whole
+  kStatistic,  ///< the same, of a value that describes a session's samples as a whole
   kCount,      ///< events: their sum over the distance driven, per km
   kRate,       ///< events per km already: value x km is their number
   kShare,      ///< percentage of samples: the percentage of all sessions' samples together
@@ -84,7 +84,7 @@ struct MeasureDefinition {
 /// What a session has for a measure.
 struct Measure {
   std::optional<double> value;  ///< absent when n is too small or the measure is undefined
-  std::size_t n = 0;            ///< samples it stands on
+  std::size_t n = 0;            ///< number of samples it is based on
   std::string unit;             ///< the definition's unit, which the sink fills in
   std::string reason;  ///< why the value is absent, or how its samples were thinned out; else empty
   std::string target = {};  ///< what the samples are compared with; empty where with nothing
@@ -189,7 +189,8 @@ class Metric {
   virtual void report(MetricSink& sink) const = 0;
 };
 
-/// What is known of a metric before a session: name, the measures it defines, and its constructor.
+/// What is known about a metric before a session: name, the measures it defines, and its
+/// constructor.
 struct MetricDescriptor {
   std::string name;                         ///< snake_case, unique
   std::string help;                         ///< a sentence

@@ -207,7 +207,7 @@ struct NetworkFacts {
   std::map<std::string, std::string> instruction_sets;  ///< by key in session.yaml
 };
 
-/// What is known of a planner before one is made: name, roles, needs, options and constructor.
+/// What is known about a planner before one is made: name, roles, needs, options and constructor.
 /// Scenario files, the node graph, reports, tables and error texts read descriptors only.
 /// Everything about a planner but the planner itself.
 struct PlannerDescriptor {

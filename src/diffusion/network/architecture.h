@@ -48,9 +48,9 @@ std::vector<inference::TensorShape> denoiserTensors(const Architecture& architec
 /// Every tensor of the image encoder in a fixed order.
 std::vector<inference::TensorShape> encoderTensors(const Architecture& architecture);
 
-// Route tokens: points of the route ahead, every `route_spacing` meters from the vehicle's place
-// on it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20
-// m; beyond its end the route goes straight on.
+// Route tokens: points of the route ahead, every `route_spacing` meters from the vehicle's place on
+// it (the first one `route_spacing` ahead), as (x, y) in the vehicle's body frame divided by 20 m;
+// beyond its end the route goes straight on.
 
 /// What a token of 1 stands for [m].
 inline constexpr double kRouteTokenScale = 20.0;

@@ -23,7 +23,7 @@ double odds(double probability) {
                            : std::numeric_limits<double>::infinity();
 }
 
-/// Twice the smaller tail of a binomial distribution at `successes`.
+/// Two-sided p of a binomial count: twice its smaller tail at `successes`, at most 1.
 double binomialP(std::size_t successes, std::size_t trials, double probability) {
   const auto x = static_cast<double>(successes);
   const auto n = static_cast<double>(trials);
@@ -85,9 +85,9 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 constexpr std::size_t kExhaustiveRoutes = 14;
 constexpr std::size_t kDrawnExchanges = 19999;
-constexpr double kEqual = 1e-12;  ///< relative; sums in another order differ by as much
+constexpr double kEqual = 1e-12;  ///< relative; sums taken in another order may differ by this
 
-/// Sums of some routes.
+/// The pooled value of some routes: sum of their sums / sum of their weights.
 class Pool {
  public:
   void add(const RouteSum& route) {
@@ -103,7 +103,7 @@ class Pool {
   double weight_ = 0.0;
 };
 
-/// Probability that the expanded percentile interval leaves out at each end.
+/// Probability that the expanded percentile interval leaves out at each end (intervals.h).
 double expandedTail(std::size_t routes) {
   const auto m = static_cast<double>(routes);
   const double t = boost::math::quantile(boost::math::students_t(m - 1.0), 1.0 - kTail);
@@ -122,7 +122,7 @@ std::optional<double> difference(const std::optional<double>& a, const std::opti
   return a && b ? std::optional<double>(*b - *a) : std::nullopt;
 }
 
-/// Difference with A and B exchanged on the routes where `exchanged` says so.
+/// Value of B - value of A, with A and B exchanged on the routes for which `exchanged` is true.
 template <class Exchanged>
 std::optional<double> exchangedDifference(const RouteSums& a, const RouteSums& b,
                                           const Exchanged& exchanged) {
@@ -200,12 +200,12 @@ double exchangeTest(const RouteSums& a, const RouteSums& b) {
   if (!observed) return 1.0;
   const double bound = std::abs(*observed) * (1.0 - kEqual) - kEqual;
   const bool all = routes <= kExhaustiveRoutes;
-  const std::size_t ways = all ? std::size_t{1} << routes : kDrawnExchanges;
+  const std::size_t patterns = all ? std::size_t{1} << routes : kDrawnExchanges;
   const core::RandomStream stream(kSeed, "route_exchange");
-  std::size_t as_large = all ? 0 : 1;  // the observed one is among all of them
-  for (std::size_t way = 0; way < ways; ++way) {
-    const core::RandomKey key{0, static_cast<std::uint32_t>(way), 0};
-    std::uint64_t word = way;  // a bit per route, drawn anew every 64 routes
+  std::size_t as_large = all ? 0 : 1;  // all patterns include the observed one
+  for (std::size_t pattern = 0; pattern < patterns; ++pattern) {
+    const core::RandomKey key{0, static_cast<std::uint32_t>(pattern), 0};
+    std::uint64_t word = pattern;  // a bit per route; drawn again every 64 routes
     const auto exchanged = [&](std::size_t route) {
       if (!all && route % 64 == 0) word = stream.bits(key, static_cast<std::uint32_t>(route / 64));
       return (word >> route % 64 & 1U) != 0;
@@ -213,7 +213,7 @@ double exchangeTest(const RouteSums& a, const RouteSums& b) {
     const auto value = exchangedDifference(a, b, exchanged);
     as_large += !value || std::abs(*value) >= bound;
   }
-  return static_cast<double>(as_large) / static_cast<double>(all ? ways : ways + 1);
+  return static_cast<double>(as_large) / static_cast<double>(all ? patterns : patterns + 1);
 }
 
 }  // namespace cdiff::evaluation

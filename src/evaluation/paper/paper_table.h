@@ -15,8 +15,8 @@ namespace cdiff::evaluation {
 // The systems that the paper compares, by their names there and here, and the levels that runs of
 // them have in a batch.
 
-/// A system of the paper, whether a planner with its title is registered or not. The paper's own
-/// is there once by each method of config/methods that tables show.
+/// A system of the paper, whether a planner with its title is registered or not. The paper's own is
+/// there once by each method of config/methods that tables show.
 struct PaperSystem {
   const char* title;   ///< as the descriptor of its planner has it
   const char* name;    ///< in the table
@@ -115,7 +115,7 @@ struct TableSettings {
   std::string text;               ///< see settingsOf
 };
 
-/// A cell of a filled table: the paper's value beside ours, and on how many runs ours stands.
+/// A cell of a filled table: the paper's value beside ours, and on how many runs ours is based.
 struct TableCell {
   PaperFigure paper;
   PaperFigure repository;             ///< RIFT's
@@ -142,10 +142,11 @@ inline constexpr const char* kNoRunHasIt = "no run has this measure";
 
 Table fillTable(const TableDefinition& definition, const std::vector<BatchRun>& runs);
 
-/// Whether a row shows its intervals: each of its figures stands on kLeastRoutes routes or more.
+/// Whether a row shows its intervals: each of its values is based on kLeastRoutes routes or more.
 bool showsIntervals(const std::vector<TableCell>& row);
-/// Whether any row, or not every row with a figure, does.
+/// Whether any row shows its intervals.
 bool anyIntervals(const Table& table);
+/// Whether a row with values shows none.
 bool anyRowWithout(const Table& table);
 
 /// Why nothing stands where runs with these levels would: "on the roadmap" (a planner of the paper

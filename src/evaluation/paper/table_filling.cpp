@@ -24,7 +24,7 @@ std::string withSubject(std::string key, const std::string& subject) {
 /// What the runs of a cell add to a figure, by route and seed.
 class CellSums {
  public:
-  /// Complete runs that have `key`; those of weight 0 are passed over.
+  /// Complete runs that have `key`; those of weight 0 are skipped.
   CellSums(const std::vector<const BatchRun*>& runs, const std::string& key,
            const std::string& weight) {
     for (const BatchRun* run : runs) {

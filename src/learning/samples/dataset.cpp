@@ -81,8 +81,8 @@ ShardReader::ShardReader(const fs::path& path, const ShardKind& kind)
 
 ShardReader::ShardReader(std::string content, std::string name, const ShardKind& kind)
     : name_(std::move(name)), content_(std::move(content)) {
-  const std::string_view begun = std::string_view(content_).substr(0, kind.magic.size());
-  if (begun != kind.magic.substr(0, begun.size()))
+  const std::string_view start = std::string_view(content_).substr(0, kind.magic.size());
+  if (start != kind.magic.substr(0, start.size()))
     throw InputError(name_ + ": is not a " + kind.name);
   if (content_.size() < kind.magic.size() + 8 + core::kSha256Digits)
     throw InputError(name_ + ": truncated: " + std::to_string(content_.size()) + " bytes");
@@ -109,7 +109,7 @@ void ShardReader::findSamples(std::size_t begin) {
         requireFinite(field, takeField(reader, field, name_), sample);
       }
     }
-    if (reader.place() == places_.back()) break;  // fields without a byte
+    if (reader.place() == places_.back()) break;  // a sample without bytes: no progress
   }
   if (places_.size() == header_.samples && reader.atEnd()) return;
   throw InputError(name_ + ": truncated or overlong: " + std::to_string(places_.size()) + " of " +
@@ -149,8 +149,8 @@ std::vector<fs::path> findShards(const fs::path& folder) { return findDataFiles(
 
 namespace {
 
-/// Sessions whose draw lies below the share; where that is none or all of several, the lowest draw
-/// is held out or the highest is not.
+/// Sessions whose draw lies below the share. Where that is none of several, the one with the lowest
+/// draw is held out; where it is all of them, the one with the highest draw is not.
 std::set<std::uint64_t> drawHeldOut(const std::set<std::uint64_t>& sessions, double share) {
   const core::RandomStream stream(0, "validation sessions");
   const auto draw = [&](std::uint64_t session) { return stream.uniform({session}, 0); };

@@ -25,7 +25,7 @@ struct ShardHeader {
   std::map<std::string, std::string> facts;  ///< where the data come from
 };
 
-/// In the present version.
+/// In the current version.
 std::string headerText(const ShardHeader& header);
 /// Throws InputError naming `source` for another version and for a header that is malformed.
 ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
@@ -33,9 +33,9 @@ ShardHeader readShardHeader(std::uint32_t version, const std::string& text,
 
 // Shards: files `*.shard` of samples. Little endian: 8 bytes of its kind, u32 version, u32 length
 // and text of the header (learning/samples/dataset.h), the samples, and 64 hexadecimal digits:
-// SHA-256 of all before. A sample is its fields in the order of the schema: the values as they
-// are; before them the u32 number of rows where each sample has its own; a text, and a packed
-// field's zlib stream, behind its u32 length.
+// SHA-256 of all before. A sample is its fields in the order of the schema: the values as they are;
+// before them the u32 number of rows where each sample has its own; a text, and a packed field's
+// zlib stream, after its u32 length.
 
 /// What the samples of a file are for: its first 8 bytes, and what messages call it.
 struct ShardKind {
@@ -109,8 +109,8 @@ std::vector<std::filesystem::path> findDataFiles(const std::filesystem::path& fo
                                                  const std::string& extension);
 std::vector<std::filesystem::path> findShards(const std::filesystem::path& folder);
 
-/// The field of every sample that says of which session it is: a u64, such as core::hashText of the
-/// session's name.
+/// The field of every sample that names its session: a u64, such as core::hashText of the session's
+/// name.
 constexpr const char* kSessionField = "session";
 
 /// All shards below a folder as one list of samples, with the split by session into training and

@@ -13,7 +13,7 @@
 
 namespace cdiff::learning {
 
-/// Why a sample's vehicle comes to stand or stands; numbers are those of the shard files.
+/// Why a sample's vehicle stops or stands still; the numbers are those of the shard files.
 enum StopReason : std::uint8_t {
   kStopNone = 0,
   kStopLight = 1,

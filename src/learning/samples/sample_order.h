@@ -22,8 +22,8 @@ constexpr double kMoving = 2.0;    ///< faster ones move [m/s]
 /// stopping, slow below 4 m/s, middle, fast above 8 m/s), as in "left starting".
 std::string balanceClass(const DrivingSample& sample);
 
-/// Weight of each training sample, n^-balance for a class of n samples, mean 1, at most
-/// kMostWeight before that: 0 leaves all alike, 1 makes every class come equally often. Those that
+/// Weight of each training sample, n^-balance for a class of n samples, mean 1, at most kMostWeight
+/// before that: 0 gives all the same weight, 1 makes every class come equally often. Those that
 /// stop to give way come `yielding_share` times as often: what they wait for is rarely in the
 /// image. Throws InputError if nothing is left.
 std::vector<double> balanceWeights(const DrivingDataset& dataset, double balance,

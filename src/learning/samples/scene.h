@@ -40,8 +40,8 @@ struct SceneDrive {
   std::vector<std::string> route_lanes;                      ///< id of the lane of each point
 };
 
-/// A session as a scene file holds it: network, routes, drivers, and every decision's snapshot
-/// (map frame, SI units, doubles as they were). Its snapshots keep what learners use: vehicles and
+/// A session as a scene file holds it: network, routes, drivers, and every decision's snapshot (map
+/// frame, SI units, doubles as they were). Its snapshots keep what learners use: vehicles and
 /// signals; contacts of all ticks are listed apart; faults and what was removed are left out.
 struct Scene {
   std::string name;                   ///< scenario and seed

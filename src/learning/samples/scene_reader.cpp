@@ -13,6 +13,7 @@ using SceneNumbers = std::vector<double>;
 
 std::string textOfBytes(const SceneBytes& bytes) { return std::string(bytes.begin(), bytes.end()); }
 
+/// Texts of a list, each closed by a zero byte.
 std::vector<std::string> listOf(const SceneBytes& bytes) {
   std::vector<std::string> texts;
   std::string text;
@@ -27,7 +28,7 @@ std::vector<std::string> listOf(const SceneBytes& bytes) {
   return texts;
 }
 
-/// Reads the rows of all vehicles, one after the other.
+/// Reads the vehicles of all decisions from the columns of the tables, row by row.
 class VehicleRows {
  public:
   VehicleRows(const Sample& tables, const std::vector<std::string>& lanes)
@@ -47,12 +48,12 @@ class VehicleRows {
 
   traffic::Vehicle next() {
     const std::size_t row = row_++;
-    const std::uint64_t place = vehicle_.at(row);
+    const std::uint64_t index = vehicle_.at(row);
     if (role_.at(row) > static_cast<std::uint8_t>(traffic::VehicleRole::kBackground))
       throw std::out_of_range("role");
     traffic::Vehicle vehicle;
-    vehicle.id = ids_.at(place);
-    vehicle.dimensions = {sizes_.at(3 * place), sizes_.at(3 * place + 1), sizes_.at(3 * place + 2)};
+    vehicle.id = ids_.at(index);
+    vehicle.dimensions = {sizes_.at(3 * index), sizes_.at(3 * index + 1), sizes_.at(3 * index + 2)};
     vehicle.role = static_cast<traffic::VehicleRole>(role_[row]);
     vehicle.cbv_slot = static_cast<int>(slot_.at(row)) - 1;
     vehicle.lane_id = lanes_.at(lane_.at(row));
@@ -65,17 +66,18 @@ class VehicleRows {
  private:
   std::vector<std::string> ids_;
   const std::vector<std::string>& lanes_;
-  const SceneNumbers& sizes_;
-  const SceneCounts& vehicle_;
-  const SceneCounts& lane_;
+  const SceneNumbers& sizes_;   ///< length, width, height of each vehicle [m]
+  const SceneCounts& vehicle_;  ///< by row: index in ids_
+  const SceneCounts& lane_;     ///< by row: index in lanes_
   const SceneBytes& role_;
-  const SceneBytes& slot_;
+  const SceneBytes& slot_;  ///< by row: slot + 1
   const SceneBytes& has_action_;
   std::vector<const SceneNumbers*> numbers_;  ///< by state column
   std::size_t row_ = 0;
 };
 
-/// Reads the tables of one scene.
+/// Reads the tables of one scene (scene_tables.h), the counterpart of scene_writer.cpp; a column
+/// that is too short throws std::out_of_range.
 class TableReader {
  public:
   explicit TableReader(const Sample& tables)
@@ -114,18 +116,18 @@ class TableReader {
     }
   }
 
-  /// Pairs of texts: place in the list of signals, state.
+  /// A signal is a pair of texts: its index in the list of signals, and its state.
   void readSignals(Scene& scene) const {
     const std::vector<std::string> ids = listOf(bytes("signal_ids"));
     const std::vector<std::string> states = listOf(bytes("signal_states"));
     std::size_t next = 0;
     for (std::size_t i = 0; i < scene.decisions.size(); ++i) {
       for (std::uint64_t n = counts("signals").at(i); n > 0; --n, next += 2) {
-        const std::string& place = states.at(next);
-        if (place.empty() || place.size() > 9 ||
-            place.find_first_not_of("0123456789") != std::string::npos)
+        const std::string& index = states.at(next);
+        if (index.empty() || index.size() > 9 ||
+            index.find_first_not_of("0123456789") != std::string::npos)
           throw std::out_of_range("signal");
-        scene.decisions[i].signals.push_back({ids.at(std::stoull(place)), states.at(next + 1)});
+        scene.decisions[i].signals.push_back({ids.at(std::stoull(index)), states.at(next + 1)});
       }
     }
   }
@@ -148,6 +150,7 @@ class TableReader {
     }
   }
 
+  /// Driver [SI units], score and conflict point (map frame [m]) of drive i.
   void setDriver(std::size_t i, SceneDrive& drive) const {
     const SceneNumbers& all = numbers("driver");
     const auto number = [&](std::size_t n) { return all.at(kDriverNumbers * i + n); };
@@ -156,6 +159,8 @@ class TableReader {
     drive.conflict_point = {number(6), number(7), number(8)};
   }
 
+  /// Rows of driven (decision, slot + 1, drive), disturbed (tick, vehicle) and contacts (tick, two
+  /// vehicles).
   void readLists(Scene& scene) const {
     const std::vector<std::string>& ids = rows_.ids();
     scene.driven.resize(scene.decisions.size());

@@ -7,8 +7,8 @@
 
 namespace cdiff::learning {
 
-// A scene as the packed fields of one sample: tables by column, lists of texts joined by zero
-// bytes, places in the lists instead of the texts.
+// A scene as the packed fields of one sample: tables by column, lists of texts each closed by a
+// zero byte, and indices into the lists in place of the texts.
 
 /// The tables of every scene file of kSceneVersion.
 const SampleSchema& sceneSchema();
@@ -26,8 +26,8 @@ inline constexpr std::size_t kDriverNumbers = 9;
 
 Sample tablesOf(const Scene& scene);
 
-/// Throws std::out_of_range where a table is shorter than another says or names a place that does
-/// not exist.
+/// Throws std::out_of_range where a table is shorter than another requires, or holds an index
+/// beyond its list.
 Scene sceneOfTables(const Sample& tables);
 
 }  // namespace cdiff::learning

@@ -19,7 +19,7 @@ struct Attribute {
   std::string_view space;
   std::string_view name;
   std::string_view value;
-  std::size_t end = 0;  ///< behind the closing quote
+  std::size_t end = 0;  ///< after the closing quote
 };
 
 /// The attribute after `from`; its name is empty at the end of the tag.

@@ -15,8 +15,8 @@
 
 namespace cdiff::metrics {
 
-// Driving score [%] of CARLA's leaderboard: route completion x penalty, never negative; the
-// penalty is a product of factors (2.0) or 1 / (1 + sum of charges) (2.1).
+// Driving score [%] of CARLA's leaderboard: route completion x penalty, never negative; the penalty
+// is a product of factors (2.0) or 1 / (1 + sum of charges) (2.1).
 
 /// What happened on a route.
 struct Infractions {

@@ -8,8 +8,8 @@
 
 namespace cdiff::metrics {
 
-// The time [s] between two moving boxes being at one place, exact for boxes that keep
-// velocity and heading.
+// The time [s] between two moving boxes being at one place, exact for boxes that keep velocity and
+// heading.
 
 /// A box that moves from one tick to the next, map frame.
 struct SweptBox {

@@ -10,7 +10,7 @@
 namespace cdiff::page {
 namespace {
 
-constexpr double kRounding = 1e-9;   // share of a step
+constexpr double kRounding = 1e-9;   // [steps of an axis]
 constexpr double kHalfLetter = 4.0;  // half the width of a letter [px]
 
 }  // namespace

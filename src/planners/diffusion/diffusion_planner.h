@@ -39,8 +39,8 @@ struct DiffusionOptions {
   /// when it is read.
   void validate() const;
   /// What `conditioning` comes to under a guidance: by_guidance is image where collision_seeking
-  /// has a weight (an attacker that knows its route stops in its lane before the ego
-  /// instead of driving at it), image_route elsewhere and where the sampler's mode is unguided.
+  /// has a weight (an attacker that knows its route stops in its lane before the ego instead of
+  /// driving at it), image_route elsewhere and where the sampler's mode is unguided.
   std::string conditioningUnder(const guidance::GuidanceOptions& guidance) const;
 };
 

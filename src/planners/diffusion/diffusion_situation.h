@@ -45,8 +45,8 @@ std::size_t choosePlan(const std::vector<traffic::Rollout>& plans,
                        const std::vector<guidance::Score>& scores,
                        const std::optional<traffic::Rollout>& previous, double hysteresis);
 
-/// The plan of a vehicle's last decision, carried on to the present one (rollouts [T, 7], 0.1 s a
-/// row, body frame, SI units).
+/// The plan of a vehicle's last decision, shifted to the current one (rollouts [T, 7], 0.1 s a row,
+/// body frame, SI units).
 class LastPlan {
  public:
   /// `plan` was made at `tick` in the frame of `start`; `route` may be nullptr.
@@ -69,7 +69,7 @@ class LastPlan {
   std::optional<Eigen::Vector2d> goal_;
 };
 
-// What the diffusion planner remembers of a vehicle, and what it knows of one at a decision.
+// What the diffusion planner remembers of a vehicle, and what it knows about one at a decision.
 
 /// What is remembered of a vehicle between decisions.
 struct DiffusionPlanner::Memory {

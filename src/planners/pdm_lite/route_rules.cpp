@@ -140,7 +140,7 @@ IdmParameters parametersOf(const planning::DrivingStyle& style) {
 }
 
 /// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
-/// freeSpeed alone, for IDM's own term knows no bound.
+/// freeSpeed alone, because IDM's own term is unbounded.
 double desiredBehind(const planning::PlanningTask& task, double desired) {
   return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
 }

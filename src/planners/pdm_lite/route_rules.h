@@ -11,9 +11,8 @@
 
 namespace cdiff::planners {
 
-// PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target
-// speed, lane change near, who leads, who trails, the next light, the next stop sign; and its IDM
-// speeds.
+// PDM-Lite's rules that read the route from a vehicle's arc length [m] on it: initial target speed,
+// lane change near, who leads, who trails, the next light, the next stop sign; and its IDM speeds.
 
 /// min(share x limit, task's target speed, limit, the configuration's top speed), capped where a
 /// junction lies within 30 m [m/s]. The limit is the lowest one within the distance of braking at 4

@@ -9,7 +9,7 @@ namespace {
 
 using inference::LayerWeights;
 
-constexpr std::int64_t kGruInputs = 4;  // the last waypoint and the target point
+constexpr std::int64_t kGruInputs = 4;  // x, y of the last waypoint and of the target point, scaled
 
 std::string layerName(std::int64_t index) { return "layer." + std::to_string(index); }
 
@@ -60,7 +60,7 @@ PlantNetwork::PlantNetwork(const PlantModel& model, inference::InstructionSet se
       gru_({set, model.weights}, "gru"),
       step_({set, model.weights}, "step") {}
 
-/// The tokens of all moments, one after the other, each moment's CLS token first.
+/// Writes the tokens of all inputs, one input after the other, each input's CLS token first.
 void PlantNetwork::embed(const std::vector<PlantInput>& inputs) {
   begins_ = {0};
   for (const PlantInput& input : inputs) {
@@ -107,6 +107,8 @@ std::vector<PlantOutput> PlantNetwork::forward(const std::vector<PlantInput>& in
   return outputs;
 }
 
+/// Waypoints (frame of each vehicle [m]) from the CLS outputs in memory_.first: the GRU takes the
+/// last waypoint and the target point, and each of its states gives the step to the next waypoint.
 void PlantNetwork::decode(const std::vector<PlantInput>& inputs,
                           std::vector<PlantOutput>& outputs) {
   const auto moments = static_cast<std::int64_t>(inputs.size());

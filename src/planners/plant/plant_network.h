@@ -18,7 +18,7 @@ namespace cdiff::planners {
 /// Places of the driven vehicle 0.5, 1.0, 1.5 and 2.0 s ahead, in its body frame [m].
 using PlantWaypoints = std::array<Eigen::Vector2d, kPlantWaypoints>;
 
-/// What PlanT says about a moment.
+/// What PlanT plans for one vehicle at one decision.
 struct PlantOutput {
   PlantWaypoints waypoints;
   /// By vehicle token: share of the last layer's attention of the CLS token, mean over heads. CLS

@@ -22,7 +22,7 @@ struct PlantArchitecture {
   std::int64_t heads = 8;        ///< of attention
   std::int64_t hidden = 1024;    ///< of the feed-forward networks, a multiple of 16
   std::int64_t vehicles = 24;    ///< most vehicle tokens; the nearest are kept
-  double radius = 50.0;          ///< vehicles farther away are no tokens [m]
+  double radius = 50.0;          ///< vehicles farther away get no token [m]
   double light_distance = 30.0;  ///< a light counts up to this far before its stop line [m]
   bool own_vehicle = false;      ///< the driven vehicle is the first vehicle token, with its speed
                                  ///< (`input_ego` of PlanT's code, off there, too)

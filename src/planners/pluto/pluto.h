@@ -27,7 +27,7 @@ struct PlutoOptions : WeightOptions {
   void validate() const { tracker.validate(); }
 };
 
-/// Which plan drives: a candidate, or the free plan behind them.
+/// Which plan drives: a candidate, or the free plan, which comes last.
 struct PlutoChoice {
   std::size_t index = 0;       ///< candidates.size(): the free plan
   std::vector<double> scores;  ///< by candidate, then of the free plan

@@ -10,11 +10,13 @@
 
 namespace cdiff::planners {
 
-// Encoders of what a scene is made of, for one moment; what comes out is a row of `width` numbers
-// for each thing.
+// Encoders of the elements of one scene (poses, polylines, agents, the controlled vehicle itself):
+// each element becomes a row of `width` features. Inputs are scaled and in the frames of
+// pluto_scene.h. Used by PlutoNetwork.
 
-/// Fourier features of poses: for each number x its 16 learned frequencies f as cos(2 pi f x) and
-/// sin(2 pi f x), and x itself, through an Mlp. Tensors table.position.frequency and position.*.
+/// Fourier features of poses: each number x becomes cos(2 pi f x) and sin(2 pi f x) for its 16
+/// learned frequencies f, and x itself; an Mlp maps them to `width`. Tensors
+/// table.position.frequency and position.*.
 class PositionEmbedding {
  public:
   explicit PositionEmbedding(const inference::LayerWeights& weights);
@@ -32,7 +34,7 @@ class PositionEmbedding {
 class PointNet {
  public:
   PointNet(const inference::LayerWeights& weights, const std::string& name);
-  /// `points`: [count, channels]; writes a row of outputs.
+  /// `points`: [count, channels]; writes one row of features to `output`.
   void apply(const float* points, std::int64_t count, std::int64_t channels, float* output);
 
  private:
@@ -44,8 +46,8 @@ class PointNet {
   inference::Rows hidden_;
 };
 
-/// Three convolutions over the time of an agent's history (strides 1, 2, 2; kernel 3; max(0, x)
-/// after each) and a linear layer over all that comes out. Tensors agent.*.
+/// Three convolutions over the time of an agent's history (strides 1, 2, 2; kernel 3; each followed
+/// by max(0, x)), then a linear layer over the flattened result. Tensors agent.*.
 class HistoryNet {
  public:
   explicit HistoryNet(const inference::LayerWeights& weights);
@@ -64,8 +66,9 @@ class HistoryNet {
   inference::Rows joined_;
 };
 
-/// What the controlled vehicle does now: a learned query attends to a learned token and to those of
-/// speed, acceleration and steer, each its learned place + value x its learned gain. Tensors own.*.
+/// Encodes the motion of the controlled vehicle: a learned query attends to a learned token and to
+/// one token each for speed, acceleration and steer, namely learned embedding + value x learned
+/// gain. Tensors own.*.
 class OwnStateEncoder {
  public:
   OwnStateEncoder(const inference::LayerWeights& weights, const inference::TransformerSizes& sizes);
@@ -76,14 +79,14 @@ class OwnStateEncoder {
   const inference::TransformerKernels* kernels_;
   inference::TransformerSizes sizes_;
   inference::Rows query_;
-  std::vector<float> place_;  ///< [1 + kMotionNumbers, width]
+  std::vector<float> place_;  ///< embeddings [1 + kMotionNumbers, width]
   std::vector<float> gain_;   ///< [kMotionNumbers, width]
   inference::Linear key_value_;
   inference::Linear output_;
   inference::Rows tokens_;
 };
 
-/// A learned table as rows.
+/// The tensor `name` [rows, channels], a learned table, as rows.
 inference::Rows tableRows(const inference::LayerWeights& weights, const std::string& name);
 
 }  // namespace cdiff::planners

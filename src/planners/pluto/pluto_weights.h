@@ -23,7 +23,7 @@ struct PlutoArchitecture {
   std::int64_t agents = 24;         ///< most vehicles that are tokens; the nearest are kept
   std::int64_t polygons = 60;       ///< most pieces of lanes that are tokens, likewise
   std::int64_t lines = 4;           ///< most reference lines
-  double radius = 80.0;             ///< vehicles and lanes farther away are no tokens [m]
+  double radius = 80.0;             ///< vehicles and lanes farther away get no token [m]
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError for sizes that do not fit each other.

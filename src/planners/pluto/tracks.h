@@ -30,7 +30,7 @@ struct TrackFrame {
   const TrackPoint* find(std::uint32_t vehicle) const;
 };
 
-/// Vehicles by number, in the order in which they came first.
+/// Vehicles by number, in the order of their first appearance.
 class VehicleTable {
  public:
   /// Adds it where it is unknown.

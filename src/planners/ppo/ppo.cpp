@@ -56,7 +56,7 @@ planning::PlannedAction Ppo::towardGoal(const traffic::TrafficSnapshot& snapshot
   return {task.slot, task.vehicle->id, ppoCommand(actor_.act(observation)), {}};
 }
 
-/// A vehicle that is given back and selected anew has a goal again.
+/// A vehicle that was released and is selected again gets a new goal.
 void Ppo::forgetOthers(const std::vector<planning::PlanningTask>& tasks) {
   std::set<std::string> kept;
   for (const planning::PlanningTask& task : tasks) {

@@ -55,7 +55,7 @@ class MaskWindow {
   double offset_x_;  ///< from the first tile's corner to the center [m]
   double offset_y_;
   std::map<int, Tiles> known_;  ///< by level; those that were asked for
-  Tiles* tiles_;                ///< of the present level
+  Tiles* tiles_;                ///< of the current level
 };
 
 }  // namespace cdiff::planners

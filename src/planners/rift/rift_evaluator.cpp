@@ -149,7 +149,7 @@ std::vector<double> RiftEvaluator::returnsOf(const RiftState& state,
       lines.measure(plan.places[i], plan.directions[i], step);
       step.off_road = offRoad(box, window);
       step.collides = obstacles.hit(i, box);
-      if (step.collides) break;  // nothing counts behind it
+      if (step.collides) break;  // nothing counts after it
     }
     returns.push_back(riftReturn(steps));
   }

@@ -31,7 +31,7 @@ struct RiftRollout {
 };
 
 /// Drives candidates with the PIDs that execute plans, through the project's vehicle dynamics, 0.05
-/// s a step: as TrajectoryTracker follows a plan, but of the plan 1, 2 and 3 s ahead of the present
+/// s a step: as TrajectoryTracker follows a plan, but of the plan 1, 2 and 3 s ahead of the current
 /// time alone, and with errors that start over (published for RIFT's rollouts).
 class RiftDriver {
  public:

@@ -24,10 +24,10 @@ namespace cdiff::record {
 /// Whether the image has pixels, as many bytes as its size says.
 bool isWhole(const traffic::CameraImage& image);
 
-/// Throws InputError when the image is not whole.
+/// A PNG as a data URI. Throws InputError when the image is incomplete.
 std::string pngDataUri(const traffic::CameraImage& image);
 
-/// JPEG (JFIF), 4:2:0. Throws InputError when the image is not whole.
+/// JPEG (JFIF), 4:2:0. Throws InputError when the image is incomplete.
 std::vector<std::uint8_t> jpegOf(const traffic::CameraImage& image);
 
 /// RFC 4648, padded, one line.

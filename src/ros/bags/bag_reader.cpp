@@ -181,7 +181,7 @@ void BagReader::noteUnknown(std::uint32_t id) {
        " is lost, and with it the connection's messages");
 }
 
-/// The rest of the present chunk is given up.
+/// Gives up the rest of the current chunk.
 void BagReader::leaveChunk() {
   Chunk& chunk = chunks_[next_chunk_ - 1];
   if (!chunk.named) {

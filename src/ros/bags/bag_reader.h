@@ -32,13 +32,13 @@ struct BagMessage {
 };
 
 /// Reads the messages of a bag (ROS bag format 2.0) in the order of the file, chunk by chunk,
-/// without the bag's index: used by RecordedSession and for drives that others recorded. Of a bag
-/// that was cut off or damaged it yields the intact messages and says what is lost (damage()),
-/// whereas rosbag's C++ library refuses such bags and can reindex them in Python only.
+/// without the bag's index: used by RecordedSession and for drives recorded elsewhere. From a bag
+/// that was cut off or damaged it reads the intact messages and reports what is lost (damage()),
+/// whereas rosbag's C++ library refuses such bags and only its Python tools can reindex them.
 class BagReader {
  public:
-  /// Throws InputError naming the file when it cannot be read, is empty, is no bag of format 2.0 or
-  /// is encrypted.
+  /// Throws InputError naming the file when it cannot be read, is empty, is not a bag of format 2.0
+  /// or is encrypted.
   explicit BagReader(const std::filesystem::path& file);
   ~BagReader();
   BagReader(const BagReader&) = delete;
@@ -50,7 +50,7 @@ class BagReader {
   void rewind();
   /// Connections found so far: all of the bag's where it is intact.
   std::vector<BagConnection> connections() const;
-  /// What cannot be read, one sentence each in the order found; complete after the last message.
+  /// What cannot be read, one sentence each in the order found; complete once next() returns false.
   const std::vector<std::string>& damage() const { return damage_; }
 
  private:
@@ -77,12 +77,11 @@ class BagReader {
   std::uint64_t index_position_ = 0;
   std::uint64_t chunks_promised_ = 0;
   std::size_t next_chunk_ = 0;
-  std::string text_;          ///< decompressed records of the present chunk
+  std::string text_;          ///< decompressed records of the current chunk
   std::uint64_t cursor_ = 0;  ///< offset in text_ of the next record
 };
 
-/// The message as a value of a known type. Throws InputError naming the topic when the bytes are no
-/// such message.
+/// Decodes a message into its type. Throws InputError naming the topic when the bytes do not match.
 template <class Message>
 boost::shared_ptr<const Message> decode(const BagMessage& message) {
   auto decoded = boost::make_shared<Message>();
@@ -91,7 +90,7 @@ boost::shared_ptr<const Message> decode(const BagMessage& message) {
                             "' cannot be read: " + why);
   };
   try {
-    // The stream does not write.
+    // IStream takes a non-const pointer, but only reads.
     auto* begin = reinterpret_cast<std::uint8_t*>(const_cast<char*>(message.bytes.data()));
     ::ros::serialization::IStream stream(begin, static_cast<std::uint32_t>(message.bytes.size()));
     ::ros::serialization::deserialize(stream, *decoded);

@@ -10,8 +10,8 @@
 
 namespace cdiff::ros {
 
-// Records of the ROS bag format 2.0 in a text of bytes (wiki.ros.org/Bags/Format/2.0), read
-// without trust: whatever the bytes are, nothing outside them is touched and nothing is thrown.
+// Records of the ROS bag format 2.0 in a text of bytes (wiki.ros.org/Bags/Format/2.0), read without
+// trust: whatever the bytes are, nothing outside them is touched and nothing is thrown.
 
 /// First line of a bag.
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";

@@ -44,7 +44,7 @@ traffic::VehicleState toState(const nav_msgs::Odometry& message) {
   return state;
 }
 
-/// The middle of the picture with the aspect wanted, at the size wanted.
+/// The center of the picture, cropped to the desired aspect ratio and resized.
 traffic::CameraImage scaledImage(const cv::Mat& picture, const diffusion::Architecture& wanted) {
   const double aspect =
       static_cast<double>(wanted.image_width) / static_cast<double>(wanted.image_height);

@@ -9,13 +9,13 @@
 
 namespace cdiff::ros {
 
-// A drive of one vehicle, read from a bag of another recorder, whatever its topics are
-// called.
-
-/// Images are cut to the aspect of the architecture's and made as small; they should see some 90
-/// degrees. Stamps are those of the headers. Throws InputError, without the file's name, for: a
-/// topic that the bag lacks (and what it has), one of another type, a message that is broken or has
-/// no orientation, a path in another frame, an encoding that is no color.
+/// Reads the drive of one vehicle from a bag that another system recorded, whatever its topics are
+/// called (the names are in `options`); for `cdiff collect`. Images are cropped to the aspect ratio
+/// of the architecture's and scaled down to their size; their field of view should be about 90
+/// degrees. Times are the stamps of the headers. Throws InputError, without the file's name, for a
+/// topic that the bag lacks (and which it has) or that has another type, a message that is broken
+/// or has no orientation, a path in another frame, and an image encoding that is not a color
+/// format.
 collection::RecordedDrive readDrivingBag(const std::filesystem::path& file,
                                          const collection::DriveOptions& options,
                                          const diffusion::Architecture& architecture);

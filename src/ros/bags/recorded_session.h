@@ -35,7 +35,7 @@ class RecordedSession {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
 
-  /// Throws InputError naming the file when it is no bag, or holds no session that can be read.
+  /// Throws InputError naming the file when it is not a bag, or holds no session that can be read.
   explicit RecordedSession(const std::filesystem::path& bag,
                            RecordedImages images = RecordedImages::kSeen);
   ~RecordedSession();
@@ -44,8 +44,8 @@ class RecordedSession {
   const session::SessionSetup& setup() const { return *setup_; }
   /// Hands the set-up over to the caller; call nothing else afterward.
   std::unique_ptr<session::SessionSetup> takeSetup() { return std::move(setup_); }
-  /// The nodes that took part; for a session that one process drove, those of the same session as
-  /// a node graph.
+  /// The nodes that took part; for a session that one process drove, those of the same session as a
+  /// node graph.
   const SessionGraph& graph() const { return graph_; }
 
   /// The next snapshot, among whose faults is what was found damaged since the one before. The last

@@ -23,7 +23,7 @@ std::size_t showTicks(RecordedSession& session,
 
 /// Deployment of a replayed session, for SessionInfo: who replays it, and who recorded it.
 std::string replayDeployment(const std::string& by, const ::e2e_cdiff::SessionInfo& recorded);
-/// What results say of a session, live or replayed.
+/// What results say about a session, live or replayed.
 record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministic);
 
 /// Throws InputError when a replay may not write into the folder: it holds an earlier result that

@@ -47,7 +47,7 @@ class ImageInbox {
   std::map<std::uint64_t, ByCamera> images_;  ///< by tick; then slot and camera
 };
 
-/// A decision of a planner.
+/// The outcome of one planning call.
 struct PlannerDecision {
   std::vector<planning::PlannedAction> actions;  ///< one per task, in their order
   double latency_ms = 0.0;                       ///< wall time of the planning call

@@ -14,7 +14,7 @@ namespace cdiff::ros {
 namespace {
 
 constexpr double kOldest = 0.5;  // [s] of simulated time that a plan may drive without a newer one
-constexpr double kRounding = 1e-6;
+constexpr double kRounding = 1e-6;  // [s], or rows of a plan; times are multiples of the step
 
 bool drivenIn(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_id) {
   return std::any_of(snapshot.vehicles.begin(), snapshot.vehicles.end(), [&](const auto& vehicle) {
@@ -22,8 +22,9 @@ bool drivenIn(const msgs::TrafficSnapshot& snapshot, const std::string& vehicle_
   });
 }
 
-/// The action that a plan has for `age` seconds after its decision. A plan that does not start with
-/// the action itself (a tracker follows it) says nothing of later actions: the first is held.
+/// The action that a plan holds for `age` [s] after its decision: that of its row at this age. A
+/// plan whose first row is not the action itself (a tracker follows the plan) contains no later
+/// actions, so the first one is held.
 traffic::ControlAction actionAt(const msgs::ControlAction& first, const TickAnswers::Rollout& plan,
                                 double age) {
   const traffic::ControlAction held = fromMsg(first).action;
@@ -51,27 +52,27 @@ bool PacedAnswers::fresh(const TickAnswers::TimedControl& control, std::uint64_t
 
 std::optional<msgs::CbvSelection> PacedAnswers::selection(const msgs::TrafficSnapshot& snapshot,
                                                           const TickAnswers& answers) {
-  msgs::CbvSelection now;
+  msgs::CbvSelection merged;
   bool changed = false;
   while (const auto next =
              newest_ ? answers.selectionAfter(newest_->tick) : answers.firstSelection()) {
     newest_ = next;
     changed = true;
-    now.released.insert(now.released.end(), next->released.begin(), next->released.end());
+    merged.released.insert(merged.released.end(), next->released.begin(), next->released.end());
   }
   if (!newest_) return std::nullopt;
-  now.header = newest_->header;
-  now.tick = newest_->tick;
+  merged.header = newest_->header;
+  merged.tick = newest_->tick;
   for (const msgs::CbvAssignment& assignment : newest_->assignments) {
     const bool driven = drivenIn(snapshot, assignment.vehicle_id);
     const bool answered =
         fresh(answers.newest(assignment.slot, assignment.vehicle_id, snapshot.tick), snapshot.tick);
     if (!driven && !answered) continue;
-    now.assignments.push_back(assignment);
+    merged.assignments.push_back(assignment);
     changed = changed || !driven;
   }
   if (!changed) return std::nullopt;
-  return now;
+  return merged;
 }
 
 AppliedAction PacedAnswers::actionFor(int slot, const std::string& vehicle_id,

@@ -16,7 +16,7 @@ namespace cdiff::ros {
 struct AppliedAction {
   planning::PlannedAction planned;
   std::uint8_t driven_by = 0;   ///< as in DecidedVehicle
-  std::uint64_t plan_tick = 0;  ///< tick of the decision whose plan it is
+  std::uint64_t plan_tick = 0;  ///< tick of the decision whose plan it comes from
 };
 
 /// The actions alone.

@@ -59,7 +59,7 @@ class SilenceWatch {
   double last_look_ = 0.0;
 };
 
-/// What the traffic simulator knows of the other nodes from their TickAck messages: ready, last
+/// What the traffic simulator knows about the other nodes from their TickAck messages: ready, last
 /// tick acknowledged, finished, in error, when last heard.
 class ParticipantBook {
  public:
@@ -82,8 +82,9 @@ class ParticipantBook {
   bool finished(const std::string& node) const;
   /// Whether any message of the node has arrived.
   bool heard(const std::string& node) const;
-  /// Nodes, in order of their names, that were heard but not for `seconds` before `now`. Who waits
-  /// for others says so every second; who says nothing computes, hangs or is stopped.
+  /// Nodes, sorted by name, that were heard earlier but not within `seconds` before `now`. A node
+  /// that waits for others reports this every second; a silent one is computing, hangs or is
+  /// stopped.
   std::vector<std::string> silent(double seconds, Clock::time_point now = Clock::now()) const;
   /// The first node that reported an error, and what it said.
   struct Error {

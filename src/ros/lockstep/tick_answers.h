@@ -63,7 +63,7 @@ class TickMessages {
   std::map<Topic, AnyMessage> messages_;
 };
 
-/// What the messages of a tick are made of.
+/// The values from which the messages of one tick are built.
 struct TickValues {
   const traffic::TrafficSnapshot& snapshot;
   const map::RoadNetwork* network = nullptr;     ///< that the lanes of the selection are of
@@ -86,8 +86,8 @@ AnyMessage makeMessage(const Topic& topic, const TickValues& values);
 /// The messages of all channels that are made of a tick's values.
 TickMessages makeMessages(const TickValues& values, int max_cbv, const session::VehicleRigs& rigs);
 
-/// The answer of a planner for a vehicle as far as messages of the tick speak of it; nullopt where
-/// there is no control for it.
+/// The answer of a planner for a vehicle as far as it is among the messages of the tick; nullopt
+/// when there is no control for it.
 std::optional<Answer> readAnswer(const TickMessages& tick, int slot, const std::string& vehicle_id,
                                  const TickReading& reading);
 

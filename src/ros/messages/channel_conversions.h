@@ -17,8 +17,8 @@ namespace cdiff::ros {
 
 // Between traffic::CameraImage and sensor_msgs/Image (rgb8, rows from the top left), byte by byte.
 //
-// sensor_msgs/Image has no tick field, and roscpp overwrites header.seq when it publishes: the
-// tick of an image is header.stamp / simulation step, and the stamp must be that tick's own to the
+// sensor_msgs/Image has no tick field, and roscpp overwrites header.seq when it publishes: the tick
+// of an image is header.stamp / simulation step, and the stamp must be that tick's own to the
 // nanosecond.
 
 /// "<vehicle>/camera_optical": x right, y down, z forward; of a camera C other than the front one

@@ -35,8 +35,7 @@ constexpr Condition kEgoSees = {"where the planner sees",
 constexpr Condition kCbvsSee = {"where the planner sees",
                                 [](const Graph& graph) { return graph.cbvsPlanFromImages(); }};
 
-/// Builds a row; what is not set stays as for a topic that no tick waits for and no bag
-/// holds.
+/// Builds a row; what is not set stays as for a topic that no tick waits for and no bag holds.
 class Row {
  public:
   template <class Message>

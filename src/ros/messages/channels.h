@@ -20,7 +20,7 @@
 
 namespace cdiff::ros {
 
-/// A message of some type; the channel that it came on says of which.
+/// A message of some type; the channel that it came on determines the type.
 using AnyMessage = boost::shared_ptr<const void>;
 /// Takes a message and returns why it cannot be used; empty when it can.
 using TakeMessage = std::function<std::string(const AnyMessage&)>;
@@ -31,7 +31,7 @@ struct MessageType {
   std::type_index type;
   std::string name;    ///< "e2e_cdiff/Rollout"
   std::string md5sum;  ///< MD5 sum of the definition
-  /// Throws InputError when the bytes are no such message.
+  /// Throws InputError when the bytes do not match its type.
   AnyMessage (*decode)(const BagMessage& message);
   void (*write)(rosbag::Bag& bag, const std::string& topic, const ::ros::Time& stamp,
                 const AnyMessage& message);

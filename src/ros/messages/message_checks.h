@@ -24,8 +24,8 @@ std::string unusable(const ::e2e_cdiff::CbvSelection& message, const map::RoadNe
 /// Why a message of another slot than its topic's cannot be used.
 std::string wrongSlot(int slot);
 
-/// The same for its slots: more assignments than slots, a slot that there is not or twice, a
-/// vehicle twice.
+/// The same for its slots: more assignments than slots, a slot that does not exist or is assigned
+/// twice, a vehicle that is assigned twice.
 std::string unusable(const ::e2e_cdiff::CbvSelection& message, int max_cbv);
 
 }  // namespace cdiff::ros

@@ -12,8 +12,8 @@
 
 namespace cdiff::ros {
 
-// The topics of one session, who publishes them and who listens: the table of channels
-// (channels.h) applied to a session's nodes and slots (SessionGraph).
+// The topics of one session, who publishes them and who listens: the table of channels (channels.h)
+// applied to a session's nodes and slots (SessionGraph).
 
 /// One topic: a channel and, where the channel has one topic per slot or camera, the slot and the
 /// camera.

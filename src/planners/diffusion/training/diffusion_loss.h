@@ -99,7 +99,8 @@ class DiffusionLoss {
 
   /// tau^k = sqrt(alpha_bar_k) tau^0 + sqrt(1 - alpha_bar_k) noise.
   at::Tensor addNoise(const at::Tensor& clean, const at::Tensor& k, const at::Tensor& noise) const;
-  /// Its terms `actions` and `states` are the means of the two blocks, weighted as the kind has it.
+  /// Its terms `actions` and `states` are the means of the two blocks, weighted as its kind
+  /// prescribes.
   learning::Loss loss(const DenoiserNet& denoiser, const TrainingBatch& batch) const;
   /// [states; actions] [B, T, 7] as predicted from tau^k in one step.
   at::Tensor predictClean(const DenoiserNet& denoiser, const at::Tensor& noisy, std::int64_t k,

@@ -54,7 +54,7 @@ std::unique_ptr<learning::Stage> makeEncoderStage(TrainingState& state, const st
 std::unique_ptr<learning::Stage> makeDiffusionStage(TrainingState& state, const std::string& name,
                                                     const FeatureCache* cache);
 
-/// Held-out samples as a batch with features of the present encoder, and features of a gray image.
+/// Held-out samples as a batch with features of the current encoder, and features of a gray image.
 struct HeldOut {
   TrainingBatch batch;
   at::Tensor gray_features;

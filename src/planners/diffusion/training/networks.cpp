@@ -20,7 +20,7 @@ constexpr std::int64_t kChannelsPerGroup = 16;
 constexpr double kNormEpsilon = 1e-5;
 constexpr std::int64_t kHeadHidden = 256;
 
-/// Channels and count of the blocks of layer1 ... layer4.
+/// Channels and number of the blocks of layer1 ... layer4.
 constexpr std::array<std::int64_t, 4> kLayerChannels = {64, 128, 256, 512};
 constexpr std::array<int, 4> kLayerBlocks = {3, 4, 6, 3};
 

@@ -226,7 +226,7 @@ diffusion::Normalizer readNormalizer(const json& stored, const fs::path& path,
   return normalizer;
 }
 
-/// Stages whose checkpoints the run takes weights from; those it goes on with are the first.
+/// Stages from whose checkpoints the run takes weights; those that it continues come first.
 std::vector<std::string> sourcesOf(const learning::TrainingOptions& options) {
   if (options.stage == "export") return {"joint", "denoiser"};
   std::vector<std::string> stages;

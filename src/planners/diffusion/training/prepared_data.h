@@ -10,11 +10,10 @@
 
 namespace cdiff::planners {
 
-// Features of all samples by the present encoder, kept in files so that an interrupted run goes
-// on.
+// Features of all samples by the current encoder, kept in files so that an interrupted run goes on.
 
-/// Reads or computes them; kFeatureFile in the output folder. Throws core::Interrupted after
-/// saving what there is.
+/// Reads or computes them; kFeatureFile in the output folder. Throws core::Interrupted after saving
+/// what there is.
 FeatureCache computeFeatures(const TrainingState& state);
 inline constexpr const char* kFeatureFile = "features.cache";
 

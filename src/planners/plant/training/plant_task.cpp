@@ -89,7 +89,8 @@ class ImitationOfWaypoints : public learning::EvenStage {
 
 }  // namespace
 
-PlantTask::PlantTask() : NetworkTask({kPlant, "PlanT", kPlantStage, kPlantBatch, plantTensors}) {}
+PlantTask::PlantTask()
+    : NetworkTask({kPlant, "PlanT", kPlantStage, kPlantBatch, plantTensors, plantFields}) {}
 
 std::vector<learning::Sample> PlantTask::samplesOf(const learning::Scene& scene) {
   if (!sampler_) sampler_.emplace(settings.architecture, settings.samples);

@@ -35,22 +35,19 @@ struct PlantTrainingState {
 
 /// The training of PlanT: it imitates the waypoints of the vehicles that were driven in scenes, in
 /// one stage, `imitation`.
-class PlantTask : public NetworkTask<PlantTrainingSettings> {
+class PlantTask : public NetworkTask<PlantTrainingSettings, PlantTrainingState> {
  public:
   PlantTask();
-  learning::SampleSchema sceneFields() const override { return plantFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
   void start(const learning::TrainingRun& run) override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
 
  protected:
-  learning::ParameterSet& parameters() override { return state_->net.parameters(); }
   std::string table(const learning::Measures& held_out) const override;
 
  private:
   std::optional<PlantSampler> sampler_;
-  std::unique_ptr<PlantTrainingState> state_;
 };
 
 /// The task "plant".

@@ -39,7 +39,7 @@ struct PlutoBatch {
   at::Tensor agent_weight;   ///< [B, A, 80, 1]
 };
 
-/// What is left out of the moments on purpose, by moment.
+/// Input dropout: what is hidden from the network, by moment.
 struct PlutoDropout {
   std::vector<std::array<bool, kMotionNumbers>> motion;  ///< true: not shown
   std::vector<std::int64_t> history;  ///< differences that are shown, the last ones

@@ -156,7 +156,8 @@ void PlutoTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  contrast_share, 0.0, 1.0);
 }
 
-PlutoTask::PlutoTask() : NetworkTask({kPluto, "Pluto", kPlutoStage, kPlutoBatch, plutoTensors}) {}
+PlutoTask::PlutoTask()
+    : NetworkTask({kPluto, "Pluto", kPlutoStage, kPlutoBatch, plutoTensors, plutoFields}) {}
 
 std::vector<learning::Sample> PlutoTask::samplesOf(const learning::Scene& scene) {
   if (!worlds_) worlds_.emplace(settings.architecture);

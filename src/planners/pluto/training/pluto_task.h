@@ -40,23 +40,20 @@ struct PlutoTrainingState {
 
 /// The training of Pluto: it imitates the vehicles that were driven in scenes, in one stage,
 /// `imitation`.
-class PlutoTask : public NetworkTask<PlutoTrainingSettings> {
+class PlutoTask : public NetworkTask<PlutoTrainingSettings, PlutoTrainingState> {
  public:
   PlutoTask();
-  learning::SampleSchema sceneFields() const override { return plutoFields(); }
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene) override;
   void setDefaults(learning::TrainingOptions& options) const override;
   void start(const learning::TrainingRun& run) override;
   std::unique_ptr<learning::Stage> makeStage(const std::string& name) override;
 
  protected:
-  learning::ParameterSet& parameters() override { return state_->net.parameters(); }
   std::string table(const learning::Measures& held_out) const override;
 
  private:
   std::optional<PlutoWorlds> worlds_;
   std::vector<PlutoScene> scenes_;
-  std::unique_ptr<PlutoTrainingState> state_;
 };
 
 /// The task "pluto".

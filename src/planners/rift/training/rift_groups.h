@@ -40,7 +40,7 @@ class RiftGroups {
   RiftGroup of(const PlutoScene& scene, const RiftMoment& moment);
 
  private:
-  /// What is kept for a road network.
+  /// Kept for each road network: scene builder, network with its lane tokens, drivable area.
   struct OfWorld {
     PlutoSceneBuilder builder;
     PlutoNetwork network;

@@ -39,8 +39,8 @@ struct RiftTrainingState {
 };
 
 /// The fine-tuning of RIFT: Pluto's score head learns by simulated returns, in one stage,
-/// `fine_tune`, which gathers states and trains on them by turns. It can be resumed where states
-/// are to be gathered anew.
+/// `fine_tune`, which alternately gathers states and trains on them. It can be resumed where states
+/// are to be gathered again.
 class RiftTask : public learning::OneStageTask {
  public:
   RiftTask();
@@ -50,7 +50,7 @@ class RiftTask : public learning::OneStageTask {
   void setDefaults(learning::TrainingOptions& options) const override;
   void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
 
-  /// Throws InputError for steps that are no multiple of a buffer's.
+  /// Throws InputError for steps that are not a multiple of a buffer's.
   void start(const learning::TrainingRun& run) override;
   nlohmann::json facts() const override;
   std::vector<learning::TrainedPart> parts() override;

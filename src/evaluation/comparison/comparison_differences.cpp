@@ -4,7 +4,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 
 namespace cdiff::evaluation {
 namespace {

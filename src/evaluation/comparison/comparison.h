@@ -41,7 +41,7 @@ struct Difference {
   std::size_t pairs = 0;  ///< in which they differ
 };
 
-/// What else than chance can make a difference between the runs of the pairs.
+/// What other than chance can cause a difference between the runs of the pairs.
 struct Differences {
   std::vector<Difference> factors;   ///< in the order of factorNames
   std::vector<Difference> settings;  ///< by key
@@ -104,7 +104,7 @@ std::vector<Comparison> compareLevels(const RunSet& runs, const std::string& fac
 /// Fills in p_holm over all measures of all of them.
 void adjustForNumber(std::vector<Comparison>& comparisons);
 
-/// How many differences stand in them, how many seem to be there, and how many would by chance.
+/// How many differences the comparisons report, and how many of them are significant.
 struct Multiplicity {
   std::size_t differences = 0;
   std::size_t apart = 0;          ///< p <= 0.05

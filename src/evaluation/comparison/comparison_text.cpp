@@ -4,7 +4,7 @@
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "evaluation/comparison.h"
+#include "evaluation/comparison/comparison.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/metric_registry.h"
 
@@ -59,7 +59,7 @@ std::string ratioText(const MeasureComparison& measure, bool with_interval) {
          ", " + (std::isfinite(interval.high) ? core::formatFixed(interval.high, 2) : "inf") + "]";
 }
 
-/// What a reader has to know of one row.
+/// Caveats for the reader about one row.
 std::string noteOf(const MeasureComparison& measure, bool with_intervals) {
   std::vector<std::string> notes;
   for (const auto& [side, estimate] : {std::pair{"A", &measure.a}, std::pair{"B", &measure.b}}) {
