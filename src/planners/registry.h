@@ -13,9 +13,9 @@ namespace cdiff::planners {
 // The table of planners, for ego and CBVs alike: those of this package (the list in
 // src/planners/CMakeLists.txt) and those that plug-ins add.
 
-/// Adds a planner to the table; `source` names who does ("library /x/libmine.so"). Throws InputError
-/// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
-/// and a camera that its rig does not have.
+/// Adds a planner to the table; `source` names who does ("library /x/libmine.so"). Throws
+/// InputError naming `source` for a name that is taken or not snake_case, no role, no options or
+/// constructor, and a camera that its rig does not have.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
 
 /// nullptr for an unknown name. "NAME+NAME..." are several planners of CBVs by slot
