@@ -45,8 +45,8 @@ struct TrainingStage {
 };
 
 /// The stages of a `curves.csv`, in order of appearance; an incomplete last row, which a kill
-/// leaves, is skipped. Throws InputError naming `source` and the line of anything else that is
-/// no such file.
+/// leaves, is skipped. Throws InputError naming `source` and the line of anything else that does
+/// not belong in such a file.
 std::vector<TrainingStage> readTrainingCurves(const std::string& text, const std::string& source);
 
 /// The page; `card` is the text of the model card, empty if there is none yet.

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kPlutoStage = "imitation";
 constexpr std::int64_t kPlutoBatch = 32;
 
-/// The moments of a step, with those that are changed for the contrast behind them.
+/// The examples of a step: recorded moments, each followed by the changed ones of its triplet.
 struct StepExamples {
   std::vector<std::unique_ptr<PlutoExample>> owned;
   std::vector<Triplet> triplets;
