@@ -271,11 +271,21 @@ void fillSpeedTarget(metrics::MetricsOptions& options) {
     options.speed_target_samples.push_back(core::formatNumber(speed));
 }
 
+/// Gives the planners of `base` the trackers of plans that those of `named` name, which are presets
+/// of the keys beside them.
+void nameTrackers(const planning::PlannerOptionsTable& named, planning::PlannerOptionsTable& base) {
+  const std::string end = ".tracker";
+  for (const auto& [key, value] : core::flatOptions(named)) {
+    if (key.size() > end.size() && key.compare(key.size() - end.size(), end.size(), end) == 0)
+      core::overrideOption(key + "=" + value, "key '" + key + "'", base);
+  }
+}
+
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
-  // Which method, profile and protocol apply is only known when everything was read; their values
-  // then lie below everything else.
+  // Which method, profile, protocol and trackers apply is only known when everything was read;
+  // their values then lie below everything else.
   const MethodOptions method = loadMethod(applyRequest(request, {}).method);
   ScenarioOptions base;
   base.planner_options = method.planner_options;
@@ -286,6 +296,7 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
       profileOf("guidance_profile", named ? first.guidance_profile : method.profileOf(first.mode));
   base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
+  nameTrackers(first.planner_options, base.planner_options);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);
   options.validate();
