@@ -57,7 +57,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"combinations", "",
                 "Instead of the product of the five lists above: sets of their levels, each "
                 "\"ego_planner=NAME cbv_planner=NAME mode=MODE method=NAME guidance_profile=NAME\" "
-                "or a part of it."},
+                "or a part of it; variant=NAME runs it with that variant, which the others then "
+                "do without."},
                combinations);
   visitor.list({"variants", "", "Sets of overrides, each \"name: key=value key=value\"."},
                variants);
@@ -124,14 +125,15 @@ Combination combinationOf(const std::string& text, const std::string& source) {
       {"cbv_planner", &combination.cbv_planner},
       {"mode", &combination.mode},
       {"method", &combination.method},
-      {"guidance_profile", &combination.guidance_profile}};
+      {"guidance_profile", &combination.guidance_profile},
+      {"variant", &combination.variant}};
   for (const std::string& word : core::splitText(text, ' ')) {
     const std::size_t equals = word.find('=');
     const auto field = fields.find(word.substr(0, equals));
     if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
       throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
-                       "' is wrong; expected ego_planner=, cbv_planner=, mode=, method= and "
-                       "guidance_profile=, each once at most");
+                       "' is wrong; expected ego_planner=, cbv_planner=, mode=, method=, "
+                       "guidance_profile= and variant=, each once at most");
     }
     *field->second = word.substr(equals + 1);
   }

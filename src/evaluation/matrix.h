@@ -86,6 +86,7 @@ struct Combination {
   std::string mode;
   std::string method;
   std::string guidance_profile;
+  std::string variant = {};  ///< that it is run with, alone; empty: all that no combination names
 };
 
 /// Scenarios named, then those of the suite, then Bench2Drive routes; at least one.

@@ -110,6 +110,7 @@ class RunPlanner {
         combinations_(combinationsOf(matrix, source)),
         variants_(variantsOf(matrix, source)) {
     checkSeeds(matrix.seeds, source);
+    for (const Combination& combination : combinations_) requireKnownVariant(combination.variant);
   }
 
   std::vector<PlannedRun> plan() {
@@ -143,8 +144,33 @@ class RunPlanner {
                      std::to_string(kMostRuns) + " were expected: divide the matrix");
   }
 
-  void addVariants(const ScenarioLevel& level, const Combination& combination) {
+  void requireKnownVariant(const std::string& name) {
+    if (name.empty()) return;
+    const bool known =
+        std::any_of(variants_.begin(), variants_.end(),
+                    [&](const Variant& variant) { return variant.name == name; });
+    if (!known) {
+      throw InputError(source_ + ": key 'combinations' names variant '" + name +
+                       "', which key 'variants' does not hold");
+    }
+    named_.insert(name);
+  }
+
+  /// The variant that a combination names, else all that none names; one without a name where that
+  /// leaves nothing.
+  std::vector<Variant> variantsFor(const Combination& combination) const {
+    std::vector<Variant> chosen;
     for (const Variant& variant : variants_) {
+      const bool own = combination.variant.empty() ? named_.count(variant.name) == 0
+                                                   : variant.name == combination.variant;
+      if (own) chosen.push_back(variant);
+    }
+    if (chosen.empty()) chosen.emplace_back();
+    return chosen;
+  }
+
+  void addVariants(const ScenarioLevel& level, const Combination& combination) {
+    for (const Variant& variant : variantsFor(combination)) {
       ScenarioLevel next = level;
       next.request.ego_planner = combination.ego_planner;
       next.request.cbv_planner = combination.cbv_planner;
@@ -255,6 +281,7 @@ class RunPlanner {
   InputHasher hasher_;
   std::vector<Combination> combinations_;
   std::vector<Variant> variants_;
+  std::set<std::string> named_;  ///< variants that a combination names
   std::vector<PlannedRun> runs_;
 };
 
