@@ -120,13 +120,12 @@ std::vector<std::string> scenariosOf(const MatrixOptions& matrix) {
 
 Combination combinationOf(const std::string& text, const std::string& source) {
   Combination combination;
-  std::map<std::string, std::string*> fields = {
-      {"ego_planner", &combination.ego_planner},
-      {"cbv_planner", &combination.cbv_planner},
-      {"mode", &combination.mode},
-      {"method", &combination.method},
-      {"guidance_profile", &combination.guidance_profile},
-      {"variant", &combination.variant}};
+  std::map<std::string, std::string*> fields = {{"ego_planner", &combination.ego_planner},
+                                                {"cbv_planner", &combination.cbv_planner},
+                                                {"mode", &combination.mode},
+                                                {"method", &combination.method},
+                                                {"guidance_profile", &combination.guidance_profile},
+                                                {"variant", &combination.variant}};
   for (const std::string& word : core::splitText(text, ' ')) {
     const std::size_t equals = word.find('=');
     const auto field = fields.find(word.substr(0, equals));
@@ -219,6 +218,36 @@ std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::
   for (const std::string& text : matrix.combinations)
     combinations.push_back(combinationOf(text, source));
   return combinations;
+}
+
+std::set<std::string> namedVariants(const std::vector<Combination>& combinations,
+                                    const std::vector<Variant>& variants,
+                                    const std::string& source) {
+  std::set<std::string> named;
+  for (const Combination& combination : combinations) {
+    const std::string& name = combination.variant;
+    if (name.empty()) continue;
+    if (std::none_of(variants.begin(), variants.end(),
+                     [&](const Variant& variant) { return variant.name == name; })) {
+      throw InputError(source + ": key 'combinations' names variant '" + name +
+                       "', which key 'variants' does not hold");
+    }
+    named.insert(name);
+  }
+  return named;
+}
+
+std::vector<Variant> variantsFor(const Combination& combination,
+                                 const std::vector<Variant>& variants,
+                                 const std::set<std::string>& named) {
+  std::vector<Variant> chosen;
+  for (const Variant& variant : variants) {
+    const bool own = combination.variant.empty() ? named.count(variant.name) == 0
+                                                 : variant.name == combination.variant;
+    if (own) chosen.push_back(variant);
+  }
+  if (chosen.empty()) chosen.emplace_back();
+  return chosen;
 }
 
 void checkSeeds(const std::vector<std::string>& seeds, const std::string& source) {

@@ -108,9 +108,9 @@ class RunPlanner {
       : matrix_(matrix),
         source_(source),
         combinations_(combinationsOf(matrix, source)),
-        variants_(variantsOf(matrix, source)) {
+        variants_(variantsOf(matrix, source)),
+        named_(namedVariants(combinations_, variants_, source)) {
     checkSeeds(matrix.seeds, source);
-    for (const Combination& combination : combinations_) requireKnownVariant(combination.variant);
   }
 
   std::vector<PlannedRun> plan() {
@@ -144,33 +144,8 @@ class RunPlanner {
                      std::to_string(kMostRuns) + " were expected: divide the matrix");
   }
 
-  void requireKnownVariant(const std::string& name) {
-    if (name.empty()) return;
-    const bool known =
-        std::any_of(variants_.begin(), variants_.end(),
-                    [&](const Variant& variant) { return variant.name == name; });
-    if (!known) {
-      throw InputError(source_ + ": key 'combinations' names variant '" + name +
-                       "', which key 'variants' does not hold");
-    }
-    named_.insert(name);
-  }
-
-  /// The variant that a combination names, else all that none names; one without a name where that
-  /// leaves nothing.
-  std::vector<Variant> variantsFor(const Combination& combination) const {
-    std::vector<Variant> chosen;
-    for (const Variant& variant : variants_) {
-      const bool own = combination.variant.empty() ? named_.count(variant.name) == 0
-                                                   : variant.name == combination.variant;
-      if (own) chosen.push_back(variant);
-    }
-    if (chosen.empty()) chosen.emplace_back();
-    return chosen;
-  }
-
   void addVariants(const ScenarioLevel& level, const Combination& combination) {
-    for (const Variant& variant : variantsFor(combination)) {
+    for (const Variant& variant : variantsFor(combination, variants_, named_)) {
       ScenarioLevel next = level;
       next.request.ego_planner = combination.ego_planner;
       next.request.cbv_planner = combination.cbv_planner;

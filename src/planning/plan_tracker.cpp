@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/geometry/shapes.h"
@@ -96,6 +97,14 @@ void PlanTrackerOptions::validate() const {
 double PlanTrackerOptions::lookAhead(double speed) const {
   return std::clamp(look_ahead_time * speed + look_ahead_distance, look_ahead_minimum,
                     look_ahead_maximum);
+}
+
+void nameTrackers(const PlannerOptionsTable& named, PlannerOptionsTable& base) {
+  const std::string end = ".tracker";
+  for (const auto& [key, value] : core::flatOptions(named)) {
+    if (key.size() > end.size() && key.compare(key.size() - end.size(), end.size(), end) == 0)
+      core::overrideOption(key + "=" + value, "key '" + key + "'", base);
+  }
 }
 
 double desiredSpeed(const Eigen::Vector2d& position, PlanPlaces plan, double horizon) {

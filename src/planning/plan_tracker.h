@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
+#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planning/windowed_pid.h"
 
@@ -46,6 +47,10 @@ struct PlanTrackerOptions {
  private:
   void describeName(core::OptionsVisitor& visitor, const std::vector<std::string>& further);
 };
+
+/// Gives the planners of `base` the trackers (keys NAME.tracker) that those of `named` name, so
+/// that these lie below single keys, whatever the order of both.
+void nameTrackers(const PlannerOptionsTable& named, PlannerOptionsTable& base);
 
 /// A plan: where a vehicle is to be 0.1, 0.2, ... s from now, in a frame of the caller's [m]. A
 /// view: the places must outlive it.

@@ -12,6 +12,7 @@
 #include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planning/plan_tracker.h"
 #include "session/preset_file.h"
 
 namespace cdiff::session {
@@ -271,16 +272,6 @@ void fillSpeedTarget(metrics::MetricsOptions& options) {
     options.speed_target_samples.push_back(core::formatNumber(speed));
 }
 
-/// Gives the planners of `base` the trackers of plans that those of `named` name, which are presets
-/// of the keys beside them.
-void nameTrackers(const planning::PlannerOptionsTable& named, planning::PlannerOptionsTable& base) {
-  const std::string end = ".tracker";
-  for (const auto& [key, value] : core::flatOptions(named)) {
-    if (key.size() > end.size() && key.compare(key.size() - end.size(), end.size(), end) == 0)
-      core::overrideOption(key + "=" + value, "key '" + key + "'", base);
-  }
-}
-
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
@@ -296,7 +287,7 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
       profileOf("guidance_profile", named ? first.guidance_profile : method.profileOf(first.mode));
   base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
-  nameTrackers(first.planner_options, base.planner_options);
+  planning::nameTrackers(first.planner_options, base.planner_options);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);
   options.validate();
