@@ -67,12 +67,14 @@ class LoadVisitor : public OptionsVisitor {
             const std::vector<std::string>& choices) override {
     const YAML::Node node = take(info);
     if (!node) return;
-    if (!node.IsScalar()) fail(node, info.key, "a text");
+    const std::string choice = "one of {" + joinText(choices, ", ") + "}";
+    if (!node.IsScalar())
+      fail(node, info.key, choices.empty() ? "a text" : choice + ": " + info.text);
     const std::string given = node.Scalar();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
       const std::string close = closeName(given, choices);
       fail(node, info.key,
-           "one of {" + joinText(choices, ", ") + "}" +
+           choice +
                (close.empty() ? ": " + std::string(info.text) : "; did you mean '" + close + "'?"));
     }
     value = given;

@@ -179,15 +179,24 @@ void makeFolder(const fs::path& folder) {
 }
 
 /// Tables and figures pool runs over scenarios and seeds, never over variants: of several, the runs
-/// without one count, else those of the first.
-std::vector<BatchRun> ofOneVariant(const std::vector<BatchRun>& runs) {
+/// without one count, else those of the first. Rows that name a variant have its runs.
+std::string pooledVariant(const std::vector<BatchRun>& runs) {
   std::set<std::string> variants;
   for (const BatchRun& run : runs) variants.insert(run.record.factors.at("variant"));
+  return variants.empty() ? "" : *variants.begin();
+}
+
+std::vector<BatchRun> ofVariant(const std::string& variant, const std::vector<BatchRun>& runs) {
   std::vector<BatchRun> kept;
   for (const BatchRun& run : runs) {
-    if (run.record.factors.at("variant") == *variants.begin()) kept.push_back(run);
+    if (run.record.factors.at("variant") == variant) kept.push_back(run);
   }
   return kept;
+}
+
+TableDefinition withVariant(const std::string& variant, TableDefinition table) {
+  for (TableRow& row : table.rows) row.levels.emplace("variant", variant);
+  return table;
 }
 
 std::string row(const std::vector<std::string>& cells) {
@@ -240,10 +249,11 @@ std::string tablesMarkdown(const std::vector<Table>& tables) {
 
 void writeBatchReport(const fs::path& results, const std::string& name) {
   const std::vector<BatchRun> runs = readBatchRuns(results);
-  const std::vector<BatchRun> pooled = ofOneVariant(runs);
+  const std::string variant = pooledVariant(runs);
+  const std::vector<BatchRun> pooled = ofVariant(variant, runs);
   std::vector<Table> tables;
   for (const TableDefinition& definition : paperTables())
-    tables.push_back(fillTable(definition, pooled));
+    tables.push_back(fillTable(withVariant(variant, definition), runs));
   std::vector<Figure> figures = paperFigures(pooled);
   if (auto trails = trailFigure(runs)) figures.push_back(std::move(*trails));
   makeFolder(results / "tables");

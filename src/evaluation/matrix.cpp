@@ -57,7 +57,8 @@ void MatrixOptions::describe(core::OptionsVisitor& visitor) {
   visitor.list({"combinations", "",
                 "Instead of the product of the five lists above: sets of their levels, each "
                 "\"ego_planner=NAME cbv_planner=NAME mode=MODE method=NAME guidance_profile=NAME\" "
-                "or a part of it."},
+                "or a part of it; variant=NAME runs it with that variant, which the others then "
+                "do without."},
                combinations);
   visitor.list({"variants", "", "Sets of overrides, each \"name: key=value key=value\"."},
                variants);
@@ -119,19 +120,19 @@ std::vector<std::string> scenariosOf(const MatrixOptions& matrix) {
 
 Combination combinationOf(const std::string& text, const std::string& source) {
   Combination combination;
-  std::map<std::string, std::string*> fields = {
-      {"ego_planner", &combination.ego_planner},
-      {"cbv_planner", &combination.cbv_planner},
-      {"mode", &combination.mode},
-      {"method", &combination.method},
-      {"guidance_profile", &combination.guidance_profile}};
+  std::map<std::string, std::string*> fields = {{"ego_planner", &combination.ego_planner},
+                                                {"cbv_planner", &combination.cbv_planner},
+                                                {"mode", &combination.mode},
+                                                {"method", &combination.method},
+                                                {"guidance_profile", &combination.guidance_profile},
+                                                {"variant", &combination.variant}};
   for (const std::string& word : core::splitText(text, ' ')) {
     const std::size_t equals = word.find('=');
     const auto field = fields.find(word.substr(0, equals));
     if (equals == std::string::npos || field == fields.end() || !field->second->empty()) {
       throw InputError(source + ": key 'combinations' holds '" + text + "', where '" + word +
-                       "' is wrong; expected ego_planner=, cbv_planner=, mode=, method= and "
-                       "guidance_profile=, each once at most");
+                       "' is wrong; expected ego_planner=, cbv_planner=, mode=, method=, "
+                       "guidance_profile= and variant=, each once at most");
     }
     *field->second = word.substr(equals + 1);
   }
@@ -217,6 +218,36 @@ std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::
   for (const std::string& text : matrix.combinations)
     combinations.push_back(combinationOf(text, source));
   return combinations;
+}
+
+std::set<std::string> namedVariants(const std::vector<Combination>& combinations,
+                                    const std::vector<Variant>& variants,
+                                    const std::string& source) {
+  std::set<std::string> named;
+  for (const Combination& combination : combinations) {
+    const std::string& name = combination.variant;
+    if (name.empty()) continue;
+    if (std::none_of(variants.begin(), variants.end(),
+                     [&](const Variant& variant) { return variant.name == name; })) {
+      throw InputError(source + ": key 'combinations' names variant '" + name +
+                       "', which key 'variants' does not hold");
+    }
+    named.insert(name);
+  }
+  return named;
+}
+
+std::vector<Variant> variantsFor(const Combination& combination,
+                                 const std::vector<Variant>& variants,
+                                 const std::set<std::string>& named) {
+  std::vector<Variant> chosen;
+  for (const Variant& variant : variants) {
+    const bool own = combination.variant.empty() ? named.count(variant.name) == 0
+                                                 : variant.name == combination.variant;
+    if (own) chosen.push_back(variant);
+  }
+  if (chosen.empty()) chosen.emplace_back();
+  return chosen;
 }
 
 void checkSeeds(const std::vector<std::string>& seeds, const std::string& source) {

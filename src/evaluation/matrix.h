@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,7 @@ struct Combination {
   std::string mode;
   std::string method;
   std::string guidance_profile;
+  std::string variant = {};  ///< that it is run with, alone; empty: all that no combination names
 };
 
 /// Scenarios named, then those of the suite, then Bench2Drive routes; at least one.
@@ -96,6 +98,17 @@ std::vector<Variant> variantsOf(const MatrixOptions& matrix, const std::string& 
 
 /// Those given, or the product of the five lists.
 std::vector<Combination> combinationsOf(const MatrixOptions& matrix, const std::string& source);
+
+/// Names of variants that combinations name; each is one of `variants`.
+std::set<std::string> namedVariants(const std::vector<Combination>& combinations,
+                                    const std::vector<Variant>& variants,
+                                    const std::string& source);
+
+/// What a combination is run with: the variant that it names, else all that are not in `named`; one
+/// without a name where that leaves nothing.
+std::vector<Variant> variantsFor(const Combination& combination,
+                                 const std::vector<Variant>& variants,
+                                 const std::set<std::string>& named);
 
 /// Whole numbers from 0 on.
 void checkSeeds(const std::vector<std::string>& seeds, const std::string& source);

@@ -194,6 +194,10 @@ std::string plannerText(const std::string& role, const std::string& name,
     parts.push_back("weights '" + facts.model + "'");
   }
   if (planner->guided) parts.push_back(objectivesText(guidance));
+  const auto values = core::flatOptions(scenario.planner_options);
+  const auto tracker = values.find(name + ".tracker");  // in quotes
+  if (tracker != values.end())
+    parts.push_back("tracker " + tracker->second.substr(1, tracker->second.size() - 2));
   return core::joinText(parts, ", ");
 }
 

@@ -108,7 +108,8 @@ class RunPlanner {
       : matrix_(matrix),
         source_(source),
         combinations_(combinationsOf(matrix, source)),
-        variants_(variantsOf(matrix, source)) {
+        variants_(variantsOf(matrix, source)),
+        named_(namedVariants(combinations_, variants_, source)) {
     checkSeeds(matrix.seeds, source);
   }
 
@@ -144,7 +145,7 @@ class RunPlanner {
   }
 
   void addVariants(const ScenarioLevel& level, const Combination& combination) {
-    for (const Variant& variant : variants_) {
+    for (const Variant& variant : variantsFor(combination, variants_, named_)) {
       ScenarioLevel next = level;
       next.request.ego_planner = combination.ego_planner;
       next.request.cbv_planner = combination.cbv_planner;
@@ -255,6 +256,7 @@ class RunPlanner {
   InputHasher hasher_;
   std::vector<Combination> combinations_;
   std::vector<Variant> variants_;
+  std::set<std::string> named_;  ///< variants that a combination names
   std::vector<PlannedRun> runs_;
 };
 

@@ -56,7 +56,7 @@ struct PlanPidOptions {
 /// decision every 0.1 s.
 ///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
 ///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
-///  - Turn error: bearing of a place of the plan, in units of 90 degrees; none while it brakes.
+///  - Turn error: bearing of a place of the plan, in units of 90 degrees.
 class PlanPids {
  public:
   explicit PlanPids(const PlanPidOptions& options);

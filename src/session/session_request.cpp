@@ -12,6 +12,7 @@
 #include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planning/plan_tracker.h"
 #include "session/preset_file.h"
 
 namespace cdiff::session {
@@ -274,8 +275,8 @@ void fillSpeedTarget(metrics::MetricsOptions& options) {
 }  // namespace
 
 ScenarioOptions resolveRequest(const SessionRequest& request) {
-  // Which method, profile and protocol apply is only known when everything was read; their values
-  // then lie below everything else.
+  // Which method, profile, protocol and trackers apply is only known when everything was read;
+  // their values then lie below everything else.
   const MethodOptions method = loadMethod(applyRequest(request, {}).method);
   ScenarioOptions base;
   base.planner_options = method.planner_options;
@@ -286,6 +287,7 @@ ScenarioOptions resolveRequest(const SessionRequest& request) {
       profileOf("guidance_profile", named ? first.guidance_profile : method.profileOf(first.mode));
   base.ego_guidance = profileOf("ego_guidance_profile", first.ego_guidance_profile);
   base.protocol = loadProtocol(first.protocol.preset);
+  planning::nameTrackers(first.planner_options, base.planner_options);
   ScenarioOptions options = applyRequest(request, base);
   fillSpeedTarget(options.metrics);
   options.validate();

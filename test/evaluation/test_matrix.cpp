@@ -190,6 +190,27 @@ TEST(Plan, TakesCombinationsInsteadOfAProduct) {
   expectIn("did you mean 'pdm_lite'", errorOf(matrix));
 }
 
+TEST(Plan, AVariantThatACombinationNamesIsRunWithThatOneAlone) {
+  MatrixOptions matrix = oneScenario();
+  matrix.combinations = {"cbv_planner=pdm_lite", "cbv_planner=constant variant=slow"};
+  matrix.variants = {"slow: target_speed=4"};
+  auto plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_EQ(plan[0].factors.at("variant"), "");
+  EXPECT_EQ(plan[0].factors.at("cbv_planner"), "pdm_lite");
+  expectIn("target_speed: 8\n", plan[0].scenario_text);
+  EXPECT_EQ(plan[1].factors.at("variant"), "slow");
+  EXPECT_EQ(plan[1].factors.at("cbv_planner"), "constant");
+  expectIn("target_speed: 4\n", plan[1].scenario_text);
+  // One that no combination names goes with all that name none.
+  matrix.variants.emplace_back("fast: target_speed=9");
+  plan = planRuns(matrix, "matrix.yaml");
+  ASSERT_EQ(plan.size(), 2U);
+  EXPECT_EQ(plan[0].factors.at("variant"), "fast");
+  matrix.combinations.emplace_back("cbv_planner=diffusion variant=slov");
+  expectIn("names variant 'slov', which key 'variants' does not hold", errorOf(matrix));
+}
+
 TEST(Plan, NamesWhatIsWrong) {
   expectIn("the matrix is empty", errorOf(MatrixOptions()));
   MatrixOptions matrix = oneScenario();

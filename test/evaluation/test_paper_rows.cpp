@@ -66,8 +66,8 @@ TEST(PaperRows, EachCellIsFilledByRunsOfItsPlanners) {
     EXPECT_DOUBLE_EQ(*cell.seeds.mean, 2.0) << table.id << " " << table.rows[row].name;
     ++filled;
   });
-  // Tables: 25 + 25 + 5 x 4 + 16 + 50 + 8; Figure 4: 2 egos x 8; Figure 8: (4 egos + 7) x 2.
-  EXPECT_EQ(filled, 144U + 16U + 22U);
+  // Tables: 25 + 25 + 5 x 4 + 20 + 50 + 8; Figure 4: 2 egos x 8; Figure 8: (4 egos + 7) x 2.
+  EXPECT_EQ(filled, 148U + 16U + 22U);
 }
 
 /// Cells of the paper's own rows (not of method paper beside them) that wait for a system.
@@ -108,7 +108,8 @@ Factors levelsOf(const Combination& combination) {
           {"method", combination.method},
           {"guidance_profile",
            profile.empty() ? session::loadMethod(combination.method).profileOf(combination.mode)
-                           : profile}};
+                           : profile},
+          {"variant", combination.variant}};
 }
 
 bool contains(const Factors& levels, const Factors& wanted) {
@@ -147,7 +148,7 @@ TEST_F(PaperTablesMatrix, HasNoCombinationWithoutACellNorTwice) {
     EXPECT_TRUE(shown) << "combination " << i + 1;
     EXPECT_EQ(std::count(levels_.begin(), levels_.end(), levels_[i]), 1) << "combination " << i + 1;
   }
-  EXPECT_EQ(levels_.size(), 29U);
+  EXPECT_EQ(levels_.size(), 30U);
 }
 
 /// The cell of a row in a column of a table without runs.

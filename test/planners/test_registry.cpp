@@ -93,7 +93,7 @@ TEST_F(PlannerRegistry, TwoStagePidIsGuidedAndSees) {
   EXPECT_TRUE(canBeGuided("two_stage_pid"));
   EXPECT_TRUE(seesImages("two_stage_pid"));
   EXPECT_FALSE(canBeGuided("pdm_lite"));
-  options_.of<TrajectoryTrackerOptions>().look_ahead_maximum = 1.0;
+  options_.of<TwoStagePidOptions>().look_ahead_maximum = 1.0;
   EXPECT_THROW(make("two_stage_pid"), core::InputError);
   EXPECT_THROW(options_.validate(), core::InputError);
   options_ = defaultOptions();

@@ -8,6 +8,8 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/diffusion/diffusion_planner.h"
+#include "planners/pluto/pluto.h"
+#include "planners/two_stage_pid/two_stage_pid.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 
@@ -42,6 +44,38 @@ TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(shippedScenarios()),
                          [](const auto& info) { return info.param; });
+
+/// The scenario of a request with these overrides.
+ScenarioOptions withKeys(const std::vector<std::string>& set) {
+  SessionRequest request;
+  request.scenario = shippedScenarios().front();
+  request.set = set;
+  return resolveRequest(request);
+}
+
+TEST(Trackers, LieBelowSingleKeysInAnyOrder) {
+  const ScenarioOptions after =
+      withKeys({"two_stage_pid.tracker=published", "two_stage_pid.turn_kp=2"});
+  const ScenarioOptions before =
+      withKeys({"two_stage_pid.turn_kp=2", "two_stage_pid.tracker=published"});
+  EXPECT_EQ(core::dumpOptions(after), core::dumpOptions(before));
+  const auto& options = before.planner_options.of<planners::TwoStagePidOptions>();
+  EXPECT_EQ(options.pids.turn.kp, 2.0);
+  EXPECT_EQ(options.pids.turn.ki, 0.75);
+  EXPECT_EQ(options.look_ahead_minimum, 5.0);
+  // Of the other planners the tracker stays.
+  EXPECT_EQ(before.planner_options.of<planners::PlutoOptions>().tracker.tracker, "tuned");
+}
+
+TEST(Trackers, KeysOfTheFormerGroupNameTheNewOnes) {
+  try {
+    withKeys({"pluto.tracker.turn_kp=2"});
+    FAIL();
+  } catch (const core::InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("the nearest known key is 'pluto.turn_kp'"), std::string::npos) << text;
+  }
+}
 
 TEST(ShippedScenarios, ThreeForEachOfFourNetworks) {
   std::map<std::string, int> counts;

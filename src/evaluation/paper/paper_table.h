@@ -58,6 +58,10 @@ const std::vector<PaperSystem>& paperCbvPlanners();
 /// Two-stage and end-to-end, by method default, then by method paper.
 const std::vector<PaperSystem>& paperExecutions();
 
+/// Variant of the sensitivity row of Table 4 in evaluation paper_tables: the two-stage planner
+/// follows its plans as PDM-Lite steers and drives.
+inline constexpr const char* kSecondTracker = "pdm_lite_tracker";
+
 /// Level of runs that a system drives as ego.
 Factors egoLevel(const PaperSystem& system);
 /// Levels of runs whose CBVs a system drives: planner, method, mode and the guidance profile that

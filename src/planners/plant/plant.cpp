@@ -29,7 +29,8 @@ WaypointTracker::WaypointTracker(const PlantOptions& options)
 traffic::ControlAction WaypointTracker::track(double speed, const PlantWaypoints& waypoints) {
   const double desired = (waypoints[1] - waypoints[0]).norm() / kPlantWaypointPeriod;
   const Eigen::Vector2d aim = 0.5 * (waypoints[0] + waypoints[1]);
-  traffic::ControlAction action = pids_.track(speed, desired, planning::turnErrorToward(aim));
+  const double turn_error = pids_.brakes(speed, desired) ? 0.0 : planning::turnErrorToward(aim);
+  traffic::ControlAction action = pids_.track(speed, desired, turn_error);
   if (action.brake > 0.0) action.steer *= steer_damping_;
   return action;
 }

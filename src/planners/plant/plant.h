@@ -23,7 +23,8 @@ struct PlantOptions : WeightOptions {
 };
 
 /// Makes one vehicle follow PlanT's waypoints with PlanPids (PlanT, section 3): desired speed
-/// 2 |w1 - w0| per second, aim (w0 + w1) / 2. One call per decision (published: 0.1 s).
+/// 2 |w1 - w0| per second, aim (w0 + w1) / 2, no turn error while it brakes. One call per decision
+/// (published: 0.1 s).
 class WaypointTracker {
  public:
   explicit WaypointTracker(const PlantOptions& options);

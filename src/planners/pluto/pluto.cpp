@@ -19,7 +19,7 @@ void PlutoOptions::describe(core::OptionsVisitor& visitor) {
                   1024);
   visitor.number({"free_score", "", "Score of the plan that follows no reference line."},
                  free_score, 0.0, 1.0);
-  visitor.group({"tracker", "", "The PIDs that follow the chosen plan."}, tracker);
+  tracker.describe(visitor);
 }
 
 PlutoChoice choosePlan(const std::vector<float>& logits, std::size_t top, double free_score) {
@@ -154,7 +154,7 @@ std::vector<planning::PlannedAction> PlutoPlanner::plan(
     actions.push_back(planning::failSafeAction(task, fault));
     if (!fault.empty()) continue;
     Memory& memory = memories_.keep(task.vehicle->id, [&] {
-      return Memory{{}, TrajectoryTracker(options_.tracker)};
+      return Memory{{}, planning::PlanTracker(options_.tracker)};
     });
     memory.follower.update(*task.route, task.vehicle->state.position);
     conclude(task, look(snapshot, task, memory.follower.arcLength()), memory, actions.back());

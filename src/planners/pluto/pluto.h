@@ -10,17 +10,17 @@
 #include "planners/pluto/pluto_network.h"
 #include "planners/pluto/pluto_scene.h"
 #include "planners/pluto/tracks.h"
-#include "planners/two_stage_pid/two_stage_pid.h"
+#include "planning/plan_tracker.h"
 #include "planning/route_follower.h"
 #include "planning/vehicle_memory.h"
 
 namespace cdiff::planners {
 
-/// Options of the planner: its weights, how it chooses, and the PIDs that follow what it chose.
+/// Options of the planner: its weights, how it chooses, and how it follows what it chose.
 struct PlutoOptions : WeightOptions {
   std::int64_t top = 10;     ///< candidates that share the probability, those of largest logits
   double free_score = 0.25;  ///< of the plan that follows no reference line
-  TrajectoryTrackerOptions tracker;  ///< published for Pluto and RIFT
+  planning::PlanTrackerOptions tracker;
 
   PlutoOptions() : WeightOptions{kPluto.planner} {}
   void describe(core::OptionsVisitor& visitor);
@@ -55,7 +55,7 @@ class PlutoPlanner : public planning::Planner {
  private:
   struct Memory {
     planning::RouteFollower follower;
-    TrajectoryTracker tracker;
+    planning::PlanTracker tracker;
   };
   PlutoOutput look(const traffic::TrafficSnapshot& snapshot, const planning::PlanningTask& task,
                    double arc_length);

@@ -54,7 +54,7 @@ struct RiftState {
 class RiftEvaluator {
  public:
   explicit RiftEvaluator(const dynamics::BicycleModelOptions& vehicle,
-                         const TrajectoryTrackerOptions& tracker = {})
+                         const planning::PlanTrackerOptions& tracker = {})
       : driver_(vehicle, tracker) {}
 
   std::vector<double> returnsOf(const RiftState& state,

@@ -8,7 +8,7 @@
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "planners/pluto/pluto_network.h"
 #include "planners/rift/rift_reward.h"
-#include "planners/two_stage_pid/two_stage_pid.h"
+#include "planning/plan_tracker.h"
 
 namespace cdiff::planners {
 
@@ -30,19 +30,18 @@ struct RiftRollout {
   RiftSeries speed{};
 };
 
-/// Drives candidates with the PIDs that execute plans, through the project's vehicle dynamics, 0.05
-/// s a step: as TrajectoryTracker follows a plan, but of the plan 1, 2 and 3 s ahead of the current
-/// time alone, and with errors that start over (published for RIFT's rollouts).
+/// Drives candidates as PlanTracker drives plans, through the project's vehicle dynamics, 0.05 s a
+/// step: what is left of the plan is followed at each decision, and errors start over.
 class RiftDriver {
  public:
   explicit RiftDriver(const dynamics::BicycleModelOptions& vehicle,
-                      const TrajectoryTrackerOptions& tracker = {});
+                      const planning::PlanTrackerOptions& tracker = {});
   /// From `heading` [rad] and `speed` [m/s].
   RiftRollout drive(const RiftPlan& plan, double heading, double speed) const;
 
  private:
   dynamics::BicycleModel model_;
-  TrajectoryTrackerOptions tracker_;
+  planning::PlanTrackerOptions tracker_;
 };
 
 }  // namespace cdiff::planners

@@ -4,7 +4,7 @@
 
 #include "planners/course.h"
 #include "planners/rift/rift_evaluator.h"
-#include "planning/windowed_pid.h"
+#include "planning/plan_tracker.h"
 
 namespace cdiff::planners {
 namespace {
@@ -37,38 +37,19 @@ PlutoTrajectory stop() {
   return candidate;
 }
 
-/// The action for a plan, written down from the definition: places 1, 2 and 3 s ahead.
-class PlainTracker {
- public:
-  traffic::ControlAction track(const RiftPlan& plan, std::size_t step,
-                               const traffic::VehicleState& state) {
-    double desired = 0.0;
-    double bearing = 0.0;
-    double nearest = 1e9;
-    Eigen::Vector2d last = state.position;
-    const double look_ahead = std::clamp(0.5 * state.speed + 2.5, 5.0, 8.0);
-    for (const std::size_t ahead : {9, 19, 29}) {
-      const Eigen::Vector2d& place = plan.places[step + ahead];
-      desired += (place - last).norm() / 3.0;
-      last = place;
-      const Eigen::Vector2d body = state.pose().toBody(place);
-      if (std::abs(body.norm() - look_ahead) >= nearest) continue;
-      nearest = std::abs(body.norm() - look_ahead);
-      bearing = std::atan2(body.y(), body.x()) / (0.5 * core::kPi);
-    }
-    const bool brake = desired < 0.4 || state.speed > 1.1 * desired;
-    const double steer = turn_.update(brake || state.speed < 0.01 ? 0.0 : bearing);
-    const double throttle = speed_.update(std::clamp(desired - state.speed, 0.0, 1.0));
-    return {brake ? 0.0 : std::clamp(throttle, 0.0, 1.0), std::clamp(steer, -1.0, 1.0),
-            brake ? 1.0 : 0.0};
+/// What is left of a plan, in the body frame.
+Eigen::MatrixX2d leftOf(const RiftPlan& plan, std::size_t step,
+                        const traffic::VehicleState& state) {
+  Eigen::MatrixX2d places(static_cast<Eigen::Index>(plan.places.size() - step), 2);
+  for (Eigen::Index row = 0; row < places.rows(); ++row) {
+    const Eigen::Vector2d& place = plan.places[step + static_cast<std::size_t>(row)];
+    places.row(row) = state.pose().toBody(place).transpose();
   }
+  return places;
+}
 
- private:
-  planning::WindowedPid turn_{{1.25, 0.75, 0.3}, 20};
-  planning::WindowedPid speed_{{5.0, 0.5, 1.0}, 20};
-};
-
-// Speeding up, holding, turning either way and stopping.
+// As a planner that makes no other plan for 4 s: speeding up, holding, turning either way and
+// stopping.
 TEST(RiftDriver, DrivesAsTheTrackerAndTheDynamicsDo) {
   const dynamics::BicycleModel model;
   const RiftDriver driver(model.options());
@@ -78,12 +59,12 @@ TEST(RiftDriver, DrivesAsTheTrackerAndTheDynamicsDo) {
     const double heading = 2.0;
     const RiftPlan plan(candidate, heading);
     const RiftRollout rollout = driver.drive(plan, heading, speed);
-    PlainTracker tracker;
+    planning::PlanTracker tracker;
     traffic::VehicleState state;
     state.heading = heading;
     state.speed = speed;
     for (std::size_t step = 0; step < kRiftSteps; ++step) {
-      state = model.step(state, tracker.track(plan, step, state), 0.1);
+      state = model.step(state, tracker.track(state.speed, leftOf(plan, step, state)), 0.1);
       EXPECT_NEAR(rollout.x[step + 1], state.position.x(), 1e-6) << step;
       EXPECT_NEAR(rollout.y[step + 1], state.position.y(), 1e-6) << step;
       EXPECT_NEAR(core::angleDifference(rollout.heading[step + 1], state.heading), 0.0, 1e-6);

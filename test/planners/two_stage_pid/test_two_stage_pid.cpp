@@ -16,7 +16,8 @@ class TwoStagePidTest : public testing::ModelCourse {
   TwoStagePid makePlanner() const { return {makeDiffusion(), {}}; }
 
   /// What a tracker of its own answers to a plan.
-  static traffic::ControlAction tracked(TrajectoryTracker& tracker, const traffic::Vehicle& vehicle,
+  template <class Tracker>
+  static traffic::ControlAction tracked(Tracker& tracker, const traffic::Vehicle& vehicle,
                                         const planning::PlannedAction& plan) {
     Eigen::MatrixX2d places(static_cast<Eigen::Index>(plan.rollout.size()), 2);
     for (Eigen::Index row = 0; row < places.rows(); ++row) {
@@ -30,7 +31,7 @@ class TwoStagePidTest : public testing::ModelCourse {
 TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
   TwoStagePid planner = makePlanner();
   const auto diffusion = makeDiffusion();
-  TrajectoryTracker trackers[2];
+  planning::PlanTracker trackers[2];
   for (const std::uint64_t tick : {0U, 2U, 4U}) {
     goTo(tick);
     const auto actions = planner.plan(snapshot_, tasks());
@@ -73,7 +74,7 @@ TEST_F(TwoStagePidTest, RemembersTheErrorsOfEveryVehicle) {
   options.model = writeSmoothModel(folder.path());
   TwoStagePid planner(ModelCourse::makeDiffusion(options), {});
   const auto diffusion = ModelCourse::makeDiffusion(options);
-  TrajectoryTracker trackers[2];
+  planning::PlanTracker trackers[2];
   for (const std::uint64_t tick : {0U, 2U, 4U}) {
     goTo(tick);
     const auto actions = planner.plan(snapshot_, tasks());
@@ -82,7 +83,7 @@ TEST_F(TwoStagePidTest, RemembersTheErrorsOfEveryVehicle) {
       const traffic::Vehicle& vehicle = snapshot_.vehicles[i + 1];
       EXPECT_EQ(actions[i].action, tracked(trackers[i], vehicle, plans[i]));
       EXPECT_NEAR(actions[i].action.throttle, tick == 0 ? 0.6025 : 0.505, 0.1);
-      TrajectoryTracker fresh;
+      planning::PlanTracker fresh;
       const traffic::ControlAction without = tracked(fresh, vehicle, plans[i]);
       EXPECT_EQ(actions[i].action == without, tick == 0) << tick;
     }
@@ -103,10 +104,41 @@ TEST_F(TwoStagePidTest, SameCallsSameActionsAndEachVehicleAlone) {
   }
 }
 
+TEST_F(TwoStagePidTest, PdmLiteTracksIfAsked) {
+  TwoStagePidOptions options;
+  core::overrideOption("tracker=pdm_lite", "test", options);
+  TwoStagePid planner(makeDiffusion(), options);
+  const auto diffusion = makeDiffusion();
+  goTo(0);
+  const auto actions = planner.plan(snapshot_, tasks());
+  const auto plans = diffusion->plan(snapshot_, tasks());
+  for (std::size_t i = 0; i < 2; ++i) {
+    PdmLiteTracker tracker(options.speed_horizon);
+    EXPECT_EQ(actions[i].action, tracked(tracker, snapshot_.vehicles[i + 1], plans[i]));
+  }
+}
+
+// Its constants are PDM-Lite's own; the speed horizon alone is a key of both.
+TEST_F(TwoStagePidTest, KeysThatPdmLiteDoesNotHaveAreAnError) {
+  TwoStagePidOptions options;
+  core::loadOptions({"s.yaml", "tracker: pdm_lite\nspeed_horizon: 2\n"}, options);
+  EXPECT_NO_THROW(options.validate());
+  core::overrideOption("turn_kp=9", "test", options);
+  try {
+    options.validate();
+    FAIL();
+  } catch (const core::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no key turn_kp;"), std::string::npos) << error.what();
+  }
+  core::overrideOption("tracker=published", "test", options);
+  EXPECT_NO_THROW(options.validate());
+  EXPECT_EQ(options.pids.turn.kp, 1.25);
+}
+
 TEST_F(TwoStagePidTest, FaultBrakesThatVehicleAloneAndItsTrackerStartsAnew) {
   TwoStagePid planner = makePlanner();
   const auto diffusion = makeDiffusion();
-  TrajectoryTracker tracker;
+  planning::PlanTracker tracker;
   for (const std::uint64_t tick : {0U, 2U, 4U}) {
     goTo(tick);
     std::vector<planning::PlanningTask> asked = tasks();
@@ -120,7 +152,7 @@ TEST_F(TwoStagePidTest, FaultBrakesThatVehicleAloneAndItsTrackerStartsAnew) {
       EXPECT_EQ(actions[0].action, traffic::ControlAction::failSafe());
       EXPECT_NE(actions[0].fault.find("the image is 80 x 96"), std::string::npos);
     } else {
-      TrajectoryTracker fresh;
+      planning::PlanTracker fresh;
       EXPECT_EQ(actions[0].action, tracked(fresh, snapshot_.vehicles[1], plans[0])) << tick;
     }
   }

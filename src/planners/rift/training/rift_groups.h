@@ -34,8 +34,10 @@ struct RiftGroup {
 /// are.
 class RiftGroups {
  public:
-  RiftGroups(const PlutoModel& model, const dynamics::BicycleModelOptions& vehicle)
-      : model_(model), vehicle_(vehicle), evaluator_(vehicle) {}
+  /// `tracker`: that candidates are driven with, which should be the one that will drive.
+  RiftGroups(const PlutoModel& model, const dynamics::BicycleModelOptions& vehicle,
+             const planning::PlanTrackerOptions& tracker = {})
+      : model_(model), vehicle_(vehicle), evaluator_(vehicle, tracker) {}
 
   RiftGroup of(const PlutoScene& scene, const RiftMoment& moment);
 

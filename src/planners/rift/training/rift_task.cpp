@@ -41,6 +41,8 @@ void RiftTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  100.0);
   visitor.integer({"buffer", "", "States gathered at a time."}, buffer, 1, 1 << 20);
   visitor.integer({"epochs", "", "Passes over the states of a buffer."}, epochs, 1, 1000);
+  visitor.text({"tracker", "", "Drives the candidates: that with which the planner is to drive."},
+               tracker, {planning::kTunedTracker, planning::kPublishedTracker});
 }
 
 RiftObjective RiftTrainingSettings::objectiveOf() const {
@@ -87,9 +89,10 @@ void RiftTask::start(const learning::TrainingRun& run) {
   learning::ParameterSet head = headOf(model);
   head.moveTo(run.device);
   const dynamics::BicycleModelOptions vehicle;
-  state_.reset(new RiftTrainingState{run, settings, model, weightSha256(kind, folder),
-                                     std::move(head), RiftGroups(model, vehicle), scenes_,
-                                     moments_});
+  state_.reset(new RiftTrainingState{
+      run, settings, model, weightSha256(kind, folder), std::move(head),
+      RiftGroups(model, vehicle, planning::PlanTrackerOptions::named(settings.tracker)), scenes_,
+      moments_});
   const std::int64_t each = RiftStage(*state_).stepsOfBuffer();
   if (run.options.steps % each != 0) {
     throw core::InputError("steps is " + std::to_string(run.options.steps) + "; a multiple of " +

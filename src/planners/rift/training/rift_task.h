@@ -17,10 +17,11 @@ namespace cdiff::planners {
 /// What the fine-tuning of RIFT asks beyond the options of every training.
 struct RiftTrainingSettings {
   learning::SceneSampleOptions samples;
-  std::string objective = "rift";  ///< rift | grpo
-  double kl_weight = 0.2;          ///< of `grpo`
-  std::int64_t buffer = 4096;      ///< states gathered at a time
-  std::int64_t epochs = 16;        ///< passes over them
+  std::string objective = "rift";                 ///< rift | grpo
+  double kl_weight = 0.2;                         ///< of `grpo`
+  std::int64_t buffer = 4096;                     ///< states gathered at a time
+  std::int64_t epochs = 16;                       ///< passes over them
+  std::string tracker = planning::kTunedTracker;  ///< of plans, that drives the candidates
 
   void describe(core::OptionsVisitor& visitor);
   RiftObjective objectiveOf() const;

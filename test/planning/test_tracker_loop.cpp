@@ -4,97 +4,11 @@
 
 #include <functional>
 
-#include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/dynamics/bicycle_model.h"
-#include "planners/two_stage_pid/two_stage_pid.h"
+#include "planning/plan_tracker.h"
 
-namespace cdiff::planners {
+namespace cdiff::planning {
 namespace {
-
-/// Places of a plan along +x at a constant speed.
-Eigen::MatrixX2d ahead(double speed, Eigen::Index rows = 32) {
-  Eigen::MatrixX2d places = Eigen::MatrixX2d::Zero(rows, 2);
-  for (Eigen::Index row = 0; row < rows; ++row)
-    places(row, 0) = 0.1 * speed * static_cast<double>(row + 1);
-  return places;
-}
-
-TEST(TrajectoryTracker, FirstSpeedErrorIsTheSumOfAllThreeTerms) {
-  // Places 8, 16, 24 m: desired 8 m/s. Error 0.1: 5 x 0.1 + 0.5 x 0.1 / 20 + 1 x 0.1 = 0.6025.
-  TrajectoryTracker tracker;
-  const traffic::ControlAction first = tracker.track(7.9, ahead(8.0));
-  EXPECT_NEAR(first.throttle, 0.6025, 1e-12);
-  EXPECT_EQ(first.brake, 0.0);
-  EXPECT_EQ(first.steer, 0.0);
-  // The same again: no change, mean 0.2 / 20: 0.5 + 0.005.
-  EXPECT_NEAR(tracker.track(7.9, ahead(8.0)).throttle, 0.505, 1e-12);
-}
-
-TEST(TrajectoryTracker, DesiredSpeedIsThatOfWholeSeconds) {
-  // Standing still after 1 s at 6 m/s: places 6, 6, 6 m, desired 6 / 3 = 2 m/s.
-  Eigen::MatrixX2d places = ahead(6.0);
-  places.bottomRows(22).col(0).setConstant(6.0);
-  EXPECT_EQ(TrajectoryTracker().track(2.19, places).brake, 0.0);
-  EXPECT_EQ(TrajectoryTracker().track(2.21, places).brake, 1.0);
-  // What lies after the last whole second does not count.
-  places.bottomRows(2).col(0).setConstant(60.0);
-  EXPECT_EQ(TrajectoryTracker().track(2.21, places).brake, 1.0);
-}
-
-TEST(TrajectoryTracker, ShortPlansCountHalfSeconds) {
-  // 19 rows of 4 m/s that stop after 1 s: places 2, 4, 4 m; desired 4 m in 1.5 s = 2.667 m/s, brake
-  // above 2.933 m/s. By whole seconds it would be 4 m/s.
-  Eigen::MatrixX2d places = ahead(4.0, 19);
-  places.bottomRows(9).col(0).setConstant(4.0);
-  EXPECT_EQ(TrajectoryTracker().track(2.93, places).brake, 0.0);
-  EXPECT_EQ(TrajectoryTracker().track(2.94, places).brake, 1.0);
-  // A plan of 0.2 s is one segment: 0.8 m in 0.2 s. One without rows is a stop.
-  EXPECT_EQ(TrajectoryTracker().track(4.3, ahead(4.0, 2)).brake, 0.0);
-  EXPECT_EQ(TrajectoryTracker().track(4.5, ahead(4.0, 2)).brake, 1.0);
-  EXPECT_EQ(TrajectoryTracker().track(0.0, ahead(4.0, 0)), traffic::ControlAction::failSafe());
-}
-
-TEST(TrajectoryTracker, AimsAtThePlaceNearestToTheLookAhead) {
-  // At 4 m/s the look-ahead is its minimum, 5 m: of 4, 8 and 12 m the first, 0.4 m to the left of
-  // it. atan(0.4 / 4) / (pi / 2) = 0.0634510; x (1.25 + 0.75 / 20 + 0.3) = 0.1007285.
-  Eigen::MatrixX2d places = ahead(4.0);
-  places(9, 1) = 0.4;
-  places(19, 1) = -3.0;
-  EXPECT_NEAR(TrajectoryTracker().track(4.0, places).steer, 0.1007285, 1e-7);
-  // At 10 m/s it is 7.5 m, but of 10, 20 and 30 m still the first.
-  places = ahead(10.0);
-  places(9, 1) = -1.0;
-  EXPECT_NEAR(TrajectoryTracker().track(10.0, places).steer, -0.1007285, 1e-7);
-  // At 2.2 m/s, 5 m: the second of 2.2, 4.4 and 6.6 m.
-  places = ahead(2.2);
-  places(19, 1) = 0.44;
-  EXPECT_NEAR(TrajectoryTracker().track(2.2, places).steer, 0.1007285, 1e-7);
-}
-
-TEST(TrajectoryTracker, DoesNotSteerWhileItBrakesOrStands) {
-  Eigen::MatrixX2d places = ahead(4.0);
-  places.col(1).setConstant(2.0);
-  EXPECT_GT(TrajectoryTracker().track(4.0, places).steer, 0.0);
-  EXPECT_EQ(TrajectoryTracker().track(8.0, places).steer, 0.0);
-  EXPECT_EQ(TrajectoryTracker().track(0.009, places).steer, 0.0);
-}
-
-TEST(TrajectoryTracker, LookAheadLimitsOutOfOrderAreAnError) {
-  TrajectoryTrackerOptions options;
-  options.look_ahead_minimum = 9.0;
-  EXPECT_THROW(TrajectoryTracker{options}, core::InputError);
-}
-
-TEST(TrajectoryTrackerOptions, ReadBackFromTheirOwnText) {
-  TrajectoryTrackerOptions options;
-  options.pids.turn.kp = 0.75;
-  options.pids.window = 40;
-  TrajectoryTrackerOptions read;
-  core::loadOptions({"text", core::dumpOptions(options, true)}, read);
-  EXPECT_EQ(read.pids.turn.kp, 0.75);
-  EXPECT_EQ(core::dumpOptions(read), core::dumpOptions(options));
-}
 
 /// The vehicle at each decision; every 0.1 s it tracks a plan along a path at constant speed from
 /// the foot point of where it is.
@@ -122,7 +36,7 @@ class TrackerLoop {
  private:
   std::function<double(const Eigen::Vector2d&)> arc_of_;
   std::function<Eigen::Vector2d(double)> at_;
-  TrajectoryTracker tracker_;
+  PlanTracker tracker_{PlanTrackerOptions::published()};
   dynamics::BicycleModel model_;
 };
 
@@ -196,4 +110,4 @@ TEST(TrackerLoop, StandsAfterAStoppingPlan) {
 }
 
 }  // namespace
-}  // namespace cdiff::planners
+}  // namespace cdiff::planning
