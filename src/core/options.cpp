@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/core/options.h"
 
-#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -11,12 +10,12 @@
 
 #include "core/option_fields.h"
 #include "core/text.h"
+#include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core::detail {
 namespace {
 
-constexpr std::size_t kLargestYaml = 8 << 20;  // [bytes]
 constexpr std::size_t kLongestText = 1 << 16;  // [bytes] of a key or value
 
 /// Reads the fields that an options struct describes from a YAML map, and collects their keys, so
@@ -252,42 +251,10 @@ YAML::Node nested(const std::vector<std::string>& path, std::size_t depth,
   return node;
 }
 
-/// Refuses a text with a NUL byte, unless it starts with the byte order mark of UTF-16 or UTF-32,
-/// in which YAML may be written.
-void requireText(const YamlSource& source) {
-  const std::size_t place = source.text.find('\0');
-  if (place == std::string::npos) return;
-  for (const std::string& mark :
-       {std::string("\xFF\xFE"), std::string("\xFE\xFF"), std::string("\0\0\xFE\xFF", 4)}) {
-    if (source.text.compare(0, mark.size(), mark) == 0) return;
-  }
-  const auto end = source.text.begin() + static_cast<std::ptrdiff_t>(place);
-  const auto line = 1 + std::count(source.text.begin(), end, '\n');
-  throw InputError(source.name + ":" + std::to_string(line) +
-                   ": holds a NUL byte, which no text has; expected YAML in UTF-8");
-}
-
-YAML::Node parse(const YamlSource& source) {
-  if (source.text.size() > kLargestYaml) {
-    throw InputError(source.name + ": holds " + std::to_string(source.text.size()) +
-                     " bytes of YAML; at most " + std::to_string(kLargestYaml) + " were expected");
-  }
-  requireText(source);
-  try {
-    return YAML::Load(source.text);
-  } catch (const YAML::DeepRecursion& error) {
-    throw InputError(source.name + ":" + std::to_string(error.mark.line + 1) +
-                     ": lists or groups are nested deeper than any option");
-  } catch (const YAML::ParserException& error) {
-    throw InputError(source.name + ":" + std::to_string(error.mark.line + 1) +
-                     ": not valid YAML: " + error.msg);
-  }
-}
-
 }  // namespace
 
 void load(const YamlSource& source, void* options, Describe describe) {
-  YAML::Node root = parse(source);
+  YAML::Node root = parseYaml(source);
   if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
   if (!root.IsMap()) throw InputError(source.name + ":1: expected a map of keys");
   LoadVisitor visitor(source.name, root, true);
@@ -303,7 +270,7 @@ void override_(const std::string& assignment, const std::string& source, void* o
   }
   const std::string path = resolvePath(assignment.substr(0, equals), source, options, describe);
   const std::string value_text = assignment.substr(equals + 1);
-  const YAML::Node value = value_text.empty() ? YAML::Node("") : parse({source, value_text});
+  const YAML::Node value = value_text.empty() ? YAML::Node("") : parseYaml({source, value_text});
   const std::string instead = value.IsMap() ? "" : keysInstead(path, options, describe);
   if (!instead.empty()) {
     throw InputError(source + ": key '" + path + "' is a group of keys and cannot be '" +

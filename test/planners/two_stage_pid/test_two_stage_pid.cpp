@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/model_course.h"
 #include "planners/two_stage_pid/two_stage_pid.h"
 
