@@ -83,7 +83,8 @@ TEST(TickAnswers, RolloutsAndImagesAreWaitedForWhereTheyAreExpected) {
   const msgs::TrafficSnapshot message = toMsg(snapshot);
   SessionGraph seeing{{kCameraNode}, 2};
   seeing.ego_sees = seeing.cbvs_see = true;
-  TickAnswers answers(0.05, awaitedBy(Party::kMetrics, seeing), smallCamera());
+  TickAnswers answers(0.05, awaitedBy(Party::kMetrics, seeing),
+                      session::VehicleRigs::front(smallCamera()));
   answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
   answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
@@ -117,7 +118,7 @@ TEST(TickAnswers, ImageOfAnotherVehicleIsHereButNotSeen) {
   TickAnswers answers(
       0.05,
       {ChannelId::kSelection, ChannelId::kEgoControl, ChannelId::kCbvControl, ChannelId::kCbvImage},
-      smallCamera());
+      session::VehicleRigs::front(smallCamera()));
   answers.add(ChannelId::kSelection, selectionFor(4, 1, "bg_7"));
   answers.add(ChannelId::kEgoControl, controlFor(4, -1, "ego"));
   answers.add({ChannelId::kCbvControl, 1}, controlFor(4, 1, "bg_7"));
