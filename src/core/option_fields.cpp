@@ -213,8 +213,12 @@ std::string resolvePath(const std::string& key, const std::string& source, void*
     throw InputError(source + ": key '" + key + "' is ambiguous; write one of {" +
                      joinText(matches, ", ") + "}");
   }
+  // A key that has moved keeps its name.
+  for (const std::string& path : paths) {
+    if (lastPart(path) == lastPart(key)) matches.push_back(path);
+  }
   throw InputError(source + ": unknown key '" + key + "'; the nearest known key is '" +
-                   nearestName(key, paths) + "'");
+                   nearestName(key, matches.empty() ? paths : matches) + "'");
 }
 
 std::string keysInstead(const std::string& path, void* options, Describe describe) {

@@ -27,6 +27,7 @@ const std::string& surroundPlanner() {
 ScenarioOptions scenario(const std::string& ego_planner) {
   ScenarioOptions options;
   options.network = "crossing";
+  options.route.edges = {"a2_b2", "b2_c2"};
   options.ego_planner = ego_planner;
   return options;
 }
