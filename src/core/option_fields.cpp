@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/text.h"
@@ -44,6 +45,10 @@ class PathVisitor : public OptionsVisitor {
     return true;
   }
   void leave() override { prefixes_.pop_back(); }
+  bool enterGroups(const FieldInfo& info) override {
+    add(info);
+    return false;
+  }
 
   const std::vector<std::string>& paths() const { return paths_; }
   /// " (one of {a, b})", or nothing.
@@ -106,7 +111,25 @@ class DumpVisitor : public OptionsVisitor {
     indent_ += "  ";
     return true;
   }
-  void leave() override { indent_.resize(indent_.size() - 2); }
+  void leave() override {
+    if (items_) {
+      items_->back() = "{" + items_->back() + "}";
+    } else {
+      indent_.resize(indent_.size() - 2);
+    }
+  }
+  /// On one line.
+  bool enterGroups(const FieldInfo& info) override {
+    comment(info, "");
+    text_ += indent_ + info.key + ": ";
+    items_.emplace();
+    return true;
+  }
+  void leaveGroups() override {
+    text_ += "[" + joinText(*items_, ", ") + "]\n";
+    items_.reset();
+  }
+  void enterItem(std::size_t) override { items_->emplace_back(); }
 
   const std::string& written() const { return text_; }
 
@@ -116,6 +139,11 @@ class DumpVisitor : public OptionsVisitor {
     text_ += indent_ + "# " + info.text + (range.empty() ? "" : " " + range) + "\n";
   }
   void line(const FieldInfo& info, const std::string& value, const std::string& range) {
+    if (items_) {
+      std::string& item = items_->back();
+      item += (item.empty() ? "" : ", ") + std::string(info.key) + ": " + value;
+      return;
+    }
     comment(info, range);
     text_ += indent_ + info.key + ": " + value + "\n";
   }
@@ -123,6 +151,7 @@ class DumpVisitor : public OptionsVisitor {
   bool with_comments_;
   std::string indent_;
   std::string text_;
+  std::optional<std::vector<std::string>> items_;  ///< of the list being written
 };
 
 class RangeVisitor : public OptionsVisitor {

@@ -123,6 +123,35 @@ class LoadVisitor : public OptionsVisitor {
     levels_.pop_back();
   }
 
+  std::optional<std::size_t> givenGroups(const FieldInfo& info) override {
+    const YAML::Node node = take(info);
+    if (!node) return std::nullopt;
+    const char* const expected = "a list of groups of keys, e.g. [{name: a}]";
+    if (!node.IsSequence()) fail(node, info.key, expected);
+    for (const YAML::Node& item : node) {
+      if (!item.IsMap()) fail(item, info.key, expected);
+    }
+    return node.size();
+  }
+
+  bool enterGroups(const FieldInfo& info) override {
+    const YAML::Node node = levels_.back().node[info.key];
+    if (!node) return false;
+    lists_.push_back({info.key, node});
+    return true;
+  }
+
+  void leaveGroups() override { lists_.pop_back(); }
+
+  void enterItem(std::size_t index) override {
+    const List list = lists_.back();
+    const YAML::Node item = list.node[index];
+    const YAML::Node name = item["name"];
+    const std::string which =
+        name && name.IsScalar() ? shortened(name.Scalar()) : std::to_string(index);
+    push(list.key + "[" + which + "]", item);
+  }
+
   void checkUnknownKeys() const {
     for (const auto& item : levels_.back().node) {
       const std::string key = item.first.Scalar();
@@ -140,6 +169,12 @@ class LoadVisitor : public OptionsVisitor {
     std::string prefix;              ///< "group.subgroup.", before its keys in errors
     YAML::Node node;                 ///< its map
     std::vector<std::string> known;  ///< keys of the fields described so far
+  };
+
+  /// A list of groups being read.
+  struct List {
+    std::string key;
+    YAML::Node node;
   };
 
   void push(const std::string& key, YAML::Node node) {
@@ -203,6 +238,7 @@ class LoadVisitor : public OptionsVisitor {
   std::string source_;
   bool lines_;
   std::vector<Level> levels_;
+  std::vector<List> lists_;
 };
 
 /// `value` as the only leaf below the keys of `path`, as in "a.b=value".

@@ -16,6 +16,22 @@ namespace {
 using core::InputError;
 using planning::PlannerDescriptor;
 
+/// The preset of a rig must hold the cameras that a planner needs.
+std::string faultOfCameras(const PlannerDescriptor& descriptor) {
+  const std::vector<std::string>& presets = rendering::rigPresets();
+  if (std::find(presets.begin(), presets.end(), descriptor.rig) == presets.end()) {
+    return "its rig '" + descriptor.rig + "' is no preset; there are " +
+           core::joinText(presets, ", ");
+  }
+  const rendering::CameraRig rig = rendering::rigOf({}, {}, descriptor.rig);
+  for (const std::string& camera : descriptor.cameras) {
+    if (rig.find(camera) != nullptr) continue;
+    return "it needs the camera '" + camera + "'; its rig '" + descriptor.rig + "' has " +
+           core::joinText(rig.names(), ", ");
+  }
+  return "";
+}
+
 /// What is wrong with a descriptor; empty when nothing is.
 std::string faultOf(const PlannerDescriptor& descriptor) {
   if (descriptor.name == planning::kExternalPlanner)
@@ -25,10 +41,7 @@ std::string faultOf(const PlannerDescriptor& descriptor) {
   if (!descriptor.drives_ego && !descriptor.drives_cbv) return "it drives neither the ego nor CBVs";
   if (!descriptor.network != !descriptor.weights_sha256)
     return "its descriptor must have both 'network' and 'weights_sha256', or neither";
-  for (const std::string& camera : descriptor.cameras) {
-    if (camera != "front") return "it needs the camera '" + camera + "'; there is 'front' alone";
-  }
-  return "";
+  return faultOfCameras(descriptor);
 }
 
 using Registry = core::Registry<PlannerDescriptor>;
@@ -54,6 +67,14 @@ const PlannerDescriptor* findBySlot(const std::string& joined) {
 }
 
 bool isBySlot(const std::string& name) { return name.find('+') != std::string::npos; }
+
+/// The parts with the cameras of the planner's vehicles, which must hold those that it needs.
+planning::PlannerParts withRig(const PlannerDescriptor& descriptor, planning::PlannerParts parts) {
+  parts.rig = rendering::rigOf(parts.rig_options, parts.camera, descriptor.rig);
+  rendering::requireCameras(parts.rig, descriptor.cameras,
+                            {"planner '" + descriptor.name + "'", parts.rig_key});
+  return parts;
+}
 
 }  // namespace
 
@@ -83,7 +104,8 @@ std::unique_ptr<planning::Planner> makePlanner(const std::string& name,
         "(session.launch), not a planner in this process");
   }
   const PlannerDescriptor* known = findPlanner(name);
-  auto planner = (known != nullptr ? *known : table().at(name)).make(parts);
+  const PlannerDescriptor& descriptor = known != nullptr ? *known : table().at(name);
+  auto planner = descriptor.make(isBySlot(name) ? parts : withRig(descriptor, parts));
   if (planner) return planner;
   throw InputError("planner '" + name + "' of " + sourceOf(name) +
                    ": its constructor gives none; its author must mend it");
@@ -120,6 +142,11 @@ bool canBeGuided(const std::string& name) {
 bool seesImages(const std::string& name) {
   const PlannerDescriptor* descriptor = findPlanner(name);
   return descriptor != nullptr && descriptor->sees();
+}
+
+std::string rigOfPlanner(const std::string& name) {
+  const PlannerDescriptor* descriptor = findPlanner(name);
+  return descriptor == nullptr ? rendering::kFrontRig : descriptor->rig;
 }
 
 std::string plannerTitled(const std::string& title) {

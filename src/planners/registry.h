@@ -15,7 +15,7 @@ namespace cdiff::planners {
 
 /// Adds a planner to the table; `source` says who does ("library /x/libmine.so"). Throws InputError
 /// naming `source` for a name that is taken or not snake_case, no role, no options or constructor,
-/// and a camera that no one publishes.
+/// and a camera that its rig does not have.
 void registerPlanner(planning::PlannerDescriptor descriptor, const std::string& source);
 
 /// nullptr for an unknown name. "NAME+NAME..." are several planners of CBVs by slot
@@ -41,6 +41,9 @@ std::vector<std::string> guidedPlannerNames();
 bool canBeGuided(const std::string& name);
 /// Whether a planner of this name needs images; false for unknown names.
 bool seesImages(const std::string& name);
+/// The preset of the cameras that a planner's vehicles have unless the scenario says otherwise;
+/// "front" for unknown names.
+std::string rigOfPlanner(const std::string& name);
 /// Name of the planner with this title; "" when there is none.
 std::string plannerTitled(const std::string& title);
 

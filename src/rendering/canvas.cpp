@@ -55,15 +55,17 @@ int toIndex(double value, int limit) {
 
 }  // namespace
 
-View::View(const CameraOptions& options, const traffic::Vehicle& vehicle)
-    : heading_(geometry::direction(vehicle.state.heading)),
-      pitch_cosine_(std::cos(options.pitch * core::kDegree)),
-      pitch_sine_(std::sin(options.pitch * core::kDegree)),
-      far_distance_(options.far_distance),
-      side_tangent_(std::tan(0.5 * options.field_of_view * core::kDegree)),
+View::View(const RigCamera& camera, double far_distance, const traffic::Vehicle& vehicle)
+    : heading_(geometry::direction(vehicle.state.heading + camera.yaw * core::kDegree)),
+      pitch_cosine_(std::cos(camera.pitch * core::kDegree)),
+      pitch_sine_(std::sin(camera.pitch * core::kDegree)),
+      far_distance_(far_distance),
+      side_tangent_(std::tan(0.5 * camera.field_of_view * core::kDegree)),
       side_secant_(std::sqrt(1.0 + side_tangent_ * side_tangent_)) {
-  const Eigen::Vector2d mount = vehicle.state.position + options.mount_forward * heading_;
-  eye_ = {mount.x(), mount.y(), vehicle.state.elevation + options.mount_height};
+  const Eigen::Vector2d forward = geometry::direction(vehicle.state.heading);
+  const Eigen::Vector2d mount =
+      vehicle.state.position + camera.x * forward + camera.y * geometry::leftNormal(forward);
+  eye_ = {mount.x(), mount.y(), vehicle.state.elevation + camera.z};
 }
 
 bool View::maySee(const Eigen::Vector3d& center, double radius) const {
@@ -75,34 +77,35 @@ bool View::maySee(const Eigen::Vector3d& center, double radius) const {
   return std::abs(at.x()) <= at.z() * side_tangent_ + radius * side_secant_;
 }
 
-Canvas::Canvas(const CameraOptions& options)
-    : width_(static_cast<int>(options.width)),
-      height_(static_cast<int>(options.height)),
-      samples_(static_cast<int>(options.supersampling)),
+Canvas::Canvas(const RigCamera& camera, std::int64_t samples)
+    : width_(static_cast<int>(camera.width)),
+      height_(static_cast<int>(camera.height)),
+      samples_(static_cast<int>(samples)),
       columns_(width_ * samples_),
       rows_(height_ * samples_),
-      focal_length_(intrinsicsOf(options).focal_length * samples_),
+      focal_length_(intrinsicsOf(camera).focal_length * samples_),
       middle_column_(0.5 * columns_ - 0.5),
       middle_row_(0.5 * rows_ - 0.5),
       colors_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
       depths_(colors_.size()),
       span_begin_(static_cast<std::size_t>(rows_)),
       span_end_(static_cast<std::size_t>(rows_)) {
-  makeBackground(options);
+  makeBackground(camera.pitch * core::kDegree);
 }
 
-void Canvas::makeBackground(const CameraOptions& options) {
-  const double pitch = options.pitch * core::kDegree;
+void Canvas::makeBackground(double pitch) {
   for (int row = 0; row < rows_; ++row) {
     // Angle above the horizon of the ray through the row's middle.
     const double angle = std::atan((middle_row_ - row) / focal_length_) - pitch;
     const double height = std::min(1.0, std::abs(angle) / (30.0 * core::kDegree));
     background_.push_back(angle > 0.0 ? mix(kSkyHorizon, kSkyTop, height)
                                       : mix(kGrassHorizon, kGrassNear, std::sqrt(height)));
+    background_classes_.push_back(angle > 0.0 ? SceneClass::kSky : SceneClass::kTerrain);
   }
 }
 
-void Canvas::clear() {
+void Canvas::clear(bool labels) {
+  clearLabels(labels);
   for (int row = 0; row < rows_; ++row) {
     std::fill_n(colors_.begin() + static_cast<std::ptrdiff_t>(row) * columns_, columns_,
                 background_[static_cast<std::size_t>(row)]);
@@ -176,7 +179,10 @@ void Canvas::scan(const Eigen::Vector2d* corners, int count, const DepthPlane& p
   ranked.across *= paint.rank;
   ranked.down *= paint.rank;
   ranked.middle *= paint.rank;
-  for (int row = range.first; row <= range.last; ++row) paintSpan(row, ranked, paint);
+  for (int row = range.first; row <= range.last; ++row) {
+    if (!labels_.empty()) labelSpan(row, ranked, paint);
+    paintSpan(row, ranked, paint);
+  }
 }
 
 Canvas::RowRange Canvas::spanRows(const Eigen::Vector2d* corners, int count) {
@@ -220,29 +226,35 @@ void Canvas::spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& secon
   }
 }
 
-void Canvas::paintSpan(int row, const DepthPlane& plane, const Paint& paint) {
+Canvas::Span Canvas::spanOf(int row, const DepthPlane& plane) const {
   const double begin = span_begin_[static_cast<std::size_t>(row)];
   const double end = span_end_[static_cast<std::size_t>(row)];
-  const int first = std::max(0, toIndex(std::ceil(begin + middle_column_), columns_));
-  const int last = std::min(columns_ - 1, toIndex(std::floor(end + middle_column_), columns_));
-  const std::size_t offset = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
-  Color* colors = colors_.data() + offset;
-  float* depths = depths_.data() + offset;
-  const auto constant = static_cast<float>(plane.middle + plane.down * (row - middle_row_));
-  const auto across = static_cast<float>(plane.across);
-  const auto middle = static_cast<float>(middle_column_);
+  Span span;
+  span.first = std::max(0, toIndex(std::ceil(begin + middle_column_), columns_));
+  span.last = std::min(columns_ - 1, toIndex(std::floor(end + middle_column_), columns_));
+  span.offset = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+  span.constant = static_cast<float>(plane.middle + plane.down * (row - middle_row_));
+  span.across = static_cast<float>(plane.across);
+  span.middle = static_cast<float>(middle_column_);
+  return span;
+}
+
+void Canvas::paintSpan(int row, const DepthPlane& plane, const Paint& paint) {
+  const Span span = spanOf(row, plane);
+  Color* colors = colors_.data() + span.offset;
+  float* depths = depths_.data() + span.offset;
   const Color color = paint.color;
   if (paint.opacity >= 1.0) {
-    for (int i = first; i <= last; ++i) {
-      const float depth = constant + across * (static_cast<float>(i) - middle);
+    for (int i = span.first; i <= span.last; ++i) {
+      const float depth = span.depthAt(i);
       const bool nearer = depth > depths[i];
       depths[i] = nearer ? depth : depths[i];
       colors[i] = nearer ? color : colors[i];
     }
     return;
   }
-  for (int i = first; i <= last; ++i) {
-    const float depth = constant + across * (static_cast<float>(i) - middle);
+  for (int i = span.first; i <= span.last; ++i) {
+    const float depth = span.depthAt(i);
     if (depth <= depths[i]) continue;
     depths[i] = depth;
     colors[i] = mix(colors[i], color, paint.opacity);

@@ -9,9 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "e2e_cdiff/rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_rig.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "rendering/rendered_view.h"
 
 namespace cdiff::rendering {
 
@@ -19,10 +20,11 @@ namespace cdiff::rendering {
 constexpr double kNearPlane = 0.25;
 
 /// Pose of a camera on a vehicle: transforms the map frame into the optical frame (x right, y down,
-/// z forward [m]). Made anew for each image by FrontCamera.
+/// z forward [m]). Made anew for each image by RigRenderer.
 class View {
  public:
-  View(const CameraOptions& options, const traffic::Vehicle& vehicle);
+  /// `far_distance`: farthest ground and vehicles that are drawn [m].
+  View(const RigCamera& camera, double far_distance, const traffic::Vehicle& vehicle);
 
   /// A direction of the map frame in the optical frame.
   Eigen::Vector3d directionToCamera(const Eigen::Vector3d& direction) const {
@@ -107,11 +109,18 @@ constexpr double kBodyDetail = 1.101;
 constexpr double kBodyLight = 1.102;
 }  // namespace rank
 
-/// How a shape is painted: color, rank among overlapping shapes, and opacity in [0, 1].
+/// What a sample shows: a class, and of a vehicle its number from 1 on.
+struct Label {
+  SceneClass kind = SceneClass::kSky;
+  std::uint16_t instance = 0;
+};
+
+/// How a shape is painted: color, rank among overlapping shapes, opacity in [0, 1], and what it is.
 struct Paint {
   Color color = 0;
   double rank = rank::kRoad;
   double opacity = 1.0;
+  Label label = {SceneClass::kRoad, 0};
 };
 
 /// Rasterizer of the front camera: convex polygons and lines in the optical frame [m] into a
@@ -119,13 +128,14 @@ struct Paint {
 /// polygon covers the samples whose centers lie in its closed area; of several the larger inverse
 /// depth x rank stays. Image coordinates count from the middle of the picture (u right, v down
 /// [samples]), so that a mirrored scene gives the mirrored picture bit by bit. Called by the parts
-/// of the scene (road, signals, vehicles) through FrontCamera.
+/// of the scene (road, signals, vehicles) through RigRenderer.
 class Canvas {
  public:
-  explicit Canvas(const CameraOptions& options);
+  Canvas(const RigCamera& camera, std::int64_t samples);
 
-  /// Starts a picture: sky and grass, and nothing in front of them.
-  void clear();
+  /// Starts a picture: sky and grass, and nothing in front of them. `labels`: also note what each
+  /// sample shows.
+  void clear(bool labels = false);
   /// Draws a convex polygon (optical frame [m]), clipped at the near plane.
   void fill(const Eigen::Vector3d* points, int count, const Paint& paint);
   /// Draws a flat line from `begin` to `end` (optical frame [m]) that reaches `side`, half its
@@ -135,6 +145,9 @@ class Canvas {
             const Paint& paint);
   /// The picture: each pixel is the mean of its samples.
   traffic::CameraImage image() const;
+  /// What each pixel shows: the label of most of its samples; of labels that as many samples have
+  /// the later class, then the later vehicle. After clear(true).
+  void readLabels(RenderedView& view) const;
 
  private:
   static constexpr int kMostCorners = 16;
@@ -155,6 +168,18 @@ class Canvas {
     int first = 0;
     int last = -1;
   };
+  /// The samples of a row that a polygon covers, with its inverse depth x rank there.
+  struct Span {
+    int first = 0;
+    int last = -1;
+    std::size_t offset = 0;  ///< of the row's first sample
+    float constant = 0.0f;
+    float across = 0.0f;
+    float middle = 0.0f;
+    float depthAt(int column) const {
+      return constant + across * (static_cast<float>(column) - middle);
+    }
+  };
   bool depthPlane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point,
                   DepthPlane& plane) const;
   Eigen::Vector2d project(const Eigen::Vector3d& point) const {
@@ -166,8 +191,11 @@ class Canvas {
   void scan(const Eigen::Vector2d* corners, int count, const DepthPlane& plane, const Paint& paint);
   RowRange spanRows(const Eigen::Vector2d* corners, int count);
   void spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& second);
+  Span spanOf(int row, const DepthPlane& plane) const;
   void paintSpan(int row, const DepthPlane& plane, const Paint& paint);
-  void makeBackground(const CameraOptions& options);
+  void clearLabels(bool asked);
+  void labelSpan(int row, const DepthPlane& plane, const Paint& paint);
+  void makeBackground(double pitch);
 
   int width_;            ///< [px] of the image
   int height_;           ///< [px] of the image
@@ -177,9 +205,11 @@ class Canvas {
   double focal_length_;  ///< [samples]
   double middle_column_;
   double middle_row_;
-  std::vector<Color> background_;  ///< per row
-  std::vector<Color> colors_;      ///< per sample, row by row
-  std::vector<float> depths_;      ///< per sample: inverse depth [1/m] x rank
+  std::vector<Color> background_;      ///< per row
+  std::vector<Color> colors_;          ///< per sample, row by row
+  std::vector<float> depths_;          ///< per sample: inverse depth [1/m] x rank
+  std::vector<std::uint32_t> labels_;  ///< per sample: class << 16 | instance; empty: not asked for
+  std::vector<SceneClass> background_classes_;  ///< per row
   std::vector<double>
       span_begin_;                ///< per row: left end of the polygon being drawn, from the middle
   std::vector<double> span_end_;  ///< per row: its right end

@@ -188,6 +188,7 @@ Surface slopePiece(const CrossSection& begin, const CrossSection& end, double la
                   lowered(begin.at(outer), drop)};
   side.color = kGrassSlope;
   side.rank = kSlopeRank;
+  side.kind = SceneClass::kTerrain;
   side.two_sided = true;
   return side;
 }
@@ -197,6 +198,7 @@ Surface deckPiece(const CrossSection& begin, const CrossSection& end, double lat
   side.corners = {begin.at(lateral), end.at(lateral), lowered(end.at(lateral), kDeckThickness),
                   lowered(begin.at(lateral), kDeckThickness)};
   side.color = kConcrete;
+  side.kind = SceneClass::kStructure;
   side.two_sided = true;
   return side;
 }

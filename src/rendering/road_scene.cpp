@@ -78,6 +78,7 @@ void addLane(const map::Lane& lane, std::vector<Surface>& surfaces) {
                                         sections[i - 1].at(half_width)};
     surfaces.push_back(
         surfaceOf(corners, 4, road ? kAsphalt : kPavement, road ? rank::kRoad : rank::kPavement));
+    surfaces.back().kind = road ? SceneClass::kRoad : SceneClass::kPavement;
   }
 }
 
@@ -156,26 +157,40 @@ std::size_t SpatialGrid::cellOf(const Eigen::Vector3d& point) const {
          static_cast<std::size_t>(offset.x());
 }
 
-void SpatialGrid::visible(const View& view, std::vector<int>& found) const {
-  found.clear();
+SpatialGrid::CellRange SpatialGrid::cellsAround(const std::vector<View>& views) const {
+  CellRange range = {columns_, -1, rows_, -1};
+  for (const View& view : views) {
+    // Things and cells reach less than two cells beyond the cell of their center.
+    const Eigen::Vector2d offset = (view.eye().head<2>() - origin_) / kCellSize;
+    const double reach = view.farDistance() / kCellSize + 2.0;
+    range.first_column = std::min(range.first_column, cellIndex(offset.x() - reach, columns_));
+    range.last_column = std::max(range.last_column, cellIndex(offset.x() + reach, columns_));
+    range.first_row = std::min(range.first_row, cellIndex(offset.y() - reach, rows_));
+    range.last_row = std::max(range.last_row, cellIndex(offset.y() + reach, rows_));
+  }
+  return range;
+}
+
+void SpatialGrid::visibleIn(std::size_t cell, const View& view, std::vector<int>& found) const {
+  if (!view.maySee(cell_bounds_[cell].center, cell_bounds_[cell].radius)) return;
+  for (std::size_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
+    const Bound& bound = bounds_[static_cast<std::size_t>(items_[i])];
+    if (view.maySee(bound.center, bound.radius)) found.push_back(items_[i]);
+  }
+}
+
+void SpatialGrid::visible(const std::vector<View>& views,
+                          std::vector<std::vector<int>>& found) const {
+  found.resize(views.size());
+  for (std::vector<int>& of_view : found) of_view.clear();
   if (bounds_.empty()) return;
-  // Things and cells reach less than two cells beyond the cell of their center.
-  const Eigen::Vector2d offset = (view.eye().head<2>() - origin_) / kCellSize;
-  const double reach = view.farDistance() / kCellSize + 2.0;
-  const int first_column = cellIndex(offset.x() - reach, columns_);
-  const int last_column = cellIndex(offset.x() + reach, columns_);
-  const int first_row = cellIndex(offset.y() - reach, rows_);
-  const int last_row = cellIndex(offset.y() + reach, rows_);
-  for (int row = first_row; row <= last_row; ++row) {
-    for (int column = first_column; column <= last_column; ++column) {
+  const CellRange range = cellsAround(views);
+  for (int row = range.first_row; row <= range.last_row; ++row) {
+    for (int column = range.first_column; column <= range.last_column; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                                static_cast<std::size_t>(column);
       if (cell_begin_[cell] == cell_begin_[cell + 1]) continue;
-      if (!view.maySee(cell_bounds_[cell].center, cell_bounds_[cell].radius)) continue;
-      for (std::size_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
-        const Bound& bound = bounds_[static_cast<std::size_t>(items_[i])];
-        if (view.maySee(bound.center, bound.radius)) found.push_back(items_[i]);
-      }
+      for (std::size_t i = 0; i < views.size(); ++i) visibleIn(cell, views[i], found[i]);
     }
   }
 }
@@ -219,7 +234,8 @@ void drawMarking(const Marking& marking, double rank, const View& view, Canvas& 
   const Eigen::Vector3d up = (marking.end - marking.begin).cross(marking.side);
   if (up.dot(view.eye() - marking.begin) <= 0.0) return;
   canvas.line(view.toCamera(marking.begin), view.toCamera(marking.end),
-              view.directionToCamera(marking.side), {marking.color, rank, 1.0});
+              view.directionToCamera(marking.side),
+              {marking.color, rank, 1.0, {SceneClass::kMarking, 0}});
 }
 
 RoadScene::RoadScene(const map::RoadNetwork& network)
@@ -244,30 +260,35 @@ void RoadScene::drawSurface(const Surface& surface, const View& view, Canvas& ca
   }
   const bool from_above =
       surface.two_sided || surface.up.dot(view.eye() - surface.corners[0]) > 0.0;
-  canvas.fill(corners, surface.count, {from_above ? surface.color : kUnderside, surface.rank, 1.0});
+  const Label label = {from_above ? surface.kind : SceneClass::kStructure, 0};
+  canvas.fill(corners, surface.count,
+              {from_above ? surface.color : kUnderside, surface.rank, 1.0, label});
 }
 
-void RoadScene::sortMarkings(const View& view) {
+void RoadScene::sortMarkings(const View& view, std::vector<int>& markings) {
   by_distance_.clear();
-  for (const int i : visible_) {
+  for (const int i : markings) {
     const Marking& marking = markings_[static_cast<std::size_t>(i)];
     const Eigen::Vector3d offset = 0.5 * (marking.begin + marking.end) - view.eye();
     const double distance = offset.x() * offset.x() + offset.y() * offset.y();
     by_distance_.emplace_back(-distance, i);
   }
   std::sort(by_distance_.begin(), by_distance_.end());
-  std::transform(by_distance_.begin(), by_distance_.end(), visible_.begin(),
+  std::transform(by_distance_.begin(), by_distance_.end(), markings.begin(),
                  [](const auto& entry) { return entry.second; });
 }
 
-void RoadScene::draw(const View& view, Canvas& canvas) {
-  surface_grid_.visible(view, visible_);
-  for (const int i : visible_) drawSurface(surfaces_[static_cast<std::size_t>(i)], view, canvas);
-  marking_grid_.visible(view, visible_);
-  sortMarkings(view);
-  for (const int i : visible_) {
+void RoadScene::look(const std::vector<View>& views) {
+  surface_grid_.visible(views, visible_surfaces_);
+  marking_grid_.visible(views, visible_markings_);
+}
+
+void RoadScene::draw(std::size_t index, const View& view, Canvas& canvas) {
+  for (const int i : visible_surfaces_[index])
+    drawSurface(surfaces_[static_cast<std::size_t>(i)], view, canvas);
+  sortMarkings(view, visible_markings_[index]);
+  for (const int i : visible_markings_[index])
     drawMarking(markings_[static_cast<std::size_t>(i)], rank::kMarking, view, canvas);
-  }
 }
 
 }  // namespace cdiff::rendering

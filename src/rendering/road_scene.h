@@ -28,13 +28,24 @@ class SpatialGrid {
   SpatialGrid() = default;
   explicit SpatialGrid(std::vector<Bound> bounds);
 
-  /// Indices of the things that may be seen, cell by cell, in the order of the cells and indices.
-  void visible(const View& view, std::vector<int>& found) const;
+  /// Indices of the things that each view may see, cell by cell, in the order of the cells and
+  /// indices; `found` gets one list per view.
+  void visible(const std::vector<View>& views, std::vector<std::vector<int>>& found) const;
 
  private:
   void sortIntoCells();
   void boundCells();
   std::size_t cellOf(const Eigen::Vector3d& point) const;
+  /// Columns and rows, all included.
+  struct CellRange {
+    int first_column = 0;
+    int last_column = -1;
+    int first_row = 0;
+    int last_row = -1;
+  };
+  /// The cells that hold all that the views may see.
+  CellRange cellsAround(const std::vector<View>& views) const;
+  void visibleIn(std::size_t cell, const View& view, std::vector<int>& found) const;
   std::vector<Bound> bounds_;
   std::vector<int> items_;               ///< by cell
   std::vector<std::size_t> cell_begin_;  ///< of each cell in items_, and the end
@@ -58,6 +69,7 @@ struct Surface {
   Color color = kAsphalt;
   double rank = rank::kRoad;
   bool two_sided = false;  ///< the same color from below
+  SceneClass kind = SceneClass::kRoad;
 };
 
 /// A painted line (map frame [m]).
@@ -73,19 +85,22 @@ struct Marking {
 class RoadScene {
  public:
   explicit RoadScene(const map::RoadNetwork& network);
-  void draw(const View& view, Canvas& canvas);
+  /// Finds what the views may see; `draw` shows that in one of them.
+  void look(const std::vector<View>& views);
+  void draw(std::size_t index, const View& view, Canvas& canvas);
 
  private:
   void drawSurface(const Surface& surface, const View& view, Canvas& canvas) const;
 
   /// Farthest first: thin lines are transparent.
-  void sortMarkings(const View& view);
+  void sortMarkings(const View& view, std::vector<int>& markings);
 
   std::vector<Surface> surfaces_;
   std::vector<Marking> markings_;
   SpatialGrid surface_grid_;
   SpatialGrid marking_grid_;
-  std::vector<int> visible_;                         ///< buffer of draw
+  std::vector<std::vector<int>> visible_surfaces_;   ///< by view
+  std::vector<std::vector<int>> visible_markings_;   ///< by view
   std::vector<std::pair<double, int>> by_distance_;  ///< buffer of sortMarkings
 };
 

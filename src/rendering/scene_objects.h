@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <array>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -39,10 +40,10 @@ struct SignalMast {
 class SignalHeads {
  public:
   explicit SignalHeads(const map::RoadNetwork& network);
-  /// Reads the colors and finds what may be seen; the two draws show that.
-  void look(const View& view, const std::vector<traffic::SignalState>& signals);
-  void drawStopLines(const View& view, Canvas& canvas) const;
-  void drawLamps(const View& view, Canvas& canvas) const;
+  /// Reads the colors and finds what the views may see; the two draws show that in one of them.
+  void look(const std::vector<View>& views, const std::vector<traffic::SignalState>& signals);
+  void drawStopLines(std::size_t index, const View& view, Canvas& canvas) const;
+  void drawLamps(std::size_t index, const View& view, Canvas& canvas) const;
 
  private:
   void addLane(const map::Lane& lane);
@@ -55,9 +56,9 @@ class SignalHeads {
   SpatialGrid head_grid_;
   SpatialGrid mast_grid_;
   std::unordered_map<std::string, int> signal_by_id_;
-  std::vector<const std::string*> states_;  ///< by signal; of the snapshot looked at
-  std::vector<int> visible_heads_;
-  std::vector<int> visible_masts_;
+  std::vector<const std::string*> states_;       ///< by signal; of the snapshot looked at
+  std::vector<std::vector<int>> visible_heads_;  ///< by view
+  std::vector<std::vector<int>> visible_masts_;  ///< by view
 };
 
 // Other vehicles as shaded boxes: body, cabin, wheels, tail lights that show whether it brakes,
@@ -70,6 +71,34 @@ bool brakeLightsOn(const traffic::Vehicle& vehicle);
 /// Color of the paint, by a hash of the id.
 Color bodyColor(const std::string& id);
 
-void drawVehicle(const traffic::Vehicle& vehicle, const View& view, Canvas& canvas);
+/// A face of a vehicle, counter-clockwise seen from outside (map frame [m]).
+struct BodyFace {
+  std::array<Eigen::Vector3d, 8> corners;
+  int count = 0;
+  Paint paint;
+};
+
+/// A vehicle's faces in the order in which they are drawn.
+using VehicleBody = std::vector<BodyFace>;
+
+/// The same in every view. `instance`: its number in the label of its pixels, from 1 on.
+VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance);
+
+/// A vehicle that a camera may see: the ball around it and its faces.
+struct SeenVehicle {
+  Bound bound;
+  VehicleBody body;
+};
+
+/// What a network looks like, with the buffers of drawing it. One per thread.
+struct NetworkScene {
+  explicit NetworkScene(const map::RoadNetwork& network) : road(network), signals(network) {}
+
+  RoadScene road;
+  SignalHeads signals;
+};
+
+/// Draws the faces that are turned toward the eye.
+void drawBody(const VehicleBody& body, const View& view, Canvas& canvas);
 
 }  // namespace cdiff::rendering

@@ -24,6 +24,8 @@ constexpr Color kMast = rgb(88, 92, 96);
 constexpr Color kUnlit[3] = {rgb(70, 20, 20), rgb(70, 60, 16), rgb(16, 60, 26)};
 constexpr Color kLit[3] = {rgb(255, 40, 32), rgb(255, 208, 24), rgb(40, 240, 96)};
 
+constexpr Label kSignalLabel = {SceneClass::kSignal, 0};
+
 /// Rank of a turn among those that a lane offers: the straightest shows the color.
 int straightness(char direction) {
   const std::string order = "srRlLt";
@@ -65,7 +67,7 @@ void paintHousing(const LampFrame& frame, Canvas& canvas) {
                                       frame.at(-kHousingHalfWidth, kHousingHalfHeight),
                                       frame.at(-kHousingHalfWidth, -kHousingHalfHeight),
                                       frame.at(kHousingHalfWidth, -kHousingHalfHeight)};
-  canvas.fill(corners, 4, {kHousing, rank::kBody, 1.0});
+  canvas.fill(corners, 4, {kHousing, rank::kBody, 1.0, kSignalLabel});
 }
 
 /// An octagon.
@@ -77,7 +79,7 @@ void paintBulb(const LampFrame& frame, double height, Color color, Canvas& canva
   for (int i = 0; i < 8; ++i) {
     corners[i] = frame.at(kBulbRadius * kOctagon[i][0], height + kBulbRadius * kOctagon[i][1]);
   }
-  canvas.fill(corners, 8, {color, rank::kBodyDetail, 1.0});
+  canvas.fill(corners, 8, {color, rank::kBodyDetail, 1.0, kSignalLabel});
 }
 
 }  // namespace
@@ -152,11 +154,14 @@ void SignalHeads::addMast(const map::RoadNetwork& network, const std::string& ed
   masts_.push_back(mast);
 }
 
-void SignalHeads::look(const View& view, const std::vector<traffic::SignalState>& signals) {
-  head_grid_.visible(view, visible_heads_);
-  mast_grid_.visible(view, visible_masts_);
+void SignalHeads::look(const std::vector<View>& views,
+                       const std::vector<traffic::SignalState>& signals) {
+  head_grid_.visible(views, visible_heads_);
+  mast_grid_.visible(views, visible_masts_);
   std::fill(states_.begin(), states_.end(), nullptr);
-  if (visible_heads_.empty()) return;
+  if (std::all_of(visible_heads_.begin(), visible_heads_.end(),
+                  [](const std::vector<int>& heads) { return heads.empty(); }))
+    return;
   for (const traffic::SignalState& signal : signals) {
     const auto known = signal_by_id_.find(signal.id);
     if (known != signal_by_id_.end()) {
@@ -171,8 +176,8 @@ LampColor SignalHeads::colorOf(const SignalHead& head) const {
   return state && link < state->size() ? lampColorOf((*state)[link]) : LampColor::kDark;
 }
 
-void SignalHeads::drawStopLines(const View& view, Canvas& canvas) const {
-  for (const int i : visible_heads_) {
+void SignalHeads::drawStopLines(std::size_t index, const View& view, Canvas& canvas) const {
+  for (const int i : visible_heads_[index]) {
     const SignalHead& head = heads_[static_cast<std::size_t>(i)];
     const LampColor lamp = colorOf(head);
     const Color color = lamp == LampColor::kDark ? kWhitePaint : kLit[static_cast<int>(lamp) - 1];
@@ -184,17 +189,18 @@ void SignalHeads::drawStopLines(const View& view, Canvas& canvas) const {
   }
 }
 
-void SignalHeads::drawLamps(const View& view, Canvas& canvas) const {
+void SignalHeads::drawLamps(std::size_t index, const View& view, Canvas& canvas) const {
   const Eigen::Vector3d right = {kMastRadius, 0.0, 0.0};
   const Eigen::Vector3d up = view.directionToCamera({0.0, 0.0, kMastRadius});
-  for (const int i : visible_masts_) {
+  for (const int i : visible_masts_[index]) {
     const SignalMast& mast = masts_[static_cast<std::size_t>(i)];
     canvas.line(view.toCamera(mast.base), view.toCamera(mast.top), right,
-                {kMast, rank::kBody, 1.0});
+                {kMast, rank::kBody, 1.0, kSignalLabel});
     canvas.line(view.toCamera(mast.top), view.toCamera(mast.arm_end), up,
-                {kMast, rank::kBody, 1.0});
+                {kMast, rank::kBody, 1.0, kSignalLabel});
   }
-  for (const int i : visible_heads_) drawLamp(heads_[static_cast<std::size_t>(i)], view, canvas);
+  for (const int i : visible_heads_[index])
+    drawLamp(heads_[static_cast<std::size_t>(i)], view, canvas);
 }
 
 void SignalHeads::drawLamp(const SignalHead& head, const View& view, Canvas& canvas) const {

@@ -33,23 +33,25 @@ struct Block {
   double low, high;              ///< z
 };
 
+/// Collects the faces of a vehicle.
 class Painter {
  public:
-  Painter(const traffic::Vehicle& vehicle, const View& view, Canvas& canvas)
-      : view_(view),
-        canvas_(canvas),
+  Painter(const traffic::Vehicle& vehicle, std::uint16_t instance)
+      : instance_(instance),
         forward_(geometry::direction(vehicle.state.heading)),
-        origin_(vehicle.state.position.x(), vehicle.state.position.y(), vehicle.state.elevation) {}
+        origin_(vehicle.state.position.x(), vehicle.state.position.y(), vehicle.state.elevation) {
+    body_.reserve(32);
+  }
 
-  /// A face given counter-clockwise seen from outside (vehicle frame); hidden when turned away.
+  /// A face given counter-clockwise seen from outside (vehicle frame).
   template <std::size_t kCorners>
   void face(const std::array<Eigen::Vector3d, kCorners>& corners, Color color, double rank) {
-    Eigen::Vector3d seen[kCorners];
-    for (std::size_t i = 0; i < kCorners; ++i) seen[i] = view_.toCamera(toMap(corners[i]));
-    const Eigen::Vector3d outwards = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
-    if (outwards.dot(seen[0]) < 0.0) {
-      canvas_.fill(seen, static_cast<int>(kCorners), {color, rank, 1.0});
-    }
+    BodyFace& face = body_.emplace_back();
+    for (std::size_t i = 0; i < kCorners; ++i) face.corners[i] = toMap(corners[i]);
+    face.count = static_cast<int>(kCorners);
+    const bool shadow = rank == rank::kShadow;
+    face.paint = {color, rank, 1.0,
+                  shadow ? Label{SceneClass::kRoad, 0} : Label{SceneClass::kVehicle, instance_}};
   }
 
   /// Brightness of a face with this outward normal (vehicle frame, unit).
@@ -60,16 +62,18 @@ class Painter {
     return 0.62 + 0.45 * light - 0.1 * std::max(0.0, -normal.x());
   }
 
+  VehicleBody body() { return std::move(body_); }
+
  private:
   Eigen::Vector3d toMap(const Eigen::Vector3d& point) const {
     return {origin_.x() + (forward_.x() * point.x() - forward_.y() * point.y()),
             origin_.y() + (forward_.y() * point.x() + forward_.x() * point.y()),
             origin_.z() + point.z()};
   }
-  const View& view_;
-  Canvas& canvas_;
+  std::uint16_t instance_;
   Eigen::Vector2d forward_;
   Eigen::Vector3d origin_;
+  VehicleBody body_;
 };
 
 using Corners = std::array<Eigen::Vector3d, 4>;
@@ -213,9 +217,9 @@ Color bodyColor(const std::string& id) {
   return kPalette[(hash >> 8) % (sizeof(kPalette) / sizeof(kPalette[0]))];
 }
 
-void drawVehicle(const traffic::Vehicle& vehicle, const View& view, Canvas& canvas) {
+VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance) {
   const traffic::VehicleDimensions& size = vehicle.dimensions;
-  Painter painter(vehicle, view, canvas);
+  Painter painter(vehicle, instance);
   const Color color = bodyColor(vehicle.id);
   paintShadow(size, painter);
   paintWheels(size, painter);
@@ -232,6 +236,17 @@ void drawVehicle(const traffic::Vehicle& vehicle, const View& view, Canvas& canv
   paintLights(-0.5 * size.length, (braking ? 0.45 : 0.55) * half, 0.97 * half, low, high,
               braking ? kBrakeLight : kTailLight, painter);
   paintLights(0.5 * size.length, 0.6 * half, 0.95 * half, low, high, kHeadlight, painter);
+  return painter.body();
+}
+
+void drawBody(const VehicleBody& body, const View& view, Canvas& canvas) {
+  for (const BodyFace& face : body) {
+    Eigen::Vector3d seen[8];
+    for (int i = 0; i < face.count; ++i)
+      seen[i] = view.toCamera(face.corners[static_cast<std::size_t>(i)]);
+    const Eigen::Vector3d outwards = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
+    if (outwards.dot(seen[0]) < 0.0) canvas.fill(seen, face.count, face.paint);
+  }
 }
 
 }  // namespace cdiff::rendering

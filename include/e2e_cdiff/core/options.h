@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,29 @@ class OptionsVisitor {
     options.describe(*this);
     leave();
   }
+
+  /// Visits a list of options structs of one type under `info.key`: in YAML a list of groups, which
+  /// replaces what the list held.
+  template <class Options>
+  void groups(const FieldInfo& info, std::vector<Options>& list) {
+    if (const std::optional<std::size_t> given = givenGroups(info)) list.assign(*given, Options());
+    if (!enterGroups(info)) return;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      enterItem(i);
+      list[i].describe(*this);
+      leave();
+    }
+    leaveGroups();
+  }
+
+ protected:
+  /// How many groups the source gives; nullopt where it does not give the list.
+  virtual std::optional<std::size_t> givenGroups(const FieldInfo&) { return std::nullopt; }
+  /// Enters a list, which `leaveGroups` ends; returns whether its groups are to be visited.
+  virtual bool enterGroups(const FieldInfo&) { return false; }
+  virtual void leaveGroups() {}
+  /// Enters a group of the list, which `leave` ends.
+  virtual void enterItem(std::size_t) {}
 };
 
 /// A YAML text with the name it is known by in errors ("file.yaml", "--set", "parameter ~set").

@@ -17,6 +17,7 @@
 #include "e2e_cdiff/map/drivable_area.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_rig.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 
 namespace cdiff::planning {
@@ -42,14 +43,27 @@ struct DrivingStyle {
   bool even() const { return acceleration > 0.0; }
 };
 
+/// What the cameras of a vehicle saw at a decision; without a rig for planners that see nothing.
+struct CameraViews {
+  const rendering::CameraRig* rig = nullptr;
+  /// One per camera, in the rig's order; nullptr where none came.
+  std::vector<const traffic::CameraImage*> images;
+
+  /// The image of a camera, or nullptr.
+  const traffic::CameraImage* find(const std::string& camera) const;
+  /// Name of the first camera whose image did not come; empty when all came.
+  std::string missing() const;
+};
+
 /// One vehicle to drive at this decision.
 struct PlanningTask {
   int slot = traffic::kEgoSlot;  ///< that, or of a CBV
   const traffic::Vehicle* vehicle = nullptr;
   const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
-  const traffic::CameraImage* image = nullptr;  ///< its front view, for planners that see
+  const traffic::CameraImage* image = nullptr;  ///< of its camera "front", for planners that see
   DrivingStyle style = {};
+  CameraViews views = {};  ///< of all its cameras, for planners that see
 };
 
 /// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for
@@ -180,6 +194,9 @@ struct PlannerParts {
   const rendering::CameraOptions& camera;     ///< that the vehicle's images come from
   const guidance::GuidanceOptions& guidance;  ///< of planners that are guided
   std::string guidance_group = "guidance.";   ///< before its keys in errors
+  rendering::RigOptions rig_options = {};     ///< cameras of the planner's vehicles, as given
+  std::string rig_key = "ego_rig";            ///< their key in errors
+  rendering::CameraRig rig = {};  ///< what they are, filled in by makePlanner; copy what is kept
 };
 
 /// The network behind a planner, for the record of a session.
@@ -199,8 +216,10 @@ struct PlannerDescriptor {
   std::string help;   ///< one sentence
   bool drives_ego = true;
   bool drives_cbv = true;
-  std::vector<std::string> cameras;  ///< cameras on its vehicles: none, or "front"
-  bool guided = false;               ///< follows guidance objectives
+  std::vector<std::string> cameras;  ///< names of the cameras that it needs; none: it sees nothing
+  std::string rig = rendering::kFrontRig;  ///< preset that its vehicles have unless the scenario
+                                           ///< says otherwise; holds `cameras`
+  bool guided = false;                     ///< follows guidance objectives
   /// Program that runs it for the CBVs in the node graph.
   std::string cbv_node = "cbv_planner_node";
   std::function<std::unique_ptr<PlannerOptions>()> options;
