@@ -61,7 +61,7 @@ bool PlanPids::brakes(double speed, double desired_speed) const {
 
 traffic::ControlAction PlanPids::track(double speed, double desired_speed, double turn_error) {
   const bool brake = brakes(speed, desired_speed);
-  const double turn = turn_.update(brake ? 0.0 : turn_error);
+  const double turn = turn_.update(brake && !options_.steers_while_braking ? 0.0 : turn_error);
   const double drive =
       speed_.update(std::clamp(desired_speed - speed, 0.0, options_.speed_error_limit));
   traffic::ControlAction action;

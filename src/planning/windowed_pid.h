@@ -46,8 +46,9 @@ struct PlanPidOptions {
   std::int64_t window = 20;        ///< errors in the mean, zeros at the start
   double speed_error_limit = 1.0;  ///< [m/s]
   double max_throttle = 1.0;
-  double brake_speed = 0.4;  ///< desired speed below which it brakes [m/s]
-  double brake_ratio = 1.1;  ///< speed / desired speed above which it brakes
+  double brake_speed = 0.4;           ///< desired speed below which it brakes [m/s]
+  double brake_ratio = 1.1;           ///< speed / desired speed above which it brakes
+  bool steers_while_braking = false;  ///< no option: as the planner's authors publish it
 
   void describe(core::OptionsVisitor& visitor);
 };
@@ -56,7 +57,8 @@ struct PlanPidOptions {
 /// decision every 0.1 s.
 ///  - Speed error: desired - speed, limited to [0, speed_error_limit]. It brakes fully, without
 ///    throttle, if the desired speed is below brake_speed or less than speed / brake_ratio.
-///  - Turn error: bearing of a place of the plan, in units of 90 degrees; none while it brakes.
+///  - Turn error: bearing of a place of the plan, in units of 90 degrees; none while it brakes
+///    unless it steers then, too.
 class PlanPids {
  public:
   explicit PlanPids(const PlanPidOptions& options);
