@@ -214,7 +214,7 @@ session::LoopParts CollectionLoop::makeParts(const session::SessionSetup& setup,
   parts.selector =
       std::make_unique<TrafficDriver>(options, setup.graph(), setup.drivableArea(), seedOf(setup));
   if (images) {
-    parts.camera.emplace(setup.options().camera, setup.network());
+    parts.cameras.emplace(setup, session::VehicleRigs::front(setup.options().camera));
     parts.image_wish = [this, &setup](const traffic::TrafficSnapshot& snapshot,
                                       const traffic::Vehicle& vehicle, int slot) {
       const auto decision = static_cast<std::int64_t>(snapshot.tick / setup.ticksPerDecision());

@@ -149,6 +149,13 @@ std::string rigOfPlanner(const std::string& name) {
   return descriptor == nullptr ? rendering::kFrontRig : descriptor->rig;
 }
 
+void requireRig(const std::string& key, const std::string& name, const RigChoice& rig) {
+  const PlannerDescriptor* descriptor = findPlanner(name);
+  if (descriptor == nullptr) return;
+  rendering::requireCameras(rendering::rigOf(rig.options, rig.camera, descriptor->rig),
+                            descriptor->cameras, {key + " '" + name + "'", rig.key});
+}
+
 std::string plannerTitled(const std::string& title) {
   for (const PlannerDescriptor* descriptor : registeredPlanners()) {
     if (descriptor->title == title) return descriptor->name;

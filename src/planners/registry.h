@@ -44,6 +44,15 @@ bool seesImages(const std::string& name);
 /// The preset of the cameras that a planner's vehicles have unless the scenario says otherwise;
 /// "front" for unknown names.
 std::string rigOfPlanner(const std::string& name);
+/// The cameras that a scenario gives to a role's vehicles.
+struct RigChoice {
+  std::string key;  ///< "ego_rig"
+  const rendering::RigOptions& options;
+  const rendering::CameraOptions& camera;
+};
+/// Throws InputError naming the planner's `key`, the camera and the rig's key where the vehicles of
+/// the planner `name` lack a camera that it needs; unknown names need none.
+void requireRig(const std::string& key, const std::string& name, const RigChoice& rig);
 /// Name of the planner with this title; "" when there is none.
 std::string plannerTitled(const std::string& title);
 

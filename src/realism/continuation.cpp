@@ -38,8 +38,15 @@ std::unique_ptr<planning::Planner> makeDriver(const session::SessionSetup& setup
   planning::PlanningContext context{setup.network(),         setup.drivableArea(),
                                     driver.planner_seed,     options.simulation_step,
                                     options.decision_period, &setup.egoRoute()};
-  return planners::makePlanner(driver.planner, {context, options.planner_options, options.vehicle,
-                                                options.camera, options.guidance, "guidance."});
+  return planners::makePlanner(driver.planner,
+                               {context, options.planner_options, options.vehicle, options.camera,
+                                options.guidance, "guidance.", options.cbv_rig, "cbv_rig"});
+}
+
+/// The CBVs' cameras are those of their driver's planner.
+session::VehicleRigs rigsOf(session::ScenarioOptions options, const HandOverDriver& driver) {
+  if (!driver.planner.empty()) options.cbv_planner = driver.planner;
+  return session::VehicleRigs(options);
 }
 
 /// The parts of the session with the driver's planner and our selector, which `selector` names.
@@ -50,7 +57,7 @@ session::LoopParts makeParts(const session::SessionSetup& setup, const HandOverD
   parts.ego_planner = setup.makeEgoPlanner();
   parts.cbv_planner = makeDriver(setup, driver);
   if (parts.ego_planner->needsImages() || parts.cbv_planner->needsImages())
-    parts.camera.emplace(options.camera, setup.network());
+    parts.cameras.emplace(setup, rigsOf(options, driver));
   auto own = std::make_unique<HandOverSelector>(
       std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),
                                          setup.graph(), setup.egoRoute()),

@@ -94,21 +94,13 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
   return fault.empty() ? actions : failSafe(tasks);
 }
 
-void attachImages(const std::vector<SlotImage>& images, std::vector<PlanningTask>& tasks) {
-  for (PlanningTask& task : tasks) {
-    for (const SlotImage& seen : images) {
-      if (seen.slot == task.slot) task.image = &seen.image;
-    }
-  }
-}
-
 LoopParts makeParts(const SessionSetup& setup) {
   const ScenarioOptions& options = setup.options();
   LoopParts parts;
   parts.ego_planner = setup.makeEgoPlanner();
   parts.cbv_planner = setup.makeCbvPlanner();
   if (parts.ego_planner->needsImages() || parts.cbv_planner->needsImages())
-    parts.camera.emplace(options.camera, setup.network());
+    parts.cameras.emplace(setup);
   parts.selector = std::make_unique<cbv::CbvSelector>(
       options.cbv, static_cast<int>(options.max_cbv), setup.graph(), setup.egoRoute());
   return parts;
@@ -132,7 +124,7 @@ struct ClosedLoop::Decision {
 };
 
 void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& decision) {
-  decision.images.push_back({slot, parts_.camera->render(world().snapshot(), vehicle)});
+  parts_.cameras->render(world().snapshot(), vehicle, slot, decision.images);
 }
 
 void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
@@ -140,7 +132,7 @@ void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
   if (tasks.empty()) return;
   if (planner.needsImages()) {
     for (const PlanningTask& task : tasks) render(*task.vehicle, task.slot, decision);
-    attachImages(decision.images, tasks);
+    attachImages(decision.images, parts_.cameras->rigs(), tasks);
   }
   PlannerLatency latency{name, 0.0};
   std::string fault;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "rendering/front_camera.h"
 #include "session/session_observer.h"
+#include "session/vehicle_cameras.h"
 #include "session/world.h"
 
 namespace cdiff::session {
@@ -26,8 +26,6 @@ std::vector<planning::PlanningTask> cbvTasks(const traffic::TrafficSnapshot& sna
 /// Task of the ego planner; empty when the ego is gone.
 std::vector<planning::PlanningTask> egoTasks(const traffic::TrafficSnapshot& snapshot,
                                              const map::Route& route, double target_speed);
-/// Gives each task the image of its slot; tasks without one stay without.
-void attachImages(const std::vector<SlotImage>& images, std::vector<planning::PlanningTask>& tasks);
 /// Runs a planner and times it. A planner that throws or answers for the wrong vehicles yields
 /// fail-safe actions; the text of the fault goes to `fault` (empty when none).
 std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
@@ -46,11 +44,11 @@ struct LoopParts {
   std::unique_ptr<cbv::VehicleSelector> selector;
   std::unique_ptr<planning::Planner> ego_planner;
   std::unique_ptr<planning::Planner> cbv_planner;  ///< planner of every vehicle that is selected
-  std::optional<rendering::FrontCamera> camera;    ///< for planners that see and for `image_wish`
+  std::optional<VehicleCameras> cameras;           ///< for planners that see and for `image_wish`
   ImageWish image_wish;                            ///< empty: no other images
 };
 
-/// The parts that the scenario names, without a world: CBV identification, its planners, a camera
+/// The parts that the scenario names, without a world: CBV identification, its planners, cameras
 /// where one of them sees. Throws InputError for unknown planners and the external ego, which needs
 /// the node graph.
 LoopParts makeParts(const SessionSetup& setup);

@@ -173,6 +173,9 @@ void ScenarioOptions::describePlanners(core::OptionsVisitor& visitor) {
   visitor.group({"ego_guidance", "", "Guidance of the ego; defaults are its profile's."},
                 ego_guidance);
   visitor.group({"camera", "", "Front camera of vehicles whose planner sees."}, camera);
+  visitor.group({"ego_rig", "", "Cameras of the ego, where its planner sees or it is shown."},
+                ego_rig);
+  visitor.group({"cbv_rig", "", "Cameras of the CBVs, likewise."}, cbv_rig);
   visitor.group({"vehicle", "", "Dynamics of the vehicles that we drive."}, vehicle);
   visitor.group({"sumo", "", "The SUMO process."}, sumo);
 }
@@ -203,6 +206,7 @@ void ScenarioOptions::validate() const {
   validateTime();
   planners::requirePlanner("ego_planner", ego_planner, planners::Role::kEgo);
   planners::requirePlanner("cbv_planner", cbv_planner, planners::Role::kCbv);
+  validateCameras();
   if (mode == "safety_critical" && !planners::canBeGuided(cbv_planner)) {
     throw InputError(
         "key 'mode' is 'safety_critical', which needs a CBV planner with guidance; cbv_planner '" +
@@ -216,6 +220,14 @@ void ScenarioOptions::validate() const {
   }
   if (file) checkDemandFile(demand);
   checkStatuses(verdict.statuses);
+}
+
+void ScenarioOptions::validateCameras() const {
+  ego_rig.validate("ego_rig.");
+  cbv_rig.validate("cbv_rig.");
+  planners::requireRig("ego_planner", ego_planner, {"ego_rig", ego_rig, camera});
+  for (const std::string& planner : planners::planningMembers(cbv_planner))
+    planners::requireRig("cbv_planner", planner, {"cbv_rig", cbv_rig, camera});
 }
 
 void ScenarioOptions::validateTime() const {

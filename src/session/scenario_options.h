@@ -10,6 +10,7 @@
 #include "e2e_cdiff/dynamics/bicycle_model.h"
 #include "e2e_cdiff/metrics/metrics_options.h"
 #include "e2e_cdiff/rendering/camera_options.h"
+#include "e2e_cdiff/rendering/camera_rig.h"
 #include "map/route_source.h"
 #include "planners/registry.h"
 #include "session/protocol.h"
@@ -72,7 +73,9 @@ struct ScenarioOptions {
   guidance::GuidanceOptions guidance;  ///< the CBVs': the profile's values, with what is changed
   std::string ego_guidance_profile = "naturalistic";  ///< shipped profile or file
   guidance::GuidanceOptions ego_guidance;  ///< the ego's, where its planner can be guided
-  rendering::CameraOptions camera;         ///< that planners see through
+  rendering::CameraOptions camera;         ///< the front camera, and what all cameras share
+  rendering::RigOptions ego_rig;           ///< cameras of the ego
+  rendering::RigOptions cbv_rig;           ///< cameras of the CBVs
   dynamics::BicycleModelOptions vehicle;
   simulation::SumoOptions sumo;
   ProtocolOptions protocol;
@@ -96,6 +99,7 @@ struct ScenarioOptions {
   void describePlanners(core::OptionsVisitor& visitor);
   void describeTime(core::OptionsVisitor& visitor);
   void validateTime() const;
+  void validateCameras() const;
 };
 
 /// Reads a scenario by file name, or by the name of one in config/scenarios. Relative paths inside

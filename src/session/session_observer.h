@@ -33,10 +33,11 @@ struct AnswerTiming {
   bool punctual() const { return came && lateness <= 0.0; }
 };
 
-/// The front-view image that a vehicle's planner was given at a decision.
+/// The image of one camera that a vehicle's planner was given at a decision.
 struct SlotImage {
   int slot = traffic::kEgoSlot;  ///< slot of a CBV; kEgoSlot for the ego
   traffic::CameraImage image;
+  std::string camera = rendering::kFrontCamera;  ///< its name in the vehicle's rig
 };
 
 /// Everything that observers are given of one tick; the pointers hold during the call alone.
@@ -47,7 +48,8 @@ struct TickRecord {
   const traffic::TrafficSnapshot* snapshot = nullptr;
   const cbv::CbvSelection* selection = nullptr;                   ///< nullptr between decisions
   const std::vector<planning::PlannedAction>* actions = nullptr;  ///< ego first, then CBVs by slot
-  const std::vector<SlotImage>* images = nullptr;  ///< of vehicles whose planner uses images
+  const std::vector<SlotImage>* images = nullptr;  ///< of vehicles whose planner uses images:
+                                                   ///< all cameras of a rig, in its order
   std::vector<PlannerLatency> latencies;           ///< of planners that report theirs
   std::vector<AnswerTiming> timings;               ///< empty in sessions that wait for every answer
 };

@@ -18,6 +18,7 @@ const ScenarioOptions& validated(const ScenarioOptions& options) {
 
 SessionSetup::SessionSetup(const ScenarioOptions& options)
     : options_(validated(options)),
+      rigs_(options_),
       import_(map::importNetwork(options.network)),
       network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
       graph_(network_),
@@ -28,6 +29,7 @@ SessionSetup::SessionSetup(const ScenarioOptions& options)
 SessionSetup::SessionSetup(const ScenarioOptions& options, map::ImportedNetwork import,
                            const std::vector<Eigen::Vector3d>& ego_route_points)
     : options_(options),
+      rigs_(options_),
       import_(std::move(import)),
       network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
       graph_(network_),
@@ -44,15 +46,17 @@ planning::PlanningContext SessionSetup::planningContext() const {
 }
 
 std::unique_ptr<planning::Planner> SessionSetup::makeEgoPlanner() const {
-  return planners::makePlanner(options_.ego_planner,
-                               {planningContext(), options_.planner_options, options_.vehicle,
-                                options_.camera, options_.ego_guidance, "ego_guidance."});
+  return planners::makePlanner(
+      options_.ego_planner,
+      {planningContext(), options_.planner_options, options_.vehicle, options_.camera,
+       options_.ego_guidance, "ego_guidance.", options_.ego_rig, "ego_rig"});
 }
 
 std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
-  return planners::makePlanner(options_.cbv_planner,
-                               {planningContext(), options_.planner_options, options_.vehicle,
-                                options_.camera, options_.guidance, "guidance."});
+  return planners::makePlanner(
+      options_.cbv_planner,
+      {planningContext(), options_.planner_options, options_.vehicle, options_.camera,
+       options_.guidance, "guidance.", options_.cbv_rig, "cbv_rig"});
 }
 
 std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {

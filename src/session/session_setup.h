@@ -11,6 +11,7 @@
 #include "map/import/network_import.h"
 #include "metrics/session_metrics.h"
 #include "session/scenario_options.h"
+#include "session/vehicle_rigs.h"
 
 namespace cdiff::session {
 
@@ -37,6 +38,8 @@ class SessionSetup {
   const map::DrivableArea& drivableArea() const { return drivable_area_; }
   /// Always matched from its points, so that every deployment has the same.
   const map::Route& egoRoute() const { return ego_route_; }
+  /// The cameras of ego and CBVs.
+  const VehicleRigs& rigs() const { return rigs_; }
   planning::PlanningContext planningContext() const;
   /// The planners that the scenario names; they refer to this setup. Throw InputError.
   std::unique_ptr<planning::Planner> makeEgoPlanner() const;
@@ -51,6 +54,7 @@ class SessionSetup {
 
  private:
   ScenarioOptions options_;
+  VehicleRigs rigs_;
   map::ImportedNetwork import_;
   map::RoadNetwork network_;
   map::LaneGraph graph_;

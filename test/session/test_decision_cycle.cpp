@@ -96,8 +96,7 @@ class Cycle {
     observed = selector_->observed;
     return record;
   }
-  const rendering::CameraOptions& camera() const { return scripted_.setup().options().camera; }
-  const map::RoadNetwork& network() const { return scripted_.setup().network(); }
+  const SessionSetup& setup() { return scripted_.setup(); }
 
   LoopParts parts;
   int updated = 0;
@@ -146,7 +145,7 @@ TEST(DecisionCycle, SoIsOneThatThrowsWhatIsNoException) {
 TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {
   Cycle cycle;
   int seen = 0;
-  cycle.parts.camera.emplace(cycle.camera(), cycle.network());
+  cycle.parts.cameras.emplace(cycle.setup());
   cycle.parts.cbv_planner = std::make_unique<Braking>(
       [&](const PlanningTask& task) { seen += task.image != nullptr; }, true);
   cycle.parts.image_wish = [](const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle&,
@@ -154,6 +153,39 @@ TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {
   const Record record = cycle.run();
   EXPECT_EQ(seen, 2);
   EXPECT_EQ(record.images, (std::vector<std::vector<int>>{{0}, {0, -1}}));
+}
+
+TEST(DecisionCycle, APlannerIsGivenAllImagesOfItsRigInOrder) {
+  Cycle cycle;
+  ScenarioOptions options = cycle.setup().options();
+  options.ego_rig.preset = rendering::kBench2driveRig;
+  const VehicleRigs rigs(options);
+  cycle.parts.cameras.emplace(cycle.setup(), rigs);
+  int seen = 0;
+  cycle.parts.ego_planner = std::make_unique<Braking>(
+      [&](const PlanningTask& task) {
+        ASSERT_NE(task.views.rig, nullptr);
+        EXPECT_EQ(task.views.rig->names(), rigs.of(traffic::kEgoSlot).names());
+        ASSERT_EQ(task.views.images.size(), 6u);
+        EXPECT_EQ(task.views.missing(), "");
+        EXPECT_EQ(task.image, task.views.find("front"));
+        rendering::RigRenderer renderer(rigs.of(traffic::kEgoSlot), cycle.setup().network());
+        traffic::TrafficSnapshot alone;  // no other is near
+        const auto views = renderer.render(alone, *task.vehicle);
+        for (std::size_t i = 0; i < 6; ++i)
+          EXPECT_EQ(task.views.images[i]->rgb, views[i].image.rgb) << i;
+        ++seen;
+      },
+      true);
+  cycle.parts.cbv_planner = std::make_unique<Braking>(
+      [](const PlanningTask& task) {
+        EXPECT_EQ(task.views.rig->names(), std::vector<std::string>{"front"});
+        EXPECT_EQ(task.views.images.size(), 1u);
+      },
+      true);
+  const Record record = cycle.run();
+  EXPECT_EQ(seen, 2);
+  EXPECT_EQ(record.images[0], (std::vector<int>{-1, -1, -1, -1, -1, -1, 0}));
 }
 
 }  // namespace

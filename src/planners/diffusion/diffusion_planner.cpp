@@ -262,7 +262,14 @@ std::unique_ptr<DiffusionPlanner> makeDiffusionPlanner(const planning::PlannerPa
                                          parts.vehicle, parts.context, parts.guidance_group);
   const diffusion::Architecture& sizes = planner->model().architecture;
   const rendering::CameraOptions& camera = parts.camera;
-  if (camera.width == sizes.image_width && camera.height == sizes.image_height) return planner;
+  if (camera.width == sizes.image_width && camera.height == sizes.image_height) {
+    if (!parts.rig.cameras.empty()) {
+      rendering::requireSameCameras(
+          parts.rig, {rendering::frontCamera(camera)},
+          {"model '" + planner->model().name + "' (keys camera.*)", parts.rig_key});
+    }
+    return planner;
+  }
   throw core::InputError("the camera's size is " + sizeText(camera.width, camera.height) +
                          " (keys camera.width, camera.height); model '" + planner->model().name +
                          "' sees " + sizeText(sizes.image_width, sizes.image_height));

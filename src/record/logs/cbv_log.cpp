@@ -248,7 +248,8 @@ void ApproachLog::compare(const traffic::TrafficSnapshot& snapshot, const traffi
 
 traffic::CameraImage ApproachLog::imageOf(int slot) const {
   for (const session::SlotImage& seen : images_) {
-    if (seen.slot == slot && isWhole(seen.image)) return seen.image;
+    const bool front = seen.slot == slot && seen.camera == rendering::kFrontCamera;
+    if (front && isWhole(seen.image)) return seen.image;
   }
   return {};
 }
