@@ -8,6 +8,7 @@
 
 #include "planners/camera_ego/camera_ego_sizes.h"
 #include "planners/camera_ego/navigation.h"
+#include "planners/camera_ego/road_lines.h"
 #include "planners/camera_ego/waypoint_controller.h"
 #include "planners/weight_files.h"
 
@@ -25,7 +26,7 @@ struct VadMiniArchitecture {
 };
 
 inline constexpr std::int64_t kBoxNumbers = 10;  ///< x, y, log w, log l, z, log h, sin, cos, vx, vy
-inline constexpr std::int64_t kMapPoints = 10;   ///< of a line
+inline constexpr auto kMapPoints = static_cast<std::int64_t>(kLinePoints);  ///< of a line
 inline constexpr std::int64_t kMapKinds = 3;     ///< MapKind
 inline constexpr std::int64_t kMotionModes = 6;  ///< of an agent
 /// Velocities of boxes come in this unit [m/s].
