@@ -81,7 +81,7 @@ std::array<Eigen::Vector2d, kLinePoints> evenly(const Line& line) {
   return points;
 }
 
-double distanceTo(const Line& line, const Eigen::Vector2d& place) {
+double distanceFrom(const Line& line, const Eigen::Vector2d& place) {
   double nearest = 1e9;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const Eigen::Vector2d way = line[i + 1] - line[i];
@@ -192,7 +192,7 @@ std::vector<BevLine> RoadLines::around(const BevPose& from, const BevGrid& bev,
     }
     for (const Line& piece : piecesIn(bev, seen)) {
       if (lengthOf(piece) < kLeastLength || !reachesAhead(piece)) continue;
-      found.push_back({distanceTo(piece, {kFocus, 0.0}), {line.kind, evenly(piece)}});
+      found.push_back({distanceFrom(piece, {kFocus, 0.0}), {line.kind, evenly(piece)}});
     }
   };
   for (const RoadLine& line : lines_) look(line);

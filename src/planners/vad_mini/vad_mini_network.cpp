@@ -11,8 +11,6 @@ namespace {
 using inference::LayerWeights;
 using inference::Rows;
 
-double logistic(float x) { return 1.0 / (1.0 + std::exp(-static_cast<double>(x))); }
-
 void copyRows(const Rows& from, std::int64_t channels, Rows& to) {
   to.resize(from.rows(), channels);
   for (std::int64_t row = 0; row < from.rows(); ++row)
@@ -70,6 +68,8 @@ Eigen::Vector2d nearestPoint(const SeenLine& line) {
 }
 
 }  // namespace
+
+double logistic(float logit) { return 1.0 / (1.0 + std::exp(-static_cast<double>(logit))); }
 
 bool VadMiniOutput::finite() const {
   const auto agent_finite = [](const SeenAgent& agent) {

@@ -25,6 +25,9 @@ struct SeenLine {
   std::array<Eigen::Vector2d, kMapPoints> points{};  ///< body frame of the ego [m]
 };
 
+/// Probability of a logit.
+double logistic(float logit);
+
 /// What the network answers.
 struct VadMiniOutput {
   std::vector<SeenAgent> agents;                    ///< by query

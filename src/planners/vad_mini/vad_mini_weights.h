@@ -27,8 +27,8 @@ struct VadMiniArchitecture {
 
 inline constexpr std::int64_t kBoxNumbers = 10;  ///< x, y, log w, log l, z, log h, sin, cos, vx, vy
 inline constexpr auto kMapPoints = static_cast<std::int64_t>(kLinePoints);  ///< of a line
-inline constexpr std::int64_t kMapKinds = 3;     ///< MapKind
-inline constexpr std::int64_t kMotionModes = 6;  ///< of an agent
+inline constexpr std::int64_t kMapKinds = 3;                                ///< MapKind
+inline constexpr std::int64_t kMotionModes = 6;                             ///< of an agent
 /// Velocities of boxes come in this unit [m/s].
 inline constexpr double kVelocityUnit = 5.0;
 /// Offsets from waypoint to waypoint, of agents and ego, come in this unit [m].

@@ -29,11 +29,9 @@ class VadMiniNet {
   VadMiniNet(const VadMiniNet&) = delete;
   VadMiniNet& operator=(const VadMiniNet&) = delete;
 
-  /// [B x cells, width]; see BevNet.
-  at::Tensor encode(const BevBatch& batch, const at::Tensor& past) const {
-    return bev_.encode(batch, past);
-  }
+  /// `bev`: of BevNet, [B x cells, width].
   VadMiniAnswer answer(const at::Tensor& bev, std::int64_t samples) const;
+  const BevNet& bev() const { return bev_; }
   learning::ParameterSet& parameters() { return parameters_; }
   const VadMiniArchitecture& architecture() const { return architecture_; }
 

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "learning/batches.h"
+#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/vad_mini_network.h"
+#include "support/random_model.h"
+
+namespace cdiff::planners {
+namespace {
+
+traffic::CameraImage noise(std::uint64_t number) {
+  const core::RandomStream random(4, "noise");
+  traffic::CameraImage image{160, 96, 0, {}};
+  for (std::uint32_t i = 0; i < 160 * 96 * 3; ++i)
+    image.rgb.push_back(static_cast<std::uint8_t>(random.index({number}, i, 256)));
+  return image;
+}
+
+/// Two looks of one ego, of which the second one reads the BEV of the first.
+struct TwoLooks {
+  std::vector<traffic::CameraImage> images;
+  EgoPoses before{{{0.0, 0.0}, 0.0}, std::nullopt};
+  EgoPoses now{{{3.7, 0.4}, 0.12}, geometry::Pose2d{{0.0, 0.0}, 0.0}};
+  EgoMotion first = egoMotion(6.0, 0.1, before);
+  EgoMotion second = egoMotion(7.0, 0.2, now);
+
+  TwoLooks() {
+    for (std::uint64_t i = 0; i < 6; ++i) images.push_back(noise(i));
+  }
+  VadMiniInput input(bool present) const {
+    VadMiniInput input;
+    for (std::size_t i = 0; i < 3; ++i)
+      input.images.push_back(images[i + (present ? 3 : 0)].rgb.data());
+    input.motion = present ? second : first;
+    input.poses = present ? now : before;
+    return input;
+  }
+  BevBatch batch(const BevGrid& bev, bool present) const {
+    BevBatch batch;
+    std::vector<const traffic::CameraImage*> views;
+    for (std::size_t i = 0; i < 3; ++i) views.push_back(&images[i + (present ? 3 : 0)]);
+    batch.images = learning::imageTensor(views, 1.0, at::kCPU);
+    const EgoMotion& motion = present ? second : first;
+    batch.motion =
+        learning::toTensor({motion.begin(), motion.end()}, {1, kEgoMotionNumbers}, at::kCPU);
+    const EgoPoses& poses = present ? now : before;
+    batch.temporal = {std::make_shared<inference::SamplingPlan>(
+        temporalPlan(bev, poses.present, poses.past.value_or(poses.present)))};
+    batch.has_past = at::full({1, 1, 1}, present ? 1.0 : 0.0);
+    return batch;
+  }
+};
+
+VadMiniModel drawnModel() {
+  VadMiniArchitecture architecture;
+  return {architecture, cdiff::testing::randomTensors(vadMiniTensors(architecture))};
+}
+
+void expectNear(double found, const at::Tensor& expected, const char* what) {
+  EXPECT_NEAR(found, expected.item<double>(),
+              1e-4 * std::max(1.0, std::abs(expected.item<double>())))
+      << what;
+}
+
+void expectSame(const VadMiniOutput& found, const VadMiniAnswer& expected) {
+  for (std::size_t a = 0; a < found.agents.size(); ++a) {
+    const auto i = static_cast<std::int64_t>(a);
+    expectNear(found.agents[a].score, expected.agent_logits.back()[0][i][0], "score");
+    for (std::int64_t n = 0; n < kBoxNumbers; ++n)
+      expectNear(found.agents[a].box[static_cast<std::size_t>(n)], expected.boxes.back()[0][i][n],
+                 "box");
+    for (std::int64_t m = 0; m < kMotionModes; ++m) {
+      const Eigen::Vector2d end = found.agents[a].ways[static_cast<std::size_t>(m)].back();
+      expectNear(end.x() - static_cast<double>(found.agents[a].box[0]),
+                 expected.ways[0][i][m][5][0], "way");
+      expectNear(found.agents[a].way_scores[static_cast<std::size_t>(m)],
+                 expected.way_logits[0][i][m], "way score");
+    }
+  }
+  const at::Tensor lines = metersOfShares(BevGrid{}, expected.lines.back());
+  for (std::size_t l = 0; l < found.lines.size(); ++l) {
+    const auto i = static_cast<std::int64_t>(l);
+    for (std::int64_t k = 0; k < kMapKinds; ++k)
+      expectNear(found.lines[l].scores[static_cast<std::size_t>(k)],
+                 expected.line_logits.back()[0][i][k], "line score");
+    expectNear(found.lines[l].points.back().y(), lines[0][i][kMapPoints - 1][1], "line");
+  }
+  for (std::int64_t c = 0; c < kRoadCommands; ++c) {
+    for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {
+      const Eigen::Vector2d place =
+          found.plans[static_cast<std::size_t>(c)][static_cast<std::size_t>(k)];
+      expectNear(place.x(), expected.plans[0][c][k][0], "plan");
+      expectNear(place.y(), expected.plans[0][c][k][1], "plan");
+    }
+  }
+}
+
+class VadMiniNetworks : public ::testing::TestWithParam<inference::InstructionSet> {};
+
+TEST_P(VadMiniNetworks, IsTheFunctionThatThePlannerComputes) {
+  if (GetParam() > inference::bestInstructionSet()) GTEST_SKIP() << "not on this processor";
+  const VadMiniModel model = drawnModel();
+  VadMiniNet net(model.architecture, 1);
+  net.parameters().load(model.weights, "test");
+  VadMiniNetwork network(model, GetParam());
+  const TwoLooks looks;
+  const at::NoGradGuard no_gradient;
+  const BevGrid& bev = model.architecture.ego.bev;
+  const at::Tensor past = net.bev().encode(looks.batch(bev, false), {});
+  expectSame(network.forward(looks.input(false)), net.answer(past, 1));
+  inference::Rows kept;
+  kept.resize(network.bev().rows(), model.architecture.ego.width);
+  for (std::int64_t row = 0; row < kept.rows(); ++row)
+    std::copy_n(network.bev().row(row), model.architecture.ego.width, kept.row(row));
+  VadMiniInput second = looks.input(true);
+  second.past = &kept;
+  expectSame(network.forward(second),
+             net.answer(net.bev().encode(looks.batch(bev, true), past), 1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, VadMiniNetworks,
+                         ::testing::Values(inference::InstructionSet::kPlain,
+                                           inference::InstructionSet::kAvx2,
+                                           inference::InstructionSet::kAvx512));
+
+TEST(VadMiniNetwork, AnswersTheSameBytesEveryTime) {
+  const VadMiniModel model = drawnModel();
+  VadMiniNetwork first(model), second(model);
+  const TwoLooks looks;
+  second.forward(looks.input(true));  // whatever came before
+  const auto one = first.forward(looks.input(false)), other = second.forward(looks.input(false));
+  for (std::size_t c = 0; c < one.plans.size(); ++c) EXPECT_EQ(one.plans[c], other.plans[c]);
+}
+
+// What is asked of a decision on one core; several times that here, where others compute, too.
+TEST(VadMiniNetwork, IsQuickEnough) {
+  VadMiniNetwork network(drawnModel());
+  const TwoLooks looks;
+  network.forward(looks.input(true));
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 10; ++i) network.forward(looks.input(true));
+  const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
+  RecordProperty("milliseconds", std::to_string(passed.count() / 10.0));
+  std::cout << passed.count() / 10.0 << " ms a decision\n";
+  EXPECT_LT(passed.count() / 10.0, 300.0);
+}
+
+TEST(VadMiniNet, DeclaresTheTensorsOfTheWeightFile) {
+  VadMiniNet net(VadMiniArchitecture(), 1);
+  const auto values = net.parameters().values();
+  const auto expected = vadMiniTensors(VadMiniArchitecture());
+  ASSERT_EQ(values.size(), expected.size());
+  std::size_t count = 0;
+  for (const inference::TensorShape& tensor : expected) {
+    EXPECT_EQ(values.at(tensor.name).shape, tensor.shape) << tensor.name;
+    count += values.at(tensor.name).values.size();
+  }
+  EXPECT_LT(count, 4000000U) << "a compact network";
+  std::cout << count << " weights\n";
+}
+
+}  // namespace
+}  // namespace cdiff::planners
