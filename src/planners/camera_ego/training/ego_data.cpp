@@ -54,9 +54,11 @@ std::vector<learning::Sample> EgoData::samplesOf(const learning::Scene& scene,
 }
 
 void EgoData::start(const learning::TrainingRun& run, const EgoSampleOptions& options,
-                    const rendering::CameraRig& rig, const BevGrid& bev) {
+                    const rendering::CameraRig& rig, const BevGrid& bev,
+                    const EgoExampleOptions& labels) {
   run_ = &run;
   options_ = &options;
+  labels_ = labels;
   rendering::CameraRig cameras = rig;
   cameras.blind = options.blind;
   examples_ = std::make_unique<EgoExamples>(cameras, bev);
@@ -101,7 +103,7 @@ std::vector<EgoExample> EgoData::examplesOf(const std::vector<std::size_t>& samp
                                             std::int64_t step, const core::RandomStream& random,
                                             std::size_t looks) {
   std::vector<EgoExample> examples;
-  EgoExampleOptions options;
+  EgoExampleOptions options = labels_;
   const auto number = static_cast<std::uint32_t>(step);
   const auto most = static_cast<std::size_t>(options_->past_looks);
   options.looks = std::min(looks, 2 + random.index({0, number, 0}, kLooksDraw, most));
@@ -120,7 +122,7 @@ std::vector<EgoExample> EgoData::examplesOf(const std::vector<std::size_t>& samp
 }
 
 EgoExample EgoData::exampleOf(std::size_t sample, std::size_t looks) {
-  EgoExampleOptions options;
+  EgoExampleOptions options = labels_;
   options.looks = looks;
   const PlutoPlace& place = places_[sample];
   return examples_->make(scenes_[place.scene], place, options);

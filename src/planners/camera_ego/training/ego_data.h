@@ -31,9 +31,11 @@ class EgoData {
   /// The samples of a scene, which is kept.
   std::vector<learning::Sample> samplesOf(const learning::Scene& scene,
                                           const EgoSampleOptions& options);
-  /// After all scenes: what the run learns from. `run` and `options` must outlive it.
+  /// After all scenes: what the run learns from. `run` and `options` must outlive it; `labels`:
+  /// how every example is made but for looks and displacement.
   void start(const learning::TrainingRun& run, const EgoSampleOptions& options,
-             const rendering::CameraRig& rig, const BevGrid& bev);
+             const rendering::CameraRig& rig, const BevGrid& bev,
+             const EgoExampleOptions& labels = {});
 
   /// How often each training sample comes, mean 1: classes of command and pace are balanced.
   std::vector<double> weights() const;
@@ -53,6 +55,7 @@ class EgoData {
   std::vector<PlutoScene> scenes_;
   const learning::TrainingRun* run_ = nullptr;
   const EgoSampleOptions* options_ = nullptr;
+  EgoExampleOptions labels_;
   mutable std::unique_ptr<EgoExamples> examples_;
   std::vector<PlutoPlace> places_;  ///< by index in the data set
 };

@@ -165,8 +165,14 @@ EgoExample EgoExamples::make(const PlutoScene& scene, const PlutoPlace& place,
          scene.frames()[decisions.front() - kPastDecisions].find(number) != nullptr)
     decisions.insert(decisions.begin(), decisions.front() - kPastDecisions);
   for (const std::size_t decision : decisions) {
-    EgoLook look =
-        lookAt(scene, place, decision, options, decision == place.decision ? &example : nullptr);
+    EgoExample past;
+    PlutoPlace then = place;
+    then.decision = static_cast<std::uint32_t>(decision);
+    EgoExample* labelled = options.past_agents ? &past : nullptr;
+    if (decision == place.decision) labelled = &example;
+    EgoLook look = lookAt(scene, then, decision, options, labelled);
+    if (past.agents.size() > options.most_agents) past.agents.resize(options.most_agents);
+    look.agents = std::move(past.agents);
     if (!example.looks.empty()) look.poses.past = example.looks.back().poses.present;
     look.motion = egoMotion(scene.frames()[decision].find(number)->state.speed,
                             yawRateAt(scene, number, decision), look.poses);

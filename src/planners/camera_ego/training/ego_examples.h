@@ -43,6 +43,7 @@ struct EgoLook {
   std::vector<traffic::CameraImage> images;  ///< in the rig's order
   EgoPoses poses;                            ///< with the pose of the look before, if there is one
   EgoMotion motion{};
+  std::vector<AgentLabel> agents;  ///< of a past look, where past_agents asks for them
 };
 
 /// A moment to learn from, or to be judged on.
@@ -64,6 +65,7 @@ struct EgoExampleOptions {
   double turned = 0.0;    ///< and turned to the left [rad]
   std::size_t most_agents = 24;
   std::size_t most_lines = 16;
+  bool past_agents = false;  ///< past looks are labelled, too: body frame and sight of then
 };
 
 /// Vehicles with fewer pixels in every image are not labelled.

@@ -8,8 +8,6 @@
 namespace cdiff::planners {
 namespace {
 
-constexpr double kEgoLength = 4.084;  // [m], as published
-constexpr double kEgoWidth = 1.85;
 constexpr std::size_t kSecond = 2;  // waypoints a second
 
 /// The box at a waypoint, heading from the one before.
@@ -17,22 +15,13 @@ geometry::OrientedBox egoBox(const EgoWaypoints& plan, std::size_t i) {
   const Eigen::Vector2d before = i > 0 ? plan[i - 1] : Eigen::Vector2d::Zero();
   const Eigen::Vector2d way = plan[i] - before;
   const double heading = way.norm() > 0.1 ? std::atan2(way.y(), way.x()) : 0.0;
-  return {plan[i], heading, kEgoLength, kEgoWidth};
-}
-
-/// The box of another vehicle at waypoint `i`, heading from the place before where it moves.
-geometry::OrientedBox otherBox(const AgentLabel& label, std::size_t i) {
-  const Eigen::Vector2d start(label.box[0], label.box[1]);
-  const Eigen::Vector2d before = i > 0 ? label.future.places[i - 1] : start;
-  const Eigen::Vector2d way = label.future.places[i] - before;
-  const double heading = way.norm() > 0.5 ? std::atan2(way.y(), way.x()) : label.heading;
-  return {label.future.places[i], heading, label.size.length, label.size.width};
+  return {plan[i], heading, kEgoBoxLength, kEgoBoxWidth};
 }
 
 bool touchesAt(const EgoExample& example, const EgoWaypoints& plan, std::size_t i) {
   const geometry::OrientedBox own = egoBox(plan, i);
   return std::any_of(example.others.begin(), example.others.end(), [&](const AgentLabel& other) {
-    return i < other.future.known && geometry::overlap(own, otherBox(other, i));
+    return i < other.future.known && geometry::overlap(own, futureBox(other, i));
   });
 }
 
@@ -41,6 +30,14 @@ std::string second(std::size_t index) { return std::to_string(index + 1) + "s"; 
 double ratio(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
 
 }  // namespace
+
+geometry::OrientedBox futureBox(const AgentLabel& label, std::size_t i) {
+  const Eigen::Vector2d start(label.box[0], label.box[1]);
+  const Eigen::Vector2d before = i > 0 ? label.future.places[i - 1] : start;
+  const Eigen::Vector2d way = label.future.places[i] - before;
+  const double heading = way.norm() > 0.5 ? std::atan2(way.y(), way.x()) : label.heading;
+  return {label.future.places[i], heading, label.size.length, label.size.width};
+}
 
 EgoWaypoints atConstantVelocity(double speed) {
   EgoWaypoints places;

@@ -15,6 +15,14 @@ namespace cdiff::planners {
 // was driven (L2) and collisions at 1, 2 and 3 s, in both conventions ("at": at that time, as UniAD
 // counts; "to": mean over the waypoints up to it, as VAD counts); detection; map.
 
+/// Box of the ego in losses and measures, as published [m].
+inline constexpr double kEgoBoxLength = 4.084;
+inline constexpr double kEgoBoxWidth = 1.85;
+
+/// The box of another vehicle at a known waypoint `i`, heading from the place before where it
+/// moves.
+geometry::OrientedBox futureBox(const AgentLabel& label, std::size_t i);
+
 /// Where a vehicle would be that keeps its velocity.
 EgoWaypoints atConstantVelocity(double speed);
 
