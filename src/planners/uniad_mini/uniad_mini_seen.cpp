@@ -165,41 +165,48 @@ MapDecoder::MapDecoder(const UniadMiniArchitecture& architecture, const WeightTe
   }
 }
 
-std::vector<SeenLine> MapDecoder::see(const Rows& bev, UniadMemory& memory, Rows& tokens) {
+/// The points of a line as they are now.
+std::array<Eigen::Vector2d, kMapPoints> MapDecoder::pointsOf(std::int64_t line) const {
+  std::array<Eigen::Vector2d, kMapPoints> places;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = placeOf(architecture_.ego.bev, points_.row(line) + 2 * static_cast<int>(i));
+  return places;
+}
+
+void MapDecoder::decode(const Rows& bev, UniadMemory& memory, const Rows& tokens) {
   const BevGrid& grid = architecture_.ego.bev;
   const std::int64_t lines = architecture_.map_lines, numbers = 2 * kMapPoints;
-  std::vector<SeenLine> seen(static_cast<std::size_t>(lines));
-  const auto place = [&](std::size_t line) {
-    for (std::size_t i = 0; i < kLinePoints; ++i)
-      seen[line].points[i] =
-          placeOf(grid, points_.row(static_cast<std::int64_t>(line)) + 2 * static_cast<int>(i));
-  };
-  x_.resize(lines, architecture_.ego.width);
-  points_.resize(lines, numbers);
-  copyQueries(content_, lines, architecture_.ego.width, x_);
-  copyQueries(reference_, lines, numbers, points_);
   for (const Layer& layer : layers_) {
     std::vector<float> cells;
-    for (std::size_t line = 0; line < seen.size(); ++line) {
-      place(line);
-      Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-      for (const Eigen::Vector2d& point : seen[line].points) middle += point / kLinePoints;
-      addCell(grid, middle, cells);
+    for (std::int64_t line = 0; line < lines; ++line) {
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      for (const Eigen::Vector2d& point : pointsOf(line)) sum += point;
+      addCell(grid, sum / static_cast<double>(kMapPoints), cells);
     }
     layer.layer.run(x_, position_, cells, bev, grid.grid(), memory.transformer, memory.deformable);
-    tokens.resize(lines, architecture_.ego.width);
     layer.norm.apply(x_.view(), tokens.view(), lines);
     memory.head.resize(lines, numbers);
     layer.points.apply(tokens.view(), memory.head.view(), lines, memory.transformer.hidden);
     for (std::int64_t line = 0; line < lines; ++line)
       inference::addRow(memory.head.row(line), numbers, points_.row(line));
   }
+}
+
+std::vector<SeenLine> MapDecoder::see(const Rows& bev, UniadMemory& memory, Rows& tokens) {
+  const std::int64_t lines = architecture_.map_lines, numbers = 2 * kMapPoints;
+  x_.resize(lines, architecture_.ego.width);
+  points_.resize(lines, numbers);
+  tokens.resize(lines, architecture_.ego.width);
+  copyQueries(content_, lines, architecture_.ego.width, x_);
+  copyQueries(reference_, lines, numbers, points_);
+  decode(bev, memory, tokens);
   memory.head.resize(lines, kMapKinds);
   layers_.back().kinds.apply(tokens.view(), memory.head.view(), lines);
-  for (std::size_t line = 0; line < seen.size(); ++line) {
-    place(line);
-    std::copy_n(memory.head.row(static_cast<std::int64_t>(line)), kMapKinds,
-                seen[line].scores.begin());
+  std::vector<SeenLine> seen(static_cast<std::size_t>(lines));
+  for (std::int64_t line = 0; line < lines; ++line) {
+    SeenLine& one = seen[static_cast<std::size_t>(line)];
+    one.points = pointsOf(line);
+    std::copy_n(memory.head.row(line), kMapKinds, one.scores.begin());
   }
   return seen;
 }

@@ -90,6 +90,9 @@ class MapDecoder {
     inference::Linear kinds;
     inference::Mlp points;
   };
+  std::array<Eigen::Vector2d, kMapPoints> pointsOf(std::int64_t line) const;
+  void decode(const inference::Rows& bev, UniadMemory& memory, const inference::Rows& tokens);
+
   UniadMiniArchitecture architecture_;
   std::vector<Layer> layers_;
   inference::Rows content_, position_, reference_;
