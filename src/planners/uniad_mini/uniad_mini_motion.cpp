@@ -135,8 +135,14 @@ void MotionDecoder::run(const Layer& layer, const Rows& bev, const Rows& map, Un
   for (std::int64_t row = 0; row < rows; ++row)
     std::copy_n(seen.features.row(row / kMotionModes), width, joined_.row(row) + 3 * width);
   layer.fuse.apply(joined_.view(), x_.view(), rows, memory.transformer.hidden);
+  addOffsets(layer, memory);
+}
+
+/// ways_ by the offsets that the layer answers.
+void MotionDecoder::addOffsets(const Layer& layer, UniadMemory& memory) {
+  const std::int64_t rows = x_.rows();
   Rows& normed = memory.transformer.normed;
-  normed.resize(rows, width);
+  normed.resize(rows, architecture_.ego.width);
   layer.norm.apply(x_.view(), normed.view(), rows);
   memory.head.resize(rows, kGaussianNumbers * kEgoWaypoints);
   layer.offset.apply(normed.view(), memory.head.view(), rows, memory.transformer.hidden);

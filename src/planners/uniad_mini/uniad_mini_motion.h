@@ -42,6 +42,7 @@ class MotionDecoder {
   void turnAnchors(const SeenTracks& seen);
   void run(const Layer& layer, const inference::Rows& bev, const inference::Rows& map,
            UniadMemory& memory, const SeenTracks& seen);
+  void addOffsets(const Layer& layer, UniadMemory& memory);
   void readBev(const Layer& layer, const inference::Rows& bev, UniadMemory& memory);
   void readScores(UniadMemory& memory, const inference::Rows& modes, SeenTracks& seen) const;
 
