@@ -83,4 +83,15 @@ const NavigationNode& Navigation::next(double arc_length) const {
   return found == nodes_.end() ? nodes_.back() : *found;
 }
 
+const NavigationNode& NavigationFollower::next(const map::RoadNetwork& network,
+                                               const map::Route& route,
+                                               const Eigen::Vector2d& position) {
+  follower_.update(route, position);
+  if (!navigation_ || route_length_ != route.length()) {
+    navigation_.emplace(network, route);
+    route_length_ = route.length();
+  }
+  return navigation_->next(follower_.arcLength());
+}
+
 }  // namespace cdiff::planners

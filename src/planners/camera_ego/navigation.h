@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "e2e_cdiff/map/route.h"
+#include "planning/route_follower.h"
 
 namespace cdiff::planners {
 
@@ -47,6 +49,19 @@ class Navigation {
 
  private:
   std::vector<NavigationNode> nodes_;  ///< by arc length
+};
+
+/// What the route asks of one vehicle from decision to decision.
+class NavigationFollower {
+ public:
+  /// The next node from a place (map frame); a route of another length starts it over.
+  const NavigationNode& next(const map::RoadNetwork& network, const map::Route& route,
+                             const Eigen::Vector2d& position);
+
+ private:
+  planning::RouteFollower follower_;
+  std::optional<Navigation> navigation_;
+  double route_length_ = 0.0;  ///< of the route that the navigation is of [m]
 };
 
 }  // namespace cdiff::planners

@@ -84,22 +84,10 @@ VadMiniPlanner::VadMiniPlanner(const VadMiniOptions& options, const VadMiniModel
 }
 
 VadMiniPlanner::Memory VadMiniPlanner::newMemory() const {
-  return {{},
-          WaypointController(options_.controller),
+  return {WaypointController(options_.controller),
           BevMemory(period_),
           RigWatch(rig_, options_.frozen_image_time, simulation_step_),
-          std::nullopt,
-          0.0};
-}
-
-const NavigationNode& VadMiniPlanner::follow(const planning::PlanningTask& task,
-                                             Memory& memory) const {
-  memory.follower.update(*task.route, task.vehicle->state.position);
-  if (!memory.navigation || memory.route_length != task.route->length()) {
-    memory.navigation.emplace(roads_, *task.route);
-    memory.route_length = task.route->length();
-  }
-  return memory.navigation->next(memory.follower.arcLength());
+          {}};
 }
 
 std::vector<planning::PlannedAction> VadMiniPlanner::plan(
@@ -136,7 +124,8 @@ void VadMiniPlanner::drive(const planning::PlanningTask& task, Memory& memory,
     planned = planning::failSafeAction(task, "a number of its plan is not finite");
     return;
   }
-  conclude(task, output, follow(task, memory), memory, planned);
+  const NavigationNode& next = memory.navigation.next(roads_, *task.route, state.position);
+  conclude(task, output, next, memory, planned);
 }
 
 void VadMiniPlanner::conclude(const planning::PlanningTask& task, const VadMiniOutput& output,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "e2e_cdiff/planning/planner.h"
@@ -11,7 +10,6 @@
 #include "planners/camera_ego/navigation.h"
 #include "planners/camera_ego/waypoint_controller.h"
 #include "planners/vad_mini/vad_mini_network.h"
-#include "planning/route_follower.h"
 #include "planning/vehicle_memory.h"
 
 namespace cdiff::planners {
@@ -44,15 +42,12 @@ class VadMiniPlanner : public planning::Planner {
 
  private:
   struct Memory {
-    planning::RouteFollower follower;
     WaypointController controller;
     BevMemory bevs;
     RigWatch watch;
-    std::optional<Navigation> navigation;
-    double route_length = 0.0;  ///< of the route that the navigation is of
+    NavigationFollower navigation;
   };
   Memory newMemory() const;
-  const NavigationNode& follow(const planning::PlanningTask& task, Memory& memory) const;
   void drive(const planning::PlanningTask& task, Memory& memory, planning::PlannedAction& planned);
   void conclude(const planning::PlanningTask& task, const VadMiniOutput& output,
                 const NavigationNode& next, Memory& memory, planning::PlannedAction& planned) const;
