@@ -24,7 +24,7 @@ std::optional<Eigen::Vector2d> movedCenter(const TrackSet& tracks, std::size_t s
 std::array<float, 2> referenceAt(const BevGrid& bev, const Eigen::Vector2d& place) {
   constexpr double kLeast = 1e-3;
   const Eigen::Vector2d share = bev.toShare(place);
-  const auto logit = [](double part) {
+  const auto logit = [&](double part) {
     const double p = std::clamp(part, kLeast, 1.0 - kLeast);
     return static_cast<float>(std::log(p / (1.0 - p)));
   };

@@ -106,13 +106,8 @@ UniadMiniInput UniadMiniPlanner::inputOf(const planning::PlanningTask& task,
   input.images = memory.watch.pixels(task);
   input.poses = memory.bevs.posesAt(state);
   input.past_tracks = memory.tracks.past();
-  input.past = memory.bevs.past();
+  input.past = architecture_.ego.past_bev ? memory.bevs.past() : nullptr;
   input.motion = memory.bevs.motionAt(state, input.poses);
-  if (!architecture_.ego.past_bev) {
-    const EgoPoses present{state.pose(), std::nullopt};
-    input.motion = memory.bevs.motionAt(state, present);
-    input.past = nullptr;
-  }
   input.command = next.command;
   return input;
 }

@@ -21,16 +21,6 @@ at::Tensor sureSegments(const at::Tensor& logits, MapKind kind) {
       .reshape({sure.size(0), -1});
 }
 
-void addTerm(learning::Loss& loss, const char* name, const at::Tensor& term) {
-  loss.total = loss.total.defined() ? loss.total + term : term;
-  for (auto& [known, value] : loss.terms) {
-    if (known != name) continue;
-    value = value + term.detach();
-    return;
-  }
-  loss.terms.emplace_back(name, term.detach());
-}
-
 void addSets(const VadMiniAnswer& answer, const BevGrid& bev,
              const std::vector<const EgoExample*>& examples, const VadMiniLossOptions& options,
              learning::Loss& loss) {
@@ -39,18 +29,18 @@ void addSets(const VadMiniAnswer& answer, const BevGrid& bev,
     matches = matchAgents(answer.agent_logits[i], answer.boxes[i], examples, options.sets);
     const AgentLoss agents =
         agentLoss(answer.agent_logits[i], answer.boxes[i], examples, matches, options.sets);
-    addTerm(loss, "agent_class", agents.kind);
-    addTerm(loss, "agent_box", agents.box);
+    loss.add("agent_class", agents.kind);
+    loss.add("agent_box", agents.box);
     const LineLoss lines =
         lineLoss(answer.line_logits[i], answer.lines[i], examples, bev, options.sets);
-    addTerm(loss, "line_class", lines.kind);
-    addTerm(loss, "line_points", lines.points);
-    addTerm(loss, "line_direction", lines.direction);
+    loss.add("line_class", lines.kind);
+    loss.add("line_points", lines.points);
+    loss.add("line_direction", lines.direction);
   }
   const ForecastLoss forecasts =
       forecastLoss(answer.ways, answer.way_logits, examples, matches, options.plan);
-  addTerm(loss, "forecast", forecasts.places);
-  addTerm(loss, "forecast_class", forecasts.kind);
+  loss.add("forecast", forecasts.places);
+  loss.add("forecast_class", forecasts.kind);
 }
 
 }  // namespace
@@ -80,12 +70,12 @@ learning::Loss vadMiniLoss(const VadMiniAnswer& answer, const BevGrid& bev,
   learning::Loss loss;
   if (options.intermediate) addSets(answer, bev, examples, options, loss);
   const at::Tensor plans = commandedPlans(answer.plans, examples);
-  addTerm(loss, "plan", options.plan.imitation * imitationLoss(plans, examples));
+  loss.add("plan", options.plan.imitation * imitationLoss(plans, examples));
   if (!options.constraints || !options.intermediate) return loss;
   const SeenAround seen = seenAround(answer, bev);
-  addTerm(loss, "plan_boundary", options.plan.boundary * boundaryLoss(plans, seen));
-  addTerm(loss, "plan_collision", options.plan.collision * collisionLoss(plans, seen));
-  addTerm(loss, "plan_direction", options.plan.direction * directionLoss(plans, seen));
+  loss.add("plan_boundary", options.plan.boundary * boundaryLoss(plans, seen));
+  loss.add("plan_collision", options.plan.collision * collisionLoss(plans, seen));
+  loss.add("plan_direction", options.plan.direction * directionLoss(plans, seen));
   return loss;
 }
 
