@@ -74,7 +74,7 @@ class UniadMiniNet {
   void setAnchors(const std::array<MotionAnchors, kMotionGroups>& anchors);
   /// All weights with the anchors, as the weight file holds them.
   WeightTensors values() const;
-  /// Throws InputError naming a tensor that is missing, unknown or of another shape.
+  /// Throws InputError naming a tensor that is missing or of another shape.
   void load(const WeightTensors& weights, const std::string& source);
   void moveTo(const at::Device& device);
 
