@@ -41,7 +41,9 @@ Hulls hullsOf(const std::vector<const EgoExample*>& examples, double inflated,
   for (const EgoExample* example : examples) {
     const auto headings = drivenHeadings(example->driven);
     for (std::size_t i = 0; i < headings.size(); ++i) {
-      add(hullOf({{}, headings[i], kEgoBoxLength + inflated, kEgoBoxWidth + inflated}), own);
+      add(hullOf({Eigen::Vector2d::Zero(), headings[i], kEgoBoxLength + inflated,
+                  kEgoBoxWidth + inflated}),
+          own);
       for (std::size_t v = 0; v < most; ++v) {
         const bool known = v < example->others.size() && i < example->driven.known &&
                            i < example->others[v].future.known;
