@@ -2,13 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/core/exceptions.h"
-#include "inference/safetensors.h"
-#include "planners/course.h"
-#include "planners/registry.h"
+#include "planners/camera_ego/camera_course.h"
 #include "planners/vad_mini/vad_mini.h"
 #include "support/random_model.h"
-#include "support/temporary_folder.h"
 
 namespace cdiff::planners {
 namespace {
@@ -27,82 +23,18 @@ VadMiniArchitecture smallSizes() {
   return architecture;
 }
 
-/// An ego on a straight road with the images of three cameras.
-class VadMiniCourse : public ::testing::Test {
+class VadMiniCourse : public testing::CameraCourse {
  protected:
-  VadMiniCourse() {
-    snapshot_.vehicles.push_back(testing::vehicleAt("ego", 5.0, 0.0, 0.0, 6.0));
-    for (std::size_t i = 0; i < 3; ++i) images_.push_back(image(i));
-    goTo(0);
-  }
-  static traffic::CameraImage image(std::size_t number) {
-    traffic::CameraImage image{160, 96, 0, {}};
-    for (std::size_t i = 0; i < 160 * 96 * 3; ++i)
-      image.rgb.push_back(static_cast<std::uint8_t>(i * (number + 3) % 251));
-    return image;
-  }
-  void goTo(std::uint64_t tick) {
-    snapshot_.tick = tick;
-    snapshot_.vehicles[0].state.position.x() = 5.0 + 0.3 * static_cast<double>(tick);
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      images_[i].tick = tick;
-      images_[i].rgb[i] = static_cast<std::uint8_t>(tick);
-    }
-  }
-  planning::PlanningTask task() {
-    planning::PlanningTask task;
-    task.vehicle = &snapshot_.vehicles.front();
-    task.route = &route_;
-    task.views.rig = &rig_;
-    for (const traffic::CameraImage& image : images_) task.views.images.push_back(&image);
-    return task;
-  }
-  planning::PlannedAction planOf(VadMiniPlanner& planner, const planning::PlanningTask& task) {
-    return planner.plan(snapshot_, {task}).at(0);
-  }
-  planning::PlannerParts parts() const {
-    planning::PlannerParts parts{{network_, area_}, options_, dynamics_, camera_, guidance_};
-    parts.rig = rig_;
-    return parts;
-  }
   static VadMiniModel model() {
     return {smallSizes(), cdiff::testing::randomTensors(vadMiniTensors(smallSizes()))};
   }
   VadMiniPlanner planner() const { return {VadMiniOptions{}, model(), parts()}; }
-  /// What the registry says to `assignments` of options and a rig.
   std::string refusal(const std::string& assignment, const rendering::RigOptions& rig = {}) const {
-    planning::PlannerOptionsTable options = defaultOptions();
-    core::overrideOption(assignment, "test", options);
-    planning::PlannerParts parts{{network_, area_}, options, dynamics_, camera_, guidance_};
-    parts.rig_options = rig;
-    try {
-      makePlanner("vad_mini", parts);
-    } catch (const core::InputError& error) {
-      return error.what();
-    }
-    return "made";
+    return refusalOf("vad_mini", assignment, rig);
   }
-  /// Weights in a folder of their own, of a format.
   std::string weights(const char* format) const {
-    WeightMetadata metadata = networkMetadata(kVadMini, smallSizes());
-    metadata["format"] = format;
-    inference::writeSafetensors(folder_.path() / kVadMini.file, {metadata, model().weights},
-                                inference::TensorType::kF16);
-    return "vad_mini.weights=" + folder_.path().string();
+    return weightsOf(kVadMini, networkMetadata(kVadMini, smallSizes()), model().weights, format);
   }
-
-  test::TemporaryFolder folder_;
-  map::RoadNetwork network_ =
-      testing::makeNetwork({{"road", testing::straight(0.0, 0.0, 300.0, 0.0)}});
-  map::DrivableArea area_{network_};
-  map::Route route_ = testing::routeAlong(network_, {"road"});
-  planning::PlannerOptionsTable options_ = defaultOptions();
-  dynamics::BicycleModelOptions dynamics_;
-  rendering::CameraOptions camera_;
-  guidance::GuidanceOptions guidance_;
-  rendering::CameraRig rig_ = CameraEgoSizes{}.cameras();
-  traffic::TrafficSnapshot snapshot_;
-  std::vector<traffic::CameraImage> images_;
 };
 
 TEST_F(VadMiniCourse, PlansThreeSecondsAndSaysWhatItSees) {

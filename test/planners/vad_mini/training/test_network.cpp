@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "learning/batches.h"
+#include "planners/camera_ego/training/two_looks.h"
 #include "planners/vad_mini/training/vad_mini_net.h"
 #include "planners/vad_mini/vad_mini_network.h"
 #include "support/random_model.h"
@@ -12,48 +12,7 @@
 namespace cdiff::planners {
 namespace {
 
-traffic::CameraImage noise(std::uint64_t number) {
-  const core::RandomStream random(4, "noise");
-  traffic::CameraImage image{160, 96, 0, {}};
-  for (std::uint32_t i = 0; i < 160 * 96 * 3; ++i)
-    image.rgb.push_back(static_cast<std::uint8_t>(random.index({number}, i, 256)));
-  return image;
-}
-
-/// Two looks of one ego, of which the second one reads the BEV of the first.
-struct TwoLooks {
-  std::vector<traffic::CameraImage> images;
-  EgoPoses before{{{0.0, 0.0}, 0.0}, std::nullopt};
-  EgoPoses now{{{3.7, 0.4}, 0.12}, geometry::Pose2d{{0.0, 0.0}, 0.0}};
-  EgoMotion first = egoMotion(6.0, 0.1, before);
-  EgoMotion second = egoMotion(7.0, 0.2, now);
-
-  TwoLooks() {
-    for (std::uint64_t i = 0; i < 6; ++i) images.push_back(noise(i));
-  }
-  VadMiniInput input(bool present) const {
-    VadMiniInput input;
-    for (std::size_t i = 0; i < 3; ++i)
-      input.images.push_back(images[i + (present ? 3 : 0)].rgb.data());
-    input.motion = present ? second : first;
-    input.poses = present ? now : before;
-    return input;
-  }
-  BevBatch batch(const BevGrid& bev, bool present) const {
-    BevBatch batch;
-    std::vector<const traffic::CameraImage*> views;
-    for (std::size_t i = 0; i < 3; ++i) views.push_back(&images[i + (present ? 3 : 0)]);
-    batch.images = learning::imageTensor(views, 1.0, at::kCPU);
-    const EgoMotion& motion = present ? second : first;
-    batch.motion =
-        learning::toTensor({motion.begin(), motion.end()}, {1, kEgoMotionNumbers}, at::kCPU);
-    const EgoPoses& poses = present ? now : before;
-    batch.temporal = {std::make_shared<inference::SamplingPlan>(
-        temporalPlan(bev, poses.present, poses.past.value_or(poses.present)))};
-    batch.has_past = at::full({1, 1, 1}, present ? 1.0 : 0.0);
-    return batch;
-  }
-};
+using testing::TwoLooks;
 
 VadMiniModel drawnModel() {
   VadMiniArchitecture architecture;
@@ -111,12 +70,12 @@ TEST_P(VadMiniNetworks, IsTheFunctionThatThePlannerComputes) {
   const at::NoGradGuard no_gradient;
   const BevGrid& bev = model.architecture.ego.bev;
   const at::Tensor past = net.bev().encode(looks.batch(bev, false), {});
-  expectSame(network.forward(looks.input(false)), net.answer(past, 1));
+  expectSame(network.forward(looks.input<VadMiniInput>(false)), net.answer(past, 1));
   inference::Rows kept;
   kept.resize(network.bev().rows(), model.architecture.ego.width);
   for (std::int64_t row = 0; row < kept.rows(); ++row)
     std::copy_n(network.bev().row(row), model.architecture.ego.width, kept.row(row));
-  VadMiniInput second = looks.input(true);
+  VadMiniInput second = looks.input<VadMiniInput>(true);
   second.past = &kept;
   expectSame(network.forward(second),
              net.answer(net.bev().encode(looks.batch(bev, true), past), 1));
@@ -131,8 +90,9 @@ TEST(VadMiniNetwork, AnswersTheSameBytesEveryTime) {
   const VadMiniModel model = drawnModel();
   VadMiniNetwork first(model), second(model);
   const TwoLooks looks;
-  second.forward(looks.input(true));  // whatever came before
-  const auto one = first.forward(looks.input(false)), other = second.forward(looks.input(false));
+  second.forward(looks.input<VadMiniInput>(true));  // whatever came before
+  const auto one = first.forward(looks.input<VadMiniInput>(false)),
+             other = second.forward(looks.input<VadMiniInput>(false));
   for (std::size_t c = 0; c < one.plans.size(); ++c) EXPECT_EQ(one.plans[c], other.plans[c]);
 }
 
@@ -140,9 +100,9 @@ TEST(VadMiniNetwork, AnswersTheSameBytesEveryTime) {
 TEST(VadMiniNetwork, IsQuickEnough) {
   VadMiniNetwork network(drawnModel());
   const TwoLooks looks;
-  network.forward(looks.input(true));
+  network.forward(looks.input<VadMiniInput>(true));
   const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < 10; ++i) network.forward(looks.input(true));
+  for (int i = 0; i < 10; ++i) network.forward(looks.input<VadMiniInput>(true));
   const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
   RecordProperty("milliseconds", std::to_string(passed.count() / 10.0));
   std::cout << passed.count() / 10.0 << " ms a decision\n";
