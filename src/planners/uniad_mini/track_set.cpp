@@ -16,8 +16,7 @@ std::optional<Eigen::Vector2d> movedCenter(const TrackSet& tracks, std::size_t s
   if (!tracks.live[slot] || !poses.past) return std::nullopt;
   const Eigen::Vector2d there = tracks.centers[slot] + kPastAge * tracks.velocities[slot];
   const Eigen::Vector2d here = poses.present.toBody(poses.past->toMap(there));
-  // Not "outside", so that a place that is not a number is dropped, too.
-  if (!bev.contains(here)) return std::nullopt;
+  if (!here.allFinite() || !bev.contains(here)) return std::nullopt;
   return here;
 }
 
