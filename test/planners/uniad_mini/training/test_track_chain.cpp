@@ -34,8 +34,8 @@ HeldTracks holding(std::size_t slot, std::optional<std::uint32_t> vehicle) {
 }
 
 // Without tracks the nearest slots answer. Slot 2 holds the vehicle at 20 m: it answers to it
-// although slot 0 is there. Slot 1 holds a false track: the vehicle at 10 m goes to slot 2, since
-// 0.25 x 10 m to either and the lower number wins only among equals: 10 m to slots 0 and 2.
+// although slot 0 is there. Where slot 1 holds a false track, the others share the vehicles: 10 m
+// and 0 m off cost less than 10 m and 20 m.
 TEST(TrackChain, TracksAnswerToTheirVehicles) {
   const std::vector<AgentLabel> labels = {labelAt(7, 10.0F), labelAt(8, 20.0F)};
   const at::Tensor logits = at::zeros({3, 1});
@@ -44,7 +44,7 @@ TEST(TrackChain, TracksAnswerToTheirVehicles) {
   EXPECT_EQ(matchTracks(logits, boxes, labels, holding(2, 8), {}), (std::vector<int>{1, 2}));
   EXPECT_EQ(matchTracks(logits, boxes, labels, holding(1, std::nullopt), {}),
             (std::vector<int>{2, 0}));
-  EXPECT_EQ(matchTracks(logits, boxes, {labelAt(9, 10.0F)}, holding(1, 8), {})[0] == 1, false)
+  EXPECT_NE(matchTracks(logits, boxes, {labelAt(9, 10.0F)}, holding(1, 8), {})[0], 1)
       << "held by another vehicle, which is not seen";
 }
 
