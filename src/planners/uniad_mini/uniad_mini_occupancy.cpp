@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cdiff::planners {
 namespace {
@@ -35,12 +36,13 @@ Eigen::Vector2d placeAt(const SeenAgent& agent, std::size_t step) {
 }  // namespace
 
 std::vector<float> SeenOccupancy::probability(std::size_t step) const {
-  std::vector<float> largest(static_cast<std::size_t>(cells), 0.0F);
+  constexpr float kNever = -std::numeric_limits<float>::infinity();
+  std::vector<float> largest(static_cast<std::size_t>(cells), kNever);
   for (std::size_t i = 0; i < logits[step].size(); ++i) {
-    if (!sure[i / largest.size()]) continue;
     float& cell = largest[i % largest.size()];
-    cell = std::max(cell, static_cast<float>(logistic(logits[step][i])));
+    if (sure[i / largest.size()]) cell = std::max(cell, logits[step][i]);
   }
+  for (float& cell : largest) cell = static_cast<float>(logistic(cell));
   return largest;
 }
 
@@ -170,6 +172,7 @@ void OccupancyDecoder::answer(std::vector<float>& logits) {
   }
   fine_norm_.apply(cells_.view(), cells_.view(), grid.cells());
   logits.clear();
+  logits.reserve(static_cast<std::size_t>(masks_.rows() * grid.cells()));
   for (std::int64_t agent = 0; agent < masks_.rows(); ++agent) {
     for (std::int64_t cell = 0; cell < grid.cells(); ++cell)
       logits.push_back(dotOf(masks_.row(agent), cells_.row(cell)));
