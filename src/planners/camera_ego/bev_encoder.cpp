@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "e2e_cdiff/core/angle.h"
-#include "e2e_cdiff/core/exceptions.h"
+#include "planners/pluto/pluto_layers.h"
 
 namespace cdiff::planners {
 
@@ -26,24 +26,13 @@ EgoMotion egoMotion(double speed, double yaw_rate, const EgoPoses& poses) {
   return motion;
 }
 
-Rows learnedRows(const WeightTensors& tensors, const std::string& name) {
-  const auto found = tensors.find("table." + name);
-  if (found == tensors.end())
-    throw core::InputError("the network has no tensor 'table." + name + "'");
-  const inference::Tensor& table = found->second;
-  Rows rows;
-  rows.resize(table.shape[0], table.shape[1]);
-  inference::copyIn(table.values.data(), table.shape[0], table.shape[1], rows.view());
-  return rows;
-}
-
 BevEncoder::BevEncoder(const CameraEgoSizes& sizes, const WeightTensors& tensors,
                        inference::InstructionSet set)
     : sizes_(sizes),
       backbone_(sizes.backbone(), tensors),
-      camera_table_(learnedRows(tensors, "camera")),
-      queries_(learnedRows(tensors, "bev.query")),
-      positions_(learnedRows(tensors, "bev.position")),
+      camera_table_(tableRows({set, tensors}, "camera")),
+      queries_(tableRows({set, tensors}, "bev.query")),
+      positions_(tableRows({set, tensors}, "bev.position")),
       motion_(LayerWeights(set, tensors), "bev.motion"),
       camera_plan_(cameraPlan(sizes.bev, sizes.cameras(), inference::BackboneSizes::kStride)) {
   const LayerWeights weights(set, tensors);

@@ -96,7 +96,4 @@ class QueryLayer {
   inference::PreNormFeedForward mix_;
 };
 
-/// A learned table as rows.
-inference::Rows learnedRows(const WeightTensors& tensors, const std::string& name);
-
 }  // namespace cdiff::planners

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planners/pluto/pluto_layers.h"
+
 namespace cdiff::planners {
 namespace {
 
@@ -15,17 +17,6 @@ void copyRows(const Rows& from, std::int64_t channels, Rows& to) {
   to.resize(from.rows(), channels);
   for (std::int64_t row = 0; row < from.rows(); ++row)
     std::copy_n(from.row(row), channels, to.row(row));
-}
-
-/// A row for each pair of rows, of the first and the second table in this order of counting.
-Rows sumsOf(const Rows& first, const Rows& second, std::int64_t channels) {
-  Rows sums;
-  sums.resize(first.rows() * second.rows(), channels);
-  for (std::int64_t row = 0; row < sums.rows(); ++row) {
-    std::copy_n(first.row(row / second.rows()), channels, sums.row(row));
-    inference::addRow(second.row(row % second.rows()), channels, sums.row(row));
-  }
-  return sums;
 }
 
 Eigen::Vector2d shareOf(const float* reference) {
@@ -43,33 +34,24 @@ std::vector<float> cellsOf(const BevGrid& bev, const Rows& references) {
   return cells;
 }
 
-/// Six offsets in kOffsetUnit, added up from `start`.
-EgoWaypoints waypointsOf(const float* offsets, const Eigen::Vector2d& start) {
-  EgoWaypoints places;
-  Eigen::Vector2d place = start;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    place += kOffsetUnit * Eigen::Vector2d(offsets[2 * i], offsets[2 * i + 1]);
-    places[i] = place;
-  }
-  return places;
-}
-
 bool allFinite(const EgoWaypoints& places) {
   return std::all_of(places.begin(), places.end(),
                      [](const Eigen::Vector2d& place) { return place.allFinite(); });
 }
 
-/// The point of a line that is nearest to the ego.
-Eigen::Vector2d nearestPoint(const SeenLine& line) {
-  return *std::min_element(line.points.begin(), line.points.end(),
-                           [](const Eigen::Vector2d& left, const Eigen::Vector2d& right) {
-                             return left.squaredNorm() < right.squaredNorm();
-                           });
-}
-
 }  // namespace
 
 double logistic(float logit) { return 1.0 / (1.0 + std::exp(-static_cast<double>(logit))); }
+
+Rows rowSums(const Rows& first, const Rows& second, std::int64_t channels) {
+  Rows sums;
+  sums.resize(first.rows() * second.rows(), channels);
+  for (std::int64_t row = 0; row < sums.rows(); ++row) {
+    std::copy_n(first.row(row / second.rows()), channels, sums.row(row));
+    inference::addRow(second.row(row % second.rows()), channels, sums.row(row));
+  }
+  return sums;
+}
 
 bool VadMiniOutput::finite() const {
   const auto agent_finite = [](const SeenAgent& agent) {
@@ -87,26 +69,26 @@ VadMiniNetwork::VadMiniNetwork(const VadMiniModel& model, inference::Instruction
       encoder_(model.architecture.ego, model.weights, set),
       agent_decoders_(decodersOf({set, model.weights}, "agent", ".box")),
       map_decoders_(decodersOf({set, model.weights}, "map", ".point")),
-      agent_content_(learnedRows(model.weights, "agent.content")),
-      agent_position_(learnedRows(model.weights, "agent.position")),
-      agent_reference_(learnedRows(model.weights, "agent.reference")),
-      map_content_(sumsOf(learnedRows(model.weights, "map.line_content"),
-                          learnedRows(model.weights, "map.point_content"),
-                          model.architecture.ego.width)),
-      map_position_(sumsOf(learnedRows(model.weights, "map.line_position"),
-                           learnedRows(model.weights, "map.point_position"),
+      agent_content_(tableRows({set, model.weights}, "agent.content")),
+      agent_position_(tableRows({set, model.weights}, "agent.position")),
+      agent_reference_(tableRows({set, model.weights}, "agent.reference")),
+      map_content_(rowSums(tableRows({set, model.weights}, "map.line_content"),
+                           tableRows({set, model.weights}, "map.point_content"),
                            model.architecture.ego.width)),
-      map_reference_(learnedRows(model.weights, "map.reference")),
+      map_position_(rowSums(tableRows({set, model.weights}, "map.line_position"),
+                            tableRows({set, model.weights}, "map.point_position"),
+                            model.architecture.ego.width)),
+      map_reference_(tableRows({set, model.weights}, "map.reference")),
       shape_({set, model.weights}, "map.shape"),
       place_({set, model.weights}, "place"),
-      mode_(learnedRows(model.weights, "mode")),
+      mode_(tableRows({set, model.weights}, "mode")),
       motion_agents_({set, model.weights}, "motion.agents", model.architecture.ego),
       motion_map_({set, model.weights}, "motion.map", model.architecture.ego),
       motion_norm_({set, model.weights}, "motion.norm"),
       motion_offset_({set, model.weights}, "motion.offset"),
       motion_score_({set, model.weights}, "motion.score"),
       fuse_({set, model.weights}, "fuse"),
-      ego_(learnedRows(model.weights, "ego")),
+      ego_(tableRows({set, model.weights}, "ego")),
       ego_bev_({set, model.weights}, "ego.bev"),
       ego_agents_({set, model.weights}, "ego.agents", model.architecture.ego),
       ego_map_({set, model.weights}, "ego.map", model.architecture.ego),
@@ -232,93 +214,6 @@ void VadMiniNetwork::makeMapTokens(const VadMiniOutput& output) {
       token[c] += largest;
     }
   }
-}
-
-void VadMiniNetwork::forecast(VadMiniOutput& output) {
-  const std::int64_t width = architecture_.ego.width;
-  modes_ = sumsOf(agents_, mode_, width);
-  std::vector<Eigen::Vector2d> places;
-  for (const SeenAgent& agent : output.agents) {
-    for (std::int64_t mode = 0; mode < kMotionModes; ++mode)
-      places.emplace_back(agent.box[0], agent.box[1]);
-  }
-  embedPlaces(places, positions_);
-  motion_agents_.attention.attendSelf({{0, 1, modes_.rows()}}, modes_, positions_, memory_);
-  motion_agents_.mix.apply(modes_, memory_);
-  motion_map_.attention.attendTo(map_tokens_, modes_, memory_);
-  motion_map_.mix.apply(modes_, memory_);
-  motion_norm_.apply(modes_.view(), modes_.view(), modes_.rows());
-  joined_.resize(modes_.rows(), 2 * width);
-  for (std::int64_t row = 0; row < modes_.rows(); ++row) {
-    std::copy_n(agents_.row(row / kMotionModes), width, joined_.row(row));
-    std::copy_n(modes_.row(row), width, joined_.row(row) + width);
-  }
-  readForecasts(output);
-}
-
-void VadMiniNetwork::readForecasts(VadMiniOutput& output) {
-  const std::int64_t rows = joined_.rows();
-  head_.resize(rows, 2 * kEgoWaypoints);
-  motion_offset_.apply(joined_.view(), head_.view(), rows, memory_.hidden);
-  for (std::int64_t row = 0; row < rows; ++row) {
-    SeenAgent& agent = output.agents[static_cast<std::size_t>(row / kMotionModes)];
-    agent.ways[static_cast<std::size_t>(row % kMotionModes)] =
-        waypointsOf(head_.row(row), {agent.box[0], agent.box[1]});
-  }
-  head_.resize(rows, 1);
-  motion_score_.apply(joined_.view(), head_.view(), rows, memory_.hidden);
-  for (std::int64_t row = 0; row < rows; ++row)
-    output.agents[static_cast<std::size_t>(row / kMotionModes)]
-        .way_scores[static_cast<std::size_t>(row % kMotionModes)] = head_.row(row)[0];
-}
-
-/// The learned query and what the BEV holds at the ego's place.
-void VadMiniNetwork::startEgo() {
-  const std::int64_t width = architecture_.ego.width;
-  const Eigen::Vector2f cell = architecture_.ego.bev.toCell(Eigen::Vector2d::Zero()).cast<float>();
-  const inference::CellCorners corners(architecture_.ego.bev.grid(), 0, cell.x(), cell.y());
-  ego_joined_.resize(1, width);
-  std::fill_n(ego_joined_.row(0), width, 0.0F);
-  for (int i = 0; i < 4; ++i) {
-    for (std::int64_t c = 0; corners.row[i] >= 0 && c < width; ++c)
-      ego_joined_.row(0)[c] += corners.share[i] * bev_->row(corners.row[i])[c];
-  }
-  ego_row_.resize(1, width);
-  ego_bev_.apply(ego_joined_.view(), ego_row_.view(), 1);
-  inference::addRow(ego_.row(0), width, ego_row_.row(0));
-}
-
-void VadMiniNetwork::plan(VadMiniOutput& output) {
-  const std::int64_t width = architecture_.ego.width, agents = architecture_.agents;
-  startEgo();
-  // The rows of joined_ are dense, since 2 x width is a multiple of 16: an agent's modes side by
-  // side are one row.
-  tokens_.resize(agents, width);
-  fuse_.apply({joined_.row(0), kMotionModes * joined_.stride()}, tokens_.view(), agents,
-              memory_.hidden);
-  std::vector<Eigen::Vector2d> places;
-  for (const SeenAgent& agent : output.agents) places.emplace_back(agent.box[0], agent.box[1]);
-  embedPlaces(places, positions_);
-  for (std::int64_t i = 0; i < agents; ++i)
-    inference::addRow(positions_.row(i), width, tokens_.row(i));
-  ego_agents_.attention.attendTo(tokens_, ego_row_, memory_);
-  ego_agents_.mix.apply(ego_row_, memory_);
-  ego_joined_.resize(1, 2 * width);
-  std::copy_n(ego_row_.row(0), width, ego_joined_.row(0));
-  places.clear();
-  for (const SeenLine& line : output.lines) places.push_back(nearestPoint(line));
-  embedPlaces(places, positions_);
-  for (std::int64_t i = 0; i < map_tokens_.rows(); ++i)
-    inference::addRow(positions_.row(i), width, map_tokens_.row(i));
-  ego_map_.attention.attendTo(map_tokens_, ego_row_, memory_);
-  ego_map_.mix.apply(ego_row_, memory_);
-  std::copy_n(ego_row_.row(0), width, ego_joined_.row(0) + width);
-  ego_norm_.apply(ego_joined_.view(), ego_joined_.view(), 1);
-  head_.resize(1, kRoadCommands * 2 * kEgoWaypoints);
-  plan_.apply(ego_joined_.view(), head_.view(), 1, memory_.hidden);
-  for (std::int64_t command = 0; command < kRoadCommands; ++command)
-    output.plans[static_cast<std::size_t>(command)] =
-        waypointsOf(head_.row(0) + command * 2 * kEgoWaypoints, Eigen::Vector2d::Zero());
 }
 
 VadMiniOutput VadMiniNetwork::forward(const VadMiniInput& input) {

@@ -27,6 +27,9 @@ struct SeenLine {
 
 /// Probability of a logit.
 double logistic(float logit);
+/// A row for each pair of rows of two tables, the second counting faster: their sum.
+inference::Rows rowSums(const inference::Rows& first, const inference::Rows& second,
+                        std::int64_t channels);
 
 /// What the network answers.
 struct VadMiniOutput {
