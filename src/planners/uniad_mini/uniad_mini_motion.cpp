@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planners/pluto/pluto_layers.h"
+
 namespace cdiff::planners {
 namespace {
 
@@ -47,7 +49,7 @@ MotionDecoder::MotionDecoder(const UniadMiniArchitecture& architecture,
     : architecture_(architecture),
       anchors_(toAnchors(LayerWeights(set, tensors).named(kAnchorTable))),
       embed_({set, tensors}, "motion.anchor"),
-      mode_(learnedRows(tensors, "mode")),
+      mode_(tableRows({set, tensors}, "mode")),
       place_({set, tensors}, architecture.ego) {
   const LayerWeights weights(set, tensors);
   for (std::int64_t i = 0; i < architecture.motion_layers; ++i) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planners/pluto/pluto_layers.h"
+
 namespace cdiff::planners {
 namespace {
 
@@ -47,8 +49,8 @@ bool UniadMiniOutput::finite() const {
 PlanDecoder::PlanDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
                          inference::InstructionSet set)
     : architecture_(architecture),
-      command_(learnedRows(tensors, "command")),
-      positions_(learnedRows(tensors, "bev.position")),
+      command_(tableRows({set, tensors}, "command")),
+      positions_(tableRows({set, tensors}, "bev.position")),
       query_({set, tensors}, "plan.query"),
       narrow_({set, tensors}, "plan.adapter.in"),
       widen_({set, tensors}, "plan.adapter.out"),

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "planners/pluto/pluto_layers.h"
+
 namespace cdiff::planners {
 namespace {
 
@@ -41,9 +43,9 @@ void PlaceEmbedding::apply(const std::vector<Eigen::Vector2d>& places, UniadMemo
 TrackDecoder::TrackDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
                            inference::InstructionSet set)
     : architecture_(architecture),
-      content_(learnedRows(tensors, "track.content")),
-      reference_(learnedRows(tensors, "track.reference")),
-      ego_(learnedRows(tensors, "ego.content")),
+      content_(tableRows({set, tensors}, "track.content")),
+      reference_(tableRows({set, tensors}, "track.reference")),
+      ego_(tableRows({set, tensors}, "ego.content")),
       place_({set, tensors}, architecture.ego),
       update_({set, tensors}, "track.update", architecture.ego.transformer()),
       update_mix_({set, tensors}, "track.update.mix") {
@@ -152,9 +154,9 @@ void TrackDecoder::see(const Rows& bev, const EgoPoses& poses, const TrackSet* p
 MapDecoder::MapDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
                        inference::InstructionSet set)
     : architecture_(architecture),
-      content_(learnedRows(tensors, "map.content")),
-      position_(learnedRows(tensors, "map.position")),
-      reference_(learnedRows(tensors, "map.reference")) {
+      content_(tableRows({set, tensors}, "map.content")),
+      position_(tableRows({set, tensors}, "map.position")),
+      reference_(tableRows({set, tensors}, "map.reference")) {
   const LayerWeights weights(set, tensors);
   for (std::int64_t i = 0; i < architecture.decoder_layers; ++i) {
     const std::string name = "map." + std::to_string(i);
