@@ -65,11 +65,11 @@ TrackStart startAfter(const TrackAnswer& before, const std::vector<const EgoExam
 QueryMatches addLosses(const std::vector<const EgoExample*>& examples, std::size_t back,
                        const std::vector<HeldTracks>& held, const SetLossWeights& weights,
                        FollowedTracks& followed) {
-  std::vector<EgoExample> labelled(examples.size());
+  std::vector<EgoExample> labeled(examples.size());
   std::vector<const EgoExample*> views;
   for (std::size_t b = 0; b < examples.size(); ++b) {
-    labelled[b].agents = labelsAt(*examples[b], lookAt(*examples[b], back));
-    views.push_back(&labelled[b]);
+    labeled[b].agents = labelsAt(*examples[b], lookAt(*examples[b], back));
+    views.push_back(&labeled[b]);
   }
   QueryMatches matches;
   for (std::size_t layer = 0; layer < followed.answer.boxes.size(); ++layer) {
@@ -78,7 +78,7 @@ QueryMatches addLosses(const std::vector<const EgoExample*>& examples, std::size
     for (std::size_t b = 0; b < examples.size(); ++b) {
       const auto sample = static_cast<std::int64_t>(b);
       matches.push_back(
-          matchTracks(logits[sample], boxes[sample], labelled[b].agents, held[b], weights));
+          matchTracks(logits[sample], boxes[sample], labeled[b].agents, held[b], weights));
     }
     const AgentLoss loss = agentLoss(logits, boxes, views, matches, weights);
     followed.kind = followed.kind.defined() ? followed.kind + loss.kind : loss.kind;

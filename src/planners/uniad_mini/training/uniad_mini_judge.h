@@ -13,7 +13,7 @@ namespace cdiff::planners {
 /// Open-loop measures of `uniad_mini` on held-out moments, by the network that drives: its plans
 /// as answered and as adjusted; beside them a vehicle that keeps its velocity, detections that
 /// never change, and a straight road. Besides the distances of forecasts' best modes, and the
-/// overlap of occupancy with where labelled agents are.
+/// overlap of occupancy with where labeled agents are.
 class UniadMiniJudge {
  public:
   /// `prior` must outlive the judge.
