@@ -62,27 +62,31 @@ std::pair<at::Tensor, at::Tensor> UniadMiniNet::startModes(const TrackAnswer& tr
                       tracks.features.unsqueeze(2)};
 }
 
+at::Tensor UniadMiniNet::fuse(const std::string& name, const at::Tensor& x,
+                              const at::Tensor& shares, const MotionSurroundings& around) const {
+  const at::Tensor of_agents = x + plans_.attention(name + ".agents", x, {}, around.tracks);
+  const at::Tensor of_map = x + plans_.attention(name + ".map", x, {}, around.map);
+  const at::Tensor of_bev = x + readBev(name + ".bev", x, shares, around.bev);
+  return plans_.mlp(name + ".fuse", at::cat({of_agents, of_map, of_bev, around.own}, 2));
+}
+
 MotionAnswer UniadMiniNet::forecast(const at::Tensor& bev, const TrackAnswer& tracks,
                                     const MapAnswer& map) const {
+  const BevGrid& grid = architecture_.ego.bev;
   const std::int64_t samples = tracks.features.size(0), rows = architecture_.rows(),
                      width = architecture_.ego.width;
-  const at::Tensor context = tracks.features + place(tracks.centers);
-  const at::Tensor centers = metersOfShares(architecture_.ego.bev, tracks.centers).unsqueeze(2);
+  const at::Tensor centers = metersOfShares(grid, tracks.centers).unsqueeze(2);
   const auto [turned, start] = startModes(tracks);
   at::Tensor x = start.reshape({samples, rows * kMotionModes, width});
-  const at::Tensor own =
-      tracks.features.unsqueeze(2).expand({samples, rows, kMotionModes, width}).reshape(x.sizes());
+  const MotionSurroundings around = {
+      bev, tracks.features + place(tracks.centers), map.tokens,
+      tracks.features.unsqueeze(2).expand({samples, rows, kMotionModes, width}).reshape(x.sizes())};
   at::Tensor ways = turned;
   MotionAnswer answer;
   for (std::int64_t i = 0; i < architecture_.motion_layers; ++i) {
     const std::string name = "motion." + std::to_string(i);
     const at::Tensor ends = centers + ways.select(3, kEgoWaypoints - 1);
-    const at::Tensor shares =
-        sharesOfMeters(architecture_.ego.bev, ends).reshape({samples, rows * kMotionModes, 2});
-    const at::Tensor of_agents = x + plans_.attention(name + ".agents", x, {}, context);
-    const at::Tensor of_map = x + plans_.attention(name + ".map", x, {}, map.tokens);
-    const at::Tensor of_bev = x + readBev(name + ".bev", x, shares, bev);
-    x = plans_.mlp(name + ".fuse", at::cat({of_agents, of_map, of_bev, own}, 2));
+    x = fuse(name, x, sharesOfMeters(grid, ends).reshape({samples, -1, 2}), around);
     const at::Tensor normed = plans_.norm(name + ".norm", x);
     const at::Tensor numbers =
         plans_.mlp(name + ".offset", normed)

@@ -21,6 +21,11 @@ Eigen::Vector2d hullOf(const geometry::OrientedBox& box) {
           geometry::halfExtent(box, Eigen::Vector2d::UnitY())};
 }
 
+void addPair(const Eigen::Vector2d& pair, std::vector<float>& to) {
+  to.push_back(static_cast<float>(pair.x()));
+  to.push_back(static_cast<float>(pair.y()));
+}
+
 /// Hulls of a batch: of the ego by waypoint, and of V vehicles.
 struct Hulls {
   at::Tensor own;      ///< half extents [B, 6, 1, 2]
@@ -34,23 +39,19 @@ Hulls hullsOf(const std::vector<const EgoExample*>& examples, double inflated,
   std::size_t most = 1;
   for (const EgoExample* example : examples) most = std::max(most, example->others.size());
   std::vector<float> own, centers, halves, there;
-  const auto add = [](const Eigen::Vector2d& pair, std::vector<float>& to) {
-    to.push_back(static_cast<float>(pair.x()));
-    to.push_back(static_cast<float>(pair.y()));
-  };
   for (const EgoExample* example : examples) {
     const auto headings = drivenHeadings(example->driven);
     for (std::size_t i = 0; i < headings.size(); ++i) {
-      add(hullOf({Eigen::Vector2d::Zero(), headings[i], kEgoBoxLength + inflated,
-                  kEgoBoxWidth + inflated}),
-          own);
+      addPair(hullOf({Eigen::Vector2d::Zero(), headings[i], kEgoBoxLength + inflated,
+                      kEgoBoxWidth + inflated}),
+              own);
       for (std::size_t v = 0; v < most; ++v) {
         const bool known = v < example->others.size() && i < example->driven.known &&
                            i < example->others[v].future.known;
         const geometry::OrientedBox box =
             known ? futureBox(example->others[v], i) : geometry::OrientedBox{};
-        add(box.center, centers);
-        add(hullOf(box), halves);
+        addPair(box.center, centers);
+        addPair(hullOf(box), halves);
         there.push_back(known ? 1.0F : 0.0F);
       }
     }

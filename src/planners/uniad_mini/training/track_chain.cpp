@@ -87,6 +87,14 @@ QueryMatches addLosses(const std::vector<const EgoExample*>& examples, std::size
   return matches;
 }
 
+std::vector<std::int64_t> freeSlots(const HeldTracks& held) {
+  std::vector<std::int64_t> free;
+  for (std::size_t slot = 0; slot < held.live.size(); ++slot) {
+    if (!held.live[slot]) free.push_back(static_cast<std::int64_t>(slot));
+  }
+  return free;
+}
+
 /// The BEV of a look, without gradients but for the present one's.
 at::Tensor encodeLook(const UniadMiniNet& net, const std::vector<const EgoExample*>& examples,
                       std::size_t back, const at::Device& device, const at::Tensor& past) {
@@ -120,10 +128,7 @@ std::vector<int> matchTracks(const at::Tensor& logits, const at::Tensor& boxes,
     of_rest.push_back(i);
     rest.agents.push_back(labels[i]);
   }
-  std::vector<std::int64_t> free;
-  for (std::size_t slot = 0; slot < held.live.size(); ++slot) {
-    if (!held.live[slot]) free.push_back(static_cast<std::int64_t>(slot));
-  }
+  const std::vector<std::int64_t> free = freeSlots(held);
   if (free.empty() || of_rest.empty()) return result;
   const auto count = static_cast<std::int64_t>(free.size());
   const at::Tensor index = learning::toIndices(free, {count}, logits.device());

@@ -20,6 +20,12 @@ at::Tensor egoShares(const BevGrid& bev, const at::Tensor& like) {
       .expand({like.size(0), 1, 2});
 }
 
+/// kBoxNumbers of centers and of what a layer answers, in SI units.
+at::Tensor boxesOf(const BevGrid& bev, const at::Tensor& shares, const at::Tensor& box) {
+  return at::cat(
+      {metersOfShares(bev, shares), box.narrow(2, 2, 6), kVelocityUnit * box.narrow(2, 8, 2)}, 2);
+}
+
 void loadPart(const WeightTensors& weights, const std::string& source,
               learning::ParameterSet& parameters) {
   WeightTensors part;
@@ -105,16 +111,17 @@ TrackAnswer UniadMiniNet::seeTracks(const at::Tensor& bev, std::int64_t samples,
     reference = reference + box.narrow(2, 0, 2);
     const at::Tensor shares = at::sigmoid(reference);
     answer.logits.push_back(tracks_.linear(name + ".class", agents));
-    answer.boxes.push_back(at::cat(
-        {metersOfShares(grid, shares), box.narrow(2, 2, 6), kVelocityUnit * box.narrow(2, 8, 2)},
-        2));
+    answer.boxes.push_back(boxesOf(grid, shares, box));
     answer.centers = at::cat({shares.detach(), ego}, 1);
     reference = reference.detach();
   }
-  const at::Tensor& features = answer.features;
-  const at::Tensor y = features + tracks_.attention("track.update", features, position, {});
-  answer.content = y + tracks_.mix("track.update.mix", y);
+  answer.content = updated(answer.features, position);
   return answer;
+}
+
+at::Tensor UniadMiniNet::updated(const at::Tensor& features, const at::Tensor& position) const {
+  const at::Tensor y = features + tracks_.attention("track.update", features, position, {});
+  return y + tracks_.mix("track.update.mix", y);
 }
 
 MapAnswer UniadMiniNet::seeMap(const at::Tensor& bev, std::int64_t samples) const {

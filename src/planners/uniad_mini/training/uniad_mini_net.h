@@ -44,6 +44,12 @@ struct MotionAnswer {
   at::Tensor modes;                 ///< features of the last layer [B, R, M, width]
 };
 
+/// What the queries of motion look at: the BEV, features of tracks with their places [B, R, width],
+/// of the map's lines, and of each query's own track [B, R x M, width].
+struct MotionSurroundings {
+  at::Tensor bev, tracks, map, own;
+};
+
 /// The network of `uniad_mini` with gradients, in three parts; the same function as
 /// UniadMiniNetwork.
 class UniadMiniNet {
@@ -79,6 +85,11 @@ class UniadMiniNet {
   void moveTo(const at::Device& device);
 
  private:
+  /// Contents for the look to come.
+  at::Tensor updated(const at::Tensor& features, const at::Tensor& position) const;
+  /// What a motion layer makes of queries x [B, R x M, width] whose modes end at `shares`.
+  at::Tensor fuse(const std::string& name, const at::Tensor& x, const at::Tensor& shares,
+                  const MotionSurroundings& around) const;
   /// Anchors at the rows' headings [B, R, M, 6, 2], and the queries' start [B, R, M, width].
   std::pair<at::Tensor, at::Tensor> startModes(const TrackAnswer& tracks) const;
   at::Tensor place(const at::Tensor& shares) const {
