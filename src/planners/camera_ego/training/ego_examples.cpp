@@ -105,9 +105,9 @@ RoadCommand EgoExamples::commandAt(const PlutoScene& scene, const PlutoPlace& pl
   return nextNode(scene, place).command;
 }
 
-/// A look at a decision; labels of what was seen go into `labelled` where that is asked for.
+/// A look at a decision; labels of what was seen go into `labeled` where that is asked for.
 EgoLook EgoExamples::lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
-                            const EgoExampleOptions& options, EgoExample* labelled) {
+                            const EgoExampleOptions& options, EgoExample* labeled) {
   const std::uint32_t number = scene.drives()[place.drive].vehicle;
   traffic::Vehicle own;
   own.id = scene.vehicles().id(number);
@@ -119,12 +119,12 @@ EgoLook EgoExamples::lookAt(const PlutoScene& scene, const PlutoPlace& place, st
   own.state.heading = look.poses.present.heading;
   const traffic::TrafficSnapshot snapshot = snapshotOf(scene, decision);
   const auto labels =
-      labelled == nullptr ? rendering::Labels::kNone : rendering::Labels::kClassesAndInstances;
+      labeled == nullptr ? rendering::Labels::kNone : rendering::Labels::kClassesAndInstances;
   std::vector<rendering::RenderedView> views =
       worldOf(scene).renderer.render(snapshot, own, labels);
-  if (labelled != nullptr)
+  if (labeled != nullptr)
     addAgents(scene, place, look.poses.present,
-              rendering::mostPixels(views, snapshot.vehicles.size()), *labelled);
+              rendering::mostPixels(views, snapshot.vehicles.size()), *labeled);
   for (rendering::RenderedView& view : views) look.images.push_back(std::move(view.image));
   return look;
 }

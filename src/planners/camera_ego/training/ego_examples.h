@@ -66,7 +66,7 @@ struct EgoExampleOptions {
   std::size_t most_lines = 16;
 };
 
-/// Vehicles with fewer pixels in every image are not labelled.
+/// Vehicles with fewer pixels in every image are not labeled.
 inline constexpr int kLeastPixels = 20;
 
 /// Makes examples of the moments of scenes: renders again what the cameras saw, and reads labels
@@ -90,7 +90,7 @@ class EgoExamples {
   };
   World& worldOf(const PlutoScene& scene);
   EgoLook lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
-                 const EgoExampleOptions& options, EgoExample* labelled);
+                 const EgoExampleOptions& options, EgoExample* labeled);
   void addAgents(const PlutoScene& scene, const PlutoPlace& place, const geometry::Pose2d& pose,
                  const std::vector<int>& pixels, EgoExample& example) const;
   const NavigationNode& nextNode(const PlutoScene& scene, const PlutoPlace& place);
