@@ -7,6 +7,7 @@
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "page/html_report.h"
 #include "page/page_parts.h"
+#include "page/pictures/camera_strip.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"
@@ -253,9 +254,11 @@ Markup approachPart(const record::SessionResult& result, const record::Approach&
                            " m apart; CBV " + speedText(*cbv) + ", ego " + speedText(*ego);
   const Markup seen = views(camera, approach, *cbv, "CBV", approach.cbv_image) +
                       views(camera, approach, *ego, "ego", approach.ego_image);
-  const Markup content =
-      element("h3", {}, heading) + "\n" + element("p", {{"class", "sub"}}, line) + "\n" +
-      element("div", {{"class", "views"}}, "\n" + seen) + "\n" + planPart(result, approach);
+  const Markup content = element("h3", {}, heading) + "\n" +
+                         element("p", {{"class", "sub"}}, line) + "\n" +
+                         element("div", {{"class", "views"}}, "\n" + seen) + "\n" +
+                         cameraStrip(approach.cbv_views, "CBV") +
+                         cameraStrip(approach.ego_views, "ego") + planPart(result, approach);
   const std::string style = styleOf(VehicleRole::kCbv, approach.vehicle_id, result.cbv);
   return element("article", {{"class", "approach " + style}}, "\n" + content) + "\n";
 }
@@ -275,7 +278,10 @@ std::vector<const record::Approach*> shownApproaches(const record::ApproachLog& 
 
 Markup approachSection(const record::SessionResult& result) {
   const std::vector<const record::Approach*> shown = shownApproaches(result.approaches);
-  if (shown.empty()) return pageNote("No CBV was driven near the ego.");
+  if (shown.empty()) {
+    return pageNote("No CBV was driven near the ego.") +
+           cameraStrip(result.approaches.latestViews(traffic::kEgoSlot), "ego");
+  }
   rendering::FrontCamera camera = record::cameraForPeople(result.setup, 640, 384);
   Markup html;
   const std::size_t count = result.approaches.approaches().size();

@@ -49,8 +49,19 @@ int clipNear(const Eigen::Vector3d* points, int count, Eigen::Vector3d* kept) {
   return corners;
 }
 
-int toIndex(double value, int limit) {
-  return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(limit)));
+/// The smallest whole number that is not below `value`, at least -1 and at most `limit`. Faster
+/// than std::ceil, which is a call where the processor's instruction for it must not be used.
+int ceilIndex(double value, int limit) {
+  const double clamped = std::clamp(value, -1.0, static_cast<double>(limit));
+  const int index = static_cast<int>(clamped);
+  return index + static_cast<int>(clamped > index);
+}
+
+/// The largest whole number that is not above `value`, likewise.
+int floorIndex(double value, int limit) {
+  const double clamped = std::clamp(value, -1.0, static_cast<double>(limit));
+  const int index = static_cast<int>(clamped);
+  return index - static_cast<int>(clamped < index);
 }
 
 }  // namespace
@@ -77,7 +88,7 @@ bool View::maySee(const Eigen::Vector3d& center, double radius) const {
   return std::abs(at.x()) <= at.z() * side_tangent_ + radius * side_secant_;
 }
 
-Canvas::Canvas(const RigCamera& camera, std::int64_t samples)
+Canvas::Canvas(const RigCamera& camera, std::int64_t samples, Samples& target)
     : width_(static_cast<int>(camera.width)),
       height_(static_cast<int>(camera.height)),
       samples_(static_cast<int>(samples)),
@@ -86,10 +97,7 @@ Canvas::Canvas(const RigCamera& camera, std::int64_t samples)
       focal_length_(intrinsicsOf(camera).focal_length * samples_),
       middle_column_(0.5 * columns_ - 0.5),
       middle_row_(0.5 * rows_ - 0.5),
-      colors_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
-      depths_(colors_.size()),
-      span_begin_(static_cast<std::size_t>(rows_)),
-      span_end_(static_cast<std::size_t>(rows_)) {
+      target_(&target) {
   makeBackground(camera.pitch * core::kDegree);
 }
 
@@ -102,15 +110,6 @@ void Canvas::makeBackground(double pitch) {
                                       : mix(kGrassHorizon, kGrassNear, std::sqrt(height)));
     background_classes_.push_back(angle > 0.0 ? SceneClass::kSky : SceneClass::kTerrain);
   }
-}
-
-void Canvas::clear(bool labels) {
-  clearLabels(labels);
-  for (int row = 0; row < rows_; ++row) {
-    std::fill_n(colors_.begin() + static_cast<std::ptrdiff_t>(row) * columns_, columns_,
-                background_[static_cast<std::size_t>(row)]);
-  }
-  std::fill(depths_.begin(), depths_.end(), 0.0f);
 }
 
 bool Canvas::depthPlane(const Eigen::Vector3d& normal, const Eigen::Vector3d& point,
@@ -180,8 +179,11 @@ void Canvas::scan(const Eigen::Vector2d* corners, int count, const DepthPlane& p
   ranked.down *= paint.rank;
   ranked.middle *= paint.rank;
   for (int row = range.first; row <= range.last; ++row) {
-    if (!labels_.empty()) labelSpan(row, ranked, paint);
-    paintSpan(row, ranked, paint);
+    const Span span = spanOf(row, ranked);
+    if (span.first > span.last) continue;
+    startRow(row);
+    if (!target_->labels.empty()) labelSpan(span, paint);
+    paintSpan(span, paint);
   }
 }
 
@@ -198,11 +200,11 @@ Canvas::RowRange Canvas::spanRows(const Eigen::Vector2d* corners, int count) {
   }
   if (left > middle_column_ || right < -middle_column_) return {};
   RowRange range;
-  range.first = std::max(0, toIndex(std::ceil(top + middle_row_), rows_));
-  range.last = std::min(rows_ - 1, toIndex(std::floor(bottom + middle_row_), rows_));
+  range.first = std::max(0, ceilIndex(top + middle_row_, rows_));
+  range.last = std::min(rows_ - 1, floorIndex(bottom + middle_row_, rows_));
   for (int row = range.first; row <= range.last; ++row) {
-    span_begin_[static_cast<std::size_t>(row)] = kInfinity;
-    span_end_[static_cast<std::size_t>(row)] = -kInfinity;
+    target_->span_begin[static_cast<std::size_t>(row)] = kInfinity;
+    target_->span_end[static_cast<std::size_t>(row)] = -kInfinity;
   }
   if (range.last < range.first) return range;
   for (int i = 0; i < count; ++i) spanEdge(corners[i], corners[i + 1 == count ? 0 : i + 1]);
@@ -213,25 +215,25 @@ void Canvas::spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& secon
   const bool downwards = first.y() < second.y();
   const Eigen::Vector2d& upper = downwards ? first : second;
   const Eigen::Vector2d& lower = downwards ? second : first;
-  const int begin = std::max(0, toIndex(std::ceil(upper.y() + middle_row_), rows_));
-  const int end = std::min(rows_ - 1, toIndex(std::floor(lower.y() + middle_row_), rows_));
+  const int begin = std::max(0, ceilIndex(upper.y() + middle_row_, rows_));
+  const int end = std::min(rows_ - 1, floorIndex(lower.y() + middle_row_, rows_));
   const double height = lower.y() - upper.y();
   const double slope = height > 0.0 ? (lower.x() - upper.x()) / height : 0.0;
   for (int row = begin; row <= end; ++row) {
     const double at = upper.x() + (row - middle_row_ - upper.y()) * slope;
-    double& span_begin = span_begin_[static_cast<std::size_t>(row)];
-    double& span_end = span_end_[static_cast<std::size_t>(row)];
+    double& span_begin = target_->span_begin[static_cast<std::size_t>(row)];
+    double& span_end = target_->span_end[static_cast<std::size_t>(row)];
     span_begin = std::min(span_begin, height > 0.0 ? at : std::min(upper.x(), lower.x()));
     span_end = std::max(span_end, height > 0.0 ? at : std::max(upper.x(), lower.x()));
   }
 }
 
 Canvas::Span Canvas::spanOf(int row, const DepthPlane& plane) const {
-  const double begin = span_begin_[static_cast<std::size_t>(row)];
-  const double end = span_end_[static_cast<std::size_t>(row)];
+  const double begin = target_->span_begin[static_cast<std::size_t>(row)];
+  const double end = target_->span_end[static_cast<std::size_t>(row)];
   Span span;
-  span.first = std::max(0, toIndex(std::ceil(begin + middle_column_), columns_));
-  span.last = std::min(columns_ - 1, toIndex(std::floor(end + middle_column_), columns_));
+  span.first = std::max(0, ceilIndex(begin + middle_column_, columns_));
+  span.last = std::min(columns_ - 1, floorIndex(end + middle_column_, columns_));
   span.offset = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
   span.constant = static_cast<float>(plane.middle + plane.down * (row - middle_row_));
   span.across = static_cast<float>(plane.across);
@@ -239,10 +241,9 @@ Canvas::Span Canvas::spanOf(int row, const DepthPlane& plane) const {
   return span;
 }
 
-void Canvas::paintSpan(int row, const DepthPlane& plane, const Paint& paint) {
-  const Span span = spanOf(row, plane);
-  Color* colors = colors_.data() + span.offset;
-  float* depths = depths_.data() + span.offset;
+void Canvas::paintSpan(const Span& span, const Paint& paint) {
+  Color* colors = target_->colors.data() + span.offset;
+  float* depths = target_->depths.data() + span.offset;
   const Color color = paint.color;
   if (paint.opacity >= 1.0) {
     for (int i = span.first; i <= span.last; ++i) {
@@ -259,34 +260,6 @@ void Canvas::paintSpan(int row, const DepthPlane& plane, const Paint& paint) {
     depths[i] = depth;
     colors[i] = mix(colors[i], color, paint.opacity);
   }
-}
-
-traffic::CameraImage Canvas::image() const {
-  traffic::CameraImage image;
-  image.width = width_;
-  image.height = height_;
-  image.rgb.resize(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  const auto count = static_cast<std::uint32_t>(samples_ * samples_);
-  std::uint8_t* target = image.rgb.data();
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      std::uint32_t red_blue[2] = {0, 0};
-      std::uint32_t green = 0;
-      for (int row = y * samples_; row < (y + 1) * samples_; ++row) {
-        const Color* source =
-            colors_.data() + static_cast<std::ptrdiff_t>(row) * columns_ + x * samples_;
-        for (int i = 0; i < samples_; ++i) {
-          red_blue[0] += source[i] & 0xffu;
-          green += (source[i] >> 8) & 0xffu;
-          red_blue[1] += source[i] >> 16;
-        }
-      }
-      *target++ = static_cast<std::uint8_t>((red_blue[0] + count / 2) / count);
-      *target++ = static_cast<std::uint8_t>((green + count / 2) / count);
-      *target++ = static_cast<std::uint8_t>((red_blue[1] + count / 2) / count);
-    }
-  }
-  return image;
 }
 
 }  // namespace cdiff::rendering

@@ -115,6 +115,11 @@ struct Label {
   std::uint16_t instance = 0;
 };
 
+/// As Samples::labels holds it.
+inline std::uint32_t packedLabel(const Label& label) {
+  return static_cast<std::uint32_t>(label.kind) << 16 | label.instance;
+}
+
 /// How a shape is painted: color, rank among overlapping shapes, opacity in [0, 1], and what it is.
 struct Paint {
   Color color = 0;
@@ -123,7 +128,20 @@ struct Paint {
   Label label = {SceneClass::kRoad, 0};
 };
 
-/// Rasterizer of the front camera: convex polygons and lines in the optical frame [m] into a
+/// The samples of a picture being drawn, row by row. Cameras of a rig draw into the same one after
+/// another, so that they stay in the processor's cache.
+struct Samples {
+  /// Per row: whether it holds samples of this picture; the others are background alone.
+  std::vector<std::uint8_t> drawn;
+  std::vector<Color> colors;
+  std::vector<float> depths;          ///< inverse depth [1/m] x rank
+  std::vector<std::uint32_t> labels;  ///< class << 16 | instance; empty: not asked for
+  /// Per row: both ends of the polygon being drawn, from the middle.
+  std::vector<double> span_begin;
+  std::vector<double> span_end;
+};
+
+/// Rasterizer of a camera: convex polygons and lines in the optical frame [m] into a
 /// supersampled image (samples x samples per pixel) with a buffer of inverse depths [1/m]. A
 /// polygon covers the samples whose centers lie in its closed area; of several the larger inverse
 /// depth x rank stays. Image coordinates count from the middle of the picture (u right, v down
@@ -131,7 +149,9 @@ struct Paint {
 /// of the scene (road, signals, vehicles) through RigRenderer.
 class Canvas {
  public:
-  Canvas(const RigCamera& camera, std::int64_t samples);
+  /// `samples`: per pixel and axis. What is drawn goes to `target`, which must outlive the canvas
+  /// and holds one picture at a time.
+  Canvas(const RigCamera& camera, std::int64_t samples, Samples& target);
 
   /// Starts a picture: sky and grass, and nothing in front of them. `labels`: also note what each
   /// sample shows.
@@ -192,9 +212,14 @@ class Canvas {
   RowRange spanRows(const Eigen::Vector2d* corners, int count);
   void spanEdge(const Eigen::Vector2d& first, const Eigen::Vector2d& second);
   Span spanOf(int row, const DepthPlane& plane) const;
-  void paintSpan(int row, const DepthPlane& plane, const Paint& paint);
-  void clearLabels(bool asked);
-  void labelSpan(int row, const DepthPlane& plane, const Paint& paint);
+  void paintSpan(const Span& span, const Paint& paint);
+  void labelSpan(const Span& span, const Paint& paint);
+  /// Fills a row of samples with the background, once a picture.
+  void startRow(int row) const {
+    if (target_->drawn[static_cast<std::size_t>(row)] == 0) fillRow(row);
+  }
+  void fillRow(int row) const;
+  void writeBackground(int y, std::uint8_t* target) const;
   void makeBackground(double pitch);
 
   int width_;            ///< [px] of the image
@@ -205,14 +230,9 @@ class Canvas {
   double focal_length_;  ///< [samples]
   double middle_column_;
   double middle_row_;
-  std::vector<Color> background_;      ///< per row
-  std::vector<Color> colors_;          ///< per sample, row by row
-  std::vector<float> depths_;          ///< per sample: inverse depth [1/m] x rank
-  std::vector<std::uint32_t> labels_;  ///< per sample: class << 16 | instance; empty: not asked for
+  Samples* target_;
+  std::vector<Color> background_;               ///< per row
   std::vector<SceneClass> background_classes_;  ///< per row
-  std::vector<double>
-      span_begin_;                ///< per row: left end of the polygon being drawn, from the middle
-  std::vector<double> span_end_;  ///< per row: its right end
 };
 
 }  // namespace cdiff::rendering

@@ -7,10 +7,6 @@
 namespace cdiff::rendering {
 namespace {
 
-std::uint32_t packed(const Label& label) {
-  return static_cast<std::uint32_t>(label.kind) << 16 | label.instance;
-}
-
 /// The value that occurs most often; of several the largest. Sorts `values`.
 std::uint32_t commonest(std::vector<std::uint32_t>& values) {
   std::sort(values.begin(), values.end());
@@ -27,23 +23,14 @@ std::uint32_t commonest(std::vector<std::uint32_t>& values) {
 
 }  // namespace
 
-void Canvas::clearLabels(bool asked) {
-  labels_.resize(asked ? colors_.size() : 0);
-  for (int row = 0; asked && row < rows_; ++row) {
-    std::fill_n(labels_.begin() + static_cast<std::ptrdiff_t>(row) * columns_, columns_,
-                packed({background_classes_[static_cast<std::size_t>(row)], 0}));
-  }
-}
-
 /// Before the span is painted, with the same depths. What lets more than half of the light through
 /// leaves the label as it was.
-void Canvas::labelSpan(int row, const DepthPlane& plane, const Paint& paint) {
+void Canvas::labelSpan(const Span& span, const Paint& paint) {
   if (paint.opacity < 0.5) return;
-  const Span span = spanOf(row, plane);
-  const std::uint32_t label = packed(paint.label);
+  const std::uint32_t label = packedLabel(paint.label);
   for (int i = span.first; i <= span.last; ++i) {
     const std::size_t at = span.offset + static_cast<std::size_t>(i);
-    if (span.depthAt(i) > depths_[at]) labels_[at] = label;
+    if (span.depthAt(i) > target_->depths[at]) target_->labels[at] = label;
   }
 }
 
@@ -51,13 +38,14 @@ void Canvas::readLabels(RenderedView& view) const {
   const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   view.classes.resize(pixels);
   view.instances.resize(pixels);
+  for (int row = 0; row < rows_; ++row) startRow(row);
   std::vector<std::uint32_t> here;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const int x = static_cast<int>(pixel) % width_ * samples_;
     const int y = static_cast<int>(pixel) / width_ * samples_;
     here.clear();
     for (int row = y; row < y + samples_; ++row) {
-      const auto begin = labels_.begin() + static_cast<std::ptrdiff_t>(row) * columns_ + x;
+      const auto begin = target_->labels.begin() + static_cast<std::ptrdiff_t>(row) * columns_ + x;
       here.insert(here.end(), begin, begin + samples_);
     }
     const std::uint32_t label = commonest(here);

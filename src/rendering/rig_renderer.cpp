@@ -34,7 +34,8 @@ traffic::CameraImage midGray(const RigCamera& camera) {
 struct RigRenderer::Parts {
   Parts(const CameraRig& of_rig, std::shared_ptr<NetworkScene> of_scene)
       : rig(of_rig), scene(std::move(of_scene)) {
-    for (const RigCamera& camera : rig.cameras) canvases.emplace_back(camera, rig.supersampling);
+    for (const RigCamera& camera : rig.cameras)
+      canvases.emplace_back(camera, rig.supersampling, samples);
   }
 
   void look(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& vehicle);
@@ -43,6 +44,7 @@ struct RigRenderer::Parts {
 
   CameraRig rig;
   std::shared_ptr<NetworkScene> scene;
+  Samples samples;
   std::vector<Canvas> canvases;
   std::vector<View> views;
   std::vector<SeenVehicle> vehicles;

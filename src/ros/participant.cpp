@@ -242,11 +242,11 @@ std::string Participant::missing() const {
 namespace msgs = ::e2e_cdiff;
 
 void Observer::listenToAnswers(Party party, const session::ScenarioOptions& options) {
-  answers_ = TickAnswers(options.simulation_step, awaitedBy(party, graph()), options.camera);
+  answers_ = TickAnswers(options.simulation_step, awaitedBy(party, graph()), graph().rigs);
   for (const Channel& row : channels()) {
     const bool collected = row.use == Use::kAnswer || row.use == Use::kReport;
     if (!collected || !listensTo(row, party, graph())) continue;
-    for (const Topic& topic : topicsOf(row, graph().max_cbv)) {
+    for (const Topic& topic : topicsOf(row, graph())) {
       listen(topic, [this, topic](const AnyMessage& message) {
         const std::string wrong = unusable(message, topic, graph());
         if (wrong.empty()) answers_.add(topic, message);

@@ -48,7 +48,7 @@ constexpr std::uint32_t kQueueSize = 1000;
 
 void CameraRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
-  camera_ = std::make_unique<rendering::FrontCamera>(setup_->options().camera, setup_->network());
+  cameras_ = std::make_unique<session::VehicleCameras>(*setup_);
   if (graph().imagesOfEgo()) open(kEgoSlot);
   if (!graph().imagesOfCbvs()) return;
   for (int slot = 0; slot < graph().max_cbv; ++slot) open(slot);
@@ -59,19 +59,23 @@ void CameraRos::startSession(const msgs::SessionInfo& info) {
   });
 }
 
+void CameraRos::open(int slot) {
+  for (const std::string& camera : cameras_->rigs().of(slot).names()) open(slot, camera);
+}
+
 /// Every transport that is installed counts as the image topic itself: the nodes that the session
 /// counts on take the raw one.
-void CameraRos::open(int slot) {
-  const std::string topic = imageOf(slot).name();
-  connections().expect(topic, listeners(imageOf(slot), graph()));
+void CameraRos::open(int slot, const std::string& camera) {
+  const std::string topic = imageOf(slot, camera).name();
+  connections().expect(topic, listeners(imageOf(slot, camera), graph()));
   const auto connect = [this, topic](const image_transport::SingleSubscriberPublisher& peer) {
     connections().connected(topic, peer.getSubscriberName());
   };
   const auto disconnect = [this, topic](const image_transport::SingleSubscriberPublisher& peer) {
     connections().disconnected(topic, peer.getSubscriberName());
   };
-  outputs_[slot] = {transport_.advertise(topic, kQueueSize, connect, disconnect),
-                    advertise<sensor_msgs::CameraInfo>(cameraInfoOf(slot))};
+  outputs_[{slot, camera}] = {transport_.advertise(topic, kQueueSize, connect, disconnect),
+                              advertise<sensor_msgs::CameraInfo>(cameraInfoOf(slot, camera))};
 }
 
 bool CameraRos::handle(const Snapshot& message, bool superseded) {
@@ -92,12 +96,17 @@ void CameraRos::show(int slot, const traffic::TrafficSnapshot& snapshot,
                      const std::string& vehicle_id) {
   const traffic::Vehicle* vehicle = snapshot.find(vehicle_id);
   if (vehicle == nullptr) return;
-  const auto image = boost::make_shared<const sensor_msgs::Image>(
-      toMsg(camera_->render(snapshot, *vehicle), snapshot.time, vehicle_id));
-  const Output& output = outputs_.at(slot);
-  output.infos.publish(boost::make_shared<const sensor_msgs::CameraInfo>(
-      toCameraInfoMsg(camera_->options(), image->header)));
-  output.images.publish(image);
+  std::vector<session::SlotImage> images;
+  cameras_->render(snapshot, *vehicle, slot, images);
+  for (const session::SlotImage& seen : images) {
+    const auto image = boost::make_shared<const sensor_msgs::Image>(
+        toMsg(seen.image, snapshot.time, vehicle_id, seen.camera));
+    const rendering::RigCamera& camera = *cameras_->rigs().of(slot).find(seen.camera);
+    const Output& output = outputs_.at({slot, seen.camera});
+    output.infos.publish(
+        boost::make_shared<const sensor_msgs::CameraInfo>(toCameraInfoMsg(camera, image->header)));
+    output.images.publish(image);
+  }
 }
 
 }  // namespace cdiff::ros

@@ -10,9 +10,9 @@
 #include "e2e_cdiff/CbvSelection.h"
 #include "image_transport/image_transport.h"
 #include "nav_msgs/Path.h"
-#include "rendering/front_camera.h"
 #include "ros/participant.h"
 #include "session/session_setup.h"
+#include "session/vehicle_cameras.h"
 
 namespace cdiff::ros {
 
@@ -38,9 +38,9 @@ class CbvIdentificationRos : public Participant {
   ::ros::Publisher selections_;
 };
 
-/// The front cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and
-/// its intrinsics of each occupied slot and of the ego out, of those whose planner sees or that the
-/// session shows.
+/// The cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and its
+/// intrinsics of each camera of each occupied slot and of the ego out, of those whose planner sees
+/// or that the session shows.
 class CameraRos : public Participant {
  public:
   explicit CameraRos(StopSignal& stop) : Participant(stop), transport_(node()) {}
@@ -60,13 +60,14 @@ class CameraRos : public Participant {
     ::ros::Publisher infos;
   };
   void open(int slot);
+  void open(int slot, const std::string& camera);
   void show(int slot, const traffic::TrafficSnapshot& snapshot, const std::string& vehicle_id);
 
   image_transport::ImageTransport transport_;
   std::unique_ptr<session::SessionSetup> setup_;
-  std::unique_ptr<rendering::FrontCamera> camera_;
+  std::unique_ptr<session::VehicleCameras> cameras_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
-  std::map<int, Output> outputs_;                                            ///< by slot
+  std::map<std::pair<int, std::string>, Output> outputs_;                    ///< by slot and camera
 };
 
 }  // namespace cdiff::ros

@@ -81,19 +81,26 @@ void checkSight(const planning::Planner& planner, bool session_expects, const st
 
 }  // namespace
 
+void SeeingParticipant::listenToImages(int slot) {
+  for (const std::string& camera : images().rigs().of(slot).names()) {
+    listen<sensor_msgs::Image>(imageOf(slot, camera), [this, slot, camera](const auto& image) {
+      images_.add(slot, image, camera);
+    });
+  }
+}
+
 void EgoPlannerRos::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   planner_ = setup_->makeEgoPlanner();
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
-  images_ = ImageInbox(setup_->options().camera, setup_->options().simulation_step);
+  images() = ImageInbox(setup_->rigs(), setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(ChannelId::kEgoControl);
   listen<nav_msgs::Path>(ChannelId::kEgoRoute, [this](const nav_msgs::PathConstPtr& path) {
     if (route_.empty() && !path->poses.empty())
       route_ = map::matchRoute(setup_->network(), fromMsg(*path));
   });
   if (!graph().ego_sees) return;
-  listen<sensor_msgs::Image>(ChannelId::kEgoImage,
-                             [this](const auto& image) { images_.add(kEgoSlot, image); });
+  listenToImages(kEgoSlot);
 }
 
 std::string EgoPlannerRos::waitingFor() const {
@@ -101,7 +108,7 @@ std::string EgoPlannerRos::waitingFor() const {
 }
 
 bool EgoPlannerRos::ready(const msgs::TrafficSnapshot& snapshot) const {
-  return !graph().ego_sees || images_.find(kEgoSlot, snapshot.tick);
+  return !graph().ego_sees || images().complete(kEgoSlot, snapshot.tick);
 }
 
 bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
@@ -113,12 +120,12 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
   if (blind && !superseded) return false;
   const std::string name = "ego:" + setup_->options().ego_planner;
   const PlannerDecision decision = graph().ego_sees
-                                       ? planSeeing(*planner_, snapshot, tasks, images_)
+                                       ? planSeeing(*planner_, snapshot, tasks, images())
                                        : planBlind(*planner_, snapshot, tasks);
   controls_.publish(shared(
       toMsg(decision.actions.front(), snapshot, {name, decision.latency_ms, decision.fault})));
   warnOf(name, decision);
-  images_.forgetBefore(message->tick);
+  images().forgetBefore(message->tick);
   return true;
 }
 
@@ -127,12 +134,12 @@ void CbvPlannerRos::startSession(const msgs::SessionInfo& info) {
   const session::ScenarioOptions& options = setup_->options();
   planner_ = setup_->makeCbvPlanner();
   checkSight(*planner_, graph().cbvs_see, options.cbv_planner);
-  images_ = ImageInbox(options.camera, options.simulation_step);
+  images() = ImageInbox(setup_->rigs(), options.simulation_step);
   statistics_ = PlannerStatistics(options.decision_period);
   for (const Channel& row : channels()) {
     const bool ours = row.publisher == Party::kCbvPlanner && row.make != nullptr;
     if (!ours || !row.published.holds(graph())) continue;
-    for (const Topic& topic : topicsOf(row, graph().max_cbv)) answers_[topic] = advertise(topic);
+    for (const Topic& topic : topicsOf(row, graph())) answers_[topic] = advertise(topic);
   }
   markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kRolloutMarkers);
   listenToInputs();
@@ -148,10 +155,7 @@ void CbvPlannerRos::listenToInputs() {
     return wrong;
   });
   if (!graph().cbvs_see) return;
-  for (int slot = 0; slot < graph().max_cbv; ++slot) {
-    listen<sensor_msgs::Image>(imageOf(slot),
-                               [this, slot](const auto& image) { images_.add(slot, image); });
-  }
+  for (int slot = 0; slot < graph().max_cbv; ++slot) listenToImages(slot);
 }
 
 bool CbvPlannerRos::complete(const msgs::TrafficSnapshot& snapshot,
@@ -159,7 +163,7 @@ bool CbvPlannerRos::complete(const msgs::TrafficSnapshot& snapshot,
   if (!graph().cbvs_see) return true;
   for (const msgs::CbvAssignment& assignment : selection.assignments) {
     if (!contains(snapshot, assignment.vehicle_id)) continue;
-    if (!images_.find(assignment.slot, snapshot.tick)) return false;
+    if (!images().complete(assignment.slot, snapshot.tick)) return false;
   }
   return true;
 }
@@ -185,10 +189,10 @@ void CbvPlannerRos::plan(const traffic::TrafficSnapshot& snapshot,
   const auto tasks = session::cbvTasks(snapshot, selection, setup_->options().target_speed);
   if (tasks.empty()) return;
   const PlannerDecision decision = graph().cbvs_see
-                                       ? planSeeing(*planner_, snapshot, tasks, images_)
+                                       ? planSeeing(*planner_, snapshot, tasks, images())
                                        : planBlind(*planner_, snapshot, tasks);
   statistics_.observe(decision);
-  images_.forgetBefore(snapshot.tick + 1);
+  images().forgetBefore(snapshot.tick + 1);
   diagnostics_->update();
   publish(snapshot, decision);
   warnOf("cbv:" + setup_->options().cbv_planner, decision);

@@ -45,11 +45,26 @@ class PlannerStatistics {
 // Planners as nodes: one for the ego, one for all CBVs, each asking its planner exactly as the
 // closed loop in one process does.
 
-/// The ego's planner: snapshots and route in (and its image where the planner sees), its control
-/// out.
-class EgoPlannerRos : public Participant {
+/// A node whose planner may see: it keeps the images of its vehicles' cameras.
+class SeeingParticipant : public Participant {
  public:
   using Participant::Participant;
+
+ protected:
+  /// To all cameras of the slot's rig, which images() must know by now.
+  void listenToImages(int slot);
+  ImageInbox& images() { return images_; }
+  const ImageInbox& images() const { return images_; }
+
+ private:
+  ImageInbox images_;
+};
+
+/// The ego's planner: snapshots and route in (and its images where the planner sees), its control
+/// out.
+class EgoPlannerRos : public SeeingParticipant {
+ public:
+  using SeeingParticipant::SeeingParticipant;
 
  protected:
   void startSession(const ::e2e_cdiff::SessionInfo& info) override;
@@ -62,18 +77,17 @@ class EgoPlannerRos : public Participant {
  private:
   std::unique_ptr<session::SessionSetup> setup_;
   map::Route route_;
-  ImageInbox images_;
   std::unique_ptr<planning::Planner> planner_;
   ::ros::Publisher controls_;
 };
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and
-/// the image of every occupied slot where the planner sees), controls and rollouts out, what
+/// the images of every occupied slot where the planner sees), controls and rollouts out, what
 /// guidance did where the planner is guided, the rollouts as markers while anyone subscribes, and
 /// how the planner fares in /diagnostics.
-class CbvPlannerRos : public Participant {
+class CbvPlannerRos : public SeeingParticipant {
  public:
-  using Participant::Participant;
+  using SeeingParticipant::SeeingParticipant;
 
  protected:
   void startSession(const ::e2e_cdiff::SessionInfo& info) override;
@@ -84,7 +98,7 @@ class CbvPlannerRos : public Participant {
 
  private:
   void listenToInputs();
-  /// Whether the image of every slot with a vehicle has arrived, where the planner sees.
+  /// Whether the images of every slot with a vehicle have arrived, where the planner sees.
   bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot,
                 const ::e2e_cdiff::CbvSelection& selection) const;
   void plan(const traffic::TrafficSnapshot& snapshot, const ::e2e_cdiff::CbvSelection& selection);
@@ -92,7 +106,6 @@ class CbvPlannerRos : public Participant {
 
   std::unique_ptr<session::SessionSetup> setup_;
   std::unique_ptr<planning::Planner> planner_;
-  ImageInbox images_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
   std::map<Topic, ::ros::Publisher> answers_;
   ::ros::Publisher markers_;

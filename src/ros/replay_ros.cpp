@@ -76,7 +76,7 @@ ReplayRos::ReplayRos(const Parameters& parameters, StopSignal& stop)
   const bool overwrite = parameters.flag("overwrite", false);
   requireReplayFolder(bag_, results_, overwrite);
   folder_ = std::make_unique<record::ResultFolder>(results_, kReplayLaunch, overwrite);
-  if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().options().camera);
+  if (graph_.has(kCameraNode)) display_.showCameras(session_.setup().rigs());
 }
 
 /// A replay waits for the metrics node alone; others may listen.
@@ -95,7 +95,7 @@ void ReplayRos::advertise() {
     offer(id);
   for (const Channel& row : channels()) {
     if (!replayed(row, graph_)) continue;
-    for (const Topic& topic : topicsOf(row, graph_.max_cbv)) offer(topic);
+    for (const Topic& topic : topicsOf(row, graph_)) offer(topic);
   }
   gate_.setReport([](const std::string& text) { ROS_WARN("%s", text.c_str()); });
   acks_ = gate_.subscribe<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
@@ -126,12 +126,12 @@ void ReplayRos::publishAnswers(const msgs::TrafficSnapshot& snapshot) {
   if (graph_.recordsDecisions())  // earlier versions recorded none
     messages.add(ChannelId::kDecisionRecord, shared(punctualRecord(snapshot, session_.answers())));
   const session::ScenarioOptions& options = session_.setup().options();
-  const TickReading reading{options.camera, options.simulation_step};
+  const TickReading reading{session_.setup().rigs(), options.simulation_step};
   for (const auto& [topic, publisher] : topics_) {
     const Channel& row = topic.row();
     if (!replayed(row, graph_)) continue;
     AnyMessage message = messages.find(topic);
-    if (!message && row.derive != nullptr) message = row.derive(messages, reading, topic.slot);
+    if (!message && row.derive != nullptr) message = row.derive(messages, reading, topic);
     if (message) row.type.publish(publisher, message);
   }
   if (topics_.at(ChannelId::kRolloutMarkers).getNumSubscribers() > 0) publishPlans(snapshot);

@@ -82,6 +82,7 @@ SessionGraph graphOf(const session::ScenarioOptions& options, const GraphRequest
   graph.ego_sees = planners::seesImages(options.ego_planner);
   graph.show_cameras = request.show_cameras;
   graph.paced = options.real_time_factor > 0.0;
+  graph.rigs = session::VehicleRigs(options);
   for (const std::string& node :
        participants.empty() ? neededNodes(options, request) : participants) {
     if (node != kEgoPlannerNode || !graph.external_ego) graph.participants.push_back(node);
@@ -103,6 +104,7 @@ SessionGraph graphOf(const msgs::SessionInfo& info) {
   const session::ScenarioOptions options = optionsFromMsg(info);
   graph.max_cbv = static_cast<int>(options.max_cbv);
   graph.paced = options.real_time_factor > 0.0;
+  graph.rigs = session::VehicleRigs(options);
   graph.external_ego = info.external_ego != 0;
   graph.ego_sees = info.ego_sees != 0;
   graph.show_cameras = info.show_cameras != 0;

@@ -46,6 +46,7 @@ struct SessionGraph {
   bool cbvs_see = false;                  ///< the planner of the CBVs needs images
   bool cbvs_guided = false;               ///< the planner of the CBVs follows objectives
   std::string cbv_planner_node = kCbvPlannerNode;
+  session::VehicleRigs rigs = {};  ///< cameras of ego and slots
 
   bool has(const std::string& node) const;
   /// Whether the traffic simulator publishes which answers counted at each decision; observers take

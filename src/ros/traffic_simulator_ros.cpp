@@ -44,7 +44,7 @@ TrafficSimulatorRos::TrafficSimulatorRos(const Parameters& parameters, StopSigna
   folder_ = std::make_unique<record::ResultFolder>(results_, kDeployment, overwrite);
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
-  if (graph_.has(kCameraNode)) display_.showCameras(setup_->options().camera);
+  if (graph_.has(kCameraNode)) display_.showCameras(setup_->rigs());
   book_ = ParticipantBook(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
   paced_answers_ = PacedAnswers(options.simulation_step, setup_->ticksPerDecision());
@@ -108,7 +108,7 @@ void TrafficSimulatorRos::listen() {
       }));
   for (const Channel& row : channels()) {
     if (row.use != Use::kAnswer || !listensTo(row, Party::kSimulator, graph_)) continue;
-    for (const Topic& topic : topicsOf(row, graph_.max_cbv)) listenTo(topic);
+    for (const Topic& topic : topicsOf(row, graph_)) listenTo(topic);
   }
 }
 

@@ -13,6 +13,7 @@ namespace cdiff::session {
 /// The cameras of ego and CBVs in a session, by slot.
 class VehicleRigs {
  public:
+  /// The default front camera alone for every vehicle.
   VehicleRigs() = default;
   /// As the scenario says: the rigs that the planners name unless it sets others.
   explicit VehicleRigs(const ScenarioOptions& options);
@@ -26,7 +27,7 @@ class VehicleRigs {
   std::size_t indexOf(int slot) const;
 
  private:
-  std::vector<rendering::CameraRig> rigs_ = {{}, {}};
+  std::vector<rendering::CameraRig> rigs_ = {rendering::frontRig({}), rendering::frontRig({})};
 };
 
 }  // namespace cdiff::session

@@ -25,7 +25,8 @@ constexpr int kTableTop = kHeadHeight + kViewHeight;
 constexpr int kRowHeight = 40;
 constexpr int kRows = 5;  // of vehicles that the table shows
 constexpr int kBarWidth = 84;
-constexpr double kLongestTime = 100.0;  // to a collision that is shown [s]
+constexpr std::int64_t kWidestView = 213;  // of the ego's cameras
+constexpr double kLongestTime = 100.0;     // to a collision that is shown [s]
 // Left edges of the table's columns.
 constexpr int kNameX = 30;
 constexpr int kSpeedX = 190;
@@ -102,7 +103,12 @@ VideoFrame::VideoFrame(const session::SessionSetup& setup)
       camera_(record::cameraForPeople(setup, kViewWidth, kViewHeight)),
       map_(setup, {kFrameWidth - kViewWidth, kFrameHeight - kHeadHeight}),
       contacts_(setup),
-      picture_(kFrameHeight, kFrameWidth, CV_8UC3) {}
+      picture_(kFrameHeight, kFrameWidth, CV_8UC3) {
+  const auto cameras = static_cast<std::int64_t>(setup.rigs().of(traffic::kEgoSlot).cameras.size());
+  if (cameras < 2) return;
+  const std::int64_t width = std::min<std::int64_t>(kWidestView, kViewWidth / cameras);
+  ego_cameras_.emplace(record::rigForPeople(setup, width, width * 3 / 5));
+}
 
 void VideoFrame::observe(const session::TickRecord& record) {
   snapshot_ = *record.snapshot;
@@ -131,6 +137,7 @@ void VideoFrame::drawScene() {
                               kFrameHeight - kHeadHeight)),
             contacts_.marks());
   drawFrontView();
+  if (ego_cameras_) drawEgoCameras();
   drawTable();
   drawHead();
 }
@@ -160,6 +167,23 @@ void VideoFrame::drawFrontView() {
               ink::kSoft);
   }
   if (const ContactMark* contact = contacts_.ofEgo()) drawContact(view, *contact);
+}
+
+void VideoFrame::drawEgoCameras() {
+  const Vehicle* ego = snapshot_.ego();
+  if (ego == nullptr || !isPlaced(*ego)) return;
+  const std::vector<rendering::RigCamera>& cameras = ego_cameras_->rig().cameras;
+  int x = kViewWidth;
+  std::size_t index = 0;
+  for (rendering::RenderedView& view : ego_cameras_->render(snapshot_, *ego)) {
+    traffic::CameraImage& image = view.image;
+    const cv::Rect place(x, kFrameHeight - image.height, image.width, image.height);
+    const cv::Mat red_first(image.height, image.width, CV_8UC3, image.rgb.data());
+    cv::cvtColor(red_first, picture_(place), cv::COLOR_RGB2BGR);
+    writeText(picture_, cutText(cameras[index++].name, image.width - 8, 0.4),
+              {place.x + 4, place.y + 14}, 0.4, ink::kPage);
+    x += image.width;
+  }
 }
 
 void VideoFrame::drawCbvView(cv::Mat view, const Vehicle& cbv, const std::string& note) {

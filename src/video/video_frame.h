@@ -81,6 +81,8 @@ class VideoFrame {
   void drawScene();
   void drawHead();
   void drawFrontView();
+  /// What the ego's cameras see, side by side, where it has several.
+  void drawEgoCameras();
   void drawCbvView(cv::Mat view, const traffic::Vehicle& cbv, const std::string& note);
   void drawContact(cv::Mat view, const ContactMark& contact) const;
   void drawTable();
@@ -89,6 +91,7 @@ class VideoFrame {
 
   const session::SessionSetup& setup_;
   rendering::FrontCamera camera_;
+  std::optional<rendering::RigRenderer> ego_cameras_;  ///< of a rig of several
   VideoMap map_;
   traffic::TrafficSnapshot snapshot_;  ///< the last one
   FollowedCbv followed_;

@@ -121,19 +121,20 @@ TEST(RigRenderer, InstancesMarkExactlyTheVehicle) {
       snapshotOf({ego, vehicleAt("hidden", 60.0, 0.0), vehicleAt("other", 12.75, 0.0)});
   const RenderedView view = renderer.render(snapshot, ego, Labels::kClassesAndInstances).front();
   ASSERT_EQ(view.instances.size(), 160u * 96u);
-  // Its rear at depth 10 spans columns 79.5 +- 7.2, so samples of columns 73 to 86. From the body's
-  // lower edge, 0.2 m high, row 57.1, to the roof's rear edge, 1.5 m high at depth 10.63, row
-  // 46.747: samples of rows 46 (its lower half, a tie that the vehicle wins) to 57 (its upper
-  // half). Wheels reach the road at depth 10.54, row 58.1; the far vehicle is behind it.
+  // Its rear at depth 10 spans columns 79.5 +- 7.2; a pixel's samples lie 0.25 beside its middle:
+  // columns 73 to 86. Upwards it ends at the roof's rear edge, 1.5 m high at depth 10.63: row
+  // 47.5 - 0.753 = 46.747, so that both samples of row 47 lie on it. Downwards it ends where the
+  // rear axle's wheels touch the road at depth 10.54: row 47.5 + 10.626 = 58.126, so that the upper
+  // samples of row 58 lie on it, a tie that the vehicle wins. The far vehicle is behind it.
   const auto at = [&](int column, int row) {
     return view.instances[static_cast<std::size_t>(row * 160 + column)];
   };
   for (int column = 0; column < 160; ++column)
     EXPECT_EQ(at(column, 56), column >= 73 && column <= 86 ? 3 : 0) << column;
-  for (int row = 0; row < 96; ++row) EXPECT_EQ(at(79, row), row >= 46 && row <= 57 ? 3 : 0) << row;
+  for (int row = 0; row < 96; ++row) EXPECT_EQ(at(79, row), row >= 47 && row <= 58 ? 3 : 0) << row;
   for (int row = 0; row < 96; ++row) {
     for (int column = 0; column < 160; ++column) {
-      const bool inside = column >= 73 && column <= 86 && row >= 46 && row <= 58;
+      const bool inside = column >= 73 && column <= 86 && row >= 47 && row <= 58;
       EXPECT_TRUE(inside || at(column, row) == 0) << column << " " << row;
     }
   }

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/GuidanceReport.h"
 #include "ros/bags/recorded_channels.h"
 #include "ros/lockstep/tick_answers.h"
+#include "ros/messages/channel_conversions.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/topics.h"
 #include "ros/sample_messages.h"
@@ -129,10 +130,12 @@ TEST(TickMessages, AnAnswerBecomesMessagesAndComesBack) {
   TickValues values{snapshot, nullptr, 0.05, true};
   values.answers = {sampleAnswer()};
   values.images = &images;
-  const TickMessages messages = makeMessages(values, 2);
   TickReading reading;
-  reading.camera.width = 2;
-  reading.camera.height = 1;
+  rendering::CameraOptions camera;
+  camera.width = 2;
+  camera.height = 1;
+  reading.rigs = session::VehicleRigs::front(camera);
+  const TickMessages messages = makeMessages(values, 2, reading.rigs);
   const auto answer = readAnswer(messages, 1, "bg_7", reading);
   ASSERT_TRUE(answer.has_value());
   EXPECT_EQ(answer->action.action, (traffic::ControlAction{0.1, -0.2, 0.0}));
@@ -142,23 +145,74 @@ TEST(TickMessages, AnAnswerBecomesMessagesAndComesBack) {
   EXPECT_EQ(answer->action.state_mismatch, 0.25);
   EXPECT_EQ(answer->planner, "cbv:sample");
   EXPECT_EQ(answer->latency_ms, 1.5);
-  ASSERT_TRUE(answer->image.has_value());
-  EXPECT_EQ(answer->image->rgb, images[0].image.rgb);
+  ASSERT_EQ(answer->images.size(), 1U);
+  EXPECT_EQ(answer->images[0].slot, 1);
+  EXPECT_EQ(answer->images[0].camera, "front");
+  EXPECT_EQ(answer->images[0].image.rgb, images[0].image.rgb);
   EXPECT_FALSE(readAnswer(messages, 0, "bg_7", reading).has_value());
+}
+
+/// A rig of two cameras of 2 x 1 pixels for the CBVs.
+session::VehicleRigs twoCameras() {
+  session::ScenarioOptions options;
+  options.cbv_rig.preset = rendering::kOwnRig;
+  options.cbv_rig.cameras.resize(2);
+  options.cbv_rig.cameras[1].name = "rear";
+  for (rendering::RigCamera& camera : options.cbv_rig.cameras) {
+    camera.width = 2;
+    camera.height = 1;
+  }
+  return session::VehicleRigs(options);
+}
+
+TEST(TickMessages, EachCameraHasItsTopicAndComesBackInTheRigsOrder) {
+  const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
+  const session::VehicleRigs rigs = twoCameras();
+  const std::vector<session::SlotImage> images = {{1, {2, 1, 4, {1, 2, 3, 4, 5, 6}}, "front"},
+                                                  {1, {2, 1, 4, {6, 5, 4, 3, 2, 1}}, "rear"}};
+  TickValues values{snapshot, nullptr, 0.05, true};
+  values.answers = {sampleAnswer()};
+  values.images = &images;
+  TickMessages messages = makeMessages(values, 2, rigs);
+  const auto rear = messages.get<sensor_msgs::Image>(imageOf(1, "rear"));
+  ASSERT_TRUE(rear);
+  EXPECT_EQ(imageOf(1, "rear").name(), "cbv_1/camera_rear/image_raw");
+  EXPECT_EQ(cameraInfoOf(kEgoSlot, "rear").name(), "ego/camera_rear/camera_info");
+  EXPECT_EQ(rear->header.frame_id, "bg_7/camera_rear_optical");
+  const TickReading reading{rigs, 0.05};
+  const auto answer = readAnswer(messages, 1, "bg_7", reading);
+  ASSERT_TRUE(answer.has_value());
+  ASSERT_EQ(answer->images.size(), 2U);
+  EXPECT_EQ(answer->images[1].camera, "rear");
+  EXPECT_EQ(answer->images[1].image.rgb, images[1].image.rgb);
+  const auto info = messageAs<sensor_msgs::CameraInfo>(
+      deriveCameraInfo(messages, reading, cameraInfoOf(1, "rear")));
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->width, 2U);
+  EXPECT_EQ(info->header.frame_id, "bg_7/camera_rear_optical");
+}
+
+TEST(Topics, ARowOfCamerasHasATopicPerCamera) {
+  const Channel& row = channel(ChannelId::kCbvImage);
+  EXPECT_EQ(namesOf(topicsOf(row, 2, twoCameras())),
+            (std::vector<std::string>{"cbv_0/camera/image_raw", "cbv_0/camera_rear/image_raw",
+                                      "cbv_1/camera/image_raw", "cbv_1/camera_rear/image_raw"}));
+  EXPECT_EQ(namesOf(topicsOf(channel(ChannelId::kEgoImage), 2, twoCameras())),
+            std::vector<std::string>{"ego/camera/image_raw"});
 }
 
 TEST(TickMessages, OnlyAGuidedPlannerReportsGuidance) {
   const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
   TickValues values{snapshot, nullptr, 0.05, false};
   values.answers = {sampleAnswer()};
-  EXPECT_FALSE(makeMessages(values, 2).holds(ChannelId::kGuidance));
+  EXPECT_FALSE(makeMessages(values, 2, {}).holds(ChannelId::kGuidance));
   values.cbvs_guided = true;
-  const auto report = makeMessages(values, 2).get<msgs::GuidanceReport>(ChannelId::kGuidance);
+  const auto report = makeMessages(values, 2, {}).get<msgs::GuidanceReport>(ChannelId::kGuidance);
   ASSERT_TRUE(report);
   ASSERT_EQ(report->vehicles.size(), 1U);
   EXPECT_EQ(report->planner_latency_ms, 1.5);
   values.answers[0].action.slot = kEgoSlot;  // no CBV to drive
-  EXPECT_FALSE(makeMessages(values, 2).holds(ChannelId::kGuidance));
+  EXPECT_FALSE(makeMessages(values, 2, {}).holds(ChannelId::kGuidance));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(ImageConversions, WrongImagesAreErrorsThatNameTheTopic) {
 TEST(ImageConversions, CameraInfoIsThePinhole) {
   std_msgs::Header header;
   header.frame_id = "bg_7/camera_optical";
-  const sensor_msgs::CameraInfo info = toCameraInfoMsg({}, header);
+  const sensor_msgs::CameraInfo info = toCameraInfoMsg(rendering::frontCamera({}), header);
   // 160 x 96, 90 degrees: f = 80 / tan 45 degrees, center (159 / 2, 95 / 2).
   const double f = 80.0 / std::tan(std::atan(1.0));
   EXPECT_NEAR(info.K[0], f, 1e-12);
@@ -148,7 +148,7 @@ class PlanSeeing : public ::testing::Test {
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(4);
   std::vector<planning::PlanningTask> tasks = {{1, &snapshot.vehicles[1], nullptr},
                                                {3, &snapshot.vehicles[2], nullptr}};
-  ImageInbox inbox{{}, 0.05};
+  ImageInbox inbox{session::VehicleRigs(), 0.05};
   SeeingPlanner planner;
 };
 
@@ -210,8 +210,34 @@ TEST_F(PlanSeeing, StatisticsCountFaultsByKindAndMissedDeadlines) {
   EXPECT_EQ(status.message, "3 fail-safe actions");
 }
 
+TEST_F(PlanSeeing, AMissingFrameOfARigNamesCameraAndTopic) {
+  session::ScenarioOptions options;
+  options.cbv_rig.preset = rendering::kFrontThreeRig;
+  inbox = ImageInbox(session::VehicleRigs(options), 0.05);
+  const auto imageFrom = [](const std::string& camera, const std::string& vehicle) {
+    return boost::make_shared<const sensor_msgs::Image>(toMsg(
+        {160, 96, 4, std::vector<std::uint8_t>(3 * 160 * 96, 64)}, timeOf(4), vehicle, camera));
+  };
+  for (const std::string camera : {"front", "front_left", "front_right"})
+    inbox.add(3, imageFrom(camera, "bg_9"), camera);
+  inbox.add(1, imageFrom("front", "bg_7"), "front");
+  inbox.add(1, imageFrom("front_right", "bg_7"), "front_right");
+  EXPECT_TRUE(inbox.complete(3, 4));
+  EXPECT_FALSE(inbox.complete(1, 4));
+  const PlannerDecision decision = decide();
+  EXPECT_EQ(decision.actions[0].action, traffic::ControlAction::failSafe());
+  EXPECT_EQ(decision.actions[0].fault,
+            "no image of camera 'front_left' on cbv_1/camera_front_left/image_raw for tick 4");
+  EXPECT_EQ(decision.actions[1].action.throttle, 0.25);
+  EXPECT_EQ(decision.missing, 1);
+  inbox.add(1, imageFrom("front", "bg_7"), "front_left");  // the frame of another camera
+  EXPECT_EQ(decide().actions[0].fault,
+            "image on cbv_1/camera_front_left/image_raw has frame 'bg_7/camera_optical'; expected "
+            "'bg_7/camera_front_left_optical'");
+}
+
 TEST(ImageInbox, ForgetsOlderTicksOnly) {
-  ImageInbox inbox({}, 0.05);
+  ImageInbox inbox(session::VehicleRigs(), 0.05);
   inbox.add(0, plainImage(2, "a", 1));
   inbox.add(0, plainImage(4, "a", 2));
   inbox.forgetBefore(4);

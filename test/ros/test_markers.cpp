@@ -79,7 +79,8 @@ TEST(Display, CameraSitsOnTheMountAndLooksDownTheRoad) {
   camera.mount_forward = 0.5;
   camera.mount_height = 1.4;
   camera.pitch = 30.0;
-  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), &camera);
+  const session::VehicleRigs rigs = session::VehicleRigs::front(camera);
+  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), &rigs);
   ASSERT_EQ(message.transforms.size(), 6U);  // base_link of two, then camera and optical frame each
   const auto& mount = message.transforms[4];
   EXPECT_EQ(mount.header.frame_id, "bg_7/base_link");
@@ -98,6 +99,27 @@ TEST(Display, CameraSitsOnTheMountAndLooksDownTheRoad) {
   EXPECT_TRUE((total * Eigen::Vector3d::UnitZ())
                   .isApprox(Eigen::Vector3d(std::sqrt(3.0) / 2.0, 0.0, -0.5), 1e-12));
   EXPECT_TRUE((total * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitY(), 1e-12));
+}
+
+TEST(Display, EachCameraOfARigHasItsFrames) {
+  session::ScenarioOptions options;
+  options.ego_rig.preset = rendering::kBench2driveRig;
+  const session::VehicleRigs rigs(options);
+  const tf2_msgs::TFMessage message = toTfMsg(test::sampleSnapshot(4), &rigs);
+  // base_link of two, then camera and optical frame of the ego's six and of the CBV's one.
+  ASSERT_EQ(message.transforms.size(), 16U);
+  EXPECT_EQ(message.transforms[2].child_frame_id, "ego/camera");
+  const auto& mount = message.transforms[4];
+  EXPECT_EQ(mount.header.frame_id, "ego/base_link");
+  EXPECT_EQ(mount.child_frame_id, "ego/camera_front_left");
+  EXPECT_EQ(mount.transform.translation.x, 0.27);
+  EXPECT_EQ(mount.transform.translation.y, 0.55);
+  EXPECT_EQ(mount.transform.translation.z, 1.6);
+  // Turned by 55 degrees to the left about z.
+  EXPECT_NEAR(mount.transform.rotation.z, std::sin(27.5 * M_PI / 180.0), 1e-12);
+  EXPECT_NEAR(mount.transform.rotation.w, std::cos(27.5 * M_PI / 180.0), 1e-12);
+  EXPECT_EQ(message.transforms[5].child_frame_id, "ego/camera_front_left_optical");
+  EXPECT_EQ(message.transforms[14].child_frame_id, "bg_7/camera");
 }
 
 TEST(Markers, RolloutsAreLinesBySlot) {

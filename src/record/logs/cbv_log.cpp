@@ -87,6 +87,17 @@ rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::
   return {options, setup.network()};
 }
 
+rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int64_t width,
+                                    std::int64_t height) {
+  rendering::CameraRig rig = setup.rigs().of(traffic::kEgoSlot);
+  rig.blind = false;
+  for (rendering::RigCamera& camera : rig.cameras) {
+    camera.width = width;
+    camera.height = height;
+  }
+  return {rig, setup.network()};
+}
+
 FrontViewLog::FrontViewLog(const session::SessionSetup& setup)
     : setup_(setup), ticks_per_view_(ticksPerView(setup.options())) {}
 
@@ -243,7 +254,18 @@ void ApproachLog::compare(const traffic::TrafficSnapshot& snapshot, const traffi
   best.center_distance = (ego.state.position - cbv.state.position).norm();
   best.snapshot = snapshot;
   best.cbv_image = imageOf(cbv.cbv_slot);
-  best.ego_image = imageOf(-1);
+  best.ego_image = imageOf(traffic::kEgoSlot);
+  best.cbv_views = latestViews(cbv.cbv_slot);
+  best.ego_views = latestViews(traffic::kEgoSlot);
+}
+
+std::vector<session::SlotImage> ApproachLog::latestViews(int slot) const {
+  std::vector<session::SlotImage> views;
+  for (const session::SlotImage& seen : images_) {
+    if (seen.slot == slot && isWhole(seen.image)) views.push_back(seen);
+  }
+  if (views.size() == 1) views.clear();
+  return views;
 }
 
 traffic::CameraImage ApproachLog::imageOf(int slot) const {

@@ -48,6 +48,9 @@ struct FrontView {
 /// The camera of the planners with `width` x `height` pixels.
 rendering::FrontCamera cameraForPeople(const session::SessionSetup& setup, std::int64_t width,
                                        std::int64_t height);
+/// The ego's cameras with `width` x `height` pixels each.
+rendering::RigRenderer rigForPeople(const session::SessionSetup& setup, std::int64_t width,
+                                    std::int64_t height);
 
 /// The front view of each CBV through the session, drawn for people: 320 x 192 pixels, JPEG, evenly
 /// spaced in time, as many as a fixed number of bytes holds.
@@ -142,6 +145,9 @@ struct Approach {
   traffic::CameraImage
       cbv_image;  ///< image of the latest decision; empty when its planner does not see
   traffic::CameraImage ego_image;  ///< likewise of the ego
+  /// The images of all cameras of the latest decision; empty for rigs of one camera.
+  std::vector<session::SlotImage> cbv_views;
+  std::vector<session::SlotImage> ego_views;
 
   double time() const { return snapshot.time; }
 };
@@ -156,6 +162,8 @@ class ApproachLog {
   const std::vector<Approach>& approaches() const { return approaches_; }
   /// The approach of a vehicle, or nullptr.
   const Approach* find(const std::string& vehicle_id) const;
+  /// The images of all cameras of a slot's vehicle at the latest decision; empty for rigs of one.
+  std::vector<session::SlotImage> latestViews(int slot) const;
 
  private:
   void compare(const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle& ego,

@@ -44,7 +44,7 @@ RecordedTopic recordedTopic(const BagConnection& connection, const std::string& 
                             const SessionGraph& graph, bool all_images) {
   for (const Channel& row : channels()) {
     if (!isRead(row, graph, all_images)) continue;
-    for (const Topic& topic : topicsOf(row, graph.max_cbv)) {
+    for (const Topic& topic : topicsOf(row, graph)) {
       if (topic.name() == name) return {topic, wrongType(connection, row.type)};
     }
   }

@@ -63,7 +63,7 @@ RecordedSession::RecordedSession(const std::filesystem::path& bag, RecordedImage
     setup_ = setupOf(*info_);
     const session::ScenarioOptions& options = setup_->options();
     graph_ = info_->participants.empty() ? graphOf(options, GraphRequest()) : graphOf(*info_);
-    answers_ = TickAnswers(options.simulation_step, awaitedInBag(graph_), options.camera);
+    answers_ = TickAnswers(options.simulation_step, awaitedInBag(graph_), setup_->rigs());
   } catch (const std::exception& error) {
     std::string text = "bag '" + bag.string() + "': " + error.what();
     for (const std::string& damage : reader_.damage()) text += "; " + damage;

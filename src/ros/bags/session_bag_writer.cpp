@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, Naming naming)
     : file_(file),
       max_cbv_(static_cast<int>(options.max_cbv)),
-      reading_{options.camera, options.simulation_step},
+      reading_{session::VehicleRigs(options), options.simulation_step},
       naming_(std::move(naming)),
       bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
@@ -81,10 +81,10 @@ void BagFile::writeTick(const TickMessages& tick) {
   const ::ros::Time stamp = bagStamp(snapshot->header.stamp);
   for (const Channel& row : channels()) {
     if (row.recorded != Recorded::kTick && row.recorded != Recorded::kDecision) continue;
-    for (const Topic& topic : topicsOf(row, max_cbv_)) {
+    for (const Topic& topic : topicsOf(row, max_cbv_, reading_.rigs)) {
       AnyMessage message = tick.find(topic);
       if (!message && row.derive != nullptr && snapshot->decision_tick)
-        message = row.derive(tick, reading_, topic.slot);
+        message = row.derive(tick, reading_, topic);
       if (message) put(topic, stamp, message);
     }
   }
@@ -133,7 +133,7 @@ void SessionBagWriter::observe(const session::TickRecord& record) {
     values.answers = answersOf(record);
     values.images = record.images;
   }
-  TickMessages messages = makeMessages(values, static_cast<int>(options.max_cbv));
+  TickMessages messages = makeMessages(values, static_cast<int>(options.max_cbv), setup_.rigs());
   if (const auto report = reporter_.observe(*record.snapshot, record.selection))
     messages.add(ChannelId::kMetrics, report);
   file_.write(messages);

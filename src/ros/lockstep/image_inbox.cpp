@@ -9,6 +9,7 @@
 #include "ros/messages/conversions.h"
 #include "ros/messages/topics.h"
 #include "session/closed_loop.h"
+#include "session/vehicle_cameras.h"
 
 namespace cdiff::ros {
 namespace {
@@ -25,8 +26,10 @@ PlannedAction failSafe(const PlanningTask& task, const std::string& fault) {
   return action;
 }
 
-std::string missingText(int slot, std::uint64_t tick) {
-  return "no image on " + imageOf(slot).name() + " for tick " + std::to_string(tick);
+std::string missingText(const Topic& topic, std::uint64_t tick) {
+  const std::string of =
+      topic.camera == rendering::kFrontCamera ? "" : " of camera '" + topic.camera + "'";
+  return "no image" + of + " on " + topic.name() + " for tick " + std::to_string(tick);
 }
 
 /// [s] of simulated time.
@@ -34,49 +37,56 @@ double ageOf(const sensor_msgs::Image& image, const traffic::TrafficSnapshot& sn
   return (toStamp(snapshot.time) - image.header.stamp).toSec();
 }
 
-/// Puts the images into `images` and points the tasks to them; answers each task's fault.
-std::vector<std::string> attach(const ImageInbox& inbox, const traffic::TrafficSnapshot& snapshot,
-                                std::vector<PlanningTask>& tasks,
-                                std::vector<session::SlotImage>& images,
-                                PlannerDecision& decision) {
-  std::vector<std::string> faults(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const auto message = inbox.find(tasks[i].slot, snapshot.tick);
+/// Appends the images of a task's vehicle; answers its fault, which is empty when all came and are
+/// as expected.
+std::string take(const ImageInbox& inbox, const traffic::TrafficSnapshot& snapshot,
+                 const PlanningTask& task, std::vector<session::SlotImage>& images,
+                 PlannerDecision& decision) {
+  for (const std::string& camera : inbox.rigs().of(task.slot).names()) {
+    const auto message = inbox.find(task.slot, snapshot.tick, camera);
     if (!message) {
-      faults[i] = missingText(tasks[i].slot, snapshot.tick);
       ++decision.missing;
-      continue;
+      return missingText(imageOf(task.slot, camera), snapshot.tick);
     }
     try {
       images.push_back(
-          {tasks[i].slot, inbox.read(tasks[i].slot, tasks[i].vehicle->id, snapshot.tick)});
+          {task.slot, inbox.read(task.slot, task.vehicle->id, snapshot.tick, camera), camera});
       decision.image_age = std::max(decision.image_age, ageOf(*message, snapshot));
     } catch (const core::InputError& error) {
-      faults[i] = error.what();
       ++decision.refused;
+      return error.what();
     }
   }
-  session::attachImages(images, tasks);
-  return faults;
+  return "";
 }
 
 }  // namespace
 
-void ImageInbox::add(int slot, const sensor_msgs::Image::ConstPtr& message) {
-  images_[nearestTick(message->header.stamp, simulation_step_)].emplace(slot, message);
+void ImageInbox::add(int slot, const sensor_msgs::Image::ConstPtr& message,
+                     const std::string& camera) {
+  images_[nearestTick(message->header.stamp, simulation_step_)].emplace(std::pair(slot, camera),
+                                                                        message);
 }
 
-sensor_msgs::Image::ConstPtr ImageInbox::find(int slot, std::uint64_t tick) const {
+sensor_msgs::Image::ConstPtr ImageInbox::find(int slot, std::uint64_t tick,
+                                              const std::string& camera) const {
   const auto at_tick = images_.find(tick);
   if (at_tick == images_.end()) return nullptr;
-  const auto found = at_tick->second.find(slot);
+  const auto found = at_tick->second.find({slot, camera});
   return found == at_tick->second.end() ? nullptr : found->second;
 }
 
-traffic::CameraImage ImageInbox::read(int slot, const std::string& vehicle_id,
-                                      std::uint64_t tick) const {
-  return fromMsg(*images_.at(tick).at(slot), {imageOf(slot).name(), vehicle_id, camera_.width,
-                                              camera_.height, simulation_step_});
+bool ImageInbox::complete(int slot, std::uint64_t tick) const {
+  const std::vector<rendering::RigCamera>& cameras = rigs_.of(slot).cameras;
+  return std::all_of(cameras.begin(), cameras.end(), [&](const rendering::RigCamera& camera) {
+    return find(slot, tick, camera.name) != nullptr;
+  });
+}
+
+traffic::CameraImage ImageInbox::read(int slot, const std::string& vehicle_id, std::uint64_t tick,
+                                      const std::string& camera) const {
+  return fromMsg(*images_.at(tick).at({slot, camera}),
+                 expectedOf(imageOf(slot, camera), vehicle_id, {rigs_, simulation_step_}));
 }
 
 void ImageInbox::forgetBefore(std::uint64_t tick) {
@@ -94,13 +104,14 @@ PlannerDecision planBlind(planning::Planner& planner, const traffic::TrafficSnap
 PlannerDecision planSeeing(planning::Planner& planner, const traffic::TrafficSnapshot& snapshot,
                            const std::vector<PlanningTask>& tasks, const ImageInbox& inbox) {
   PlannerDecision decision;
-  std::vector<PlanningTask> with_images = tasks;
   std::vector<session::SlotImage> images;
-  const std::vector<std::string> faults = attach(inbox, snapshot, with_images, images, decision);
+  std::vector<std::string> faults;
   std::vector<PlanningTask> seeing;
-  for (const PlanningTask& task : with_images) {
-    if (task.image != nullptr) seeing.push_back(task);
+  for (const PlanningTask& task : tasks) {
+    faults.push_back(take(inbox, snapshot, task, images, decision));
+    if (faults.back().empty()) seeing.push_back(task);
   }
+  session::attachImages(images, inbox.rigs(), seeing);
   std::vector<PlannedAction> planned;
   if (!seeing.empty()) {
     planned = session::planTimed(planner, snapshot, seeing, decision.latency_ms, decision.fault);

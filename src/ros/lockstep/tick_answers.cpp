@@ -31,7 +31,7 @@ std::vector<session::PlannerLatency> latenciesOf(const std::vector<Answer>& answ
 std::vector<session::SlotImage> imagesOf(const std::vector<Answer>& answers) {
   std::vector<session::SlotImage> images;
   for (const Answer& answer : answers) {
-    if (answer.image) images.push_back({answer.action.slot, *answer.image});
+    images.insert(images.end(), answer.images.begin(), answer.images.end());
   }
   return images;
 }
@@ -42,19 +42,19 @@ AnyMessage TickMessages::find(const Topic& topic) const {
 }
 
 bool TickMessages::holds(ChannelId id) const {
-  const auto first = messages_.lower_bound({id, kEgoSlot});
+  const auto first = messages_.lower_bound({id, kEgoSlot, ""});
   return first != messages_.end() && first->first.id == id;
 }
 
 AnyMessage makeMessage(const Topic& topic, const TickValues& values) {
   const MakeMessage make = topic.row().make;
-  return make == nullptr ? nullptr : make(values, topic.slot);
+  return make == nullptr ? nullptr : make(values, topic);
 }
 
-TickMessages makeMessages(const TickValues& values, int max_cbv) {
+TickMessages makeMessages(const TickValues& values, int max_cbv, const session::VehicleRigs& rigs) {
   TickMessages messages;
   for (const Channel& row : channels()) {
-    for (const Topic& topic : topicsOf(row, max_cbv)) {
+    for (const Topic& topic : topicsOf(row, max_cbv, rigs)) {
       if (const AnyMessage message = makeMessage(topic, values)) messages.add(topic, message);
     }
   }
@@ -70,8 +70,10 @@ std::optional<Answer> readAnswer(const TickMessages& tick, int slot, const std::
   const Scope other = slot == kEgoSlot ? Scope::kSlot : Scope::kEgo;
   for (const Channel& row : channels()) {
     if (row.take == nullptr || row.scope == other) continue;
-    const Topic topic(row.id, row.scope == Scope::kSlot ? slot : kEgoSlot);
-    if (const AnyMessage message = tick.find(topic)) row.take(message, reading, answer);
+    for (const Topic& topic :
+         topicsOfSlot(row, row.scope == Scope::kSlot ? slot : kEgoSlot, reading.rigs)) {
+      if (const AnyMessage message = tick.find(topic)) row.take({message, topic}, reading, answer);
+    }
   }
   return answer;
 }
@@ -100,8 +102,8 @@ TickAnswers::TickAnswers(double simulation_step)
     : TickAnswers(simulation_step, awaitedBy(Party::kSimulator, SessionGraph())) {}
 
 TickAnswers::TickAnswers(double simulation_step, ChannelSet awaited,
-                         const rendering::CameraOptions& camera)
-    : awaited_(std::move(awaited)), reading_{camera, simulation_step} {}
+                         const session::VehicleRigs& rigs)
+    : awaited_(std::move(awaited)), reading_{rigs, simulation_step} {}
 
 std::uint64_t TickAnswers::add(const Topic& topic, const AnyMessage& message,
                                std::uint64_t otherwise) {
@@ -135,7 +137,10 @@ std::vector<Topic> TickAnswers::missingOf(int slot, std::uint64_t tick, bool wit
   for (const ChannelId id : awaited_) {
     const Channel& row = channel(id);
     const bool needed = row.need == Need::kVehicle || (row.need == Need::kSight && !with_fault);
-    if (row.scope == scope && needed && !has({id, slot}, tick)) topics.emplace_back(id, slot);
+    if (row.scope != scope || !needed) continue;
+    for (const Topic& topic : topicsOfSlot(row, slot, reading_.rigs)) {
+      if (!has(topic, tick)) topics.push_back(topic);
+    }
   }
   return topics;
 }

@@ -15,10 +15,10 @@
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "e2e_cdiff/map/road_network.h"
 #include "e2e_cdiff/planning/planner.h"
-#include "e2e_cdiff/rendering/camera_options.h"
 #include "ros/messages/topics.h"
 #include "sensor_msgs/Image.h"
 #include "session/session_observer.h"
+#include "session/vehicle_rigs.h"
 
 namespace cdiff::ros {
 
@@ -27,11 +27,11 @@ namespace cdiff::ros {
 /// A planner's answer for one vehicle at one decision.
 struct Answer {
   planning::PlannedAction action;
-  std::string planner;                        ///< "ego:NAME" or "cbv:NAME"
-  double latency_ms = 0.0;                    ///< wall time of the planning call [ms]
-  std::string fault;                          ///< empty when none
-  bool drove = true;                          ///< false where it came too late to drive
-  std::optional<traffic::CameraImage> image;  ///< what the vehicle saw, where it came
+  std::string planner;                     ///< "ego:NAME" or "cbv:NAME"
+  double latency_ms = 0.0;                 ///< wall time of the planning call [ms]
+  std::string fault;                       ///< empty when none
+  bool drove = true;                       ///< false where it came too late to drive
+  std::vector<session::SlotImage> images;  ///< what the vehicle saw, as far as it came
 };
 
 /// The actions of answers that drove.
@@ -77,14 +77,14 @@ struct TickValues {
 
 /// What it takes to read messages.
 struct TickReading {
-  rendering::CameraOptions camera;  ///< camera whose images are expected
-  double simulation_step = 0.05;    ///< [s]
+  session::VehicleRigs rigs;      ///< cameras whose images are expected
+  double simulation_step = 0.05;  ///< [s]
 };
 
 /// The message of a topic, made of a tick's values; nullptr where they hold none.
 AnyMessage makeMessage(const Topic& topic, const TickValues& values);
 /// The messages of all channels that are made of a tick's values.
-TickMessages makeMessages(const TickValues& values, int max_cbv);
+TickMessages makeMessages(const TickValues& values, int max_cbv, const session::VehicleRigs& rigs);
 
 /// The answer of a planner for a vehicle as far as messages of the tick speak of it; nullopt where
 /// there is no control for it.
@@ -105,9 +105,9 @@ class TickAnswers {
 
   /// Waits for selection and controls; `simulation_step` [s] turns a stamp without tick into one.
   explicit TickAnswers(double simulation_step = 0.05);
-  /// `awaited`: channels that a decision needs; `camera` says what images must be like.
-  TickAnswers(double simulation_step, ChannelSet awaited,
-              const rendering::CameraOptions& camera = {});
+  /// `awaited`: channels that a decision needs; `rigs` say which images, and what they must be
+  /// like.
+  TickAnswers(double simulation_step, ChannelSet awaited, const session::VehicleRigs& rigs = {});
 
   /// Keeps a message for the tick that it is of; one that carries a stamp but no tick counts for
   /// the tick of its stamp, one with neither for `otherwise`. The first of a tick and topic counts.
@@ -132,6 +132,7 @@ class TickAnswers {
   Rollout rollout(int slot, std::uint64_t tick) const {
     return get<::e2e_cdiff::Rollout>({ChannelId::kCbvRollout, slot}, tick);
   }
+  /// Of the front camera.
   Image image(int slot, std::uint64_t tick) const {
     return get<sensor_msgs::Image>(imageOf(slot), tick);
   }

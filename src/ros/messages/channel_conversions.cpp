@@ -3,6 +3,7 @@
 #include "ros/messages/channel_conversions.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/text.h"
 #include "cv_bridge/cv_bridge.h"
@@ -41,9 +42,9 @@ void checkShape(const sensor_msgs::Image& message, const ExpectedImage& expected
 
 void checkOrigin(const sensor_msgs::Image& message, const ExpectedImage& expected,
                  std::uint64_t tick) {
-  if (message.header.frame_id != opticalFrame(expected.vehicle_id)) {
-    refuse(expected, "has frame '" + message.header.frame_id + "'; expected '" +
-                         opticalFrame(expected.vehicle_id) + "'");
+  const std::string frame = opticalFrame(expected.vehicle_id, expected.camera);
+  if (message.header.frame_id != frame) {
+    refuse(expected, "has frame '" + message.header.frame_id + "'; expected '" + frame + "'");
   }
   if (toStamp(static_cast<double>(tick) * expected.simulation_step) != message.header.stamp) {
     refuse(expected, "has stamp " + core::formatFixed(message.header.stamp.toSec(), 9) +
@@ -54,13 +55,23 @@ void checkOrigin(const sensor_msgs::Image& message, const ExpectedImage& expecte
 
 }  // namespace
 
-std::string opticalFrame(const std::string& vehicle_id) { return vehicle_id + "/camera_optical"; }
+std::string opticalFrame(const std::string& vehicle_id, const std::string& camera) {
+  return cameraFrame(vehicle_id, camera) + "_optical";
+}
+
+ExpectedImage expectedOf(const Topic& topic, const std::string& vehicle_id,
+                         const TickReading& reading) {
+  const rendering::RigCamera* camera = reading.rigs.of(topic.slot).find(topic.camera);
+  if (camera == nullptr) throw std::logic_error("no camera of the rig has this topic");
+  return {topic.name(), vehicle_id, camera->width, camera->height, reading.simulation_step,
+          topic.camera};
+}
 
 sensor_msgs::Image toMsg(const traffic::CameraImage& image, double time,
-                         const std::string& vehicle_id) {
+                         const std::string& vehicle_id, const std::string& camera) {
   std_msgs::Header header;
   header.stamp = toStamp(time);
-  header.frame_id = opticalFrame(vehicle_id);
+  header.frame_id = opticalFrame(vehicle_id, camera);
   cv_bridge::CvImage picture(header, kEncoding, cv::Mat(image.height, image.width, CV_8UC3));
   std::copy(image.rgb.begin(), image.rgb.end(), picture.image.data);
   sensor_msgs::Image message;
@@ -84,16 +95,16 @@ traffic::CameraImage fromMsg(const sensor_msgs::Image& message, const ExpectedIm
   return image;
 }
 
-sensor_msgs::CameraInfo toCameraInfoMsg(const rendering::CameraOptions& options,
+sensor_msgs::CameraInfo toCameraInfoMsg(const rendering::RigCamera& camera,
                                         const std_msgs::Header& header) {
-  const rendering::Intrinsics intrinsics = rendering::intrinsicsOf(options);
+  const rendering::Intrinsics intrinsics = rendering::intrinsicsOf(camera);
   const double f = intrinsics.focal_length;
   const double x = intrinsics.center_x;
   const double y = intrinsics.center_y;
   sensor_msgs::CameraInfo info;
   info.header = header;
-  info.width = static_cast<std::uint32_t>(options.width);
-  info.height = static_cast<std::uint32_t>(options.height);
+  info.width = static_cast<std::uint32_t>(camera.width);
+  info.height = static_cast<std::uint32_t>(camera.height);
   info.distortion_model = sensor_msgs::distortion_models::PLUMB_BOB;
   info.D.assign(5, 0.0);
   info.K = {f, 0.0, x, 0.0, f, y, 0.0, 0.0, 1.0};
@@ -116,26 +127,28 @@ traffic::TrafficSnapshot snapshotOf(const TickMessages& tick) {
 
 }  // namespace
 
-AnyMessage makeTraffic(const TickValues& values, int) { return shared(toMsg(values.snapshot)); }
+AnyMessage makeTraffic(const TickValues& values, const Topic&) {
+  return shared(toMsg(values.snapshot));
+}
 
-AnyMessage makeSelection(const TickValues& values, int) {
+AnyMessage makeSelection(const TickValues& values, const Topic&) {
   if (values.selection == nullptr) return nullptr;
   return shared(toMsg(*values.selection, values.snapshot.time, *values.network));
 }
 
-AnyMessage makeControl(const TickValues& values, int slot) {
-  const Answer* answer = answerOf(values, slot);
+AnyMessage makeControl(const TickValues& values, const Topic& topic) {
+  const Answer* answer = answerOf(values, topic.slot);
   if (answer == nullptr) return nullptr;
   return shared(
       toMsg(answer->action, values.snapshot, {answer->planner, answer->latency_ms, answer->fault}));
 }
 
-AnyMessage makeRollout(const TickValues& values, int slot) {
-  const Answer* answer = answerOf(values, slot);
+AnyMessage makeRollout(const TickValues& values, const Topic& topic) {
+  const Answer* answer = answerOf(values, topic.slot);
   return answer == nullptr ? AnyMessage() : shared(toRolloutMsg(answer->action, values.snapshot));
 }
 
-AnyMessage makeGuidance(const TickValues& values, int) {
+AnyMessage makeGuidance(const TickValues& values, const Topic&) {
   if (!values.cbvs_guided) return nullptr;
   std::vector<planning::PlannedAction> actions;
   double latency_ms = 0.0;
@@ -151,27 +164,28 @@ AnyMessage makeGuidance(const TickValues& values, int) {
   return shared(std::move(report));
 }
 
-AnyMessage makeImage(const TickValues& values, int slot) {
+AnyMessage makeImage(const TickValues& values, const Topic& topic) {
   if (values.images == nullptr) return nullptr;
   for (const session::SlotImage& seen : *values.images) {
-    const Answer* answer = answerOf(values, slot);
-    if (seen.slot != slot || answer == nullptr) continue;
+    const Answer* answer = answerOf(values, topic.slot);
+    if (seen.slot != topic.slot || seen.camera != topic.camera || answer == nullptr) continue;
     const double time = static_cast<double>(seen.image.tick) * values.simulation_step;
-    return shared(toMsg(seen.image, time, answer->action.vehicle_id));
+    return shared(toMsg(seen.image, time, answer->action.vehicle_id, seen.camera));
   }
   return nullptr;
 }
 
-void takeDecision(const AnyMessage& message, const TickReading&, Answer& answer) {
-  for (const msgs::DecidedVehicle& vehicle : messageAs<msgs::DecisionRecord>(message)->vehicles) {
+void takeDecision(const TakenMessage& taken, const TickReading&, Answer& answer) {
+  const auto record = messageAs<msgs::DecisionRecord>(taken.message);
+  for (const msgs::DecidedVehicle& vehicle : record->vehicles) {
     if (vehicle.slot == answer.action.slot && vehicle.vehicle_id == answer.action.vehicle_id)
       answer.drove = vehicle.answer_drove != 0;
   }
 }
 
 /// A user's own planner may leave out whom it drives and what it is called.
-void takeControl(const AnyMessage& message, const TickReading&, Answer& answer) {
-  const auto control = messageAs<msgs::ControlAction>(message);
+void takeControl(const TakenMessage& taken, const TickReading&, Answer& answer) {
+  const auto control = messageAs<msgs::ControlAction>(taken.message);
   const int slot = answer.action.slot;
   const std::string vehicle_id = answer.action.vehicle_id;
   answer.action = fromMsg(*control);
@@ -182,42 +196,45 @@ void takeControl(const AnyMessage& message, const TickReading&, Answer& answer) 
   answer.fault = control->fault;
 }
 
-void takeRollout(const AnyMessage& message, const TickReading&, Answer& answer) {
-  const auto rollout = messageAs<msgs::Rollout>(message);
+void takeRollout(const TakenMessage& taken, const TickReading&, Answer& answer) {
+  const auto rollout = messageAs<msgs::Rollout>(taken.message);
   answer.action.rollout = fromMsg(*rollout);
   answer.action.candidates = candidatesFromMsg(*rollout);
 }
 
-void takeGuidance(const AnyMessage& message, const TickReading&, Answer& answer) {
-  for (const msgs::VehicleGuidance& vehicle : messageAs<msgs::GuidanceReport>(message)->vehicles) {
+void takeGuidance(const TakenMessage& taken, const TickReading&, Answer& answer) {
+  const auto report = messageAs<msgs::GuidanceReport>(taken.message);
+  for (const msgs::VehicleGuidance& vehicle : report->vehicles) {
     if (vehicle.vehicle_id != answer.action.vehicle_id) continue;
     answer.action.guidance = fromMsg(vehicle);
     answer.action.state_mismatch = vehicle.state_mismatch;
   }
 }
 
-void takeImage(const AnyMessage& message, const TickReading& reading, Answer& answer) {
-  const planning::PlannedAction& action = answer.action;
-  const ExpectedImage expected = {imageOf(action.slot).name(), action.vehicle_id,
-                                  reading.camera.width, reading.camera.height,
-                                  reading.simulation_step};
+void takeImage(const TakenMessage& taken, const TickReading& reading, Answer& answer) {
+  const Topic& topic = taken.topic;
+  const ExpectedImage expected = expectedOf(topic, answer.action.vehicle_id, reading);
   try {
-    answer.image = fromMsg(*messageAs<sensor_msgs::Image>(message), expected);
+    const auto message = messageAs<sensor_msgs::Image>(taken.message);
+    answer.images.push_back({topic.slot, fromMsg(*message, expected), topic.camera});
   } catch (const core::InputError&) {  // its planner has braked and said why
   }
 }
 
-AnyMessage deriveCameraInfo(const TickMessages& tick, const TickReading& reading, int slot) {
-  const auto image = tick.get<sensor_msgs::Image>(imageOf(slot));
-  return image ? shared(toCameraInfoMsg(reading.camera, image->header)) : AnyMessage();
+AnyMessage deriveCameraInfo(const TickMessages& tick, const TickReading& reading,
+                            const Topic& topic) {
+  const auto image = tick.get<sensor_msgs::Image>(imageOf(topic.slot, topic.camera));
+  const rendering::RigCamera* camera = reading.rigs.of(topic.slot).find(topic.camera);
+  const bool there = image && camera != nullptr;
+  return there ? shared(toCameraInfoMsg(*camera, image->header)) : AnyMessage();
 }
 
-AnyMessage deriveTransforms(const TickMessages& tick, const TickReading& reading, int) {
+AnyMessage deriveTransforms(const TickMessages& tick, const TickReading& reading, const Topic&) {
   const bool seen = tick.holds(ChannelId::kEgoImage) || tick.holds(ChannelId::kCbvImage);
-  return shared(toTfMsg(snapshotOf(tick), seen ? &reading.camera : nullptr));
+  return shared(toTfMsg(snapshotOf(tick), seen ? &reading.rigs : nullptr));
 }
 
-AnyMessage deriveOdometry(const TickMessages& tick, const TickReading&, int) {
+AnyMessage deriveOdometry(const TickMessages& tick, const TickReading&, const Topic&) {
   const traffic::TrafficSnapshot snapshot = snapshotOf(tick);
   const traffic::Vehicle* ego = snapshot.ego();
   return ego == nullptr ? AnyMessage() : shared(toOdometryMsg(*ego, snapshot.time));

@@ -63,6 +63,11 @@ class Row {
     row_.scope = slots ? Scope::kSlot : Scope::kEgo;
     return *this;
   }
+  /// And of each camera of the vehicle's rig.
+  Row& perCamera() {
+    row_.per_camera = true;
+    return *this;
+  }
   Row& latched() {
     row_.latched = true;
     return *this;
@@ -192,8 +197,11 @@ Rows plannerRows() {
 }
 
 Row imageRow(ChannelId id, const char* name, const Condition& shown) {
-  return Row::of<sensor_msgs::Image>(id, name, Party::kCamera, "Front view at a decision (rgb8).")
+  return Row::of<sensor_msgs::Image>(
+             id, name, Party::kCamera,
+             "Front view at a decision (rgb8); of another camera C of the rig on `camera_C`.")
       .vehicle()
+      .perCamera()
       .where(shown)
       .answer(Need::kSight)
       .converted(&makeImage, &takeImage);
@@ -202,6 +210,7 @@ Row imageRow(ChannelId id, const char* name, const Condition& shown) {
 Channel cameraInfoRow(ChannelId id, const char* name, const Condition& shown) {
   return Row::of<sensor_msgs::CameraInfo>(id, name, Party::kCamera, "Intrinsics beside each image.")
       .vehicle()
+      .perCamera()
       .where(shown)
       .derived(&deriveCameraInfo);
 }

@@ -201,13 +201,19 @@ class TickMessages;
 struct TickValues;
 struct TickReading;
 
-/// From the values of a tick to its message of a slot; nullptr where there is none.
-using MakeMessage = AnyMessage (*)(const TickValues& values, int slot);
-/// From a message into the answer for one vehicle.
-using TakeAnswer = void (*)(const AnyMessage& message, const TickReading& reading, Answer& answer);
+struct Topic;
+
+/// From the values of a tick to its message of a topic; nullptr where there is none.
+using MakeMessage = AnyMessage (*)(const TickValues& values, const Topic& topic);
+/// From a message of a topic into the answer for one vehicle.
+struct TakenMessage {
+  const AnyMessage& message;
+  const Topic& topic;
+};
+using TakeAnswer = void (*)(const TakenMessage& taken, const TickReading& reading, Answer& answer);
 /// A message for tools that repeats what other messages of the tick contain.
 using DeriveMessage = AnyMessage (*)(const TickMessages& tick, const TickReading& reading,
-                                     int slot);
+                                     const Topic& topic);
 
 /// One row of the table of channels: a topic, its message, who publishes and takes it, and how it
 /// is converted.
@@ -223,10 +229,12 @@ struct Channel {
   std::vector<Listener> listeners;  ///< whom the publisher waits for before the first tick
   Need need;
   Recorded recorded;
-  MakeMessage make;      ///< may be nullptr, as the two below
-  TakeAnswer take;       ///< set for messages that carry part of a vehicle's answer
-  DeriveMessage derive;  ///< set for messages that are made from others
-  const char* help;      ///< a sentence
+  MakeMessage make;         ///< may be nullptr, as the two below
+  TakeAnswer take;          ///< set for messages that carry part of a vehicle's answer
+  DeriveMessage derive;     ///< set for messages that are made from others
+  const char* help;         ///< a sentence
+  bool per_camera = false;  ///< a topic for each camera of a rig: the row names that of the front
+                            ///< camera, another camera C has camera_C in its place
 };
 
 /// The table, by ChannelId.

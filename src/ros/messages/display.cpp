@@ -36,22 +36,28 @@ geometry_msgs::TransformStamped transformBetween(const std::string& parent,
   return transform;
 }
 
-/// Where the camera sits: base_link lies on the road below the box's center.
+/// Where a camera sits: base_link lies on the road below the box's center. Turned about z (up) by
+/// its yaw, then about y (left) by its pitch.
 geometry_msgs::TransformStamped mount(const traffic::Vehicle& vehicle, double time,
-                                      const rendering::CameraOptions& camera) {
-  auto transform = transformBetween(frameOf(vehicle), vehicle.id + "/camera", time);
-  transform.transform.translation.x = camera.mount_forward;
-  transform.transform.translation.z = camera.mount_height;
-  const double half_pitch =
-      0.5 * core::degreesToRadians(camera.pitch);  // about y (left): downwards
-  transform.transform.rotation.y = std::sin(half_pitch);
-  transform.transform.rotation.w = std::cos(half_pitch);
+                                      const rendering::RigCamera& camera) {
+  auto transform = transformBetween(frameOf(vehicle), cameraFrame(vehicle.id, camera.name), time);
+  transform.transform.translation.x = camera.x;
+  transform.transform.translation.y = camera.y;
+  transform.transform.translation.z = camera.z;
+  const double half_pitch = 0.5 * core::degreesToRadians(camera.pitch);
+  const double half_yaw = 0.5 * core::degreesToRadians(camera.yaw);
+  transform.transform.rotation.x = 0.0 - std::sin(half_yaw) * std::sin(half_pitch);
+  transform.transform.rotation.y = std::cos(half_yaw) * std::sin(half_pitch);
+  transform.transform.rotation.z = std::sin(half_yaw) * std::cos(half_pitch);
+  transform.transform.rotation.w = std::cos(half_yaw) * std::cos(half_pitch);
   return transform;
 }
 
 /// REP 103: x right, y down, z forward.
-geometry_msgs::TransformStamped optical(const traffic::Vehicle& vehicle, double time) {
-  auto transform = transformBetween(vehicle.id + "/camera", opticalFrame(vehicle.id), time);
+geometry_msgs::TransformStamped optical(const traffic::Vehicle& vehicle, double time,
+                                        const std::string& camera) {
+  auto transform =
+      transformBetween(cameraFrame(vehicle.id, camera), opticalFrame(vehicle.id, camera), time);
   transform.transform.rotation.x = -0.5;
   transform.transform.rotation.y = 0.5;
   transform.transform.rotation.z = -0.5;
@@ -89,19 +95,36 @@ Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot) {
   return transforms;
 }
 
-Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
-                            const rendering::CameraOptions& camera) {
-  return {mount(vehicle, time, camera), optical(vehicle, time)};
+std::string cameraFrame(const std::string& vehicle_id, const std::string& camera) {
+  return vehicle_id + "/camera" + (camera == rendering::kFrontCamera ? "" : "_" + camera);
 }
 
+Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
+                            const rendering::CameraRig& rig) {
+  Transforms transforms;
+  for (const rendering::RigCamera& camera : rig.cameras) {
+    transforms.push_back(mount(vehicle, time, camera));
+    transforms.push_back(optical(vehicle, time, camera.name));
+  }
+  return transforms;
+}
+
+namespace {
+
+int slotOf(const traffic::Vehicle& vehicle) {
+  return vehicle.role == traffic::VehicleRole::kEgo ? kEgoSlot : vehicle.cbv_slot;
+}
+
+}  // namespace
+
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
-                            const rendering::CameraOptions* camera) {
+                            const session::VehicleRigs* rigs) {
   tf2_msgs::TFMessage message;
   message.transforms = vehicleTransforms(snapshot);
-  if (camera == nullptr) return message;
+  if (rigs == nullptr) return message;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera))
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, rigs->of(slotOf(vehicle))))
       message.transforms.push_back(std::move(transform));
   }
   return message;
@@ -114,7 +137,7 @@ void Display::publish(const traffic::TrafficSnapshot& snapshot) {
   const traffic::Vehicle* ego = snapshot.ego();
   if (ego != nullptr && odometry_.getNumSubscribers() > 0)
     odometry_.publish(toOdometryMsg(*ego, snapshot.time));
-  if (camera_) mountCameras(snapshot);
+  if (rigs_) mountCameras(snapshot);
   transforms_.sendTransform(vehicleTransforms(snapshot));
 }
 
@@ -122,8 +145,9 @@ void Display::mountCameras(const traffic::TrafficSnapshot& snapshot) {
   Transforms added;
   for (const traffic::Vehicle& vehicle : snapshot.vehicles) {
     if (vehicle.role == traffic::VehicleRole::kBackground) continue;
-    if (!mounted_.insert(vehicle.id).second) continue;
-    for (auto& transform : cameraTransforms(vehicle, snapshot.time, *camera_))
+    const int slot = slotOf(vehicle);
+    if (!mounted_.emplace(vehicle.id, rigs_->indexOf(slot)).second) continue;
+    for (auto& transform : cameraTransforms(vehicle, snapshot.time, rigs_->of(slot)))
       added.push_back(std::move(transform));
   }
   if (!added.empty()) mounts_.sendTransform(added);

@@ -29,10 +29,13 @@ Transforms vehicleTransforms(const traffic::TrafficSnapshot& snapshot);
 /// A vehicle's base_link -> camera (x along the view, z up) -> camera_optical (x right, y down, z
 /// along the view); they never change.
 Transforms cameraTransforms(const traffic::Vehicle& vehicle, double time,
-                            const rendering::CameraOptions& camera);
-/// Both, for a bag; without cameras where `camera` is null.
+                            const rendering::CameraRig& rig);
+/// Frame of a camera: "<vehicle>/camera", of a camera C other than the front one
+/// "<vehicle>/camera_C".
+std::string cameraFrame(const std::string& vehicle_id, const std::string& camera);
+/// Both, for a bag; without cameras where `rigs` is null.
 tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
-                            const rendering::CameraOptions* camera = nullptr);
+                            const session::VehicleRigs* rigs = nullptr);
 
 /// What people and tools look at, besides the session's own messages: /ego/odometry (while someone
 /// listens) and the transforms of ego and CBVs, `map` -> `<vehicle>/base_link` at every tick and,
@@ -41,7 +44,7 @@ class Display {
  public:
   explicit Display(::ros::NodeHandle& node);
   /// From now on tf holds the camera frames too.
-  void showCameras(const rendering::CameraOptions& camera) { camera_ = camera; }
+  void showCameras(const session::VehicleRigs& rigs) { rigs_ = rigs; }
   void publish(const traffic::TrafficSnapshot& snapshot);
 
  private:
@@ -50,8 +53,9 @@ class Display {
   ::ros::Publisher odometry_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster mounts_;
-  std::optional<rendering::CameraOptions> camera_;
-  std::set<std::string> mounted_;  ///< vehicles whose camera frames are out
+  std::optional<session::VehicleRigs> rigs_;
+  std::set<std::pair<std::string, std::size_t>>
+      mounted_;  ///< vehicles, with the index of their rig, whose camera frames are out
 };
 
 /// The session's metrics as messages: one report per decision; all measures in it once in a

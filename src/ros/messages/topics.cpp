@@ -15,24 +15,42 @@ namespace cdiff::ros {
 std::string Topic::name() const {
   std::string name = row().name;
   if (row().scope == Scope::kSlot) name.replace(name.find('K'), 1, std::to_string(slot));
+  const std::string folder = "/camera";
+  if (camera != rendering::kFrontCamera)
+    name.insert(name.find(folder) + folder.size(), "_" + camera);
   return name;
 }
 
 Topic controlOf(int slot) {
   return {slot == kEgoSlot ? ChannelId::kEgoControl : ChannelId::kCbvControl, slot};
 }
-Topic imageOf(int slot) {
-  return {slot == kEgoSlot ? ChannelId::kEgoImage : ChannelId::kCbvImage, slot};
+Topic imageOf(int slot, const std::string& camera) {
+  return {slot == kEgoSlot ? ChannelId::kEgoImage : ChannelId::kCbvImage, slot, camera};
 }
-Topic cameraInfoOf(int slot) {
-  return {slot == kEgoSlot ? ChannelId::kEgoCameraInfo : ChannelId::kCbvCameraInfo, slot};
+Topic cameraInfoOf(int slot, const std::string& camera) {
+  return {slot == kEgoSlot ? ChannelId::kEgoCameraInfo : ChannelId::kCbvCameraInfo, slot, camera};
 }
 
-std::vector<Topic> topicsOf(const Channel& channel, int max_cbv) {
-  if (channel.scope != Scope::kSlot) return {channel.id};
+std::vector<Topic> topicsOfSlot(const Channel& channel, int slot,
+                                const session::VehicleRigs& rigs) {
+  if (!channel.per_camera) return {{channel.id, slot}};
   std::vector<Topic> topics;
-  for (int slot = 0; slot < max_cbv; ++slot) topics.emplace_back(channel.id, slot);
+  for (const std::string& camera : rigs.of(slot).names())
+    topics.emplace_back(channel.id, slot, camera);
   return topics;
+}
+
+std::vector<Topic> topicsOf(const Channel& channel, int max_cbv, const session::VehicleRigs& rigs) {
+  if (channel.scope != Scope::kSlot) return topicsOfSlot(channel, kEgoSlot, rigs);
+  std::vector<Topic> topics;
+  for (int slot = 0; slot < max_cbv; ++slot) {
+    for (const Topic& topic : topicsOfSlot(channel, slot, rigs)) topics.push_back(topic);
+  }
+  return topics;
+}
+
+std::vector<Topic> topicsOf(const Channel& channel, const SessionGraph& graph) {
+  return topicsOf(channel, graph.max_cbv, graph.rigs);
 }
 
 std::vector<std::string> namesOf(const std::vector<Topic>& topics) {

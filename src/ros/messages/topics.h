@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string>
+#include <tuple>
 #include <typeindex>
 #include <vector>
 
@@ -14,30 +15,39 @@ namespace cdiff::ros {
 // The topics of one session, who publishes them and who listens: the table of channels
 // (channels.h) applied to a session's nodes and slots (SessionGraph).
 
-/// One topic: a channel and, where the channel has one topic per slot, the slot.
+/// One topic: a channel and, where the channel has one topic per slot or camera, the slot and the
+/// camera.
 struct Topic {
-  Topic(ChannelId channel_id, int of_slot = kEgoSlot) : id(channel_id), slot(of_slot) {}  // NOLINT
+  Topic(ChannelId channel_id, int of_slot = kEgoSlot,  // NOLINT
+        const std::string& of_camera = rendering::kFrontCamera)
+      : id(channel_id), slot(of_slot), camera(of_camera) {}
 
   ChannelId id;
-  int slot;  ///< kEgoSlot unless the channel has a topic per slot
+  int slot;            ///< kEgoSlot unless the channel has a topic per slot
+  std::string camera;  ///< "front" unless the channel has a topic per camera
 
   const Channel& row() const { return channel(id); }
   /// Name relative to the session's namespace; absolute names start with a slash.
   std::string name() const;
-  bool operator==(const Topic& other) const { return id == other.id && slot == other.slot; }
+  bool operator==(const Topic& other) const {
+    return id == other.id && slot == other.slot && camera == other.camera;
+  }
   bool operator<(const Topic& other) const {
-    return id != other.id ? id < other.id : slot < other.slot;
+    return std::tie(id, slot, camera) < std::tie(other.id, other.slot, other.camera);
   }
 };
 
-/// Topics of the vehicle in a slot: its commands, its images and their intrinsics. kEgoSlot: the
-/// ego's.
+/// Topics of the vehicle in a slot: its commands, the images of a camera and their intrinsics.
+/// kEgoSlot: the ego's.
 Topic controlOf(int slot);
-Topic imageOf(int slot);
-Topic cameraInfoOf(int slot);
+Topic imageOf(int slot, const std::string& camera = rendering::kFrontCamera);
+Topic cameraInfoOf(int slot, const std::string& camera = rendering::kFrontCamera);
 
+/// The topics of a channel for one vehicle: one, or one per camera of its rig.
+std::vector<Topic> topicsOfSlot(const Channel& channel, int slot, const session::VehicleRigs& rigs);
 /// The topics of a channel in a session with `max_cbv` slots.
-std::vector<Topic> topicsOf(const Channel& channel, int max_cbv);
+std::vector<Topic> topicsOf(const Channel& channel, int max_cbv, const session::VehicleRigs& rigs);
+std::vector<Topic> topicsOf(const Channel& channel, const SessionGraph& graph);
 
 std::vector<std::string> namesOf(const std::vector<Topic>& topics);
 
