@@ -23,8 +23,8 @@ struct NetworkTaskTexts {
 };
 
 /// The training of a planner whose weights are one network, which learns from samples of scenes in
-/// one stage. `Settings` hold the `architecture` of the network and what is chosen as `samples`;
-/// `State` holds what a run works on, its network as `net`.
+/// one stage. `Settings` hold the `architecture` of the network and all that is chosen, and are
+/// stored with the model; `State` holds what a run works on, its network as `net`.
 template <class Settings, class State>
 class NetworkTask : public learning::OneStageTask {
  public:
@@ -45,7 +45,7 @@ class NetworkTask : public learning::OneStageTask {
                     ""}};
     model.held_out = makeStage(texts_.stage)->judge();
     model.settings = {{"architecture", core::dumpOptions(settings.architecture)},
-                      {"samples", core::dumpOptions(settings.samples)}};
+                      {"settings", core::dumpOptions(settings)}};
     model.title = texts_.title;
     model.measures = table(model.held_out);
     return model;
