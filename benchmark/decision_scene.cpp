@@ -13,10 +13,12 @@ constexpr double kStart = 5.0;     // of the ego on its route [m]
 constexpr double kSpacing = 8.0;   // [m]
 constexpr double kRadius = 150.0;  // of traffic around the middle of the row [m]
 
-session::ScenarioOptions scenarioWith(const std::string& cbv_planner) {
+session::ScenarioOptions scenarioWith(const std::string& cbv_planner,
+                                      const std::string& ego_planner) {
   session::SessionRequest request;
   request.scenario = "crossing_straight";
   request.cbv_planner = cbv_planner;
+  request.ego_planner = ego_planner;
   return session::resolveRequest(request);
 }
 
@@ -42,10 +44,25 @@ traffic::Vehicle vehicleOn(const geometry::Polyline& line, double arc_length) {
   return vehicle;
 }
 
+void fillWithNoise(const core::RandomStream& random, std::vector<traffic::CameraImage>& images) {
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i].width = 160;
+    images[i].height = 96;
+    images[i].rgb.resize(160 * 96 * 3);
+    for (std::size_t j = 0; j < images[i].rgb.size(); ++j) {
+      images[i].rgb[j] =
+          static_cast<std::uint8_t>(random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
+    }
+  }
+}
+
 }  // namespace
 
-DecisionScene::DecisionScene(const std::string& cbv_planner, std::size_t traffic)
-    : setup_(scenarioWith(cbv_planner)), images_(kCbvs) {
+DecisionScene::DecisionScene(const std::string& cbv_planner, std::size_t traffic,
+                             const std::string& ego_planner)
+    : setup_(scenarioWith(cbv_planner, ego_planner)),
+      images_(kCbvs),
+      ego_images_(setup_.rigs().of(traffic::kEgoSlot).cameras.size()) {
   addRow();
   addTraffic(traffic);
   renewImages();
@@ -56,6 +73,7 @@ void DecisionScene::advance(bool new_images) {
   snapshot_.time += setup_.options().decision_period;
   if (new_images) renewImages();
   for (traffic::CameraImage& image : images_) image.tick = snapshot_.tick;
+  for (traffic::CameraImage& image : ego_images_) image.tick = snapshot_.tick;
 }
 
 std::vector<planning::PlanningTask> DecisionScene::tasks(int first, int count) const {
@@ -65,6 +83,14 @@ std::vector<planning::PlanningTask> DecisionScene::tasks(int first, int count) c
     tasks.push_back({i, &snapshot_.vehicles[index + 1], &setup_.egoRoute(), 8.0, &images_[index]});
   }
   return tasks;
+}
+
+std::vector<planning::PlanningTask> DecisionScene::egoTask() const {
+  planning::PlanningTask task{traffic::kEgoSlot, &snapshot_.vehicles.front(), &setup_.egoRoute(),
+                              8.0, &ego_images_.front()};
+  task.views.rig = &setup_.rigs().of(traffic::kEgoSlot);
+  for (const traffic::CameraImage& image : ego_images_) task.views.images.push_back(&image);
+  return {task};
 }
 
 void DecisionScene::addRow() {
@@ -94,16 +120,8 @@ void DecisionScene::addTraffic(std::size_t count) {
 }
 
 void DecisionScene::renewImages() {
-  const core::RandomStream random(snapshot_.tick + 1, "benchmark");
-  for (std::size_t i = 0; i < images_.size(); ++i) {
-    images_[i].width = 160;
-    images_[i].height = 96;
-    images_[i].rgb.resize(160 * 96 * 3);
-    for (std::size_t j = 0; j < images_[i].rgb.size(); ++j) {
-      images_[i].rgb[j] =
-          static_cast<std::uint8_t>(random.index({i, 0, 0}, static_cast<std::uint32_t>(j), 256));
-    }
-  }
+  fillWithNoise(core::RandomStream(snapshot_.tick + 1, "benchmark"), images_);
+  fillWithNoise(core::RandomStream(snapshot_.tick + 1, "benchmark of the ego"), ego_images_);
 }
 
 }  // namespace cdiff::benchmark

@@ -14,13 +14,16 @@ namespace cdiff::benchmark {
 class DecisionScene {
  public:
   static constexpr int kCbvs = 8;  ///< 8 m apart, the first 8 m ahead of the ego
-  /// `cbv_planner` as in a scenario, empty: the default; `traffic`: further vehicles within 150 m.
-  explicit DecisionScene(const std::string& cbv_planner = "", std::size_t traffic = 0);
+  /// Planners as in a scenario, empty: the default; `traffic`: further vehicles within 150 m.
+  explicit DecisionScene(const std::string& cbv_planner = "", std::size_t traffic = 0,
+                         const std::string& ego_planner = "");
 
   /// A decision later; every CBV sees something new if asked.
   void advance(bool new_images);
   /// CBVs by number.
   std::vector<planning::PlanningTask> tasks(int first, int count) const;
+  /// The ego, with an image of each camera of its rig.
+  std::vector<planning::PlanningTask> egoTask() const;
   const session::SessionSetup& setup() const { return setup_; }
   const traffic::TrafficSnapshot& snapshot() const { return snapshot_; }
 
@@ -31,7 +34,8 @@ class DecisionScene {
 
   session::SessionSetup setup_;
   traffic::TrafficSnapshot snapshot_;
-  std::vector<traffic::CameraImage> images_;
+  std::vector<traffic::CameraImage> images_;      ///< by CBV
+  std::vector<traffic::CameraImage> ego_images_;  ///< by camera
 };
 
 }  // namespace cdiff::benchmark

@@ -125,7 +125,7 @@ Markup stageHtml(const record::SessionResult& result, const MapCanvas& canvas) {
   const Markup map = element("div", {{"class", "map"}}, "\n" + topViewSvg(result, canvas)) + "\n";
   const Markup left = element("div", {}, "\n" + map + controls() + momentTable()) + "\n";
   return element("div", {{"class", "stage"}}, "\n" + left + sights(result)) + "\n" +
-         topViewLegend(canvas, showsGazes(result.timeline));
+         topViewLegend(canvas, &result.timeline);
 }
 
 namespace {
@@ -237,17 +237,30 @@ Json gazeNumbers(const record::TimelineFrame& frame) {
   return numbers;
 }
 
+/// Three entries per path: CSS class, opacity [%], path data.
+Json perceivedTexts(const record::TimelineFrame& frame, const MapCanvas& canvas) {
+  Json texts = Json::array();
+  for (const PerceivedPath& path : perceivedPaths(frame.perception, canvas)) {
+    texts.push_back(path.style);
+    texts.push_back(rounded(100.0 * path.opacity));
+    texts.push_back(path.data);
+  }
+  return texts;
+}
+
 void addFrames(Json& data, const record::SessionResult& result, const MapCanvas& canvas) {
   const std::vector<std::size_t> cbv_styles = cbvStyles(result);
   const auto& frames = result.timeline.frames();
   const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
   const bool gazes = showsGazes(result.timeline);
+  const bool perception = showsPerception(result.timeline);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (i % stride != 0 && i + 1 != frames.size()) continue;
     data["times"].push_back(hundredths(frames[i].time));
     data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
     data["moments"].push_back(momentNumbers(frames[i]));
     if (gazes) data["gazes"].push_back(gazeNumbers(frames[i]));
+    if (perception) data["perceived"].push_back(perceivedTexts(frames[i], canvas));
   }
 }
 

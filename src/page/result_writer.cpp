@@ -78,7 +78,10 @@ class ResultWriter::Record {
     result_.simulated_seconds = snapshot.time;
     metrics_.observe(snapshot, record.selection);
     timeline_.observe(snapshot);
-    if (record.actions != nullptr) timeline_.observeGazes(snapshot, *record.actions);
+    if (record.actions != nullptr) {
+      timeline_.observeGazes(snapshot, *record.actions);
+      timeline_.observePerception(snapshot, *record.actions);
+    }
     if (record.selection != nullptr) cbv_.observe(snapshot, *record.selection);
     approaches_.observe(record);
     plans_.observe(record);

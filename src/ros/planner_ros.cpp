@@ -95,6 +95,7 @@ void EgoPlannerRos::startSession(const msgs::SessionInfo& info) {
   checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
   images() = ImageInbox(setup_->rigs(), setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(ChannelId::kEgoControl);
+  markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kPerceptionMarkers);
   listen<nav_msgs::Path>(ChannelId::kEgoRoute, [this](const nav_msgs::PathConstPtr& path) {
     if (route_.empty() && !path->poses.empty())
       route_ = map::matchRoute(setup_->network(), fromMsg(*path));
@@ -124,6 +125,9 @@ bool EgoPlannerRos::handle(const Snapshot& message, bool superseded) {
                                        : planBlind(*planner_, snapshot, tasks);
   controls_.publish(shared(
       toMsg(decision.actions.front(), snapshot, {name, decision.latency_ms, decision.fault})));
+  if (markers_.getNumSubscribers() > 0)
+    markers_.publish(perceptionMarkers(decision.actions.front().perception,
+                                       tasks.front().vehicle->state.elevation, snapshot.time));
   warnOf(name, decision);
   images().forgetBefore(message->tick);
   return true;

@@ -61,7 +61,7 @@ class SeeingParticipant : public Participant {
 };
 
 /// The ego's planner: snapshots and route in (and its images where the planner sees), its control
-/// out.
+/// out, and what it believes to see as markers while anyone subscribes.
 class EgoPlannerRos : public SeeingParticipant {
  public:
   using SeeingParticipant::SeeingParticipant;
@@ -79,6 +79,7 @@ class EgoPlannerRos : public SeeingParticipant {
   map::Route route_;
   std::unique_ptr<planning::Planner> planner_;
   ::ros::Publisher controls_;
+  ::ros::Publisher markers_;
 };
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "page/html_report.h"
+#include "planning/perception_sample.h"
 #include "record/logs/cbv_log.h"
 #include "record/seen_session.h"
 
@@ -128,6 +129,35 @@ TEST(HtmlReport, ShowsWhatThePlannerWeighed) {
   for (const char* score : {"0.100", "0.200", "0.300", "0.400"})
     EXPECT_EQ(countOf(view, std::string("weighed with score ") + score), 1u) << score;
   EXPECT_NE(article.find("weighed, the three of the largest scores"), std::string::npos);
+}
+
+// At 0, 0.2 and 0.4 s; of the last frame the picture itself shows cells, an edge, a way and a box.
+TEST(HtmlReport, DrawsWhatTheEgoPlannerBelievesToSee) {
+  const test::TemporaryFolder scratch;
+  const test::SampleSetup sample;
+  ResultWriter writer(sample.setup, test::sampleFacts(), scratch.path());
+  std::vector<planning::PlannedAction> actions = {{traffic::kEgoSlot, "ego", {}, {}}};
+  actions[0].perception = test::samplePerception();
+  for (std::uint64_t tick = 0; tick <= 8; ++tick) {
+    const traffic::TrafficSnapshot snapshot = test::sampleSnapshot(tick);
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    if (snapshot.decision_tick) record.actions = &actions;
+    writer.observe(record);
+  }
+  writer.finish(1.0);
+  const std::string page = core::readFile(scratch.path() / "report.html", "report");
+  const std::string view = between(page, "<g id=\"perceived\">", "</g>");
+  for (const char* style : {"occupied", "edge-seen", "forecast", "vehicle-seen"})
+    EXPECT_EQ(countOf(view, std::string("class=\"perceived ") + style + "\""), 1u) << style;
+  EXPECT_NE(view.find("--opacity:0.75"), std::string::npos) << "the vehicle's score";
+  EXPECT_NE(page.find("vehicle that the planner believes to see"), std::string::npos);
+  const auto data = nlohmann::json::parse(between(page, "id=\"playback\">", "</script>"));
+  ASSERT_EQ(data["perceived"].size(), 3u);
+  ASSERT_EQ(data["perceived"][1].size(), 12u);  // four paths of class, opacity and data
+  EXPECT_EQ(data["perceived"][1][9], "vehicle-seen");
+  EXPECT_EQ(data["perceived"][1][10], 75);
+  EXPECT_EQ(countOf(seenPage(), "id=\"perceived\""), 0u) << "of planners that do not say";
 }
 
 TEST(HtmlReport, PlaysBackFrontViewsAndCommands) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include "planning/perception_sample.h"
 #include "record/logs/driving_log.h"
 #include "record/sample_session.h"
 
@@ -101,6 +102,25 @@ TEST(Timeline, KnowsTheTimeToCollision) {
   EXPECT_LT(poses[3].time_to_collision, 0.0);
   EXPECT_EQ(poses[0].slot, -1);
   EXPECT_EQ(poses[1].slot, 0);
+}
+
+TEST(Timeline, KeepsWhatTheEgoPlannerBelievesToSee) {
+  Timeline timeline(0.05);
+  planning::PlannedAction ego{traffic::kEgoSlot, "ego", {}, {}};
+  ego.perception = test::samplePerception();
+  planning::PlannedAction cbv{0, "bg_1", {}, {}};
+  cbv.perception = test::samplePerception();
+  cbv.perception.vehicles.clear();
+  for (std::uint64_t tick = 0; tick <= 4; tick += 2) {
+    timeline.observe(test::sampleSnapshot(tick));
+    timeline.observePerception(test::sampleSnapshot(tick), {ego, cbv});
+  }
+  ASSERT_EQ(timeline.frames().size(), 2u);  // ticks 0 and 4; tick 2 has no frame
+  ASSERT_EQ(timeline.frames()[1].perception.vehicles.size(), 1u);
+  const auto& forecasts = timeline.frames()[1].perception.vehicles[0].forecasts;
+  ASSERT_EQ(forecasts.size(), 1u) << "the likeliest alone";
+  EXPECT_EQ(forecasts[0].probability, 0.6);
+  EXPECT_EQ(timeline.frames()[1].perception.lines.size(), 1u);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 #include "metrics/metric_registry.h"
+#include "planning/perception_sample.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/display.h"
 #include "ros/sample_messages.h"
@@ -103,6 +104,36 @@ TEST(Conversions, CandidatesComeBackBitByBit) {
   EXPECT_TRUE(back[1].places.empty());
   EXPECT_EQ(back[1].score, -0.5);
   EXPECT_FALSE(back[1].chosen);
+}
+
+TEST(Conversions, PerceptionComesBackBitByBit) {
+  planning::PlannedAction action;
+  action.perception = test::samplePerception();
+  msgs::ControlAction message =
+      overTheWire(toMsg(action, test::sampleSnapshot(4), {"ego:x", 2.5, ""}));
+  const planning::Perception back = fromMsg(message).perception;
+  ASSERT_EQ(back.vehicles.size(), 1U);
+  const planning::PerceivedVehicle& sent = action.perception.vehicles[0];
+  EXPECT_EQ(back.vehicles[0].state, sent.state);
+  EXPECT_EQ(back.vehicles[0].dimensions.length, 4.0);
+  EXPECT_EQ(back.vehicles[0].dimensions.width, 2.0);
+  EXPECT_EQ(back.vehicles[0].dimensions.height, 1.5);
+  EXPECT_EQ(back.vehicles[0].score, 0.75);
+  ASSERT_EQ(back.vehicles[0].forecasts.size(), 2U);
+  EXPECT_EQ(back.vehicles[0].forecasts[1].places, sent.forecasts[1].places);
+  EXPECT_EQ(back.vehicles[0].forecasts[1].probability, 0.6);
+  ASSERT_EQ(back.lines.size(), 1U);
+  EXPECT_EQ(back.lines[0].kind, "edge");
+  EXPECT_EQ(back.lines[0].points, action.perception.lines[0].points);
+  EXPECT_EQ(back.lines[0].score, 0.9);
+  ASSERT_EQ(back.occupancy.size(), 1U);
+  EXPECT_EQ(back.occupancy[0].time, 0.5);
+  EXPECT_EQ(back.occupancy[0].frame.position, Eigen::Vector2d(5.0, 5.0));
+  EXPECT_EQ(back.occupancy[0].origin, Eigen::Vector2d(1.0, -1.5));
+  EXPECT_EQ(back.occupancy[0].rows, 2);
+  EXPECT_EQ(back.occupancy[0].probability, action.perception.occupancy[0].probability);
+  message.perception.occupancy[0].rows = 3;
+  EXPECT_TRUE(fromMsg(message).perception.occupancy.empty()) << "six numbers are not 3 x 3 cells";
 }
 
 /// Two lanes, one behind the other.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <set>
 
+#include "planning/perception_sample.h"
 #include "ros/messages/display.h"
 #include "ros/messages/markers.h"
 #include "ros/sample_messages.h"
@@ -120,6 +121,35 @@ TEST(Display, EachCameraOfARigHasItsFrames) {
   EXPECT_NEAR(mount.transform.rotation.w, std::cos(27.5 * M_PI / 180.0), 1e-12);
   EXPECT_EQ(message.transforms[5].child_frame_id, "ego/camera_front_left_optical");
   EXPECT_EQ(message.transforms[14].child_frame_id, "bg_7/camera");
+}
+
+TEST(Markers, PerceptionShowsVehiclesWaysLinesAndCells) {
+  const MarkerArray array = perceptionMarkers(test::samplePerception(), 2.0, 0.2);
+  ASSERT_EQ(array.markers.size(), 5U);
+  EXPECT_EQ(array.markers[0].action, Marker::DELETEALL);
+  const Marker& vehicle = array.markers[1];
+  EXPECT_EQ(vehicle.ns, "perceived_vehicles");
+  EXPECT_EQ(vehicle.scale.x, 4.0);
+  EXPECT_EQ(vehicle.color.a, 0.75F) << "as opaque as its score";
+  const Marker& line = array.markers[2];
+  EXPECT_EQ(line.ns, "perceived_lines");
+  EXPECT_EQ(line.points.size(), 4U) << "two segments as pairs";
+  EXPECT_GT(line.color.r, 2 * line.color.b) << "edges are red";
+  const Marker& cells = array.markers[3];
+  EXPECT_EQ(cells.ns, "occupancy");
+  ASSERT_EQ(cells.points.size(), 2U);
+  EXPECT_EQ(cells.points[1].x, 2.5) << "in the frame of the ego";
+  EXPECT_EQ(cells.pose.position.y, 5.0);
+  const Marker& ways = array.markers[4];
+  EXPECT_EQ(ways.ns, "forecasts");
+  ASSERT_EQ(ways.points.size(), 4U) << "the likeliest way alone, from the vehicle on";
+  EXPECT_EQ(ways.points[0].x, 10.0);
+  EXPECT_EQ(ways.points[3].x, 12.0);
+  for (std::size_t i = 1; i < array.markers.size(); ++i) {
+    EXPECT_EQ(array.markers[i].lifetime, ::ros::Duration(0.5));
+    EXPECT_EQ(array.markers[i].header.frame_id, "map");
+  }
+  EXPECT_EQ(perceptionMarkers({}, 0.0, 0.2).markers.size(), 1U) << "clears what was shown";
 }
 
 TEST(Markers, RolloutsAreLinesBySlot) {

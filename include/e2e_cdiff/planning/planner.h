@@ -89,6 +89,47 @@ struct PlannedCandidate {
   bool chosen = false;                  ///< the rollout comes from it
 };
 
+/// A way that a planner thinks another vehicle may take (map frame).
+struct PerceivedForecast {
+  std::vector<Eigen::Vector2d> places;  ///< kCandidateStep apart, the first one that far ahead [m]
+  double probability = 0.0;             ///< in [0, 1]
+};
+
+/// A vehicle that a planner believes to see (map frame).
+struct PerceivedVehicle {
+  traffic::VehicleState state;
+  traffic::VehicleDimensions dimensions;
+  double score = 0.0;                        ///< in [0, 1]
+  std::vector<PerceivedForecast> forecasts;  ///< in the planner's own order
+};
+
+/// A line of the road that a planner believes to see (map frame).
+struct PerceivedLine {
+  std::string kind;                     ///< "edge", "divider" or "center"
+  std::vector<Eigen::Vector2d> points;  ///< [m]
+  double score = 0.0;                   ///< in [0, 1]
+};
+
+/// Which cells around the vehicle a planner expects to be occupied, at one time ahead: row-major,
+/// rows along the vehicle's x, columns along its y; the first cell's corner lies at `origin`.
+struct PerceivedOccupancy {
+  double time = 0.0;                                 ///< ahead [s]
+  geometry::Pose2d frame;                            ///< of the vehicle now (map frame)
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< in `frame` [m]
+  double cell = 1.0;                                 ///< side of a cell [m]
+  int rows = 0;
+  int columns = 0;
+  std::vector<float> probability;  ///< [rows x columns], in [0, 1]
+};
+
+/// What a planner believes to see when it decides, for people who look: markers, report, video.
+struct Perception {
+  std::vector<PerceivedVehicle> vehicles;
+  std::vector<PerceivedLine> lines;
+  std::vector<PerceivedOccupancy> occupancy;
+  bool empty() const { return vehicles.empty() && lines.empty() && occupancy.empty(); }
+};
+
 /// What a planner decided for one vehicle: the action to apply, with the rollout and the report it
 /// comes from.
 struct PlannedAction {
@@ -103,6 +144,7 @@ struct PlannedAction {
   std::vector<PlannedCandidate>
       candidates{};                         ///< in the planner's own order; empty: it weighs none
   std::vector<AttendedVehicle> attended{};  ///< in the planner's own order; empty: it does not say
+  Perception perception{};                  ///< empty: it sees nothing, or does not say
 };
 
 /// The fail-safe action for a task; with a reason it is a fault, "vehicle 'ID': REASON; full

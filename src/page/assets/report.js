@@ -133,8 +133,19 @@
       line.style.setProperty("--weight", gazes[i + 2] / 100);
     }
   };
+  const drawPerceived = function (frame) {
+    const paths = document.getElementById("perceived");
+    if (paths === null) return;
+    paths.replaceChildren();
+    const texts = data.perceived[frame];
+    for (let i = 0; i < texts.length; i += 3) {
+      const path = svgElement("path", { class: "perceived " + texts[i], d: texts[i + 2] }, paths);
+      path.style.setProperty("--opacity", texts[i + 1] / 100);
+    }
+  };
   const draw = function (frame) {
     const numbers = data.frames[frame], seen = new Set();
+    drawPerceived(frame);
     drawGazes(frame);
     let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
     for (let i = 0; i < numbers.length; i += 6) {

@@ -175,9 +175,22 @@ Markup boxItem(const std::string& style, const std::string& text) {
       element("g", {{"class", "vehicle " + style}, {"transform", "translate(14 7)"}}, box), text);
 }
 
+/// Of what planners say about themselves.
+Markup plannerLegend(const record::Timeline& timeline) {
+  Markup html;
+  if (showsGazes(timeline))
+    html += legendLine("gaze", "attention of the planner to a vehicle, by its share");
+  if (!showsPerception(timeline)) return html;
+  return html + legendLine("perceived vehicle-seen", "vehicle that the planner believes to see") +
+         legendLine("perceived forecast", "where it expects that vehicle in the next seconds") +
+         legendLine("perceived edge-seen", "edge of the road, as it sees it") +
+         legendLine("perceived divider-seen", "divider between lanes") +
+         legendLine("perceived center-seen", "centerline");
+}
+
 }  // namespace
 
-Markup topViewLegend(const MapCanvas& canvas, bool gazes) {
+Markup topViewLegend(const MapCanvas& canvas, const record::Timeline* timeline) {
   const Markup conflict =
       element("path", {{"class", "conflict"}, {"d", "M9 2l10 10m0 -10l-10 10"}});
   const Markup html = pageLegend(
@@ -187,8 +200,7 @@ Markup topViewLegend(const MapCanvas& canvas, bool gazes) {
       legendLine("planned cbv c0", "conflict-aware route") +
       legendItem(conflict, "conflict point as selected") +
       legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact") +
-      (gazes ? legendLine("gaze", "attention of the planner to a vehicle, by its share")
-             : Markup()));
+      (timeline == nullptr ? Markup() : plannerLegend(*timeline)));
   const double magnification = vehicleMagnification(canvas);
   if (magnification <= 1.0) return html;
   return html + pageNote("Vehicles are drawn " + core::formatFixed(magnification, 1) +

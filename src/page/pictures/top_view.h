@@ -85,8 +85,9 @@ core::Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::
 /// A bar of a round length and the direction of north, in the lower corners and at the top right.
 core::Markup scaleBarSvg(const MapCanvas& canvas);
 
-/// Its legend, as HTML; `gazes`: with the lines of gazesSvg.
-core::Markup topViewLegend(const MapCanvas& canvas, bool gazes = false);
+/// Its legend, as HTML, with the lines of gazesSvg and what perceivedSvg draws where `timeline` has
+/// any.
+core::Markup topViewLegend(const MapCanvas& canvas, const record::Timeline* timeline = nullptr);
 
 /// Whether any planner of the session said what it looked at.
 bool showsGazes(const record::Timeline& timeline);
@@ -94,6 +95,23 @@ bool showsGazes(const record::Timeline& timeline);
 /// Lines from drivers to the vehicles that they look at in the last frame, as thick and dark as
 /// they do; empty where no planner of the session says so.
 core::Markup gazesSvg(const record::Timeline& timeline, const MapCanvas& canvas);
+
+/// One thing that the ego's planner believes to see, as a path of a CSS class and an opacity.
+struct PerceivedPath {
+  std::string style;
+  double opacity = 1.0;
+  std::string data;
+};
+/// All of a frame: occupied cells (the later the fainter), lines of the road by kind, the likeliest
+/// way and the box of each vehicle (opaque by score).
+std::vector<PerceivedPath> perceivedPaths(const planning::Perception& perception,
+                                          const MapCanvas& canvas);
+
+/// Whether the ego's planner said what it believes to see.
+bool showsPerception(const record::Timeline& timeline);
+
+/// perceivedPaths of the last frame that has any; empty where the planner never says so.
+core::Markup perceivedSvg(const record::Timeline& timeline, const MapCanvas& canvas);
 
 /// Factor by which vehicles are drawn larger than they are, so that they can be seen; 1 when the
 /// scale allows.

@@ -3,10 +3,9 @@
 #include "planners/plant/plant.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "e2e_cdiff/core/angle.h"
 #include "planning/surrounding_vehicles.h"
+#include "planning/waypoint_rollout.h"
 
 namespace cdiff::planners {
 
@@ -36,31 +35,6 @@ traffic::ControlAction WaypointTracker::track(double speed, const PlantWaypoints
 }
 
 namespace {
-
-/// The straight lines from waypoint to waypoint as states 0.1 s apart, in the map frame.
-std::vector<planning::RolloutPoint> rolloutOf(const traffic::VehicleState& start,
-                                              const PlantWaypoints& waypoints,
-                                              const traffic::ControlAction& action) {
-  constexpr int kSteps = 5;             // from one waypoint to the next
-  constexpr double kStandstill = 0.05;  // shorter lines have no direction [m]
-  std::vector<planning::RolloutPoint> rollout;
-  Eigen::Vector2d last = Eigen::Vector2d::Zero();
-  double heading = start.heading;
-  for (const Eigen::Vector2d& waypoint : waypoints) {
-    const Eigen::Vector2d line = waypoint - last;
-    if (line.norm() > kStandstill)
-      heading = core::wrapAngle(start.heading + std::atan2(line.y(), line.x()));
-    for (int step = 1; step <= kSteps; ++step) {
-      traffic::VehicleState state = start;
-      state.position = start.pose().toMap(last + line * step / kSteps);
-      state.heading = heading;
-      state.speed = line.norm() / kPlantWaypointPeriod;
-      rollout.push_back({state, action});
-    }
-    last = waypoint;
-  }
-  return rollout;
-}
 
 bool allFinite(const PlantWaypoints& waypoints) {
   return std::all_of(waypoints.begin(), waypoints.end(),
@@ -104,7 +78,9 @@ void PlantPlanner::conclude(const planning::PlanningTask& task, const PlantInput
   }
   const traffic::VehicleState& state = task.vehicle->state;
   planned.action = memories_.at(planned.vehicle_id).tracker.track(state.speed, output.waypoints);
-  planned.rollout = rolloutOf(state, output.waypoints, planned.action);
+  planned.rollout =
+      planning::rolloutAlong(state, {output.waypoints.begin(), output.waypoints.end()},
+                             kPlantWaypointPeriod, planned.action);
   for (std::size_t i = 0; i < input.ids.size(); ++i) {
     if (input.ids[i] == planned.vehicle_id) continue;
     planned.attended.push_back({input.ids[i], static_cast<double>(output.attention[i])});

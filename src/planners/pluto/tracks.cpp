@@ -34,7 +34,10 @@ TrackFrame frameOf(const traffic::TrafficSnapshot& snapshot, VehicleTable& vehic
     TrackPoint point;
     point.vehicle = vehicles.numberOf(vehicle);
     point.acceleration = static_cast<float>(vehicle.acceleration);
-    if (vehicle.applied_action) point.steer = static_cast<float>(vehicle.applied_action->steer);
+    if (vehicle.applied_action) {
+      point.steer = static_cast<float>(vehicle.applied_action->steer);
+      point.brake = static_cast<float>(vehicle.applied_action->brake);
+    }
     point.state = vehicle.state;
     frame.points.push_back(point);
   }

@@ -18,6 +18,7 @@ struct TrackPoint {
   std::uint32_t vehicle = 0;  ///< number in a VehicleTable
   float acceleration = 0.0F;  ///< [m/s^2]
   float steer = 0.0F;         ///< last applied; 0 where SUMO drives
+  float brake = 0.0F;         ///< likewise
   traffic::VehicleState state;
 };
 

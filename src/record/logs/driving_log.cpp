@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "metrics/measures/ttc_2d.h"
+#include "planning/perception.h"
 
 namespace cdiff::record {
 
@@ -132,6 +133,19 @@ void Timeline::observeGazes(const traffic::TrafficSnapshot& snapshot,
       frames_.back().gazes.push_back(
           {driver->second, vehicle->second, static_cast<float>(std::min(one.weight, 1.0))});
     }
+  }
+}
+
+void Timeline::observePerception(const traffic::TrafficSnapshot& snapshot,
+                                 const std::vector<planning::PlannedAction>& actions) {
+  if (frames_.empty() || frames_.back().time != snapshot.time) return;
+  for (const planning::PlannedAction& action : actions) {
+    if (action.slot != traffic::kEgoSlot) continue;
+    planning::Perception seen = action.perception;
+    for (planning::PerceivedVehicle& vehicle : seen.vehicles) {
+      if (!vehicle.forecasts.empty()) vehicle.forecasts = {planning::likeliest(vehicle.forecasts)};
+    }
+    frames_.back().perception = std::move(seen);
   }
 }
 

@@ -96,6 +96,7 @@ struct TimelineFrame {
   double time = 0.0;  ///< [s]
   std::vector<TimelinePose> poses;
   std::vector<TimelineGaze> gazes;  ///< the largest of each driver, of planners that say them
+  planning::Perception perception;  ///< of the ego's planner; of forecasts the likeliest alone
 };
 
 /// A contact of two vehicles, with its place in the map frame [m].
@@ -124,6 +125,9 @@ class Timeline {
   /// driver the eight largest weights are kept, those below 0.02 not.
   void observeGazes(const traffic::TrafficSnapshot& snapshot,
                     const std::vector<planning::PlannedAction>& actions);
+  /// What the ego's planner believed to see, likewise.
+  void observePerception(const traffic::TrafficSnapshot& snapshot,
+                         const std::vector<planning::PlannedAction>& actions);
 
   /// In order of appearance.
   const std::vector<TimelineVehicle>& vehicles() const { return vehicles_; }

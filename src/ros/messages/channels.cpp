@@ -228,28 +228,32 @@ Rows cameraRows() {
 }
 
 Rows otherRows() {
-  return {Row::of<msgs::MetricReport>(
-              ChannelId::kMetrics, "metrics", Party::kMetrics,
-              "Measures of a decision; those of the whole session once a second and at its end.")
-              .heardBy(Party::kRecorder, kMeasured)
-              .recorded(Recorded::kDecision, Use::kReport),
-          Row::of<tf2_msgs::TFMessage>(ChannelId::kTransforms, "/tf", Party::kSimulator,
-                                       "`map` to `<vehicle>/base_link` of ego and CBVs.")
-              .derived(&deriveTransforms),
-          Row::of<nav_msgs::Odometry>(ChannelId::kEgoOdometry, "ego/odometry", Party::kSimulator,
-                                      "Pose and speed of the ego, for tools.")
-              .vehicle()
-              .derived(&deriveOdometry),
-          Row::of<msgs::TickAck>(ChannelId::kTickAck, "tick_ack", Party::kParticipants,
-                                 "How a node stands with a tick.")
-              .heardBy(Party::kSimulator),
-          Row::of<MarkerArray>(ChannelId::kMarkers, "markers", Party::kMetrics,
-                               "Vehicles, conflict points and routes for rviz."),
-          Row::of<MarkerArray>(ChannelId::kMapMarkers, "markers/map", Party::kMetrics,
-                               "Network and ego route for rviz.")
-              .latched(),
-          Row::of<MarkerArray>(ChannelId::kRolloutMarkers, "markers/rollouts", Party::kCbvPlanner,
-                               "Plans of CBVs for rviz, while anyone subscribes.")};
+  return {
+      Row::of<msgs::MetricReport>(
+          ChannelId::kMetrics, "metrics", Party::kMetrics,
+          "Measures of a decision; those of the whole session once a second and at its end.")
+          .heardBy(Party::kRecorder, kMeasured)
+          .recorded(Recorded::kDecision, Use::kReport),
+      Row::of<tf2_msgs::TFMessage>(ChannelId::kTransforms, "/tf", Party::kSimulator,
+                                   "`map` to `<vehicle>/base_link` of ego and CBVs.")
+          .derived(&deriveTransforms),
+      Row::of<nav_msgs::Odometry>(ChannelId::kEgoOdometry, "ego/odometry", Party::kSimulator,
+                                  "Pose and speed of the ego, for tools.")
+          .vehicle()
+          .derived(&deriveOdometry),
+      Row::of<msgs::TickAck>(ChannelId::kTickAck, "tick_ack", Party::kParticipants,
+                             "How a node stands with a tick.")
+          .heardBy(Party::kSimulator),
+      Row::of<MarkerArray>(ChannelId::kMarkers, "markers", Party::kMetrics,
+                           "Vehicles, conflict points and routes for rviz."),
+      Row::of<MarkerArray>(ChannelId::kMapMarkers, "markers/map", Party::kMetrics,
+                           "Network and ego route for rviz.")
+          .latched(),
+      Row::of<MarkerArray>(ChannelId::kRolloutMarkers, "markers/rollouts", Party::kCbvPlanner,
+                           "Plans of CBVs for rviz, while anyone subscribes."),
+      Row::of<MarkerArray>(ChannelId::kPerceptionMarkers, "markers/perception", Party::kEgoPlanner,
+                           "What the ego's planner believes to see, for rviz, while anyone "
+                           "subscribes; empty where it does not say.")};
 }
 
 }  // namespace

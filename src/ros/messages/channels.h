@@ -152,7 +152,8 @@ enum class ChannelId {
   kTickAck,
   kMarkers,
   kMapMarkers,
-  kRolloutMarkers
+  kRolloutMarkers,
+  kPerceptionMarkers
 };
 
 /// Whose topic it is.

@@ -48,6 +48,10 @@ msgs::TrafficSnapshot toMsg(const traffic::TrafficSnapshot& snapshot);
 /// Throws InputError for an unknown status.
 traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message);
 
+msgs::Perception toMsg(const planning::Perception& perception);
+/// Without occupancy whose cells are not rows x columns.
+planning::Perception fromMsg(const msgs::Perception& message);
+
 /// How an action came about.
 struct ActionOrigin {
   std::string planner;      ///< "ego:NAME" or "cbv:NAME"

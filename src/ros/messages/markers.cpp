@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "ros/messages/markers.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "planning/perception.h"
 #include "ros/messages/conversions.h"
 
 namespace cdiff::ros {
@@ -164,6 +166,103 @@ MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, 
     }
     array.markers.push_back(marker);
   }
+  return array;
+}
+
+namespace {
+
+constexpr Color kPerceivedColor{1.0F, 0.55F, 0.0F, 1.0F};
+constexpr Color kForecastColor{1.0F, 0.85F, 0.30F, 1.0F};
+constexpr Color kOccupiedColor{0.90F, 0.20F, 0.55F, 1.0F};
+constexpr double kPerceivedLift = 0.2;  // [m] above the road
+
+Color lineColor(const std::string& kind) {
+  if (kind == "edge") return {0.95F, 0.25F, 0.20F, 1.0F};
+  return kind == "divider" ? Color{0.95F, 0.95F, 0.95F, 1.0F} : Color{0.20F, 0.75F, 0.90F, 1.0F};
+}
+
+/// A line from point to point, as pairs.
+void addPairs(const std::vector<Eigen::Vector2d>& line, double z, Marker& marker) {
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    marker.points.push_back(toPoint({line[i].x(), line[i].y(), z}));
+    marker.points.push_back(toPoint({line[i + 1].x(), line[i + 1].y(), z}));
+  }
+}
+
+Marker perceivedVehicleMarker(const planning::PerceivedVehicle& seen, int id) {
+  traffic::Vehicle vehicle;
+  vehicle.state = seen.state;
+  vehicle.dimensions = seen.dimensions;
+  Marker marker = vehicleMarker(vehicle, id);
+  marker.ns = "perceived_vehicles";
+  marker.color.r = kPerceivedColor.red;
+  marker.color.g = kPerceivedColor.green;
+  marker.color.b = kPerceivedColor.blue;
+  marker.color.a = static_cast<float>(seen.score);
+  return marker;
+}
+
+Marker forecastMarker(const planning::Perception& perception, double z) {
+  Marker marker = makeMarker("forecasts", 0, Marker::LINE_LIST, kForecastColor);
+  marker.scale.x = 0.3;
+  for (const planning::PerceivedVehicle& vehicle : perception.vehicles) {
+    if (vehicle.forecasts.empty()) continue;
+    std::vector<Eigen::Vector2d> way = planning::likeliest(vehicle.forecasts).places;
+    way.insert(way.begin(), vehicle.state.position);
+    addPairs(way, z, marker);
+  }
+  return marker;
+}
+
+Marker perceivedLineMarker(const planning::PerceivedLine& line, int id, double z) {
+  Marker marker = makeMarker("perceived_lines", id, Marker::LINE_LIST, lineColor(line.kind));
+  marker.scale.x = 0.25;
+  addPairs(line.points, z, marker);
+  return marker;
+}
+
+Marker occupancyMarker(const planning::PerceivedOccupancy& occupancy, int id, double z) {
+  Marker marker = makeMarker("occupancy", id, Marker::CUBE_LIST, kOccupiedColor);
+  marker.color.a = static_cast<float>(1.0 / (1.0 + occupancy.time));
+  marker.pose.orientation.z = std::sin(0.5 * occupancy.frame.heading);
+  marker.pose.orientation.w = std::cos(0.5 * occupancy.frame.heading);
+  marker.pose.position = toPoint({occupancy.frame.position.x(), occupancy.frame.position.y(), z});
+  marker.scale.x = marker.scale.y = occupancy.cell;
+  marker.scale.z = 0.1;
+  for (const Eigen::Vector2d& center : planning::occupiedCells(occupancy)) {
+    marker.points.emplace_back();
+    marker.points.back().x = center.x();
+    marker.points.back().y = center.y();
+  }
+  return marker;
+}
+
+}  // namespace
+
+MarkerArray perceptionMarkers(const planning::Perception& perception, double elevation,
+                              double time) {
+  const double z = elevation + kPerceivedLift;
+  MarkerArray array;
+  for (const planning::PerceivedVehicle& vehicle : perception.vehicles)
+    array.markers.push_back(
+        perceivedVehicleMarker(vehicle, static_cast<int>(array.markers.size())));
+  for (const planning::PerceivedLine& line : perception.lines)
+    array.markers.push_back(perceivedLineMarker(line, static_cast<int>(array.markers.size()), z));
+  for (const planning::PerceivedOccupancy& occupancy : perception.occupancy)
+    array.markers.push_back(occupancyMarker(occupancy, static_cast<int>(array.markers.size()), z));
+  array.markers.push_back(forecastMarker(perception, z));
+  for (Marker& marker : array.markers) {
+    marker.header.stamp = toStamp(time);
+    marker.lifetime = ::ros::Duration(kLifetime);
+  }
+  array.markers.erase(std::remove_if(array.markers.begin(), array.markers.end(),
+                                     [](const Marker& marker) {
+                                       const bool list = marker.type == Marker::LINE_LIST ||
+                                                         marker.type == Marker::CUBE_LIST;
+                                       return list && marker.points.empty();
+                                     }),
+                      array.markers.end());
+  array.markers.insert(array.markers.begin(), deleteAll());
   return array;
 }
 

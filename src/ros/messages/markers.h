@@ -19,6 +19,13 @@ visualization_msgs::MarkerArray mapMarkers(const session::SessionSetup& setup);
 visualization_msgs::MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions,
                                                double time);
 
+/// What a planner believes to see: boxes of vehicles, as opaque as their scores, the most probable
+/// way of each, lines of the road by kind, and the cells that are occupied more probably than not,
+/// the later the fainter. `elevation`: of the road [m]. Starts with DELETEALL; lives for 0.5 s of
+/// simulated time.
+visualization_msgs::MarkerArray perceptionMarkers(const planning::Perception& perception,
+                                                  double elevation, double time);
+
 /// The session as rviz markers in `map`: the network and the ego's route once, then vehicles by
 /// role (ego red, CBV purple, background blue), conflict points and conflict-aware routes.
 /// One per session: gives each vehicle an id that it keeps.

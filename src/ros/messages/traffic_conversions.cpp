@@ -166,6 +166,7 @@ msgs::ControlAction toMsg(const planning::PlannedAction& action,
     message.attended.back().vehicle_id = vehicle.vehicle_id;
     message.attended.back().weight = vehicle.weight;
   }
+  message.perception = toMsg(action.perception);
   return message;
 }
 
@@ -177,6 +178,7 @@ planning::PlannedAction fromMsg(const msgs::ControlAction& message) {
   action.fault = message.fault;
   for (const msgs::AttendedVehicle& vehicle : message.attended)
     action.attended.push_back({vehicle.vehicle_id, vehicle.weight});
+  action.perception = fromMsg(message.perception);
   return action;
 }
 
