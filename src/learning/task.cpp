@@ -12,6 +12,16 @@ namespace cdiff::learning {
 
 using core::InputError;
 
+void Loss::add(const std::string& name, const at::Tensor& term) {
+  total = total.defined() ? total + term : term;
+  for (auto& [known, value] : terms) {
+    if (known != name) continue;
+    value = value + term.detach();
+    return;
+  }
+  terms.emplace_back(name, term.detach());
+}
+
 EvenStage::EvenStage(const TrainingRun& run, const std::string& name, const TrainedPart& part,
                      std::int64_t batch, const std::string& order)
     : name_(name),

@@ -29,6 +29,9 @@ namespace cdiff::learning {
 struct Loss {
   at::Tensor total;
   std::vector<std::pair<std::string, at::Tensor>> terms;
+
+  /// Adds a part to the total, and to what is logged under its name.
+  void add(const std::string& name, const at::Tensor& term);
 };
 
 /// How the steps of a stage are made where it is not as usual.

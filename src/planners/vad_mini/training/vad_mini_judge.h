@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <string>
+
+#include "planners/camera_ego/training/ego_data.h"
+#include "planners/camera_ego/training/open_loop.h"
+#include "planners/vad_mini/vad_mini_network.h"
+
+namespace cdiff::planners {
+
+/// Open-loop measures of `vad_mini` on held-out moments, by the network that drives; beside it a
+/// vehicle that keeps its velocity, detections that never change, and a straight road.
+class VadMiniJudge {
+ public:
+  /// `prior` must outlive the judge.
+  VadMiniJudge(const VadMiniModel& model, const ConstantDetections& prior);
+  void add(const EgoExample& example);
+  learning::Measures measures() const;
+
+ private:
+  VadMiniOutput look(const EgoExample& example);
+
+  VadMiniArchitecture architecture_;
+  VadMiniNetwork network_;
+  const ConstantDetections& prior_;
+  PlanMeasures plan_{""};
+  PlanMeasures constant_{"constant_velocity_"};
+  DetectionMeasures detection_;
+  DetectionMeasures prior_detection_;
+  MapMeasures map_;
+  MapMeasures straight_;
+};
+
+/// The measures as Markdown.
+std::string egoTable(const learning::Measures& held_out, const std::string& title);
+
+/// Lines that the network is sure of (body frame [m]): score above `least`.
+std::vector<BevLine> sureLines(const VadMiniOutput& output, double least);
+
+}  // namespace cdiff::planners

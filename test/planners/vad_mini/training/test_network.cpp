@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <iostream>
+
+#include "planners/camera_ego/training/two_looks.h"
+#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/vad_mini_network.h"
+#include "support/random_model.h"
+
+namespace cdiff::planners {
+namespace {
+
+using testing::TwoLooks;
+
+VadMiniModel drawnModel() {
+  VadMiniArchitecture architecture;
+  return {architecture, cdiff::testing::randomTensors(vadMiniTensors(architecture))};
+}
+
+void expectNear(double found, const at::Tensor& expected, const char* what) {
+  EXPECT_NEAR(found, expected.item<double>(),
+              1e-4 * std::max(1.0, std::abs(expected.item<double>())))
+      << what;
+}
+
+void expectSame(const VadMiniOutput& found, const VadMiniAnswer& expected) {
+  for (std::size_t a = 0; a < found.agents.size(); ++a) {
+    const auto i = static_cast<std::int64_t>(a);
+    expectNear(found.agents[a].score, expected.agent_logits.back()[0][i][0], "score");
+    for (std::int64_t n = 0; n < kBoxNumbers; ++n)
+      expectNear(found.agents[a].box[static_cast<std::size_t>(n)], expected.boxes.back()[0][i][n],
+                 "box");
+    for (std::int64_t m = 0; m < kMotionModes; ++m) {
+      const Eigen::Vector2d end = found.agents[a].ways[static_cast<std::size_t>(m)].back();
+      expectNear(end.x() - static_cast<double>(found.agents[a].box[0]),
+                 expected.ways[0][i][m][5][0], "way");
+      expectNear(found.agents[a].way_scores[static_cast<std::size_t>(m)],
+                 expected.way_logits[0][i][m], "way score");
+    }
+  }
+  const at::Tensor lines = metersOfShares(BevGrid{}, expected.lines.back());
+  for (std::size_t l = 0; l < found.lines.size(); ++l) {
+    const auto i = static_cast<std::int64_t>(l);
+    for (std::int64_t k = 0; k < kMapKinds; ++k)
+      expectNear(found.lines[l].scores[static_cast<std::size_t>(k)],
+                 expected.line_logits.back()[0][i][k], "line score");
+    expectNear(found.lines[l].points.back().y(), lines[0][i][kMapPoints - 1][1], "line");
+  }
+  for (std::int64_t c = 0; c < kRoadCommands; ++c) {
+    for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {
+      const Eigen::Vector2d place =
+          found.plans[static_cast<std::size_t>(c)][static_cast<std::size_t>(k)];
+      expectNear(place.x(), expected.plans[0][c][k][0], "plan");
+      expectNear(place.y(), expected.plans[0][c][k][1], "plan");
+    }
+  }
+}
+
+class VadMiniNetworks : public ::testing::TestWithParam<inference::InstructionSet> {};
+
+TEST_P(VadMiniNetworks, IsTheFunctionThatThePlannerComputes) {
+  if (GetParam() > inference::bestInstructionSet()) GTEST_SKIP() << "not on this processor";
+  const VadMiniModel model = drawnModel();
+  VadMiniNet net(model.architecture, 1);
+  net.parameters().load(model.weights, "test");
+  VadMiniNetwork network(model, GetParam());
+  const TwoLooks looks;
+  const at::NoGradGuard no_gradient;
+  const BevGrid& bev = model.architecture.ego.bev;
+  const at::Tensor past = net.bev().encode(looks.batch(bev, false), {});
+  expectSame(network.forward(looks.input<VadMiniInput>(false)), net.answer(past, 1));
+  inference::Rows kept;
+  kept.resize(network.bev().rows(), model.architecture.ego.width);
+  for (std::int64_t row = 0; row < kept.rows(); ++row)
+    std::copy_n(network.bev().row(row), model.architecture.ego.width, kept.row(row));
+  VadMiniInput second = looks.input<VadMiniInput>(true);
+  second.past = &kept;
+  expectSame(network.forward(second),
+             net.answer(net.bev().encode(looks.batch(bev, true), past), 1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, VadMiniNetworks,
+                         ::testing::Values(inference::InstructionSet::kPlain,
+                                           inference::InstructionSet::kAvx2,
+                                           inference::InstructionSet::kAvx512));
+
+TEST(VadMiniNetwork, AnswersTheSameBytesEveryTime) {
+  const VadMiniModel model = drawnModel();
+  VadMiniNetwork first(model), second(model);
+  const TwoLooks looks;
+  second.forward(looks.input<VadMiniInput>(true));  // whatever came before
+  const auto one = first.forward(looks.input<VadMiniInput>(false)),
+             other = second.forward(looks.input<VadMiniInput>(false));
+  for (std::size_t c = 0; c < one.plans.size(); ++c) EXPECT_EQ(one.plans[c], other.plans[c]);
+}
+
+// Processor time of a decision, of which 60 ms are asked for; twice that on a machine that others
+// use.
+TEST(VadMiniNetwork, IsQuickEnough) {
+  VadMiniNetwork network(drawnModel());
+  const TwoLooks looks;
+  network.forward(looks.input<VadMiniInput>(true));
+  const std::clock_t begin = std::clock();
+  for (int i = 0; i < 10; ++i) network.forward(looks.input<VadMiniInput>(true));
+  const double milliseconds = 100.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  RecordProperty("milliseconds", std::to_string(milliseconds));
+  std::cout << milliseconds << " ms a decision\n";
+  EXPECT_LT(milliseconds, 120.0);
+}
+
+TEST(VadMiniNet, DeclaresTheTensorsOfTheWeightFile) {
+  VadMiniNet net(VadMiniArchitecture(), 1);
+  const auto values = net.parameters().values();
+  const auto expected = vadMiniTensors(VadMiniArchitecture());
+  ASSERT_EQ(values.size(), expected.size());
+  std::size_t count = 0;
+  for (const inference::TensorShape& tensor : expected) {
+    EXPECT_EQ(values.at(tensor.name).shape, tensor.shape) << tensor.name;
+    count += values.at(tensor.name).values.size();
+  }
+  EXPECT_LT(count, 4000000U) << "a compact network";
+  std::cout << count << " weights\n";
+}
+
+}  // namespace
+}  // namespace cdiff::planners
