@@ -114,7 +114,10 @@ TEST(Conversions, PerceptionComesBackBitByBit) {
   const planning::Perception back = fromMsg(message).perception;
   ASSERT_EQ(back.vehicles.size(), 1U);
   const planning::PerceivedVehicle& sent = action.perception.vehicles[0];
-  EXPECT_EQ(back.vehicles[0].state, sent.state);
+  EXPECT_EQ(back.vehicles[0].state.position, sent.state.position);
+  EXPECT_EQ(back.vehicles[0].state.elevation, sent.state.elevation);
+  EXPECT_EQ(back.vehicles[0].state.heading, sent.state.heading);
+  EXPECT_EQ(back.vehicles[0].state.speed, sent.state.speed);
   EXPECT_EQ(back.vehicles[0].dimensions.length, 4.0);
   EXPECT_EQ(back.vehicles[0].dimensions.width, 2.0);
   EXPECT_EQ(back.vehicles[0].dimensions.height, 1.5);

@@ -15,7 +15,7 @@ void CameraEgoSizes::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"hidden", "", "Width of the feed-forward networks."}, hidden, 16, 4096);
   visitor.integer({"bev_layers", "", "Layers of the BEV encoder."}, bev_layers, 1, 8);
   bev.describe(visitor);
-  visitor.flag({"past_bev", "", "Whether the BEV of 0.5 s ago is read, too."}, past_bev);
+  visitor.flag({"past_bev", "", "Read the BEV of 0.5 s ago, too."}, past_bev);
   visitor.text({"rig", "", "Preset of the cameras."}, rig, rendering::rigPresets());
   visitor.integer({"image_width", "px", "Width of the images."}, image_width, 32, 1600);
   visitor.integer({"image_height", "px", "Height of the images."}, image_height, 32, 1600);

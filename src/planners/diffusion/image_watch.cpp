@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/diffusion/image_watch.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "core/text.h"
@@ -11,6 +12,19 @@ namespace cdiff::planners {
 namespace {
 
 constexpr double kMovedDistance = 1.0;  // [m] after which the view must have changed
+
+/// Whether an image shows sky and ground alone: one color in each row, and not the same in all.
+/// Such a view stays as it is while the vehicle moves, and is no sign of a frozen camera.
+bool showsNothing(const traffic::CameraImage& image) {
+  const std::size_t row_bytes = static_cast<std::size_t>(image.width) * 3;
+  bool differs = false;
+  for (std::size_t begin = 0; begin < image.rgb.size(); begin += row_bytes) {
+    const std::uint8_t* row = image.rgb.data() + begin;
+    if (!std::equal(row + 3, row + row_bytes, row)) return false;
+    differs = differs || !std::equal(row, row + 3, image.rgb.data());
+  }
+  return differs;
+}
 
 }  // namespace
 
@@ -45,7 +59,7 @@ bool ImageWatch::frozen(const ImageExpectation& expectation, const traffic::Came
                         const traffic::VehicleState& state, std::uint64_t tick) {
   const std::uint64_t hash = core::hashText(
       std::string_view(reinterpret_cast<const char*>(image.rgb.data()), image.rgb.size()));
-  if (!seen_ || hash != hash_) {
+  if (!seen_ || hash != hash_ || showsNothing(image)) {
     seen_ = true;
     hash_ = hash;
     since_tick_ = tick;

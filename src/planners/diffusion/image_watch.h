@@ -23,7 +23,7 @@ struct ImageExpectation {
 };
 
 /// Whether a vehicle's images can be driven by: right size, of this tick, and not frozen while the
-/// vehicle moves.
+/// vehicle moves. A view of sky and ground alone may stay as it is.
 /// One per vehicle; asked once per decision.
 class ImageWatch {
  public:

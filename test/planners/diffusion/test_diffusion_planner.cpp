@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -107,6 +108,22 @@ TEST_F(DiffusionPlannerTest, FrozenImageIsAFaultOnlyWhileMoving) {
     // 1 s is 20 ticks; slot 0 has then moved 5 m with one and the same image, slot 1 stands.
     EXPECT_EQ(actions[0].fault.find("has not changed") != std::string::npos, tick >= 20) << tick;
     EXPECT_EQ(actions[1].fault, "");
+  }
+}
+
+TEST_F(DiffusionPlannerTest, SkyAndGroundAloneMayStayAsTheyAreButOneColorMayNot) {
+  for (const bool horizon : {true, false}) {
+    std::vector<std::uint8_t>& rgb = images_[0].rgb;
+    std::fill(rgb.begin(), rgb.end(), std::uint8_t{90});
+    if (horizon) std::fill_n(rgb.begin(), rgb.size() / 2, std::uint8_t{200});
+    DiffusionPlanner planner = makePlanner();
+    std::string fault;
+    for (std::uint64_t tick = 0; tick <= 20; tick += 2) {
+      goTo(tick);
+      for (traffic::Vehicle& vehicle : snapshot_.vehicles) vehicle.state.position.x() += 0.5;
+      fault = planner.plan(snapshot_, tasks())[0].fault;
+    }
+    EXPECT_EQ(fault.empty(), horizon) << fault;
   }
 }
 

@@ -35,7 +35,7 @@ void UniadMiniTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.number({"false_tracks", "", "Chance that a false track goes on to the next look."},
                  drops.false_positive, 0.0, 1.0);
   visitor.flag({"intermediate_losses", "",
-                "Whether tracks, map, motion and occupancy are supervised in stage end_to_end."},
+                "Supervise tracks, map, motion and occupancy in stage end_to_end."},
                intermediate_losses);
 }
 

@@ -86,7 +86,7 @@ class ImitationOfEgos : public learning::Stage {
 void VadMiniTrainingSettings::describe(core::OptionsVisitor& visitor) {
   architecture.describe(visitor);
   samples.describe(visitor);
-  visitor.flag({"intermediate_losses", "", "Whether detection, forecasts and map are supervised."},
+  visitor.flag({"intermediate_losses", "", "Supervise detection, forecasts and map."},
                intermediate_losses);
   visitor.number({"constraint_start", "", "Part of the steps before the plan's constraints count."},
                  constraint_start, 0.0, 1.0);
