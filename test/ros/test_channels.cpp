@@ -25,7 +25,7 @@ TEST(Channels, RowsStandInTheOrderOfTheirIdsAndNamesAreUnique) {
     EXPECT_EQ(static_cast<std::size_t>(channels()[i].id), i) << channels()[i].name;
     EXPECT_TRUE(names.insert(channels()[i].name).second) << channels()[i].name;
   }
-  EXPECT_EQ(channels().back().id, ChannelId::kRolloutMarkers);  // the last of the ids
+  EXPECT_EQ(channels().back().id, ChannelId::kPerceptionMarkers);  // the last of the ids
 }
 
 TEST(Channels, WhatIsWaitedForIsCollectedRecordedAndHasListeners) {

@@ -131,7 +131,8 @@ TEST_F(UniadMiniTraining, AblationsLeaveOutWhatTheySay) {
   settings.samples.blind = true;
   train(training);
   EXPECT_NE(log_.str().find("track_box"), std::string::npos) << "in the first stage";
-  EXPECT_EQ(log_.str().find("occupancy"), std::string::npos);
+  EXPECT_NE(log_.str().find(" plan_collision "), std::string::npos);
+  EXPECT_EQ(log_.str().find(" occupancy "), std::string::npos);
   EXPECT_FALSE(readUniadMiniModel(path("bare")).architecture.ego.past_bev);
 }
 
