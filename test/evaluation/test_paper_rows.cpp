@@ -22,11 +22,6 @@ Factors cellLevels(const TableRow& row, const TableColumn& column) {
   return merged(row.levels, column.levels);
 }
 
-bool waits(const Factors& levels) {
-  return std::any_of(levels.begin(), levels.end(),
-                     [](const auto& level) { return isOnRoadmap(level.second); });
-}
-
 /// Calls `visit(table, row, column)` for each cell of the six tables and of Figures 4 and 8.
 template <class Visit>
 void forEachCell(const Visit& visit) {
@@ -61,41 +56,41 @@ TEST(PaperRows, EachCellIsFilledByRunsOfItsPlanners) {
   forEachCell([&](const TableDefinition& table, std::size_t row, std::size_t column) {
     const BatchRun run = runFor(table.rows[row], table.columns[column]);
     const TableCell cell = fillTable(table, {run}).cells[row][column];
-    if (waits(cellLevels(table.rows[row], table.columns[column]))) return;
     ASSERT_TRUE(cell.seeds.mean) << table.id << " " << table.rows[row].name << ": " << cell.note;
     EXPECT_DOUBLE_EQ(*cell.seeds.mean, 2.0) << table.id << " " << table.rows[row].name;
     ++filled;
   });
-  // Tables: 25 + 25 + 5 x 4 + 20 + 50 + 8; Figure 4: 2 egos x 8; Figure 8: (4 egos + 7) x 2.
-  EXPECT_EQ(filled, 148U + 16U + 22U);
+  // Tables: 25 + 25 + 5 x 8 + 20 + 50 + 12; Figure 4: 4 egos x 8; Figure 8: (6 egos + 7) x 2.
+  EXPECT_EQ(filled, 172U + 32U + 26U);
 }
 
-/// Cells of the paper's own rows (not of method paper beside them) that wait for a system.
-std::size_t waitingCells(const TableDefinition& table) {
-  const Table empty = fillTable(table, {});
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < empty.cells.size(); ++row) {
-    if (table.rows[row].name == paper::kPaperMethod.name) continue;
-    for (const TableCell& cell : empty.cells[row]) {
-      count += cell.note == kOnRoadmap;
-      EXPECT_TRUE(cell.note == kOnRoadmap || cell.note == "not run") << cell.note;
+// The paper's own cells, without the rows of method paper beside them.
+TEST(PaperRows, NoneOfThe115CellsWaitsForASystem) {
+  std::size_t cells = 0;
+  for (const TableDefinition& table : paperTables()) {
+    const Table empty = fillTable(table, {});
+    for (std::size_t row = 0; row < empty.cells.size(); ++row) {
+      for (const TableCell& cell : empty.cells[row]) {
+        EXPECT_EQ(cell.note, "not run") << table.id << " " << table.rows[row].name;
+        const auto& levels = table.rows[row].levels;
+        const auto method = levels.find("method");
+        cells +=
+            cell.paper.mean.has_value() && (method == levels.end() || method->second != "paper");
+      }
     }
   }
-  return count;
+  EXPECT_EQ(cells, 115U);
 }
 
-// Of 115 cells those of UniAD and VAD: 4 rows x 4 columns of Table 3, 2 x 2 of Table 6.
-TEST(PaperRows, OnlyCellsOfUniAdAndVadAreOnTheRoadmap) {
-  std::vector<std::size_t> waiting;
-  for (const TableDefinition& table : paperTables()) waiting.push_back(waitingCells(table));
-  EXPECT_EQ(waiting, (std::vector<std::size_t>{0, 0, 16, 0, 0, 4}));
+TEST(PaperRows, MiniaturesStandBesideWhatIsPublishedOfTheLargeOnes) {
   const std::string text = tablesMarkdown({fillTable(paperTables()[5], {})});
-  EXPECT_NE(text.find("| UniAD | (on the roadmap)<br>paper: 76.14 ± 1.29"), std::string::npos)
+  EXPECT_NE(text.find("| UniAD mini | (not run)<br>paper: 76.14 ± 1.29"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("\n- VAD: on the roadmap; the published"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n- VAD mini: published: Bench2Drive's checkpoint"), std::string::npos)
+      << text;
   EXPECT_NE(barFigure(latencyFigure(), {})
-                .csv.find("\nVAD,p50,ms,clean,379.5,,,,,,,,0,0,,,0,0,0,"
-                          "on the roadmap\n"),
+                .csv.find("\nVAD mini,p50,ms,clean,379.5,,,,,,,,0,0,,,0,0,0,"
+                          "not run\n"),
             std::string::npos);
 }
 
@@ -130,7 +125,6 @@ class PaperTablesMatrix : public testing::Test {
 TEST_F(PaperTablesMatrix, HasRunsForEachCell) {
   forEachCell([&](const TableDefinition& table, std::size_t row, std::size_t column) {
     const Factors wanted = cellLevels(table.rows[row], table.columns[column]);
-    if (waits(wanted)) return;
     EXPECT_TRUE(std::any_of(levels_.begin(), levels_.end(),
                             [&](const Factors& levels) { return contains(levels, wanted); }))
         << table.id << " " << table.rows[row].name << " " << table.columns[column].name;
@@ -148,7 +142,7 @@ TEST_F(PaperTablesMatrix, HasNoCombinationWithoutACellNorTwice) {
     EXPECT_TRUE(shown) << "combination " << i + 1;
     EXPECT_EQ(std::count(levels_.begin(), levels_.end(), levels_[i]), 1) << "combination " << i + 1;
   }
-  EXPECT_EQ(levels_.size(), 30U);
+  EXPECT_EQ(levels_.size(), 46U);
 }
 
 /// The cell of a row in a column of a table without runs.
@@ -173,7 +167,7 @@ TEST(RiftsRepository, StandsBesideThePaperWhereItPrintsAFigure) {
   EXPECT_EQ(paperText(cellOf(1, "PPO", "A-SW").repository), "0.92");
   EXPECT_EQ(paperText(cellOf(2, "Pluto", "PDM-Lite RC").repository), "81.84 ± 2.20");
   EXPECT_EQ(paperText(cellOf(2, "RIFT", "PlanT DS").repository), "44.28 ± 3.15");
-  EXPECT_FALSE(cellOf(2, "RIFT", "UniAD DS").repository.mean);
+  EXPECT_FALSE(cellOf(2, "RIFT", "UniAD mini DS").repository.mean);
   EXPECT_FALSE(cellOf(0, paper::kDiffusion.name, "ORR").repository.mean);
   EXPECT_FALSE(cellOf(5, "PDM-Lite", "DS").repository.mean);
   EXPECT_EQ(repositoryList(paper::kPdmLite, "CPK", "per km"),

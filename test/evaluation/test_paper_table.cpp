@@ -73,7 +73,6 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
   BatchRun broken = runOf("1", {});
   broken.record.status = "error";
   EXPECT_EQ(note("no_such_planner", {}), "not implemented");
-  EXPECT_EQ(note(PaperSystem("No such system").planner(), {}), "on the roadmap");
   EXPECT_EQ(note("pdm_lite", {}), "not run");
   EXPECT_EQ(note("pdm_lite", {broken}), "no run completed");
   EXPECT_EQ(note("pdm_lite", {runOf("1", {})}), "no run has this measure");

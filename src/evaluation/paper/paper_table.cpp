@@ -10,22 +10,8 @@
 #include "session/session_request.h"
 
 namespace cdiff::evaluation {
-namespace {
 
-constexpr const char* kRoadmapEnd = " (on the roadmap)";  // after a title; no planner's name has it
-
-}  // namespace
-
-std::string PaperSystem::planner() const {
-  const std::string found = planners::plannerTitled(title);
-  return found.empty() ? std::string(title) + kRoadmapEnd : found;
-}
-
-bool isOnRoadmap(const std::string& level) {
-  const std::string end = kRoadmapEnd;
-  return level.size() > end.size() &&
-         level.compare(level.size() - end.size(), end.size(), end) == 0;
-}
+std::string PaperSystem::planner() const { return planners::plannerTitled(title); }
 
 const std::vector<PaperSystem>& paperEgoPlanners() {
   static const std::vector<PaperSystem> systems = {paper::kPdmLite,   paper::kPlanT,

@@ -24,15 +24,9 @@ struct PaperSystem {
   explicit constexpr PaperSystem(const char* a_title) : PaperSystem(a_title, a_title) {}
   constexpr PaperSystem(const char* a_title, const char* a_name, const char* a_method = "default")
       : title(a_title), name(a_name), method(a_method) {}
-  /// Name of its planner here; where there is none yet, a level that no run has and that
-  /// isOnRoadmap knows.
+  /// Name of its planner here.
   std::string planner() const;
 };
-
-/// Note of a cell of a system that is not here yet.
-inline constexpr const char* kOnRoadmap = "on the roadmap";
-/// Whether a level stands for a planner of the paper that is not here yet.
-bool isOnRoadmap(const std::string& level);
 
 inline constexpr const char* kNaturalistic = "naturalistic";
 inline constexpr const char* kSafetyCritical = "safety_critical";
@@ -40,8 +34,8 @@ inline constexpr const char* kSafetyCritical = "safety_critical";
 namespace paper {
 inline constexpr PaperSystem kPdmLite("PDM-Lite");
 inline constexpr PaperSystem kPlanT("PlanT");
-inline constexpr PaperSystem kUniAd("UniAD");
-inline constexpr PaperSystem kVad("VAD");
+inline constexpr PaperSystem kUniAd("UniAD mini");
+inline constexpr PaperSystem kVad("VAD mini");
 inline constexpr PaperSystem kPpo("PPO");
 inline constexpr PaperSystem kPluto("Pluto");
 inline constexpr PaperSystem kRift("RIFT");
@@ -131,7 +125,7 @@ struct TableCell {
   std::size_t runs = 0;               ///< runs at these levels, however they ended
   std::size_t failed = 0;             ///< those of them that broke, were interrupted or not run
   std::size_t used = 0;               ///< those of them that have the measure
-  std::string note;                   ///< why it is empty: on the roadmap, not run, ...
+  std::string note;                   ///< why it is empty: not run, ...
 };
 
 /// A table of the paper, filled from the runs of a batch.
@@ -153,10 +147,9 @@ bool anyIntervals(const Table& table);
 /// Whether a row with values shows none.
 bool anyRowWithout(const Table& table);
 
-/// Why nothing stands where runs with these levels would: "on the roadmap" (a planner of the paper
-/// that is not here yet), "not implemented" (any other that is not), "not applicable in mode M"
-/// (the batch ran them in other modes alone, here M), "not run", "no run completed", or
-/// `otherwise`.
+/// Why nothing stands where runs with these levels would: "not implemented" (no such planner), "not
+/// applicable in mode M" (the batch ran them in other modes alone, here M), "not run", "no run
+/// completed", or `otherwise`.
 std::string emptyReason(const Factors& levels, const std::vector<BatchRun>& runs,
                         const std::string& otherwise);
 

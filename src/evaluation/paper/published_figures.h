@@ -25,7 +25,7 @@ std::string repositoryList(const PaperSystem& ego, const std::string& column,
                            const std::string& unit);
 
 /// A line "Pluto: ..." for each of these systems: how training and execution of the published one
-/// differ from ours, or that it is on the roadmap.
+/// differ from ours.
 std::vector<std::string> systemDifferences(const std::vector<PaperSystem>& systems);
 
 /// Under which protocol the published figures were measured, in one line.

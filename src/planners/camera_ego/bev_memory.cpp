@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::planners {
@@ -47,8 +48,11 @@ RigWatch::RigWatch(const rendering::CameraRig& rig, double frozen_image_time,
     : names_(rig.names()), watches_(rig.cameras.size()) {
   constexpr double kNever = 1e9;  // [s]
   for (const rendering::RigCamera& camera : rig.cameras)
-    expectations_.push_back({static_cast<int>(camera.width), static_cast<int>(camera.height),
-                             rig.blind ? kNever : frozen_image_time, simulation_step});
+    expectations_.push_back(
+        {static_cast<int>(camera.width), static_cast<int>(camera.height), kNever, simulation_step});
+  expected_strip_ = expectations_.front();
+  expected_strip_.frozen_image_time = rig.blind ? kNever : frozen_image_time;
+  expected_strip_.height *= static_cast<int>(rig.cameras.size());
 }
 
 std::string RigWatch::fault(const planning::PlanningTask& task, std::uint64_t tick) {
@@ -58,7 +62,14 @@ std::string RigWatch::fault(const planning::PlanningTask& task, std::uint64_t ti
         watches_[i].fault(expectations_[i], task.views.find(names_[i]), task.vehicle->state, tick);
     if (fault && first.empty()) first = "camera '" + names_[i] + "': " + *fault;
   }
-  return first;
+  if (!first.empty()) return first;
+  traffic::CameraImage strip{expected_strip_.width, expected_strip_.height, tick, {}};
+  for (const std::string& name : names_) {
+    const std::vector<std::uint8_t>& rgb = task.views.find(name)->rgb;
+    strip.rgb.insert(strip.rgb.end(), rgb.begin(), rgb.end());
+  }
+  const auto frozen = strip_.fault(expected_strip_, &strip, task.vehicle->state, tick);
+  return frozen ? "cameras '" + core::joinText(names_, "', '") + "': " + *frozen : "";
 }
 
 std::vector<const std::uint8_t*> RigWatch::pixels(const planning::PlanningTask& task) const {

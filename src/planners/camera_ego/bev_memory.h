@@ -39,7 +39,9 @@ class BevMemory {
   std::deque<Kept> kept_;
 };
 
-/// The images of a rig's cameras for one vehicle: whether they can be driven by.
+/// The images of a rig's cameras for one vehicle: whether they can be driven by. One camera may see
+/// the same while the vehicle moves, as beside a straight edge of the road: they are frozen where
+/// none of them changes.
 class RigWatch {
  public:
   /// Sizes are those of the rig's cameras; `frozen_image_time` [s] counts for rigs that see.
@@ -53,6 +55,8 @@ class RigWatch {
   std::vector<std::string> names_;
   std::vector<ImageExpectation> expectations_;
   std::vector<ImageWatch> watches_;
+  ImageExpectation expected_strip_;
+  ImageWatch strip_;  ///< of all images, one below the other
 };
 
 }  // namespace cdiff::planners
