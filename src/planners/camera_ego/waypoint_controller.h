@@ -15,7 +15,9 @@ inline constexpr std::int64_t kEgoWaypoints = 6;
 inline constexpr double kEgoWaypointPeriod = 0.5;  ///< [s]
 using EgoWaypoints = std::array<Eigen::Vector2d, kEgoWaypoints>;
 
-/// Gains and rules of the controller, as published for TCP, UniAD and VAD on Bench2Drive.
+/// Gains and rules of the controller, as published for TCP, UniAD and VAD on Bench2Drive, but for
+/// the proportional gain of the steering: published 0.75, for CARLA's vehicle; ours was chosen on
+/// training routes (docs/vad_mini.md).
 struct WaypointControllerOptions {
   planning::PlanPidOptions pids;
   double aim_distance = 4.0;  ///< of the waypoint that is steered at [m]

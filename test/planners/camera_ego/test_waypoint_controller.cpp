@@ -7,6 +7,13 @@
 namespace cdiff::planners {
 namespace {
 
+/// With the published gain of the steering.
+WaypointController published() {
+  WaypointControllerOptions options;
+  options.pids.turn.kp = 0.75;
+  return WaypointController(options);
+}
+
 /// Waypoints every `step` meters along a direction.
 EgoWaypoints straightOn(double step, double x = 1.0, double y = 0.0) {
   EgoWaypoints places;
@@ -35,14 +42,12 @@ TEST(WaypointController, BrakesWhereThePlanStandsOrIsTenPercentSlower) {
 }
 
 // Waypoints to 45 degrees left: 0.5 of a right angle; the target beside them bears more. 0.75 +
-// 0.75 / 40 + 0.3 = 1.06875 times 0.5.
+// 0.75 / 40 + 0.3 = 1.06875 times 0.5, by the published gain.
 TEST(WaypointController, SteersAtTheWaypointsAndWhileBrakingToo) {
   const Eigen::Vector2d target(20.0, 40.0);
-  EXPECT_NEAR(
-      WaypointController({}).track(8.0, straightOn(4.0, 0.7071068, 0.7071068), target).steer,
-      0.5 * 1.06875, 1e-6);
-  const auto braking =
-      WaypointController({}).track(20.0, straightOn(4.0, 0.7071068, 0.7071068), target);
+  EXPECT_NEAR(published().track(8.0, straightOn(4.0, 0.7071068, 0.7071068), target).steer,
+              0.5 * 1.06875, 1e-6);
+  const auto braking = published().track(20.0, straightOn(4.0, 0.7071068, 0.7071068), target);
   EXPECT_EQ(braking.brake, 1.0);
   EXPECT_NEAR(braking.steer, 0.5 * 1.06875, 1e-6);
 }
@@ -54,15 +59,15 @@ TEST(WaypointController, AimsAtTheBeginOfTheSegmentAtFourMeters) {
   EgoWaypoints bent = straightOn(1.0);
   bent[2] = {3.0, 0.3};
   const double angle = std::atan2(0.3, 3.0) / (0.5 * 3.14159265358979);
-  EXPECT_NEAR(WaypointController({}).track(2.0, bent, {10.0, 30.0}).steer, 1.06875 * angle, 1e-6);
+  EXPECT_NEAR(published().track(2.0, bent, {10.0, 30.0}).steer, 1.06875 * angle, 1e-6);
 }
 
 TEST(WaypointController, TakesTheTargetWhereItBearsLessOrIsAnOutlier) {
   const EgoWaypoints left = straightOn(4.0, 0.7071068, 0.7071068);
-  EXPECT_NEAR(WaypointController({}).track(8.0, left, kAhead).steer, 0.0, 1e-12) << "bears less";
+  EXPECT_NEAR(published().track(8.0, left, kAhead).steer, 0.0, 1e-12) << "bears less";
   // Straight ahead, but the target lies at 90 degrees right, less than 10 m ahead.
-  EXPECT_NEAR(WaypointController({}).track(8.0, straightOn(4.0), {0.0, -8.0}).steer, -1.0, 1e-12);
-  EXPECT_NEAR(WaypointController({}).track(8.0, straightOn(4.0), {12.0, -40.0}).steer, 0.0, 1e-12)
+  EXPECT_NEAR(published().track(8.0, straightOn(4.0), {0.0, -8.0}).steer, -1.0, 1e-12);
+  EXPECT_NEAR(published().track(8.0, straightOn(4.0), {12.0, -40.0}).steer, 0.0, 1e-12)
       << "too far ahead";
 }
 
