@@ -71,9 +71,9 @@ double encoderOperations(const diffusion::Architecture& sizes) {
   return operations;
 }
 
-std::vector<double> encoderTimes(const diffusion::Model& model) {
+std::vector<double> encoderTimes(const diffusion::Model& model, inference::Precision precision) {
   const traffic::CameraImage image = randomImage(model.architecture);
-  diffusion::ImageEncoder encoder(model);
+  diffusion::ImageEncoder encoder(model, precision);
   for (int i = 0; i < 5; ++i) encoder.encode(image);
   std::vector<double> seconds;
   for (int i = 0; i < kImages; ++i) seconds.push_back(secondsOf([&] { encoder.encode(image); }));
@@ -83,7 +83,7 @@ std::vector<double> encoderTimes(const diffusion::Model& model) {
 
 void benchmarkEncoder(Figures& figures) {
   const diffusion::Model model = randomModel();
-  const std::vector<double> seconds = encoderTimes(model);
+  const std::vector<double> seconds = encoderTimes(model, inference::Precision::kFp32);
   const double peak = measureFmaPeak();
   const double middle = median(seconds);
   const double rate = encoderOperations(model.architecture) / middle;

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "diffusion/network/cpu_denoiser.h"
+#include "inference/precision.h"
 
 namespace cdiff::benchmark {
 
 /// Of one image each, ascending.
-std::vector<double> encoderTimes(const diffusion::Model& model);
+std::vector<double> encoderTimes(const diffusion::Model& model, inference::Precision precision);
 /// Two per multiply-add of convolutions and projection; zeros at the border count.
 double encoderOperations(const diffusion::Architecture& sizes);
 

@@ -5,6 +5,7 @@
 #include "benchmark.h"
 #include "core/text.h"
 #include "decision_scene.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "fma_peak.h"
 #include "network_times.h"
 #include "planners/diffusion/diffusion_planner.h"
@@ -19,10 +20,11 @@ constexpr int kDecisions = 60;
 constexpr int kVehicles = DecisionScene::kCbvs;
 constexpr int kRounds = 12;
 
-/// What is planned with: sampler mode and guidance profile.
+/// What is planned with: sampler mode, guidance profile and precision of the encoder.
 struct Setting {
   const char* mode;
   const char* profile;
+  const char* precision = "auto";
 };
 
 /// The paper's three naturalistic objectives, whatever the default profile holds.
@@ -33,6 +35,7 @@ std::unique_ptr<planners::DiffusionPlanner> makePlanner(const DecisionScene& sce
                                                         const Setting& setting) {
   planners::DiffusionOptions options;
   options.sampler.mode = setting.mode;
+  options.precision = setting.precision;
   return std::make_unique<planners::DiffusionPlanner>(
       options, guidance::loadProfile(setting.profile), scene.setup().options().vehicle,
       scene.setup().planningContext());
@@ -75,10 +78,36 @@ double singlesTime(DecisionScene& scene, const Setting& setting) {
 
 double p95(const std::vector<double>& ascending) { return ascending[ascending.size() * 95 / 100]; }
 
+/// Precisions that this processor computes with, in the order of their names in `all`.
+std::vector<std::string> precisionsHere() {
+  std::vector<std::string> here;
+  for (const std::string name : {"fp32", "bf16", "int8"}) {
+    try {
+      inference::precisionNamed(name, "auto", "precision");
+      here.push_back(name);
+    } catch (const core::InputError&) {
+    }
+  }
+  return here;
+}
+
+/// The encoder alone and one decision with it, in each precision.
+void addPrecisions(Figures& figures, DecisionScene& scene) {
+  const diffusion::Model model = diffusion::loadModel("default");
+  for (const std::string& name : precisionsHere()) {
+    const auto precision = inference::precisionNamed(name, "auto", "precision");
+    const double encoder = median(encoderTimes(model, precision));
+    const Setting setting{"real_time", kThreeObjectives, name.c_str()};
+    const double decision = median(planTimes(scene, setting, 1, true));
+    figures.push_back({"planner_encoder_" + name + "_p50", 1e3 * encoder, "ms", ""});
+    figures.push_back({"planner_real_time_" + name + "_p50", decision, "ms", ""});
+  }
+}
+
 /// The encoder alone and both networks' share of the peak. Returns the encoder's p95 [ms].
 double addNetworks(Figures& figures) {
   const diffusion::Model model = diffusion::loadModel("default");
-  const std::vector<double> encoder = encoderTimes(model);
+  const std::vector<double> encoder = encoderTimes(model, inference::Precision::kFp32);
   diffusion::CpuDenoiser denoiser(model);
   const DenoiserTimes unet = denoiserTimes(denoiser, 1);
   const double peak = measureFmaPeak();
@@ -92,12 +121,16 @@ double addNetworks(Figures& figures) {
   return 1e3 * p95(encoder);
 }
 
-void addEager(Figures& figures) {
+void addEager(Figures& figures, DecisionScene& scene) {
 #ifdef E2E_CDIFF_EAGER
+  const double ours = median(planTimes(scene, {"real_time", kThreeObjectives}, 1, true));
+  const double eager = 1e3 * eagerRealTimeSeconds();
   figures.push_back({"libtorch_eager_encoder_p50", 1e3 * eagerEncoderSeconds(), "ms", ""});
   figures.push_back({"libtorch_eager_paper_p50", 1e3 * eagerPaperSeconds(), "ms", ""});
-  figures.push_back({"libtorch_eager_real_time_p50", 1e3 * eagerRealTimeSeconds(), "ms", ""});
+  figures.push_back({"libtorch_eager_real_time_p50", eager, "ms", ""});
+  figures.push_back({"planner_real_time_speedup_over_eager", eager / ours, "times", ">=7"});
 #else
+  (void)scene;
   (void)figures;
 #endif
 }
@@ -132,6 +165,10 @@ void addBatch(Figures& figures, DecisionScene& scene) {
   const double batch = median(planTimes(scene, three, kVehicles, false));
   const double batch_default = median(planTimes(scene, standard, kVehicles, false));
   const double singles = singlesTime(scene, three);
+  const double images = median(planTimes(scene, three, kVehicles, true));
+  const double one_image = median(planTimes(scene, three, 1, true));
+  figures.push_back({"planner_eight_cbvs_p50", images, "ms", ""});
+  figures.push_back({"planner_eight_cbvs_per_one", images / one_image, "times", "<=8"});
   figures.push_back({"planner_eight_cbvs_cached_p50", batch, "ms", "<=25"});
   figures.push_back({"planner_eight_cbvs_cached_default_profile_p50", batch_default, "ms", ""});
   figures.push_back({"planner_eight_singles_cached_p50", singles, "ms", ""});
@@ -143,9 +180,10 @@ void addBatch(Figures& figures, DecisionScene& scene) {
 void benchmarkPlanner(Figures& figures) {
   DecisionScene scene;
   const double encoder_p95 = addNetworks(figures);
+  addPrecisions(figures, scene);
   addSingles(figures, scene, encoder_p95);
   addBatch(figures, scene);
-  addEager(figures);
+  addEager(figures, scene);
 }
 
 }  // namespace cdiff::benchmark

@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "core/file.h"
 #include "diffusion/network/cpu_denoiser.h"
-#include "diffusion/network/image_encoder.h"
+#include "inference/precision.h"
 #include "plugins/plugin_loader.h"
 #include "session/scenario_options.h"
 
@@ -77,8 +77,7 @@ Finding shippedModel() {
     diffusion::loadModel("default");
     return {true, "planner model",
             "default (" + diffusion::modelFilesSha256("default").substr(0, 12) +
-                "), encoder with " + diffusion::ImageEncoder::instructionSet() +
-                ", denoiser with " +
+                "), encoder with " + inference::oneDnnInstructionSet("auto") + ", denoiser with " +
                 diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())};
   } catch (const std::exception& error) {
     return {false, "planner model", error.what()};

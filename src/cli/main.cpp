@@ -8,8 +8,8 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "diffusion/network/cpu_denoiser.h"
-#include "diffusion/network/image_encoder.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "inference/precision.h"
 #include "plugins/plugin_loader.h"
 #include "record/session_yaml.h"
 
@@ -40,7 +40,7 @@ std::string versionText() {
   return "cdiff " + record::packageVersion() + "\nrevision " + record::packageRevision() +
          "\nSUMO " + (sumo.empty() ? "not found: install the package sumo" : sumo) +
          "\ninstruction set " + record::instructionSet() + "; encoder with " +
-         diffusion::ImageEncoder::instructionSet() + ", denoiser with " +
+         inference::oneDnnInstructionSet("auto") + ", denoiser with " +
          CpuDenoiser::toText(CpuDenoiser::bestInstructionSet());
 }
 

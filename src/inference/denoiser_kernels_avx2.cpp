@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels with AVX2 and FMA; this file alone is compiled for it.
+#include "inference/encoder_kernels.h"
 #include "inference/transformer_kernels.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
 
 #include <immintrin.h>
 
+#include "inference/encoder_templates.h"
 #include "inference/transformer_templates.h"
 
 namespace cdiff::inference {
@@ -32,6 +34,17 @@ struct Vector {
     return {_mm256_castsi256_ps(_mm256_slli_epi32(bits, 23))};
   }
   void store(float* to) const { _mm256_storeu_ps(to, lanes); }
+  /// The lowest byte of each lane's bits.
+  void storeLowBytes(std::uint8_t* to) const {
+    float parts[kWidth];
+    store(parts);
+    for (int i = 0; i < kWidth; ++i) std::memcpy(to + i, parts + i, 1);
+  }
+  void storeUpperHalves(std::uint16_t* to) const {
+    float parts[kWidth];
+    store(parts);
+    for (int i = 0; i < kWidth; ++i) to[i] = upperHalf(parts[i]);
+  }
   friend Vector operator+(Vector a, Vector b) { return {_mm256_add_ps(a.lanes, b.lanes)}; }
   friend Vector operator-(Vector a, Vector b) { return {_mm256_sub_ps(a.lanes, b.lanes)}; }
   friend Vector operator*(Vector a, Vector b) { return {_mm256_mul_ps(a.lanes, b.lanes)}; }
@@ -40,11 +53,13 @@ struct Vector {
 
 constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
 constexpr TransformerKernels kTransformerKernels = transformerKernelsOf<Vector>();
+constexpr EncoderKernels kEncoderKernels = encoderKernelsOf<Vector>();
 
 }  // namespace
 
 const DenoiserKernels* avx2Kernels() { return &kKernels; }
 const TransformerKernels* avx2TransformerKernels() { return &kTransformerKernels; }
+const EncoderKernels* avx2EncoderKernels() { return &kEncoderKernels; }
 
 }  // namespace cdiff::inference
 
@@ -53,6 +68,7 @@ const TransformerKernels* avx2TransformerKernels() { return &kTransformerKernels
 namespace cdiff::inference {
 const DenoiserKernels* avx2Kernels() { return nullptr; }
 const TransformerKernels* avx2TransformerKernels() { return nullptr; }
+const EncoderKernels* avx2EncoderKernels() { return nullptr; }
 }  // namespace cdiff::inference
 
 #endif

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 /// The kernels for any CPU, on the compiler's generic vector types. Without a fused multiply-add, a
 /// product is rounded before the sum.
+#include "inference/encoder_templates.h"
 #include "inference/transformer_templates.h"
 
 namespace cdiff::inference {
@@ -30,6 +31,17 @@ struct Vector {
     return {reinterpret_cast<Lanes>(bits)};
   }
   void store(float* to) const { *reinterpret_cast<Lanes*>(to) = lanes; }
+  /// The lowest byte of each lane's bits.
+  void storeLowBytes(std::uint8_t* to) const {
+    float parts[kWidth];
+    store(parts);
+    for (int i = 0; i < kWidth; ++i) std::memcpy(to + i, parts + i, 1);
+  }
+  void storeUpperHalves(std::uint16_t* to) const {
+    float parts[kWidth];
+    store(parts);
+    for (int i = 0; i < kWidth; ++i) to[i] = upperHalf(parts[i]);
+  }
   friend Vector operator+(Vector a, Vector b) { return {a.lanes + b.lanes}; }
   friend Vector operator-(Vector a, Vector b) { return {a.lanes - b.lanes}; }
   friend Vector operator*(Vector a, Vector b) { return {a.lanes * b.lanes}; }
@@ -38,10 +50,12 @@ struct Vector {
 
 constexpr DenoiserKernels kKernels = kernelsOf<Vector>();
 constexpr TransformerKernels kTransformerKernels = transformerKernelsOf<Vector>();
+constexpr EncoderKernels kEncoderKernels = encoderKernelsOf<Vector>();
 
 }  // namespace
 
 const DenoiserKernels* plainKernels() { return &kKernels; }
 const TransformerKernels* plainTransformerKernels() { return &kTransformerKernels; }
+const EncoderKernels* plainEncoderKernels() { return &kEncoderKernels; }
 
 }  // namespace cdiff::inference

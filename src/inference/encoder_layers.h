@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "inference/encoder_kernels.h"
+#include "inference/precision.h"
 #include "inference/safetensors.h"
 
 namespace cdiff::inference {
@@ -27,12 +29,14 @@ struct MapShape {
 };
 
 /// Layout that a 3x3 convolution prefers here: nhwc, nChw8c or nChw16c.
-dnnl::memory::format_tag preferredLayout(const dnnl::engine& engine);
+dnnl::memory::format_tag preferredLayout(const dnnl::engine& engine,
+                                         Precision precision = Precision::kFp32);
 
 /// The plain layout in which the first convolution reads the image's three channels.
 dnnl::memory::format_tag imageLayout(dnnl::memory::format_tag layout);
 
-dnnl::memory::desc mapDescription(const MapShape& shape, dnnl::memory::format_tag layout);
+dnnl::memory::desc mapDescription(const MapShape& shape, dnnl::memory::format_tag layout,
+                                  dnnl::memory::data_type type = dnnl::memory::data_type::f32);
 
 /// Where channel c of a pixel lies: block (c / width) x block_stride + pixel x pixel_stride + c %
 /// width, in floats; only the strides depend on the layout.
@@ -65,30 +69,51 @@ class EncoderNorm {
 
   /// `gain` and `shift` are [channels], a multiple of 16.
   EncoderNorm(const MapShape& shape, dnnl::memory::format_tag layout, const Tensor& gain,
-              const Tensor& shift);
+              const Tensor& shift, InstructionSet instruction_set = bestInstructionSet());
 
   enum class Activation { kNone, kRelu };
-  /// In place; `residual` (same layout, or nullptr) is added. Sums run in a fixed order.
-  void run(float* map, const float* residual, Activation activation) const;
+  /// In place, of x = map x `unit`; `residual` (same layout, or nullptr) is added. Sums run in a
+  /// fixed order. Returns the largest y.
+  float run(float* map, const float* residual, Activation activation, double unit = 1.0) const;
 
  private:
   using Lanes = std::array<double, kGroup>;  ///< a number per channel of a group
 
-  template <int kWidth>
-  void runGroups(float* map, const float* residual, Activation activation) const;
-  /// Sum over pixels of (x - mean), or of its square, per channel of a group.
-  template <int kWidth, bool kSquared>
-  Lanes sums(const float* map, std::int64_t group, float mean) const;
-  /// y = x scale + offset (+ residual) of one block of channels.
-  template <int kWidth, bool kResidual>
-  void applyBlock(float* map, const float* residual, const float* scale, const float* offset,
-                  float floor) const;
+  ChannelRun runOf(float* map, std::int64_t block) const;
+  /// Sum over pixels of (x - mean), or of its square, over a group.
+  double sum(float* map, std::int64_t group, float mean, bool squared) const;
+  /// Scale and offset of a group's channels.
+  void scaleGroup(float* map, std::int64_t group, double unit, float* scale, float* offset) const;
 
   std::int64_t pixels_;
   std::int64_t channels_;
   ChannelBlocks blocks_;
+  const EncoderKernels* kernels_;
   std::vector<float> gain_;
   std::vector<float> shift_;
+};
+
+/// A feature map as the convolutions of a precision read it: the map itself, or a copy in bfloat16
+/// or in bytes, x = byte x unit. The unit follows from the largest value of each map, so that
+/// nothing has to be calibrated; maps are not negative.
+class ConvolutionInput {
+ public:
+  /// Holds up to `largest_size` values.
+  ConvolutionInput(Precision precision, std::int64_t largest_size,
+                   InstructionSet instruction_set = bestInstructionSet());
+
+  /// Where a convolution of `map` reads.
+  void* data(float* map);
+  /// Copies `size` values, the largest of which is `largest`.
+  void update(const float* map, std::int64_t size, float largest);
+  double unit() const { return unit_; }  ///< 1 unless bytes are read
+
+ private:
+  Precision precision_;
+  const EncoderKernels* kernels_;
+  std::vector<std::uint16_t> halves_;
+  std::vector<std::uint8_t> bytes_;
+  double unit_ = 1.0;
 };
 
 /// Stride and padding of a two-dimensional convolution [pixels].
@@ -98,14 +123,16 @@ struct ConvolutionOptions {
 };
 
 /// A convolution of the image encoder by oneDNN: weights reordered once into the form that its
-/// kernel wants; zero padding, square kernel, bias with ReLU or neither.
+/// kernel wants; zero padding, square kernel, bias with ReLU or neither. Of bytes it gives float32
+/// in units of its ConvolutionInput; its weights are rounded to 127 steps per output channel.
 class EncoderConvolution {
  public:
-  /// `weight` is [out, in, kernel, kernel]; with a `bias` [out] a ReLU follows. An input of less
-  /// than 8 channels comes in imageLayout(layout), all else in `layout`.
+  /// `weight` is [out, in, kernel, kernel]; with a `bias` [out] a ReLU follows (fp32 alone). An
+  /// input of less than 8 channels comes in imageLayout(layout), all else in `layout`.
   EncoderConvolution(const dnnl::engine& engine, const MapShape& input,
                      dnnl::memory::format_tag layout, const ConvolutionOptions& options,
-                     const Tensor& weight, const Tensor* bias = nullptr);
+                     const Tensor& weight, const Tensor* bias = nullptr,
+                     Precision precision = Precision::kFp32);
 
   const MapShape& outputShape() const { return output_; }
   std::size_t scratchpadBytes() const { return description_.scratchpad_desc().get_size(); }
@@ -114,7 +141,8 @@ class EncoderConvolution {
   void run(dnnl::stream& stream) const { primitive_.execute(stream, arguments_); }
 
  private:
-  void loadWeights(const dnnl::engine& engine, const Tensor& weight, const Tensor* bias);
+  void loadWeights(const dnnl::engine& engine, const Tensor& weight, const Tensor* bias,
+                   Precision precision);
 
   MapShape output_;
   dnnl::convolution_forward::primitive_desc description_;

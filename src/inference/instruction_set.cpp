@@ -75,6 +75,12 @@ const DenoiserKernels& denoiserKernels(InstructionSet instruction_set) {
   return required(knownKernels(instruction_set), instruction_set);
 }
 
+const EncoderKernels& encoderKernels(InstructionSet instruction_set) {
+  return required(kernelsOf(instruction_set, plainEncoderKernels(), avx2EncoderKernels(),
+                            avx512EncoderKernels()),
+                  instruction_set);
+}
+
 const TransformerKernels& transformerKernels(InstructionSet instruction_set) {
   return required(kernelsOf(instruction_set, plainTransformerKernels(), avx2TransformerKernels(),
                             avx512TransformerKernels()),

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "inference/encoder_kernels.h"
 #include "inference/transformer_kernels.h"
 
 namespace cdiff::inference {
@@ -18,6 +19,7 @@ std::string toText(InstructionSet instruction_set);
 
 /// Throw InputError where compiler or processor lack the instruction set.
 const DenoiserKernels& denoiserKernels(InstructionSet instruction_set);
+const EncoderKernels& encoderKernels(InstructionSet instruction_set);
 const TransformerKernels& transformerKernels(InstructionSet instruction_set);
 
 }  // namespace cdiff::inference

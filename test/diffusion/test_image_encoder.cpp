@@ -101,6 +101,36 @@ TEST(ImageEncoder, AgreesWithThePlainReference) {
   }
 }
 
+/// Precisions below float32 that this processor has.
+std::vector<inference::Precision> narrowPrecisions() {
+  std::vector<inference::Precision> here;
+  for (const char* name : {"bf16", "int8"}) {
+    try {
+      here.push_back(inference::precisionNamed(name, "auto", "precision"));
+    } catch (const core::InputError&) {
+    }
+  }
+  return here;
+}
+
+TEST(ImageEncoder, AgreesInNarrowPrecisionsWithThePlainReference) {
+  const Model model = randomModel(160, 96);
+  const traffic::CameraImage image = randomImage(160, 96);
+  const std::vector<double> expected = ReferenceEncoder(model).encode(image);
+  for (const inference::Precision precision : narrowPrecisions()) {
+    ImageEncoder encoder(model, precision);
+    const std::vector<float> features = encoder.encode(image);
+    const double error = relativeError(features, expected);
+    RecordProperty("relative_error_" + inference::toText(precision), std::to_string(error));
+    EXPECT_LT(error, 0.1) << inference::toText(precision);
+    EXPECT_GT(error, 1e-4) << inference::toText(precision) << ": is that float32?";
+    EXPECT_EQ(encoder.encode(image), features);
+    EXPECT_EQ(ImageEncoder(model, precision, inference::InstructionSet::kPlain).encode(image),
+              features)
+        << "kernels between the convolutions give other bytes";
+  }
+}
+
 TEST(ImageEncoder, RepeatsItsBytes) {
   const Model model = randomModel(160, 96);
   const traffic::CameraImage image = randomImage(160, 96);
@@ -167,8 +197,6 @@ TEST(ImageEncoder, NamesATensorThatIsMissingOrMisshapen) {
   model.encoder.erase("squeeze.bias");
   EXPECT_THROW(ImageEncoder{model}, core::InputError);
 }
-
-TEST(ImageEncoder, NamesItsInstructionSet) { EXPECT_FALSE(ImageEncoder::instructionSet().empty()); }
 
 }  // namespace
 }  // namespace cdiff::diffusion

@@ -33,10 +33,13 @@ const inference::Tensor& requireTensor(const Model& model, const std::string& na
 
 }  // namespace
 
-EncoderNetwork::EncoderNetwork(const Model& model)
+EncoderNetwork::EncoderNetwork(const Model& model, inference::Precision precision,
+                               inference::InstructionSet instruction_set)
     : engine_(dnnl::engine::kind::cpu, 0),
       stream_(engine_),
-      layout_(inference::preferredLayout(engine_)),
+      precision_(precision),
+      instruction_set_(instruction_set),
+      layout_(inference::preferredLayout(engine_, precision)),
       image_{3, model.architecture.image_height, model.architecture.image_width},
       shape_(image_) {
   const inference::OneThread one_thread;
@@ -60,16 +63,19 @@ inference::EncoderConvolution EncoderNetwork::convolution(const Model& model,
                                                           std::int64_t stride) {
   const inference::Tensor& weight =
       requireTensor(model, name + ".weight", {channels, shape_.channels, kernel, kernel});
-  inference::EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2}, weight);
+  const bool reads_image = shape_.channels == image_.channels;
+  inference::EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2}, weight,
+                                     nullptr,
+                                     reads_image ? inference::Precision::kFp32 : precision_);
   shape_ = made.outputShape();
   return made;
 }
 
 inference::EncoderNorm EncoderNetwork::norm(const Model& model, const std::string& name,
                                             const inference::MapShape& shape) const {
-  return inference::EncoderNorm(shape, layout_,
-                                requireTensor(model, name + ".weight", {shape.channels}),
-                                requireTensor(model, name + ".bias", {shape.channels}));
+  return inference::EncoderNorm(
+      shape, layout_, requireTensor(model, name + ".weight", {shape.channels}),
+      requireTensor(model, name + ".bias", {shape.channels}), instruction_set_);
 }
 
 void EncoderNetwork::makeStem(const Model& model) {
@@ -93,8 +99,16 @@ void EncoderNetwork::makeBlock(const Model& model, const std::string& name, std:
   inference::EncoderNorm norm1 = norm(model, name + ".norm1", shape_);
   inference::EncoderConvolution conv2 = convolution(model, name + ".conv2", channels, 3, 1);
   inference::EncoderNorm norm2 = norm(model, name + ".norm2", shape_);
-  blocks_.push_back({std::move(conv1), std::move(norm1), std::move(conv2), std::move(norm2),
-                     std::move(down), std::move(down_norm)});
+  blocks_.push_back({std::move(conv1),
+                     std::move(norm1),
+                     std::move(conv2),
+                     std::move(norm2),
+                     std::move(down),
+                     std::move(down_norm),
+                     {},
+                     {},
+                     nullptr,
+                     {}});
 }
 
 void EncoderNetwork::makeProjection(const Model& model) {
@@ -123,35 +137,53 @@ float* EncoderNetwork::newBuffer(std::int64_t floats) {
   return static_cast<float*>(buffers_.back().get_data_handle());
 }
 
+EncoderNetwork::Map EncoderNetwork::newMap(std::int64_t size) {
+  inputs_.push_back(
+      std::make_unique<inference::ConvolutionInput>(precision_, size, instruction_set_));
+  return {newBuffer(size), inputs_.back().get()};
+}
+
+std::int64_t EncoderNetwork::scratchpadFloats() const {
+  std::size_t bytes = std::max(stem_->scratchpadBytes(), squeeze_->scratchpadBytes());
+  for (const Block& block : blocks_) {
+    bytes = std::max({bytes, block.conv1.scratchpadBytes(), block.conv2.scratchpadBytes(),
+                      block.down ? block.down->scratchpadBytes() : 0});
+  }
+  return static_cast<std::int64_t>(bytes / sizeof(float)) + 1;
+}
+
 void EncoderNetwork::bindLayers() {
   // The first map after pooling is the largest of all blocks, since each stage halves both sides
   // and doubles the channels.
   const std::int64_t largest = pooling_->outputShape().size();
-  std::size_t scratch = std::max(stem_->scratchpadBytes(), squeeze_->scratchpadBytes());
-  for (const Block& block : blocks_) {
-    scratch = std::max({scratch, block.conv1.scratchpadBytes(), block.conv2.scratchpadBytes(),
-                        block.down ? block.down->scratchpadBytes() : 0});
-  }
-  float* scratchpad = newBuffer(static_cast<std::int64_t>(scratch / sizeof(float)) + 1);
+  float* scratchpad = newBuffer(scratchpadFloats());
   pixels_ = newBuffer(image_.size());
   stem_map_ = newBuffer(stem_->outputShape().size());
   squeezed_ = newBuffer(shape_.size());
-  float* input = newBuffer(largest);
-  float* output = newBuffer(largest);
-  float* middle = newBuffer(largest);
+  Map input = newMap(largest);
+  Map output = newMap(largest);
+  const Map middle = newMap(largest);
   float* shortcut = newBuffer(largest);
   stem_->bind(engine_, pixels_, stem_map_, scratchpad);
-  pooling_->bind(engine_, stem_map_, input);
+  pooling_->bind(engine_, stem_map_, input.values);
+  pooled_ = input;
   for (Block& block : blocks_) {
-    block.conv1.bind(engine_, input, middle, scratchpad);
-    block.conv2.bind(engine_, middle, output, scratchpad);
-    if (block.down) block.down->bind(engine_, input, shortcut, scratchpad);
+    block.input = input;
     block.middle = middle;
-    block.shortcut = block.down ? shortcut : input;
+    block.shortcut = block.down ? shortcut : input.values;
     block.output = output;
+    bindBlock(block, scratchpad);
     std::swap(input, output);
   }
-  squeeze_->bind(engine_, input, squeezed_, scratchpad);
+  squeeze_->bind(engine_, input.values, squeezed_, scratchpad);
+}
+
+void EncoderNetwork::bindBlock(Block& block, float* scratchpad) {
+  void* read = block.input.input->data(block.input.values);
+  block.conv1.bind(engine_, read, block.middle.values, scratchpad);
+  block.conv2.bind(engine_, block.middle.input->data(block.middle.values), block.output.values,
+                   scratchpad);
+  if (block.down) block.down->bind(engine_, read, block.shortcut, scratchpad);
 }
 
 void EncoderNetwork::readImage(const std::uint8_t* rgb) {
@@ -168,8 +200,11 @@ std::vector<float> EncoderNetwork::encode(const std::uint8_t* rgb) {
   const inference::OneThread one_thread;
   readImage(rgb);
   stem_->run(stream_);
-  stem_norm_->run(stem_map_, nullptr, inference::EncoderNorm::Activation::kRelu);
+  // The largest value of the map is that of the pooled one: the windows cover all of it.
+  const float largest =
+      stem_norm_->run(stem_map_, nullptr, inference::EncoderNorm::Activation::kRelu);
   pooling_->run(stream_);
+  pooled_.input->update(pooled_.values, pooling_->outputShape().size(), largest);
   for (const Block& block : blocks_) runBlock(block);
   squeeze_->run(stream_);
   stream_.wait();
@@ -177,14 +212,20 @@ std::vector<float> EncoderNetwork::encode(const std::uint8_t* rgb) {
 }
 
 void EncoderNetwork::runBlock(const Block& block) {
+  using Activation = inference::EncoderNorm::Activation;
+  const std::int64_t size = block.conv2.outputShape().size();
+  const double unit = block.input.input->unit();
   block.conv1.run(stream_);
-  block.norm1.run(block.middle, nullptr, inference::EncoderNorm::Activation::kRelu);
+  float largest = block.norm1.run(block.middle.values, nullptr, Activation::kRelu, unit);
+  block.middle.input->update(block.middle.values, size, largest);
   block.conv2.run(stream_);
   if (block.down) {
     block.down->run(stream_);
-    block.down_norm->run(block.shortcut, nullptr, inference::EncoderNorm::Activation::kNone);
+    block.down_norm->run(block.shortcut, nullptr, Activation::kNone, unit);
   }
-  block.norm2.run(block.output, block.shortcut, inference::EncoderNorm::Activation::kRelu);
+  largest = block.norm2.run(block.output.values, block.shortcut, Activation::kRelu,
+                            block.middle.input->unit());
+  block.output.input->update(block.output.values, size, largest);
 }
 
 std::vector<float> EncoderNetwork::project() const {

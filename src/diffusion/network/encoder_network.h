@@ -14,18 +14,25 @@
 namespace cdiff::diffusion {
 
 /// The layers of the image encoder (docs/network.md) over shared buffers: rgb8 pixels -> features
-/// [image_features].
+/// [image_features]. The residual blocks multiply in a precision; first convolution, squeeze and
+/// projection in float32.
 class EncoderNetwork {
  public:
   /// Throws InputError naming a tensor that is missing or of another shape.
-  explicit EncoderNetwork(const Model& model);
+  EncoderNetwork(const Model& model, inference::Precision precision,
+                 inference::InstructionSet instruction_set);
 
   const inference::MapShape& imageShape() const { return image_; }  ///< channels is 3
   /// `rgb` is height x width x 3 bytes.
   std::vector<float> encode(const std::uint8_t* rgb);
 
  private:
-  /// Two convolutions and a shortcut, and the buffers between them.
+  /// A feature map and what convolutions read of it; blocks share them.
+  struct Map {
+    float* values = nullptr;
+    inference::ConvolutionInput* input = nullptr;
+  };
+  /// Two convolutions and a shortcut, and the maps between them.
   struct Block {
     inference::EncoderConvolution conv1;
     inference::EncoderNorm norm1;
@@ -33,9 +40,10 @@ class EncoderNetwork {
     inference::EncoderNorm norm2;
     std::optional<inference::EncoderConvolution> down;  ///< where size or channels change
     std::optional<inference::EncoderNorm> down_norm;
-    float* middle = nullptr;    ///< between the convolutions
+    Map input;
+    Map middle;                 ///< between the convolutions
     float* shortcut = nullptr;  ///< the input, or what `down` makes of it
-    float* output = nullptr;
+    Map output;
   };
 
   void makeStem(const Model& model);
@@ -49,13 +57,18 @@ class EncoderNetwork {
   inference::EncoderNorm norm(const Model& model, const std::string& name,
                               const inference::MapShape& shape) const;
   float* newBuffer(std::int64_t floats);
+  Map newMap(std::int64_t size);
+  std::int64_t scratchpadFloats() const;
   void bindLayers();
+  void bindBlock(Block& block, float* scratchpad);
   void readImage(const std::uint8_t* rgb);
   void runBlock(const Block& block);
   std::vector<float> project() const;
 
   dnnl::engine engine_;
   dnnl::stream stream_;
+  inference::Precision precision_;
+  inference::InstructionSet instruction_set_;
   dnnl::memory::format_tag layout_;
   inference::MapShape image_;
   inference::MapShape shape_;  ///< of the last layer that was made
@@ -68,6 +81,8 @@ class EncoderNetwork {
   std::vector<float> projection_;  ///< [channel x row x column, image_features]
   std::vector<float> bias_;        ///< [image_features]
   std::vector<dnnl::memory> buffers_;
+  std::vector<std::unique_ptr<inference::ConvolutionInput>> inputs_;
+  Map pooled_;
   float* pixels_ = nullptr;    ///< normalized, in imageLayout()
   float* stem_map_ = nullptr;  ///< before pooling
   float* squeezed_ = nullptr;

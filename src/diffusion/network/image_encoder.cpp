@@ -13,7 +13,9 @@ struct ImageEncoder::Network : EncoderNetwork {
   using EncoderNetwork::EncoderNetwork;
 };
 
-ImageEncoder::ImageEncoder(const Model& model) : network_(std::make_unique<Network>(model)) {}
+ImageEncoder::ImageEncoder(const Model& model, inference::Precision precision,
+                           inference::InstructionSet instruction_set)
+    : network_(std::make_unique<Network>(model, precision, instruction_set)) {}
 ImageEncoder::ImageEncoder(ImageEncoder&&) noexcept = default;
 ImageEncoder& ImageEncoder::operator=(ImageEncoder&&) noexcept = default;
 ImageEncoder::~ImageEncoder() = default;
@@ -30,29 +32,6 @@ std::vector<float> ImageEncoder::encode(const traffic::CameraImage& image) {
         std::to_string(expected.height) + " (" + std::to_string(bytes) + " bytes)");
   }
   return network_->encode(image.rgb.data());
-}
-
-std::string ImageEncoder::instructionSet() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::sse41:
-      return "sse41";
-    case dnnl::cpu_isa::avx:
-      return "avx";
-    case dnnl::cpu_isa::avx2:
-      return "avx2";
-    case dnnl::cpu_isa::avx2_vnni:
-      return "avx2_vnni";
-    case dnnl::cpu_isa::avx512_core:
-      return "avx512_core";
-    case dnnl::cpu_isa::avx512_core_vnni:
-      return "avx512_core_vnni";
-    case dnnl::cpu_isa::avx512_core_bf16:
-      return "avx512_core_bf16";
-    case dnnl::cpu_isa::avx512_core_amx:
-      return "avx512_core_amx";
-    default:
-      return "isa_" + std::to_string(static_cast<int>(dnnl::get_effective_cpu_isa()));
-  }
 }
 
 }  // namespace cdiff::diffusion

@@ -30,6 +30,12 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
                  hysteresis, 0.0, 1.0);
   visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
                  frozen_image_time, 0.1, 60.0);
+  visitor.text({"precision", "",
+                "What the image encoder multiplies; auto: int8 where the processor has AVX-512 "
+                "VNNI, else fp32."},
+               precision, {"auto", "fp32", "bf16", "int8"});
+  visitor.text({"isa", "", "Instructions of encoder and denoiser; auto: the best of this machine."},
+               isa, {"auto", "avx2", "avx512"});
   visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);
 }
 
@@ -76,9 +82,11 @@ planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
   return {options.model,
           conditioningText(options, guidance),
           samplingText(options),
-          {{"encoder_instruction_set", diffusion::ImageEncoder::instructionSet()},
+          {{"encoder_precision", inference::toText(inference::precisionNamed(
+                                     options.precision, options.isa, "diffusion.precision"))},
+           {"encoder_instruction_set", inference::oneDnnInstructionSet(options.isa)},
            {"denoiser_instruction_set",
-            diffusion::CpuDenoiser::toText(diffusion::CpuDenoiser::bestInstructionSet())}}};
+            inference::toText(inference::instructionSetNamed(options.isa, "diffusion.isa"))}}};
 }
 
 }  // namespace

@@ -28,6 +28,17 @@ diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
   return sampler;
 }
 
+inference::InstructionSet instructionSetOf(const DiffusionOptions& options) {
+  return inference::instructionSetNamed(options.isa, "diffusion.isa");
+}
+
+diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffusion::Model& model) {
+  inference::pinOneDnn(options.isa, "diffusion.isa");
+  const inference::Precision precision =
+      inference::precisionNamed(options.precision, options.isa, "diffusion.precision");
+  return diffusion::ImageEncoder(model, precision, instructionSetOf(options));
+}
+
 }  // namespace
 
 DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
@@ -42,15 +53,15 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       context_(context),
       model_(diffusion::loadModel(options.model)),
       schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
-      encoder_(model_),
-      denoiser_(model_),
+      encoder_(encoderFor(options, model_)),
+      denoiser_(model_, instructionSetOf(options)),
       sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle, dynamics::throttleResponse(options.response)) {
   options_.validate();
   guidance_.validate(guidance_group);
   if (conditions_on_route_ && options.route_scale != 1.0) {
-    routeless_ = std::make_unique<diffusion::CpuDenoiser>(model_);
+    routeless_ = std::make_unique<diffusion::CpuDenoiser>(model_, instructionSetOf(options));
     scaled_ = std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_,
                                                                options.route_scale);
   }

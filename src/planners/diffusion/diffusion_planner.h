@@ -32,6 +32,8 @@ struct DiffusionOptions {
   std::int64_t candidates = 1;           ///< samples per vehicle
   double hysteresis = 0.1;               ///< a new mode must be better by this share of the score
   double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
+  std::string precision = "auto";        ///< of the encoder: auto | fp32 | bf16 | int8
+  std::string isa = "auto";              ///< of encoder and denoiser: auto | avx2 | avx512
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
