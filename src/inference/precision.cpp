@@ -35,13 +35,15 @@ int rankOf(cpu_isa isa) {
   return -1;
 }
 
-/// What oneDNN computes with under `isa`; AVX2 is held to itself, AVX-512 to nothing.
+/// What oneDNN computes with under `isa`; AVX2 is held to itself, AVX-512 to nothing. Asking fixes
+/// oneDNN's choice for this process, so it is held to AVX2 before.
 cpu_isa effectiveIsa(const std::string& isa) {
-  const cpu_isa here = dnnl::get_effective_cpu_isa();
-  return isa == "avx2" && rankOf(here) > rankOf(cpu_isa::avx2) ? cpu_isa::avx2 : here;
+  if (isa == "avx2") dnnl::set_max_cpu_isa(cpu_isa::avx2);
+  return dnnl::get_effective_cpu_isa();
 }
 
 bool atLeast(const std::string& isa, cpu_isa needed) {
+  if (isa == "avx2" && rankOf(needed) > rankOf(cpu_isa::avx2)) return false;
   return rankOf(effectiveIsa(isa)) >= rankOf(needed);
 }
 
@@ -88,8 +90,7 @@ InstructionSet instructionSetNamed(const std::string& isa, const std::string& ke
 }
 
 void pinOneDnn(const std::string& isa, const std::string& key) {
-  if (isa != "avx2" || effectiveIsa("auto") == effectiveIsa(isa)) return;
-  if (dnnl::set_max_cpu_isa(cpu_isa::avx2) == dnnl::status::success) return;
+  if (isa != "avx2" || rankOf(effectiveIsa(isa)) <= rankOf(cpu_isa::avx2)) return;
   throw core::InputError("key '" + key +
                          "' is 'avx2', but another network of this process already "
                          "computes with " +

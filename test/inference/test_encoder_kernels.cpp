@@ -141,6 +141,24 @@ TEST(Precision, ThatInstructionsRuleOutIsRefused) {
   EXPECT_THROW(precisionNamed("bf16", "avx2", "diffusion.precision"), core::InputError);
 }
 
+TEST(PrecisionDeathTest, InstructionsArePinnedBeforeOneDnnChooses) {
+  ::testing::FLAGS_gtest_death_test_style =
+      "threadsafe";  // a process in which nothing was computed
+  const auto pinned = [] {
+    pinOneDnn("avx2", "diffusion.isa");
+    return oneDnnInstructionSet("auto") == "avx2";
+  };
+  if (bestInstructionSet() < InstructionSet::kAvx2) GTEST_SKIP() << "this CPU lacks avx2";
+  EXPECT_EXIT(std::exit(pinned() ? 0 : 1), ::testing::ExitedWithCode(0), "");
+}
+
+TEST(Precision, InstructionsAreNotPinnedAfterOneDnnChose) {
+  const std::string here = oneDnnInstructionSet("auto");
+  if (here.rfind("avx512", 0) != 0) GTEST_SKIP() << "nothing above AVX2 here";
+  EXPECT_THROW(pinOneDnn("avx2", "diffusion.isa"), core::InputError);
+  EXPECT_NO_THROW(pinOneDnn("auto", "diffusion.isa"));
+}
+
 TEST(Precision, InstructionsThatTheEnvironmentRulesOutAreRefused) {
   ::setenv("E2E_CDIFF_ISA", "plain", 1);
   EXPECT_THROW(instructionSetNamed("avx2", "diffusion.isa"), core::InputError);
