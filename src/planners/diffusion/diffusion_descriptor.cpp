@@ -36,6 +36,8 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
                precision, {"auto", "fp32", "bf16", "int8"});
   visitor.text({"isa", "", "Instructions of encoder and denoiser; auto: the best of this machine."},
                isa, {"auto", "avx2", "avx512"});
+  visitor.integer({"threads", "", "Among which the CBVs of a decision are divided."}, threads, 1,
+                  16);
   visitor.group({"sampler", "", "How trajectories are denoised."}, sampler);
 }
 

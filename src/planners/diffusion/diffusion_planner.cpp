@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "core/text.h"
 #include "dynamics/action_rollout.h"
@@ -41,6 +42,20 @@ diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffus
 
 }  // namespace
 
+NetworkLane::NetworkLane(const DiffusionOptions& options, const diffusion::Model& model,
+                         bool scaled_route)
+    : encoder_(encoderFor(options, model)), denoiser_(model, instructionSetOf(options)) {
+  if (!scaled_route) return;
+  routeless_ = std::make_unique<diffusion::CpuDenoiser>(model, instructionSetOf(options));
+  scaled_ =
+      std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_, options.route_scale);
+}
+
+diffusion::Denoiser& NetworkLane::denoiser() {
+  if (scaled_) return *scaled_;
+  return denoiser_;
+}
+
 DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
                                    const guidance::GuidanceOptions& guidance,
                                    const dynamics::BicycleModelOptions& vehicle,
@@ -53,29 +68,20 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       context_(context),
       model_(diffusion::loadModel(options.model)),
       schedule_(static_cast<int>(model_.architecture.diffusion_steps)),
-      encoder_(encoderFor(options, model_)),
-      denoiser_(model_, instructionSetOf(options)),
       sampler_(samplerOptions(options, guidance), schedule_, model_.spread,
                core::RandomStream(context.seed, "diffusion")),
       exact_(vehicle, dynamics::throttleResponse(options.response)) {
   options_.validate();
   guidance_.validate(guidance_group);
-  if (conditions_on_route_ && options.route_scale != 1.0) {
-    routeless_ = std::make_unique<diffusion::CpuDenoiser>(model_, instructionSetOf(options));
-    scaled_ = std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_,
-                                                               options.route_scale);
-  }
+  const bool scaled = conditions_on_route_ && options.route_scale != 1.0;
+  for (std::int64_t i = 0; i < options.threads; ++i)
+    lanes_.push_back(std::make_unique<NetworkLane>(options, model_, scaled));
   if (options.sampler.mode != "unguided") {
     guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
   }
 }
 
 DiffusionPlanner::~DiffusionPlanner() = default;
-
-diffusion::Denoiser& DiffusionPlanner::denoiser() {
-  if (scaled_) return *scaled_;
-  return denoiser_;
-}
 
 std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTask& task,
                                                      std::uint64_t tick, Memory& memory) {
@@ -92,18 +98,38 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
 }
 
 std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
-    const std::vector<diffusion::Context>& contexts) {
+    diffusion::Denoiser& denoiser, const std::vector<diffusion::Context>& contexts) const {
   if (options_.state_branch == "learned")
-    return std::make_unique<diffusion::LearnedStateBranch>(denoiser());
+    return std::make_unique<diffusion::LearnedStateBranch>(denoiser);
   std::vector<double> speeds;
   for (const diffusion::Context& context : contexts) speeds.push_back(context.speed);
   return std::make_unique<diffusion::ExactStateBranch>(
       vehicle_, model_.normalizer, speeds, dynamics::throttleResponse(options_.response));
 }
 
+void DiffusionPlanner::inLanes(std::size_t count, const LanePart& part) {
+  const std::size_t lanes = std::min(lanes_.size(), count);
+  std::vector<std::future<void>> others;
+  for (std::size_t lane = 1; lane < lanes; ++lane) {
+    others.push_back(std::async(std::launch::async, [&, lane] {
+      part(*lanes_[lane], lane * count / lanes, (lane + 1) * count / lanes);
+    }));
+  }
+  if (lanes > 0) part(*lanes_[0], 0, count / lanes);
+  for (std::future<void>& other : others) other.get();
+}
+
+void DiffusionPlanner::solveInLanes(std::uint64_t tick, const std::vector<Situation*>& situations) {
+  inLanes(situations.size(), [&](NetworkLane& lane, std::size_t begin, std::size_t end) {
+    solve(tick, lane,
+          {situations.begin() + static_cast<long>(begin),
+           situations.begin() + static_cast<long>(end)});
+  });
+}
+
 /// Samples one batch: all candidates of all `situations`.
-void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& situations) {
-  if (situations.empty()) return;
+void DiffusionPlanner::solve(std::uint64_t tick, NetworkLane& lane,
+                             const std::vector<Situation*>& situations) {
   std::vector<diffusion::Context> contexts;
   std::vector<diffusion::SampleRequest> requests;
   std::vector<guidance::TotalObjective*> objectives;
@@ -119,10 +145,11 @@ void DiffusionPlanner::solve(std::uint64_t tick, const std::vector<Situation*>& 
       objectives.push_back(situation->objectives[candidate].get());
     }
   }
-  denoiser().setContexts(contexts);
-  const auto branch = stateBranch(contexts);
+  diffusion::Denoiser& denoiser = lane.denoiser();
+  denoiser.setContexts(contexts);
+  const auto branch = stateBranch(denoiser, contexts);
   GuidedBatch guided(model_.normalizer, objectives);
-  const auto samples = sampler_.sample(denoiser(), *branch, requests, &guided);
+  const auto samples = sampler_.sample(denoiser, *branch, requests, &guided);
   const auto candidates = static_cast<std::size_t>(options_.candidates);
   for (std::size_t i = 0; i < situations.size(); ++i)
     choose(*situations[i], samples, i * candidates);
@@ -210,22 +237,28 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
   followEgo(snapshot);
   rememberOnly(tasks);
   std::vector<planning::PlannedAction> actions;
+  std::vector<std::pair<const planning::PlanningTask*, Memory*>> seen;
+  for (const planning::PlanningTask& task : tasks) {
+    Memory& memory = *memories_[task.vehicle->id];
+    const auto fault = faultOf(task, snapshot.tick, memory);
+    actions.push_back(planning::failSafeAction(task, fault.value_or("")));
+    if (fault) {
+      memory.plan.reset();
+    } else {
+      seen.emplace_back(&task, &memory);
+    }
+  }
+  encodeImages(seen);
   std::vector<std::unique_ptr<Situation>> situations(tasks.size());
   std::vector<Situation*> cold;
   std::vector<Situation*> warm;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    Memory& memory = *memories_[tasks[i].vehicle->id];
-    const auto fault = faultOf(tasks[i], snapshot.tick, memory);
-    actions.push_back(planning::failSafeAction(tasks[i], fault.value_or("")));
-    if (fault) {
-      memory.plan.reset();
-      continue;
-    }
-    situations[i] = situationOf(snapshot, tasks[i], memory);
-    (situations[i]->warm ? warm : cold).push_back(situations[i].get());
+  for (const auto& [task, memory] : seen) {
+    auto& situation = situations[static_cast<std::size_t>(task - tasks.data())];
+    situation = situationOf(snapshot, *task, *memory);
+    (situation->warm ? warm : cold).push_back(situation.get());
   }
-  solve(snapshot.tick, cold);
-  solve(snapshot.tick, warm);
+  solveInLanes(snapshot.tick, cold);
+  solveInLanes(snapshot.tick, warm);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (situations[i]) conclude(snapshot.tick, *situations[i], actions[i]);
   }

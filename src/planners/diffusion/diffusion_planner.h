@@ -2,10 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diffusion/model.h"
@@ -34,6 +36,7 @@ struct DiffusionOptions {
   double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
   std::string precision = "auto";        ///< of the encoder: auto | fp32 | bf16 | int8
   std::string isa = "auto";              ///< of encoder and denoiser: auto | avx2 | avx512
+  std::int64_t threads = 1;              ///< among which the vehicles of a decision are divided
   diffusion::SamplerOptions sampler;
 
   void describe(core::OptionsVisitor& visitor);
@@ -46,9 +49,25 @@ struct DiffusionOptions {
   std::string conditioningUnder(const guidance::GuidanceOptions& guidance) const;
 };
 
+/// Encoder and denoiser of a model for one thread.
+class NetworkLane {
+ public:
+  /// `scaled_route`: the denoiser mixes predictions with and without the route (route_scale).
+  NetworkLane(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route);
+
+  diffusion::ImageEncoder& encoder() { return encoder_; }
+  diffusion::Denoiser& denoiser();
+
+ private:
+  diffusion::ImageEncoder encoder_;
+  diffusion::CpuDenoiser denoiser_;
+  std::unique_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
+  std::unique_ptr<diffusion::RouteScaledDenoiser> scaled_;  ///< likewise
+};
+
 /// The guided diffusion planner (paper III): front-view image, own speed and route in; a rollout of
-/// future states and throttle, steer and brake out, of which the first action drives. All vehicles
-/// of a decision form one batch.
+/// future states and throttle, steer and brake out, of which the first action drives. The vehicles
+/// of a decision form one batch, or one for each of several threads, with the same bytes.
 ///
 /// Choices where the paper leaves them open:
 ///  - the image is encoded once per decision, the denoiser runs on its features;
@@ -86,15 +105,19 @@ class DiffusionPlanner : public planning::Planner {
   void rememberOnly(const std::vector<planning::PlanningTask>& tasks);
   std::optional<std::string> faultOf(const planning::PlanningTask& task, std::uint64_t tick,
                                      Memory& memory);
-  const std::vector<float>& featuresOf(const traffic::CameraImage& image, Memory& memory);
+  /// Calls `part` for every lane with the range of `count` items that is its share, each in a
+  /// thread of its own.
+  using LanePart = std::function<void(NetworkLane& lane, std::size_t begin, std::size_t end)>;
+  void inLanes(std::size_t count, const LanePart& part);
+  void encodeImages(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, Memory& memory);
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
-  diffusion::Denoiser& denoiser();
   std::unique_ptr<diffusion::StateBranch> stateBranch(
-      const std::vector<diffusion::Context>& contexts);
-  void solve(std::uint64_t tick, const std::vector<Situation*>& situations);
+      diffusion::Denoiser& denoiser, const std::vector<diffusion::Context>& contexts) const;
+  void solve(std::uint64_t tick, NetworkLane& lane, const std::vector<Situation*>& situations);
+  void solveInLanes(std::uint64_t tick, const std::vector<Situation*>& situations);
   void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
               std::size_t first) const;
   planning::PlannedAction actionOf(const Situation& situation) const;
@@ -108,10 +131,7 @@ class DiffusionPlanner : public planning::Planner {
   planning::PlanningContext context_;
   diffusion::Model model_;
   diffusion::NoiseSchedule schedule_;
-  diffusion::ImageEncoder encoder_;
-  diffusion::CpuDenoiser denoiser_;
-  std::unique_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
-  std::unique_ptr<diffusion::RouteScaledDenoiser> scaled_;  ///< likewise
+  std::vector<std::unique_ptr<NetworkLane>> lanes_;  ///< one a thread
   diffusion::Sampler sampler_;
   dynamics::ActionRollout exact_;
   planning::RouteFollower ego_follower_;

@@ -165,15 +165,20 @@ void DiffusionPlanner::setWarmStart(std::uint64_t tick, Situation& situation) co
     situation.warm = model_.normalizer.normalize(*situation.previous);
 }
 
-/// Encodes an image unless it is the one of the last decision, as before a standing vehicle.
-const std::vector<float>& DiffusionPlanner::featuresOf(const traffic::CameraImage& image,
-                                                       Memory& memory) {
-  const std::uint64_t hash = memory.watch.imageHash();
-  if (memory.features.empty() || memory.features_hash != hash) {
-    memory.features = encoder_.encode(image);
-    memory.features_hash = hash;
+/// Encodes each image unless it is the one of the last decision, as before a standing vehicle.
+void DiffusionPlanner::encodeImages(
+    const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen) {
+  std::vector<std::pair<const planning::PlanningTask*, Memory*>> changed;
+  for (const auto& [task, memory] : seen) {
+    const std::uint64_t hash = memory->watch.imageHash();
+    if (!memory->features.empty() && memory->features_hash == hash) continue;
+    memory->features_hash = hash;
+    changed.emplace_back(task, memory);
   }
-  return memory.features;
+  inLanes(changed.size(), [&](NetworkLane& lane, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      changed[i].second->features = lane.encoder().encode(*changed[i].first->image);
+  });
 }
 
 std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
@@ -188,7 +193,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   scene.target_speed = task.target_speed;
   scene.drivable_area = &context_.drivable_area;
   situation->context.speed = vehicle.state.speed;
-  situation->context.image_features = featuresOf(*task.image, memory);
+  situation->context.image_features = memory.features;
   if (task.route != nullptr && !task.route->empty()) {
     memory.follower.update(*task.route, vehicle.state.position);
     const double arc_length = memory.follower.arcLength();

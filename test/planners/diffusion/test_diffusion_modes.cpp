@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dynamics/action_rollout.h"
+#include "e2e_cdiff/core/exceptions.h"
 #include "planners/diffusion/diffusion_situation.h"
 #include "planners/model_course.h"
 
@@ -346,6 +347,38 @@ TEST_F(EgoUnderWay, AGapWithoutCbvsDoesNotLoseIt) {
   fresh->plan(snapshot_, {});
   goToDecision(kLast);
   EXPECT_FALSE(samePlan(fresh->plan(snapshot_, {tasks()[0]})[0], expected[0]));
+}
+
+TEST_F(DiffusionModes, TwoThreadsGiveTheBytesOfOne) {
+  DiffusionOptions options = optionsOf();
+  const auto one = expectPlans(options);
+  options.threads = 2;
+  const auto two = expectPlans(options);
+  for (std::size_t i = 0; i < 2; ++i) expectSamePlan(one[i], two[i]);
+  options.threads = 3;  // more than there are vehicles
+  const auto three = expectPlans(options);
+  for (std::size_t i = 0; i < 2; ++i) expectSamePlan(one[i], three[i]);
+}
+
+TEST_F(DiffusionModes, EachPrecisionPlansNearTheOther) {
+  DiffusionOptions options = optionsOf();
+  options.precision = "fp32";
+  const auto exact = expectPlans(options);
+  for (const std::string precision : {"bf16", "int8"}) {
+    options.precision = precision;
+    std::vector<planning::PlannedAction> plans;
+    try {
+      plans = expectPlans(options);
+    } catch (const core::InputError&) {
+      continue;  // not on this processor
+    }
+    EXPECT_FALSE(samePlan(plans[0], exact[0])) << precision << ": is that float32?";
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Eigen::Vector2d end = plans[i].rollout.back().state.position;
+      // A sampled plan is about 1.1 m off the expert's over 3.2 s (model card).
+      EXPECT_LT((end - exact[i].rollout.back().state.position).norm(), 1.1) << precision;
+    }
+  }
 }
 
 }  // namespace
