@@ -125,7 +125,10 @@ EgoExample EgoData::exampleOf(std::size_t sample, std::size_t looks) {
   EgoExampleOptions options = labels_;
   options.looks = looks;
   const PlutoPlace& place = places_[sample];
-  return examples_->make(scenes_[place.scene], place, options);
+  EgoExample example = examples_->make(scenes_[place.scene], place, options);
+  example.network =
+      run_->dataset.sample(sample).get<std::vector<std::uint64_t>>(learning::kSessionField).at(0);
+  return example;
 }
 
 std::vector<std::vector<Eigen::Vector2d>> EgoData::agentCenters(std::size_t most) {

@@ -48,6 +48,7 @@ struct EgoLook {
 
 /// A moment to learn from, or to be judged on.
 struct EgoExample {
+  std::uint64_t network = 0;   ///< hash of its network's name, where it is known
   std::vector<EgoLook> looks;  ///< kPastAge apart, the present one last
   double speed = 0.0;          ///< of the ego [m/s]
   RoadCommand command = RoadCommand::kFollow;

@@ -71,6 +71,21 @@ void PlanMeasures::add(const EgoExample& example, const EgoWaypoints& plan) {
   }
 }
 
+void PlanMeasures::merge(const PlanMeasures& other) {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    sums_[i].l2 += other.sums_[i].l2;
+    sums_[i].collisions += other.sums_[i].collisions;
+    sums_[i].count += other.sums_[i].count;
+    sums_[i].free += other.sums_[i].free;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    l2_sum_to_[i] += other.l2_sum_to_[i];
+    collisions_to_[i] += other.collisions_to_[i];
+    count_to_[i] += other.count_to_[i];
+    free_to_[i] += other.free_to_[i];
+  }
+}
+
 void PlanMeasures::report(learning::Measures& measures) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const Sums& at = sums_[kSecond * (i + 1) - 1];
@@ -102,6 +117,11 @@ void DetectionMeasures::add(const EgoExample& example, std::vector<Detection> de
     if (best < taken.size()) taken[best] = true;
     found_.emplace_back(detection.score, best < taken.size());
   }
+}
+
+void DetectionMeasures::merge(const DetectionMeasures& other) {
+  found_.insert(found_.end(), other.found_.begin(), other.found_.end());
+  labels_ += other.labels_;
 }
 
 double DetectionMeasures::averagePrecision() const {
@@ -188,6 +208,11 @@ void MapMeasures::add(const std::vector<BevLine>& lines, const std::vector<BevLi
     sum_ += both ? 0.5 * (meanDistance(found, wanted) + meanDistance(wanted, found)) : kMissing;
     count_ += 1.0;
   }
+}
+
+void MapMeasures::merge(const MapMeasures& other) {
+  sum_ += other.sum_;
+  count_ += other.count_;
 }
 
 std::vector<BevLine> straightRoad(const BevGrid& bev) {

@@ -35,6 +35,8 @@ class PlanMeasures {
   /// touches that of another vehicle where it was then. Moments at which the driven way itself
   /// touches count for neither, as published.
   void add(const EgoExample& example, const EgoWaypoints& plan);
+  /// Adds the moments of another one.
+  void merge(const PlanMeasures& other);
   void report(learning::Measures& measures) const;
 
  private:
@@ -66,6 +68,7 @@ class DetectionMeasures {
   static constexpr double kReach = 2.0;  ///< [m]
   /// Each label is found at most once, by the surest detection within reach.
   void add(const EgoExample& example, std::vector<Detection> detections);
+  void merge(const DetectionMeasures& other);
   double averagePrecision() const;
 
  private:
@@ -91,6 +94,7 @@ class MapMeasures {
  public:
   static constexpr double kMissing = 10.0;  ///< [m]; larger distances count as this
   void add(const std::vector<BevLine>& lines, const std::vector<BevLine>& labels);
+  void merge(const MapMeasures& other);
   double chamfer() const { return count_ > 0.0 ? sum_ / count_ : 0.0; }
 
  private:

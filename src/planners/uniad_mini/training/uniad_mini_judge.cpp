@@ -96,28 +96,19 @@ void UniadMiniJudge::add(const EgoExample& example) {
   const UniadMiniOutput output = look(example);
   const PlanAdjustmentOptions adjustment;
   const BevGrid& bev = architecture_.ego.bev;
-  plan_.add(example, output.plan);
+  judgment_.add(example,
+                {output.plan, detectionsOf(output), sureLines({{}, output.lines, {}}, kSureLine)},
+                prior_, bev);
   adjusted_.add(
       example, adjustedPlan(output.plan, occupiedPlaces(bev, output.occupancy, adjustment.occupied),
                             adjustment));
-  constant_.add(example, atConstantVelocity(example.speed));
-  detection_.add(example, detectionsOf(output));
-  prior_detection_.add(example, prior_.detections());
-  map_.add(sureLines({{}, output.lines, {}}, kSureLine), example.lines);
-  straight_.add(straightRoad(bev), example.lines);
   addForecasts(example, output);
   addOccupancy(example, output);
 }
 
 learning::Measures UniadMiniJudge::measures() const {
-  learning::Measures measures;
-  plan_.report(measures);
+  learning::Measures measures = judgment_.measures();
   adjusted_.report(measures);
-  constant_.report(measures);
-  measures["detection_ap_2m_percent"] = 100.0 * detection_.averagePrecision();
-  measures["constant_detection_ap_2m_percent"] = 100.0 * prior_detection_.averagePrecision();
-  measures["map_chamfer_m"] = map_.chamfer();
-  measures["straight_map_chamfer_m"] = straight_.chamfer();
   measures["forecast_min_fde_m"] = end_count_ > 0.0 ? end_sum_ / end_count_ : 0.0;
   measures["occupancy_iou_1s_percent"] = join_ > 0.0 ? 100.0 * meet_ / join_ : 0.0;
   return measures;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "planners/camera_ego/training/open_loop.h"
+#include "planners/camera_ego/training/ego_judgment.h"
 #include "planners/uniad_mini/plan_adjustment.h"
 #include "planners/uniad_mini/uniad_mini_network.h"
 
@@ -29,13 +29,8 @@ class UniadMiniJudge {
   UniadMiniArchitecture architecture_;
   UniadMiniNetwork network_;
   const ConstantDetections& prior_;
-  PlanMeasures plan_{""};
+  EgoJudgment judgment_;
   PlanMeasures adjusted_{"adjusted_"};
-  PlanMeasures constant_{"constant_velocity_"};
-  DetectionMeasures detection_;
-  DetectionMeasures prior_detection_;
-  MapMeasures map_;
-  MapMeasures straight_;
   double end_sum_ = 0.0, end_count_ = 0.0;  ///< smallest distances of forecasts at 3 s [m]
   double meet_ = 0.0, join_ = 0.0;          ///< cells occupied in both, and in either
 };

@@ -3,9 +3,6 @@
 #include "planners/vad_mini/training/vad_mini_judge.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "core/text.h"
 
 namespace cdiff::planners {
 namespace {
@@ -55,50 +52,10 @@ VadMiniOutput VadMiniJudge::look(const EgoExample& example) {
 
 void VadMiniJudge::add(const EgoExample& example) {
   const VadMiniOutput output = look(example);
-  plan_.add(example, output.plans[static_cast<std::size_t>(example.command)]);
-  constant_.add(example, atConstantVelocity(example.speed));
-  detection_.add(example, detectionsOf(output));
-  prior_detection_.add(example, prior_.detections());
-  map_.add(sureLines(output, kSureLine), example.lines);
-  straight_.add(straightRoad(architecture_.ego.bev), example.lines);
-}
-
-learning::Measures VadMiniJudge::measures() const {
-  learning::Measures measures;
-  plan_.report(measures);
-  constant_.report(measures);
-  measures["detection_ap_2m_percent"] = 100.0 * detection_.averagePrecision();
-  measures["constant_detection_ap_2m_percent"] = 100.0 * prior_detection_.averagePrecision();
-  measures["map_chamfer_m"] = map_.chamfer();
-  measures["straight_map_chamfer_m"] = straight_.chamfer();
-  return measures;
-}
-
-std::string egoTable(const learning::Measures& held_out, const std::string& title) {
-  const auto number = [&](const std::string& key, int decimals) {
-    return core::formatFixed(held_out.at(key), decimals);
-  };
-  std::string table =
-      "Distance to where the ego was driven [m] and moments with a collision [%] at 1, 2 and 3 s; "
-      "at: at that time; to: mean up to it.\n\n"
-      "| Plan | L2 at | L2 to | collisions at | collisions to |\n|---|---|---|---|---|\n";
-  for (const auto& [name, prefix] :
-       {std::make_pair(title, std::string()),
-        std::make_pair(std::string("keeps its velocity"), std::string("constant_velocity_"))}) {
-    table += "| " + name + " |";
-    for (const char* kind : {"l2_at_", "l2_to_", "collisions_at_", "collisions_to_"}) {
-      const bool l2 = kind[0] == 'l';
-      for (const char* second : {"1s", "2s", "3s"})
-        table += (second[0] == '1' ? " " : " / ") +
-                 number(prefix + kind + second + (l2 ? "_m" : "_percent"), 2);
-      table += " |";
-    }
-    table += "\n";
-  }
-  return table + "\nDetection (average precision at 2 m): " + number("detection_ap_2m_percent", 1) +
-         " %; the same boxes at every moment: " + number("constant_detection_ap_2m_percent", 1) +
-         " %. Map (Chamfer distance): " + number("map_chamfer_m", 2) +
-         " m; a straight road: " + number("straight_map_chamfer_m", 2) + " m.\n";
+  judgment_.add(example,
+                {output.plans[static_cast<std::size_t>(example.command)], detectionsOf(output),
+                 sureLines(output, kSureLine)},
+                prior_, architecture_.ego.bev);
 }
 
 }  // namespace cdiff::planners

@@ -2,10 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <string>
-
 #include "planners/camera_ego/training/ego_data.h"
-#include "planners/camera_ego/training/open_loop.h"
+#include "planners/camera_ego/training/ego_judgment.h"
 #include "planners/vad_mini/vad_mini_network.h"
 
 namespace cdiff::planners {
@@ -17,7 +15,7 @@ class VadMiniJudge {
   /// `prior` must outlive the judge.
   VadMiniJudge(const VadMiniModel& model, const ConstantDetections& prior);
   void add(const EgoExample& example);
-  learning::Measures measures() const;
+  learning::Measures measures() const { return judgment_.measures(); }
 
  private:
   VadMiniOutput look(const EgoExample& example);
@@ -25,16 +23,8 @@ class VadMiniJudge {
   VadMiniArchitecture architecture_;
   VadMiniNetwork network_;
   const ConstantDetections& prior_;
-  PlanMeasures plan_{""};
-  PlanMeasures constant_{"constant_velocity_"};
-  DetectionMeasures detection_;
-  DetectionMeasures prior_detection_;
-  MapMeasures map_;
-  MapMeasures straight_;
+  EgoJudgment judgment_;
 };
-
-/// The measures as Markdown.
-std::string egoTable(const learning::Measures& held_out, const std::string& title);
 
 /// Lines that the network is sure of (body frame [m]): score above `least`.
 std::vector<BevLine> sureLines(const VadMiniOutput& output, double least);
