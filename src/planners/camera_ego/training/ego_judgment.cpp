@@ -36,7 +36,8 @@ std::vector<Compared> comparedMeasures() {
 void addGains(learning::Measures& measures) {
   for (const Compared& compared : comparedMeasures()) {
     measures[compared.name + "_gain"] =
-        compared.better * (measures.at(compared.name) - measures.at(compared.baseline));
+        compared.better * (measures.at(compared.name) - measures.at(compared.baseline)) +
+        0.0;  // no -0
   }
 }
 
