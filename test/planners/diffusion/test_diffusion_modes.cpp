@@ -140,7 +140,9 @@ class CandidateChoice : public DiffusionModes {
       requests[i].key = {core::hashText("cbv30"), static_cast<std::uint32_t>(tick), 0};
       requests[i].candidate = i;
     }
-    const std::vector<float> features = diffusion::ImageEncoder(model_).encode(images_[0]);
+    const auto precision = inference::precisionNamed("auto", "auto", "precision");
+    const std::vector<float> features =
+        diffusion::ImageEncoder(model_, precision).encode(images_[0]);
     denoiser_.setContexts(
         std::vector<diffusion::Context>(kCandidates, {features, {}, scene.state.speed}));
     diffusion::LearnedStateBranch branch(denoiser_);
