@@ -90,6 +90,11 @@ InstructionSet instructionSetNamed(const std::string& isa, const std::string& ke
 }
 
 void pinOneDnn(const std::string& isa, const std::string& key) {
+  if (isa == "avx512" && rankOf(effectiveIsa(isa)) < rankOf(cpu_isa::avx512_core)) {
+    throw core::InputError("key '" + key + "' is 'avx512', but convolutions are computed with " +
+                           oneDnnInstructionSet(isa) +
+                           " here: the processor has no more, or ONEDNN_MAX_CPU_ISA says so");
+  }
   if (isa != "avx2" || rankOf(effectiveIsa(isa)) <= rankOf(cpu_isa::avx2)) return;
   throw core::InputError("key '" + key +
                          "' is 'avx2', but another network of this process already "

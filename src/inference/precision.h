@@ -27,8 +27,9 @@ Precision precisionNamed(const std::string& name, const std::string& isa, const 
 /// InputError naming `key` where the processor lacks it.
 InstructionSet instructionSetNamed(const std::string& isa, const std::string& key);
 
-/// Holds oneDNN to `isa` in this process (auto: to nothing). oneDNN chooses once: throws InputError
-/// naming `key` where something in this process has made it choose another one before.
+/// Holds oneDNN to `isa` in this process (auto and avx512: to nothing). oneDNN chooses once: throws
+/// InputError naming `key` where something in this process has made it choose another one before,
+/// and for an avx512 that it does not compute with.
 void pinOneDnn(const std::string& isa, const std::string& key);
 
 /// Instruction set that oneDNN computes with under `isa`, for records, as in avx512_core_vnni.
