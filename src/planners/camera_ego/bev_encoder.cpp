@@ -102,8 +102,19 @@ const Rows& BevEncoder::encode(const std::vector<const std::uint8_t*>& images,
   const inference::SamplingPlan temporal =
       temporalPlan(sizes_.bev, poses.present, has_past ? *poses.past : poses.present);
   lookAtImages(images);
+  return runLayers(motion, temporal, has_past ? past : nullptr);
+}
+
+const Rows& BevEncoder::encodeAlone(const EgoMotion& motion) {
+  EgoMotion alone{};
+  std::copy_n(motion.begin(), 2, alone.begin());
+  return runLayers(alone, temporalPlan(sizes_.bev, {}, {}), nullptr);
+}
+
+const Rows& BevEncoder::runLayers(const EgoMotion& motion, const inference::SamplingPlan& temporal,
+                                  const Rows* past) {
   startQueries(motion);
-  for (const Layer& layer : layers_) run(layer, temporal, has_past ? past : nullptr);
+  for (const Layer& layer : layers_) run(layer, temporal, past);
   return bev_;
 }
 

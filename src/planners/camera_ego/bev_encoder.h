@@ -43,6 +43,9 @@ class BevEncoder {
   const inference::Rows& encode(const std::vector<const std::uint8_t*>& images,
                                 const EgoMotion& motion, const EgoPoses& poses,
                                 const inference::Rows* past);
+  /// The BEV of the last images as if there were no past one, for the decisions to come. `motion`:
+  /// of which speed and yaw rate count.
+  const inference::Rows& encodeAlone(const EgoMotion& motion);
 
  private:
   struct Layer {
@@ -55,6 +58,8 @@ class BevEncoder {
   };
   void lookAtImages(const std::vector<const std::uint8_t*>& images);
   void startQueries(const EgoMotion& motion);
+  const inference::Rows& runLayers(const EgoMotion& motion, const inference::SamplingPlan& temporal,
+                                   const inference::Rows* past);
   void run(const Layer& layer, const inference::SamplingPlan& temporal,
            const inference::Rows* past);
 

@@ -12,7 +12,8 @@
 namespace cdiff::planners {
 
 /// What a camera ego has seen in the last half second: a ring of poses and BEVs of its decisions,
-/// from which the one of kPastAge ago is taken. One per vehicle.
+/// from which the one of kPastAge ago is taken. Each BEV is kept as if it had no past: a chain
+/// without end is nothing that a training with one or two past looks prepares for. One per vehicle.
 class BevMemory {
  public:
   /// `period`: between decisions [s]; kPastAge is a multiple of it.

@@ -116,14 +116,17 @@ void UniadMiniPlanner::drive(const planning::PlanningTask& task, Memory& memory,
                              planning::PlannedAction& planned) {
   const traffic::VehicleState& state = task.vehicle->state;
   const NavigationNode& next = memory.navigation.next(roads_, *task.route, state.position);
-  UniadMiniOutput output = network_.forward(inputOf(task, next, memory));
+  const UniadMiniInput input = inputOf(task, next, memory);
+  UniadMiniOutput output = network_.forward(input);
   if (!output.finite()) {
     memory.bevs.forget();
     memory.tracks.forget();
     planned = planning::failSafeAction(task, "a number of its plan is not finite");
     return;
   }
-  memory.bevs.keep(state, network_.bev(), architecture_.ego.width);
+  const bool looks_back = architecture_.ego.past_bev;
+  memory.bevs.keep(state, looks_back ? network_.bevAlone(input.motion) : network_.bev(),
+                   architecture_.ego.width);
   memory.tracks.keep(std::move(output.tracks));
   conclude(task, output, next, memory, planned);
 }

@@ -67,8 +67,11 @@ class UniadMiniNetwork {
   explicit UniadMiniNetwork(const UniadMiniModel& model,
                             inference::InstructionSet set = inference::bestInstructionSet());
   UniadMiniOutput forward(const UniadMiniInput& input);
-  /// The BEV of the last forward, for the decisions to come.
+  /// The BEV of the last forward.
   const inference::Rows& bev() const { return *bev_; }
+  /// The BEV of the last forward's images without a past one (BevEncoder::encodeAlone), in its
+  /// place.
+  const inference::Rows& bevAlone(const EgoMotion& motion) { return encoder_.encodeAlone(motion); }
 
  private:
   BevEncoder encoder_;

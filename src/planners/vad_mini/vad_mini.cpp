@@ -118,7 +118,8 @@ void VadMiniPlanner::drive(const planning::PlanningTask& task, Memory& memory,
   input.motion = memory.bevs.motionAt(state, input.poses);
   input.past = looks_back ? memory.bevs.past() : nullptr;
   const VadMiniOutput output = network_.forward(input);
-  memory.bevs.keep(state, network_.bev(), architecture_.ego.width);
+  memory.bevs.keep(state, looks_back ? network_.bevAlone(input.motion) : network_.bev(),
+                   architecture_.ego.width);
   if (!output.finite()) {
     memory.bevs.forget();
     planned = planning::failSafeAction(task, "a number of its plan is not finite");

@@ -56,8 +56,11 @@ class VadMiniNetwork {
   explicit VadMiniNetwork(const VadMiniModel& model,
                           inference::InstructionSet set = inference::bestInstructionSet());
   VadMiniOutput forward(const VadMiniInput& input);
-  /// The BEV of the last forward, for the decisions to come.
+  /// The BEV of the last forward.
   const inference::Rows& bev() const { return *bev_; }
+  /// The BEV of the last forward's images without a past one (BevEncoder::encodeAlone), in its
+  /// place.
+  const inference::Rows& bevAlone(const EgoMotion& motion) { return encoder_.encodeAlone(motion); }
 
  private:
   /// A layer of a decoder with its heads.

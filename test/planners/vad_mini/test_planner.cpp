@@ -64,6 +64,28 @@ TEST_F(VadMiniCourse, TheSameDecisionsGiveTheSameActions) {
   }
 }
 
+// At tick 22 both look back to tick 12, when one of them had looked back to tick 2.
+TEST_F(VadMiniCourse, WhatItLooksBackToKnowsNoPastOfItsOwn) {
+  VadMiniOptions options;
+  options.least_score = 0.0;
+  VadMiniPlanner early(options, model(), parts()), late(options, model(), parts());
+  planning::PlannedAction one, other;
+  for (std::uint64_t tick = 0; tick <= 22; tick += 2) {
+    goTo(tick);
+    one = planOf(early, task());
+    if (tick >= 10) other = planOf(late, task());
+    if (tick == 16) {
+      EXPECT_NE(one.perception.vehicles[0].state.position,
+                other.perception.vehicles[0].state.position)
+          << "the late one has no past yet";
+    }
+  }
+  ASSERT_EQ(one.fault + other.fault, "");
+  for (std::size_t i = 0; i < one.perception.vehicles.size(); ++i)
+    EXPECT_EQ(one.perception.vehicles[i].state.position,
+              other.perception.vehicles[i].state.position);
+}
+
 TEST_F(VadMiniCourse, BadImagesAreFaultsThatNameTheCamera) {
   VadMiniPlanner vad = planner();
   const auto faultOf = [&](const planning::PlanningTask& bad) {

@@ -57,7 +57,7 @@ UniadMiniOutput UniadMiniJudge::look(const EgoExample& example) {
     input.past_tracks = i > 0 ? &tracks : nullptr;
     input.command = example.command;
     output = network_.forward(input);
-    copyBev(network_.bev(), architecture_.ego.width, past);
+    copyBev(network_.bevAlone(look.motion), architecture_.ego.width, past);
     tracks = std::move(output.tracks);
   }
   return output;

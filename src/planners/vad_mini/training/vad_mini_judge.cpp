@@ -42,7 +42,7 @@ VadMiniOutput VadMiniJudge::look(const EgoExample& example) {
     input.poses = look.poses;
     input.past = i > 0 ? &past : nullptr;
     output = network_.forward(input);
-    const inference::Rows& bev = network_.bev();
+    const inference::Rows& bev = network_.bevAlone(look.motion);
     past.resize(bev.rows(), architecture_.ego.width);
     for (std::int64_t row = 0; row < bev.rows(); ++row)
       std::copy_n(bev.row(row), architecture_.ego.width, past.row(row));

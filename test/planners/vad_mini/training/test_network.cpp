@@ -82,6 +82,26 @@ TEST_P(VadMiniNetworks, IsTheFunctionThatThePlannerComputes) {
              net.answer(net.bev().encode(looks.batch(bev, true), past), 1));
 }
 
+TEST(VadMiniNetwork, KeepsTheBevOfItsImagesAlone) {
+  const VadMiniModel model = drawnModel();
+  const std::int64_t width = model.architecture.ego.width;
+  VadMiniNetwork alone(model), with_past(model);
+  const TwoLooks looks;
+  alone.forward(looks.input<VadMiniInput>(false));
+  VadMiniInput later = looks.input<VadMiniInput>(false);
+  later.motion[2] = 0.5F;
+  later.poses.past = geometry::Pose2d{{-3.0, 0.0}, 0.0};
+  later.past = &alone.bev();
+  with_past.forward(later);
+  const auto valueOf = [&](const inference::Rows& bev) {
+    return bev.row(bev.rows() / 2)[width / 2];
+  };
+  EXPECT_NE(valueOf(with_past.bev()), valueOf(alone.bev()));
+  const inference::Rows& kept = with_past.bevAlone(later.motion);
+  for (std::int64_t row = 0; row < kept.rows(); ++row)
+    EXPECT_TRUE(std::equal(kept.row(row), kept.row(row) + width, alone.bev().row(row))) << row;
+}
+
 INSTANTIATE_TEST_SUITE_P(Sets, VadMiniNetworks,
                          ::testing::Values(inference::InstructionSet::kPlain,
                                            inference::InstructionSet::kAvx2,
