@@ -2,7 +2,10 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/weight_files.h"
 
+#include <algorithm>
+
 #include "core/file.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "inference/instruction_set.h"
 
@@ -37,13 +40,29 @@ std::filesystem::path WeightOptions::folder() const {
   return given == given.filename() ? core::shareFolder() / "weights" / given : given;
 }
 
+namespace {
+
+/// Says which other weights a folder holds; empty where it holds none.
+std::string otherWeights(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".safetensors") names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "" : ", only weights of others: '" + core::joinText(names, "', '") + "'";
+}
+
+}  // namespace
+
 std::filesystem::path weightFile(const WeightKind& kind, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kind.file;
   if (core::isFile(file)) return file;
-  throw core::InputError(
-      "planner '" + std::string(kind.planner) + "' has no weights: there is no file '" +
-      file.string() + "'; train them with " + trainingCommand(kind) + " --output " +
-      folder.string() + ", or name a folder that holds them (" + kind.planner + ".weights)");
+  throw core::InputError("planner '" + std::string(kind.planner) +
+                         "' has no weights: there is no file '" + file.string() + "'" +
+                         otherWeights(folder) + "; train them with " + trainingCommand(kind) +
+                         " --output " + folder.string() + ", or name a folder that holds them (" +
+                         kind.planner + ".weights)");
 }
 
 std::string weightSha256(const WeightKind& kind, const std::filesystem::path& folder) {

@@ -165,6 +165,10 @@ TEST_F(VadMiniCourse, WeightsOfAnotherPlannerAreRefused) {
   EXPECT_NE(text.find("its format is 'e2e_cdiff.uniad_mini.1', not 'e2e_cdiff.vad_mini.1'"),
             std::string::npos)
       << text;
+  EXPECT_NE(refusal("vad_mini.weights=uniad_mini")
+                .find("weights/uniad_mini/vad_mini.safetensors', only weights of others: "
+                      "'uniad_mini.safetensors'"),
+            std::string::npos);
   EXPECT_NE(refusal("vad_mini.weights=" + (folder_.path() / "none").string())
                 .find("cdiff train --task vad_mini --data FOLDER"),
             std::string::npos);
