@@ -59,6 +59,7 @@ double quantileOf(std::vector<double>& values, double share) {
 
 void EgoMeasures::add(const EgoExample& example, const EgoAnswer& answer,
                       const ConstantDetections& prior, const BevGrid& bev) {
+  moments_ += 1.0;
   plan_.add(example, answer.plan);
   constant_.add(example, atConstantVelocity(example.speed));
   detection_.add(example, answer.detections);
@@ -68,6 +69,7 @@ void EgoMeasures::add(const EgoExample& example, const EgoAnswer& answer,
 }
 
 void EgoMeasures::merge(const EgoMeasures& other) {
+  moments_ += other.moments_;
   plan_.merge(other.plan_);
   constant_.merge(other.constant_);
   detection_.merge(other.detection_);
@@ -83,6 +85,20 @@ void EgoMeasures::report(learning::Measures& measures) const {
   measures["constant_detection_ap_2m_percent"] = 100.0 * prior_detection_.averagePrecision();
   measures["map_chamfer_m"] = map_.chamfer();
   measures["straight_map_chamfer_m"] = straight_.chamfer();
+}
+
+std::string EgoJudgment::byNetwork() const {
+  std::string rows = "network,moments,measure,value\n";
+  int number = 0;
+  for (const auto& [name, part] : by_network_) {
+    learning::Measures measures;
+    part.report(measures);
+    const std::string begin =
+        std::to_string(++number) + "," + core::formatNumber(part.moments()) + ",";
+    for (const auto& [measure, value] : measures)
+      rows += begin + measure + "," + core::formatNumber(value) + "\n";
+  }
+  return rows;
 }
 
 learning::Measures EgoJudgment::measures() const {

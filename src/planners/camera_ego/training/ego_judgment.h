@@ -25,8 +25,10 @@ class EgoMeasures {
            const BevGrid& bev);
   void merge(const EgoMeasures& other);
   void report(learning::Measures& measures) const;
+  double moments() const { return moments_; }
 
  private:
+  double moments_ = 0.0;
   PlanMeasures plan_{""};
   PlanMeasures constant_{"constant_velocity_"};
   DetectionMeasures detection_;
@@ -49,6 +51,9 @@ class EgoJudgment {
   /// NAME, and where there are intervals NAME_low and NAME_high; NAME_gain, NAME_gain_low and
   /// NAME_gain_high: by how much it is better than what it must beat, paired by network.
   learning::Measures measures() const;
+  /// The measures of each network as CSV: network,moments,measure,value. Networks are numbered in
+  /// one order for all that are judged on the same data, so that two can be compared in pairs.
+  std::string byNetwork() const;
 
  private:
   std::map<std::uint64_t, EgoMeasures> by_network_;

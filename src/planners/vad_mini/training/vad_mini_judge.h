@@ -15,7 +15,7 @@ class VadMiniJudge {
   /// `prior` must outlive the judge.
   VadMiniJudge(const VadMiniModel& model, const ConstantDetections& prior);
   void add(const EgoExample& example);
-  learning::Measures measures() const { return judgment_.measures(); }
+  const EgoJudgment& judgment() const { return judgment_; }
 
  private:
   VadMiniOutput look(const EgoExample& example);

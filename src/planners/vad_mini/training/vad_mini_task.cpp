@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/vad_mini/training/vad_mini_task.h"
 
+#include "core/file.h"
 #include "planners/camera_ego/training/ego_batch.h"
 #include "planners/vad_mini/training/vad_mini_judge.h"
 
@@ -52,7 +53,9 @@ class ImitationOfEgos : public learning::Stage {
     VadMiniJudge judge({architecture, state_.net.parameters().values()}, *state_.prior);
     for (const std::size_t index : state_.run.held_out)
       judge.add(state_.data.exampleOf(index, looks()));
-    return judge.measures();
+    const std::string& file = state_.settings.judged_by_network;
+    if (!file.empty()) core::writeFileAtomically(file, judge.judgment().byNetwork());
+    return judge.judgment().measures();
   }
 
  private:
@@ -92,6 +95,8 @@ void VadMiniTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  constraint_start, 0.0, 1.0);
   visitor.number({"past_start", "", "Part of the steps before past looks are encoded."}, past_start,
                  0.0, 1.0);
+  visitor.text({"judged_by_network", "", "CSV file for the held-out measures of each network."},
+               judged_by_network, {});
 }
 
 VadMiniTask::VadMiniTask()

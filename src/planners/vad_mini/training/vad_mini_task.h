@@ -23,6 +23,7 @@ struct VadMiniTrainingSettings {
   bool intermediate_losses = true;  ///< detection, forecasts and map are supervised
   double constraint_start = 0.4;    ///< part of the steps before the three constraints count
   double past_start = 0.3;          ///< part of the steps before past looks are encoded
+  std::string judged_by_network;    ///< file for the held-out measures of each network; "": none
 
   void describe(core::OptionsVisitor& visitor);
 };

@@ -66,5 +66,17 @@ TEST(EgoJudgment, HasNoIntervalsOfTwoNetworks) {
   EXPECT_NE(egoTable(measures, "Plan").find("| Plan | 1.50 / 1.50 / 1.50 |"), std::string::npos);
 }
 
+TEST(EgoJudgment, WritesARowForEachNetworkAndMeasure) {
+  const ConstantDetections prior({}, 3);
+  EgoJudgment judgment;
+  judgment.add(momentOf(7), answerBeside(0.25), prior, BevGrid{});
+  for (int moment = 0; moment < 2; ++moment)
+    judgment.add(momentOf(9), answerBeside(0.5), prior, BevGrid{});
+  const std::string rows = judgment.byNetwork();
+  EXPECT_EQ(rows.find("network,moments,measure,value\n1,1,"), 0U) << rows;
+  EXPECT_NE(rows.find("\n1,1,l2_at_2s_m,0.25\n"), std::string::npos) << rows;
+  EXPECT_NE(rows.find("\n2,2,l2_at_2s_m,0.5\n"), std::string::npos) << rows;
+}
+
 }  // namespace
 }  // namespace cdiff::planners
