@@ -20,6 +20,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -122,6 +123,12 @@ class Results:
         return "\n".join(lines) + "\n"
 
 
+def included_by(source, planner):
+    """Folders below src of which a planner or its tests include a header."""
+    files = [path for top in ("src", "test") for path in (source / top / "planners" / planner).rglob("*.*") if path.suffix in (".h", ".cpp")]
+    return {found for path in files for found in re.findall(r'#include "(planners/\w+)/', path.read_text())}
+
+
 class Judge:
     """Builds mutants and runs the tests that may see them, quick ones first."""
 
@@ -129,6 +136,7 @@ class Judge:
         self.trial, self.layers = trial, layers
         self.programs = self._known_programs()
         self.changed = set()  # layers whose library holds a mutant
+        self.included = {path.name: included_by(trial.source, path.name) for path in (trial.source / "src/planners").iterdir() if path.is_dir()}
 
     def _known_programs(self):
         folders = {*self.layers, *(name for layer in self.layers for name in BEYOND[layer])}
@@ -153,13 +161,21 @@ class Judge:
         """The test of the file's name, then those of its folder, then those beyond."""
         layer, *rest = Path(mutant.file).parts
         folders = [layer, *BEYOND[layer]]
-        chosen = [program for program in self.programs if program.folder.split("/")[0] in folders]
         inner = "/".join([layer, *rest[:-1]])
+        chosen = [program for program in self.programs
+                  if program.folder.split("/")[0] in folders and not self._of_another_planner(program.folder, inner)]
         stem = Path(mutant.file).stem
 
         def order(program):
             return (not program.name.endswith(stem), folders.index(program.folder.split("/")[0]), program.folder != inner, program.seconds)
         return sorted(chosen, key=order)
+
+    def _of_another_planner(self, folder, inner):
+        """Whether these are tests of a planner that includes nothing of the planner in `inner`."""
+        parts = folder.split("/")
+        if len(parts) == 1 or parts[0] != "planners" or not inner.startswith("planners/") or folder == inner:
+            return False
+        return inner not in self.included[parts[1]]
 
     def verdict(self, mutant, text):
         """(verdict, by what)."""
