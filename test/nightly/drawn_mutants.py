@@ -18,6 +18,7 @@ import argparse
 import datetime
 import fcntl
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -42,6 +43,7 @@ BEYOND = {"metrics": ["record", "session"], "guidance": ["planners", "diffusion"
 FOLDERS = sorted(BEYOND)
 GOAL = 0.95
 SLOWEST = 15.0  # [s] programs that take longer are left out
+LONGEST = 30.0  # [s] of all programs for a mutant, the nearest to its file and the quick ones first
 
 
 def arguments():
@@ -168,7 +170,9 @@ class Judge:
 
         def order(program):
             return (not program.name.endswith(stem), folders.index(program.folder.split("/")[0]), program.folder != inner, program.seconds)
-        return sorted(chosen, key=order)
+        ordered = sorted(chosen, key=order)
+        until = itertools.accumulate(program.seconds for program in ordered)
+        return [program for program, seconds in zip(ordered, until) if seconds <= LONGEST]
 
     def _of_another_planner(self, folder, inner):
         """Whether these are tests of a planner that includes nothing of the planner in `inner`."""

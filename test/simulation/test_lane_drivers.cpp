@@ -138,6 +138,24 @@ TEST_F(LaneDriver, LooksAheadAsFarAsItsSpeedAsks) {
   EXPECT_NEAR(acceleration(8.0), freeAcceleration(8.0), 1e-12);
 }
 
+// Edges are taken in until a route is 200 m long: from x = 300 m the road's 200 m are enough, from
+// 301 m the slow road is added.
+TEST_F(LaneDriver, RoutesEndWhereTheyAreLongEnough) {
+  LaneTrafficOptions options;
+  options.route_length = 200.0;
+  for (const double x : {300.0, 301.0}) {
+    LaneTraffic traffic(graph_, 0.05, options);
+    ASSERT_TRUE(traffic.addBackground("a", {"road", "slow"}, x + 2.25, 0, 10.0, {}));
+    double last = 0.0;
+    for (int i = 0; i < 2000 && last < 550.0; ++i) {
+      traffic.step({});
+      const SimulatedVehicle* car = findVehicle(traffic.vehicles(), "a");
+      if (car != nullptr) last = car->state.position.x();
+    }
+    EXPECT_EQ(last > 500.0, x > 300.0) << last;
+  }
+}
+
 // 1 m ahead of the bumper: -2.6 (20 / 1)^2 and more; the wheels hold 8 m/s^2.
 TEST_F(LaneDriver, BrakesNoHarderThanTheWheelsHold) {
   addOurs(105.5, 0.0, 0.0);

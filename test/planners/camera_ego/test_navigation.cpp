@@ -105,6 +105,24 @@ TEST(Navigation, ALaneChangeIsCommandedForTenMeters) {
   }
 }
 
+// To the right on the first road and back to the left on the second: each by the lanes beside it.
+TEST(Navigation, EachLaneChangeHasItsOwnSide) {
+  const map::RoadNetwork network = test::NetworkText()
+                                       .edge("a", {"0,0 200,0", "0,4 200,4"})
+                                       .edge("b", {"200,0 400,0", "200,4 400,4"})
+                                       .connection("a_0", "b_0")
+                                       .connection("a_1", "b_1")
+                                       .network();
+  const map::LaneGraph graph(network);
+  std::vector<map::LaneIndex> lanes;
+  for (const char* id : {"a_1", "a_0", "b_0", "b_1"}) lanes.push_back(network.findLane(id));
+  const map::Route route = graph.toRoute({lanes, 390.0}, 5.0, 195.0);
+  ASSERT_EQ(route.laneChanges().size(), 2U);
+  const Navigation navigation(network, route);
+  EXPECT_EQ(navigation.next(route.laneChanges()[0] - 4.1).command, RoadCommand::kChangeRight);
+  EXPECT_EQ(navigation.next(route.laneChanges()[1] - 4.1).command, RoadCommand::kChangeLeft);
+}
+
 TEST(Navigation, IsKeptForARouteAndFollowsThePlace) {
   const map::RoadNetwork network =
       testing::makeNetwork({{"road", testing::straight(0.0, 0.0, 220.0, 0.0)},
