@@ -104,7 +104,8 @@ TEST_F(PlutoSceneTest, PolygonsKnowRouteLightAndLimit) {
   int in = 0;
   int out = 0;
   int far = 0;
-  for (const PlutoPolygon& polygon : input().polygons) {
+  const PlutoInput result = input();
+  for (const PlutoPolygon& polygon : result.polygons) {
     const LanePiece& piece = builder_.pieces().all()[polygon.piece];
     const std::string& id = network_.lane(piece.lane).id;
     in += id == "in_0" ? 1 : 0;
