@@ -5,8 +5,9 @@
 
 Mutants (mutation.py) come from the sources in FOLDERS until `count` of them compiled and are not among equivalent_mutants.yaml. A mutant is
 killed when a case of the tests of its folder, or of those in BEYOND, fails twice. The test programs are those of BUILD; only the library of the
-mutant's layer is built anew. Results are kept line by line in BUILD/drawn_mutants/SEED.jsonl (with a table, SEED.md): started again with the
-same seed, the script goes on behind the last. Fails below the GOAL, the exact share of killed ones.
+mutant's layer is built anew, with the accesses to containers in its file checked. Results are kept line by line in
+BUILD/drawn_mutants/SEED.jsonl (with a table, SEED.md): started again with the same seed, the script goes on behind the last. Fails below the
+GOAL, the exact share of killed ones.
 
     --seed N     of the draw; default $MUTANTS_SEED, else today's date as in 20260131
     --count N    default $MUTANTS_COUNT, else 150
@@ -43,6 +44,8 @@ BEYOND = {"metrics": ["record", "session"], "guidance": ["planners", "diffusion"
 FOLDERS = sorted(BEYOND)
 GOAL = 0.95
 SLOWEST = 15.0  # [s] programs that take longer are left out
+CHECKED = "#define _GLIBCXX_ASSERTIONS 1\n"  # ahead of a mutant's file: an access beyond a container's end aborts
+ABORTED = "exit code -6"
 LONGEST = 30.0  # [s] of all programs for a mutant, the nearest to its file and the quick ones first
 
 
@@ -184,19 +187,31 @@ class Judge:
     def verdict(self, mutant, text):
         """(verdict, by what)."""
         path = self.trial.root / "src" / mutant.file
-        layer = Path(mutant.file).parts[0]
         try:
-            path.write_text(mutant.applied(text))
-            if self.trial.compile([f"e2e_cdiff_{name}" for name in {*self.changed, layer}]):
-                self.changed.add(layer)
+            if not self._compiles(path, mutant.applied(text)):
                 return "uncompiled", ""
-            self.changed = {layer}
-            return self._killer(mutant)
+            verdict, by = self._killer(self.programs_for(mutant))
+            if by.endswith(ABORTED) and self._fails(path, text, mutant, by):
+                verdict, by = "survived", ""  # the code itself does not stand the checks
+            return verdict, by
         finally:
             path.write_text(text)
 
-    def _killer(self, mutant):
-        for program in self.programs_for(mutant):
+    def _compiles(self, path, text):
+        """Builds the layer with a file changed, whose accesses to vectors, arrays and optionals are checked."""
+        layer = path.relative_to(self.trial.root / "src").parts[0]
+        path.write_text(CHECKED + text)
+        built = self.trial.compile([f"e2e_cdiff_{name}" for name in {*self.changed, layer}]) is None
+        self.changed = {layer} if built else {*self.changed, layer}
+        return built
+
+    def _fails(self, path, text, mutant, by):
+        """Whether the program that aborts with a mutant does so without it."""
+        programs = [program for program in self.programs_for(mutant) if by.startswith(program.name + " ")]
+        return self._compiles(path, text) and self._killer(programs)[0] == "killed"
+
+    def _killer(self, programs):
+        for program in programs:
             limit = 10.0 + 8.0 * program.seconds
             known = program.seconds
             if self.trial.passes(program, limit):
