@@ -145,8 +145,7 @@ class Judge:
 
     def _known_programs(self):
         folders = {*self.layers, *(name for layer in self.layers for name in BEYOND[layer])}
-        return [program for program in self.trial.programs().values()
-                if program.folder.split("/")[0] in folders]
+        return [program for program in self.trial.programs().values() if program.folder.split("/")[0] in folders]
 
     def failing_without(self):
         """What is wrong without a mutant, None if all is well; measures the programs."""
