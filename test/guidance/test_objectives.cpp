@@ -219,8 +219,9 @@ TEST(RouteObjective, CountsTheOffsetBeyondTheCorridor) {
   EXPECT_EQ(valueOf(RouteObjective(), world.scene(), standing(3, 0.4, 0, 0, 1)), 0.0);
   EXPECT_LT(descended(RouteObjective(), world.scene(), standing(3, 2))(0, 1), 2.0);
   EXPECT_GT(descended(RouteObjective(), world.scene(), standing(3, -2))(0, 1), -2.0);
-  // Beyond the route's end only the side counts.
+  // Beyond the route's end only the side counts, and so it does before the part that is looked at.
   EXPECT_NEAR(valueOf(RouteObjective(), world.scene(), standing(70, 2, 0, 0, 1)), 2.25, 1e-9);
+  EXPECT_NEAR(valueOf(RouteObjective(), world.scene(), standing(-15, 2, 0, 0, 1)), 2.25, 1e-9);
   RouteObjective turned;
   turned.heading_weight = 4.0;
   EXPECT_NEAR(valueOf(turned, world.scene(), standing(3, 0, 0.5, 0, 1)), 1.0, 1e-9);

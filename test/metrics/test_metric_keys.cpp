@@ -76,6 +76,20 @@ TEST(MetricKeys, StandInTheFileOfTheirMetricAlone) {
   EXPECT_GT(spelt_places, 20U);
 }
 
+// None for counts, one for the shares of the 2D-TTC by partner, else three.
+TEST(MetricKeys, DecimalsFollowFromTheUnit) {
+  const std::set<std::string> shares = {"ttc_cbv_share_percent", "ttc_background_share_percent",
+                                        "ttc_following_percent", "ttc_following_cbv_percent"};
+  for (const MetricDescriptor& metric : metricDescriptors()) {
+    for (const MeasureDefinition& measure : metric.measures) {
+      const int wanted = measure.unit == std::string("count") ? 0
+                         : shares.count(measure.name)         ? 1
+                                                              : 3;
+      EXPECT_EQ(measure.decimals, wanted) << measure.name;
+    }
+  }
+}
+
 TEST(MetricKeys, AreFoundInEveryFileThatSpellsThem) {
   const Sources sources = {{"a.cpp", "x = \"cbv_count\";"},
                            {"b.cpp", "// as cbv_count\ny = \"cbv_counts\";"},

@@ -4,8 +4,10 @@
     drawn_mutants.py BUILD SOURCE RESULT.xml [--seed N] [--count N] [--only WORD] [--again] [--copy DIR] [--results FILE]
 
 Mutants (mutation.py) come from the sources in FOLDERS until `count` of them compiled and are not among equivalent_mutants.yaml. A mutant is
-killed when a case of the tests of its folder, or of those in BEYOND, fails twice. Results are kept line by line in BUILD/drawn_mutants/SEED.jsonl
-(with a table, SEED.md): started again with the same seed, the script goes on behind the last. Fails below the GOAL, the exact share of killed ones.
+killed when a case of the tests of its folder, or of those in BEYOND, fails twice. The test programs are those of BUILD; only the library of the
+mutant's layer is built anew, with the accesses to containers in its file checked. Results are kept line by line in
+BUILD/drawn_mutants/SEED.jsonl (with a table, SEED.md): started again with the same seed, the script goes on behind the last. Fails below the
+GOAL, the exact share of killed ones.
 
     --seed N     of the draw; default $MUTANTS_SEED, else today's date as in 20260131
     --count N    default $MUTANTS_COUNT, else 150
@@ -17,8 +19,10 @@ import argparse
 import datetime
 import fcntl
 import hashlib
+import itertools
 import json
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -39,7 +43,10 @@ BEYOND = {"metrics": ["record", "session"], "guidance": ["planners", "diffusion"
           "session": ["record"], "simulation": ["session"]}
 FOLDERS = sorted(BEYOND)
 GOAL = 0.95
-SLOWEST = 30.0  # [s] programs that take longer are left out
+SLOWEST = 15.0  # [s] programs that take longer are left out
+CHECKED = "#define _GLIBCXX_ASSERTIONS 1\n"  # ahead of a mutant's file: an access beyond a container's end aborts
+ABORTED = "exit code -6"
+LONGEST = 30.0  # [s] of all programs for a mutant, the nearest to its file and the quick ones first
 
 
 def arguments():
@@ -121,6 +128,12 @@ class Results:
         return "\n".join(lines) + "\n"
 
 
+def included_by(source, planner):
+    """Folders below src of which a planner or its tests include a header."""
+    files = [path for top in ("src", "test") for path in (source / top / "planners" / planner).rglob("*.*") if path.suffix in (".h", ".cpp")]
+    return {found for path in files for found in re.findall(r'#include "(planners/\w+)/', path.read_text())}
+
+
 class Judge:
     """Builds mutants and runs the tests that may see them, quick ones first."""
 
@@ -128,54 +141,76 @@ class Judge:
         self.trial, self.layers = trial, layers
         self.programs = self._known_programs()
         self.changed = set()  # layers whose library holds a mutant
+        self.included = {path.name: included_by(trial.source, path.name) for path in (trial.source / "src/planners").iterdir() if path.is_dir()}
 
     def _known_programs(self):
         folders = {*self.layers, *(name for layer in self.layers for name in BEYOND[layer])}
-        return [program for program in self.trial.programs().values()
-                if program.folder.split("/")[0] in folders and "training" not in program.folder]
+        return [program for program in self.trial.programs().values() if program.folder.split("/")[0] in folders]
 
     def failing_without(self):
         """What is wrong without a mutant, None if all is well; measures the programs."""
-        broken = self.trial.compile([program.name for program in self.programs])
+        broken = self.trial.compile_programs([program.name for program in self.programs])
+        broken = broken or self.trial.compile([f"e2e_cdiff_{layer}" for layer in FOLDERS])
         if broken:
             return broken
         self.programs = self._known_programs()
-        for program in self.programs:
-            if not self.trial.passes(program, 300.0):
-                return f"{program.name} fails without a mutant: {program.failures}"
-        for program in [program for program in self.programs if program.seconds > SLOWEST]:
-            print(f"left out: {program.name}, {program.seconds:.0f} s", flush=True)
+        failed = [program for program in self.programs if not self.trial.passes(program, SLOWEST)]
+        for program in [program for program in failed if program.failures == ["no end"]]:
+            print(f"left out: {program.name}, more than {SLOWEST:.0f} s", flush=True)
             self.programs.remove(program)
-        return None
+            failed.remove(program)
+        return "; ".join(f"{program.name} fails without a mutant: {program.failures}" for program in failed) or None
 
     def programs_for(self, mutant):
         """The test of the file's name, then those of its folder, then those beyond."""
         layer, *rest = Path(mutant.file).parts
         folders = [layer, *BEYOND[layer]]
-        chosen = [program for program in self.programs if program.folder.split("/")[0] in folders]
         inner = "/".join([layer, *rest[:-1]])
+        chosen = [program for program in self.programs
+                  if program.folder.split("/")[0] in folders and not self._of_another_planner(program.folder, inner)]
         stem = Path(mutant.file).stem
 
         def order(program):
             return (not program.name.endswith(stem), folders.index(program.folder.split("/")[0]), program.folder != inner, program.seconds)
-        return sorted(chosen, key=order)
+        ordered = sorted(chosen, key=order)
+        until = itertools.accumulate(program.seconds for program in ordered)
+        return [program for program, seconds in zip(ordered, until) if seconds <= LONGEST]
+
+    def _of_another_planner(self, folder, inner):
+        """Whether these are tests of a planner that includes nothing of the planner in `inner`."""
+        parts = folder.split("/")
+        if len(parts) == 1 or parts[0] != "planners" or not inner.startswith("planners/") or folder == inner:
+            return False
+        return inner not in self.included[parts[1]]
 
     def verdict(self, mutant, text):
         """(verdict, by what)."""
         path = self.trial.root / "src" / mutant.file
-        layer = Path(mutant.file).parts[0]
         try:
-            path.write_text(mutant.applied(text))
-            if self.trial.compile([f"e2e_cdiff_{name}" for name in {*self.changed, layer}]):
-                self.changed.add(layer)
+            if not self._compiles(path, mutant.applied(text)):
                 return "uncompiled", ""
-            self.changed = {layer}
-            return self._killer(mutant)
+            verdict, by = self._killer(self.programs_for(mutant))
+            if by.endswith(ABORTED) and self._fails(path, text, mutant, by):
+                verdict, by = "survived", ""  # the code itself does not stand the checks
+            return verdict, by
         finally:
             path.write_text(text)
 
-    def _killer(self, mutant):
-        for program in self.programs_for(mutant):
+    def _compiles(self, path, text):
+        """Builds the layer with a file changed, whose accesses to vectors, arrays and optionals are checked."""
+        layer = path.relative_to(self.trial.root / "src").parts[0]
+        path.write_text(CHECKED + text)
+        built = self.trial.compile([f"e2e_cdiff_{name}" for name in {*self.changed, layer}]) is None
+        self.changed = {layer} if built else {*self.changed, layer}
+        return built
+
+    def _fails(self, path, text, mutant, by):
+        """Whether the program that aborts with a mutant does so without it."""
+        programs = [program for program in self.programs_for(mutant) if by.startswith(program.name + " ")]
+        return self._compiles(path, text) and self._killer(programs)[0] == "killed"
+
+    def _killer(self, programs):
+        for program in programs:
             limit = 10.0 + 8.0 * program.seconds
             known = program.seconds
             if self.trial.passes(program, limit):
@@ -217,7 +252,7 @@ def main():
     lock = root.parent.joinpath(root.name + ".lock").open("w")
     fcntl.flock(lock, fcntl.LOCK_EX)
     begin = time.monotonic()
-    trial = Trial(options.source, options.build, root, [f"-DE2E_CDIFF_MUTATED={';'.join(FOLDERS)}"])
+    trial = Trial(options.source, options.build, root, [f"-DE2E_CDIFF_MUTATED={';'.join(FOLDERS)}"], own_programs=False)
     judge = Judge(trial, sorted({Path(source.name).parts[0] for source in sources}))
     broken = judge.failing_without()
     print(f"without a mutant: {broken or 'passes'} ({time.monotonic() - begin:.0f} s)", flush=True)

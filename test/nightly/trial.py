@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from source_copy import SourceCopy, environment_of  # noqa: E402
+from source_copy import SourceCopy, environment_of, ninja  # noqa: E402
 
 # Limits of wall-clock time are for a machine that does nothing else.
 AT_LEISURE = "*WithinASecond:*Memory*:*AfterTheStepTimeout"
@@ -34,32 +34,39 @@ def left_out_of(arguments):
 
 
 class Trial:
-    """A copy at `root`, configured with `options` of CMake; kept there, it is built anew only where the source has changed."""
+    """A copy at `root`, configured with `options` of CMake; kept there, it is built anew only where the source has changed. With
+    `own_programs` the test programs are the copy's, else those of `source_build`, which then run with the libraries of the copy."""
 
-    def __init__(self, source, source_build, root, options=()):
+    def __init__(self, source, source_build, root, options=(), own_programs=True):
         self.source, self.root = source, root
         self.copy = SourceCopy(source, source_build, root)
         self.build = self.copy.build
+        self.tests_in = self.build if own_programs else source_build
         subprocess.run(["cmake", "-S", root, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", *options], check=True, stdout=subprocess.DEVNULL)
 
     def programs(self):
         """Test programs that run every day, by name. Which of their cases do not is known once they are built."""
         places = re.findall(r"^build (\S*?(test_\w+)): CXX_EXECUTABLE_LINKER\S* test/(\S+?)/CMakeFiles/",
-                            (self.build / "build.ninja").read_text(), re.MULTILINE)
-        shown = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.build, check=True, capture_output=True, text=True).stdout
+                            (self.tests_in / "build.ninja").read_text(), re.MULTILINE)
+        shown = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.tests_in, check=True, capture_output=True, text=True).stdout
         tests = {test["name"]: test for test in json.loads(shown)["tests"]}
         found = {}
         for path, name, folder in places:
             test = tests.get(name, {})
             labels = sum((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
             if test and "nightly" not in labels:
-                found[name] = Program(name, self.build / path, folder, left_out_of(test.get("command", [])))
+                found[name] = Program(name, self.tests_in / path, folder, left_out_of(test.get("command", [])))
         return found
 
     def compile(self, names):
-        """None when these programs build, else what ninja says."""
+        """None when these targets build in the copy, else what ninja says."""
         built, output = self.copy.ninja(names)
+        return None if built else output[-3000:]
+
+    def compile_programs(self, names):
+        """None when these test programs build where programs() finds them, else what ninja says."""
+        built, output = ninja(self.tests_in, self.source, names)
         return None if built else output[-3000:]
 
     def passes(self, program, limit, cases=None):

@@ -141,6 +141,7 @@ TEST(World, AVehicleTakenOverMovesByItsActionUntilItIsReleasedWhereItIs) {
   const traffic::Vehicle taken = *world->snapshot().find("car");
   EXPECT_EQ(taken.role, VehicleRole::kCbv);
   EXPECT_EQ(taken.cbv_slot, 1);
+  EXPECT_EQ(taken.lane_id, "road_0") << "where the simulator has it";
   EXPECT_EQ(taken.applied_action, ControlAction::failSafe());
   EXPECT_LT(taken.state.speed, 9.9) << "the scripted one would keep its speed";
   EXPECT_NEAR(taken.state.position.x(), before + 0.5, 0.02);

@@ -28,11 +28,15 @@ class SourceCopy:
                 bring(top, root / top.name)
 
     def ninja(self, targets):
-        """Whether these targets build, and what ninja says; $JOBS at a time."""
-        environment = {**os.environ, "CCACHE_BASEDIR": str(self.root)}
-        jobs = ["-j", os.environ["JOBS"]] if os.environ.get("JOBS") else []
-        done = subprocess.run(["ninja", "-C", self.build, *jobs, *targets], env=environment, capture_output=True, text=True, check=False)
-        return done.returncode == 0, done.stdout
+        return ninja(self.build, self.root, targets)
+
+
+def ninja(build, root, targets):
+    """Whether these targets of the tree at `root` build, and what ninja says; $JOBS at a time."""
+    environment = {**os.environ, "CCACHE_BASEDIR": str(root)}
+    jobs = ["-j", os.environ["JOBS"]] if os.environ.get("JOBS") else []
+    done = subprocess.run(["ninja", "-C", build, *jobs, *targets], env=environment, capture_output=True, text=True, check=False)
+    return done.returncode == 0, done.stdout
 
 
 def remove(path):

@@ -122,6 +122,7 @@ class CandidateChoice : public DiffusionModes {
     guidance_.find("speed").weight = 0.02;
     options_ = optionsOf();
     options_.conditioning = "image";
+    options_.precision = "fp32";
     options_.candidates = kCandidates;
   }
 

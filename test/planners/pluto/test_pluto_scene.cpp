@@ -2,8 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "planners/course.h"
 #include "planners/pluto/pluto_scene.h"
+#include "traffic/vehicle_class.h"
 
 namespace cdiff::planners {
 namespace {
@@ -100,7 +104,8 @@ TEST_F(PlutoSceneTest, PolygonsKnowRouteLightAndLimit) {
   int in = 0;
   int out = 0;
   int far = 0;
-  for (const PlutoPolygon& polygon : input().polygons) {
+  const PlutoInput result = input();
+  for (const PlutoPolygon& polygon : result.polygons) {
     const LanePiece& piece = builder_.pieces().all()[polygon.piece];
     const std::string& id = network_.lane(piece.lane).id;
     in += id == "in_0" ? 1 : 0;
@@ -151,6 +156,104 @@ TEST_F(PlutoSceneTest, ALineIsGivenAsTheVehicleSeesIt) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(second[i], expected[i], 1e-5) << i;
   EXPECT_NEAR(second[6], (3.0 * std::cos(0.1) - std::sin(0.1)) / 10.0, 1e-5);
   EXPECT_NEAR(second[7], (-3.0 * std::sin(0.1) - std::cos(0.1)) / 10.0, 1e-5);
+}
+
+TEST(PlutoLights, AreReadByTheirLetter) {
+  LanePiece piece;
+  piece.signal = "light";
+  const std::pair<const char*, LightState> states[] = {
+      {"xg", LightState::kGreen},  {"xG", LightState::kGreen},  {"xy", LightState::kYellow},
+      {"xY", LightState::kYellow}, {"xu", LightState::kYellow}, {"xr", LightState::kRed},
+      {"xR", LightState::kRed},    {"xo", LightState::kNone},   {"g", LightState::kNone}};
+  for (const auto& [letters, state] : states) {
+    piece.link = 1;
+    EXPECT_EQ(lightState({{"other", "rr"}, {"light", letters}}, piece), state) << letters;
+    piece.link = -1;
+    EXPECT_EQ(lightState({{"light", letters}}, piece), LightState::kNone);
+  }
+  piece.link = 0;
+  EXPECT_EQ(lightState({{"light", "g"}}, piece), LightState::kGreen);
+  EXPECT_EQ(lightState({{"other", "g"}}, piece), LightState::kNone);
+}
+
+// A bend: after k m along the first heading it lies 0.1 k^2 m to the left and is turned by 0.05 k.
+TEST(PlutoLines, AreGivenEveryThreeMetersInTheirOwnFrameAndTheVehicles) {
+  const geometry::Pose2d first{{10.0, 5.0}, 0.5};
+  const geometry::Pose2d frame{{8.0, 4.0}, 0.3};
+  ReferenceLine line;
+  for (int k = 0; k <= 7; ++k)
+    line.poses.push_back({first.toMap({1.0 * k, 0.1 * k * k}), 0.5 + 0.05 * k});
+  const PlutoLine token = plutoLine(frame, line);
+  ASSERT_EQ(token.points.size(), 3U * kLineChannels);
+  EXPECT_NEAR(token.pose[2], 0.2 / core::kPi, 1e-6);
+  for (int i = 0; i < 3; ++i) {
+    const double k = 3.0 * i, next = std::min(k + 3.0, 7.0);
+    const Eigen::Vector2d seen = frame.toBody(first.toMap({k, 0.1 * k * k}));
+    const double expected[] = {
+        k / 20.0,           0.1 * k * k / 20.0, (next - k) / 3.0, 0.1 * (next * next - k * k) / 3.0,
+        std::cos(0.05 * k), std::sin(0.05 * k), seen.x() / 10.0,  seen.y() / 10.0};
+    for (std::size_t c = 0; c < 8; ++c)
+      EXPECT_NEAR(token.points[static_cast<std::size_t>(i) * 8 + c], expected[c], 1e-5) << i << c;
+  }
+}
+
+// A bus 10 m to the left that turns by 0.2 to the left at 4 m/s, the vehicle heading along x: from
+// heading 0 to 0.2 its speed changes by 4 (cos 0.2 - 1) and 4 sin 0.2.
+TEST_F(PlutoSceneTest, ATurningAgentIsGivenWithItsTurnAndSize) {
+  for (int i = 0; i < 2; ++i) {
+    traffic::Vehicle bus = vehicleAt("bus", 0.4 * i, 10.0 + 0.1 * i, 0.2 * i, 4.0);
+    bus.dimensions = {12.0, 2.5, 3.2};
+    decide({vehicleAt("own", 0.0, 0.0, 0.0, 0.0), bus});
+  }
+  const PlutoAgent agent = input().agents.at(0);
+  EXPECT_EQ(agent.kind, static_cast<std::uint8_t>(traffic::classOf({12.0, 2.5, 3.2})));
+  EXPECT_NE(agent.kind, static_cast<std::uint8_t>(traffic::classOf({4.5, 1.8, 1.5})));
+  EXPECT_NEAR(agent.pose[0], 0.4 / 80.0, 1e-6);
+  EXPECT_NEAR(agent.pose[1], 10.1 / 80.0, 1e-6);
+  EXPECT_NEAR(agent.pose[2], 0.2 / core::kPi, 1e-6);
+  const double row[] = {0.4,
+                        0.1,
+                        4.0 * (std::cos(0.2) - 1.0),
+                        4.0 * std::sin(0.2),
+                        std::cos(0.2),
+                        std::sin(0.2),
+                        0.25,
+                        1.2,
+                        1.0};
+  for (std::size_t i = 0; i < 9; ++i)
+    EXPECT_NEAR(agent.history[(kPlutoHistory - 1) * kAgentChannels + i], row[i], 1e-5) << i;
+}
+
+// Known at the first and the third of three decisions, not at the second.
+TEST_F(PlutoSceneTest, AnAgentThatWasAwayHasNoHistory) {
+  const traffic::Vehicle own = vehicleAt("own", 0.0, 0.0, 0.0, 0.0);
+  const traffic::Vehicle other = vehicleAt("a", 10.0, 0.0, 0.0, 0.0);
+  decide({own, other});
+  decide({own});
+  decide({own, other});
+  const PlutoInput result = input();
+  for (const float value : result.agents.at(0).history) EXPECT_EQ(value, 0.0F);
+}
+
+TEST_F(PlutoSceneTest, VehiclesOnAnotherLevelAreNoTokens) {
+  traffic::Vehicle above = vehicleAt("above", 10.0, 0.0, 0.0, 0.0);
+  above.state.elevation = 6.0;
+  decide({vehicleAt("own", 0.0, 0.0, 0.0, 0.0), above});
+  EXPECT_TRUE(input().agents.empty());
+}
+
+// From x = 160 m what lies on `in` has been driven.
+TEST_F(PlutoSceneTest, WhatIsBehindIsNotOnTheRoute) {
+  decide({vehicleAt("own", 160.0, 0.0, 0.0, 3.0)});
+  const PlutoInput result = input();
+  int in = 0;
+  for (const PlutoPolygon& polygon : result.polygons) {
+    const std::string& id = network_.lane(builder_.pieces().all()[polygon.piece].lane).id;
+    in += id == "in_0" ? 1 : 0;
+    EXPECT_EQ(polygon.on_route, id == "out_0" ? 1 : 0) << id;
+    EXPECT_EQ(polygon.internal, 0);
+  }
+  EXPECT_EQ(in, 2);
 }
 
 }  // namespace

@@ -2,8 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "e2e_cdiff/core/angle.h"
+#include "map/lane_graph.h"
 #include "planners/course.h"
 #include "planners/pluto/reference_lines.h"
+#include "support/network_text.h"
 
 namespace cdiff::planners {
 namespace {
@@ -112,6 +117,95 @@ TEST(ReferenceLines, APlaceIsMeasuredFromTheNearestSegment) {
   EXPECT_NEAR(place.distance, 2.0, 1e-12);
   EXPECT_NEAR(placeOn(line, {13.0, 4.0}).arc_length, 10.0, 1e-12);
   EXPECT_NEAR(placeOn(line, {13.0, 4.0}).distance, 5.0, 1e-12);
+}
+
+/// Lanes of a road along x from 0 to 300 m, one for each y.
+map::RoadNetwork lanesAt(const std::vector<double>& places) {
+  std::vector<std::string> shapes;
+  for (const double y : places)
+    shapes.push_back("0," + std::to_string(y) + " 300," + std::to_string(y));
+  return test::NetworkText().edge("road", shapes).network();
+}
+
+/// y of the beginnings of the lines from (20, y), heading [deg], with a route on the first lane.
+std::vector<double> beginnings(const map::RoadNetwork& network, double y, double degrees,
+                               std::size_t most = 4) {
+  const map::LaneGraph graph(network);
+  const map::Route route = graph.toRoute({{0}, 300.0}, 0.0, 300.0);
+  traffic::VehicleState state = at(20.0, y);
+  state.heading = core::degreesToRadians(degrees);
+  std::vector<double> found;
+  for (const ReferenceLine& line : referenceLines(network, route, 20.0, state, most))
+    found.push_back(std::round(10.0 * line.poses.front().position.y()) / 10.0);
+  return found;
+}
+
+// The route's line comes first, then the vehicle's own lane and those beside it, left before right.
+TEST(ReferenceLines, AreTheRoutesTheOwnAndThoseBeside) {
+  const map::RoadNetwork network = lanesAt({0.0, 3.2, 6.4, 9.6});
+  using Places = std::vector<double>;
+  EXPECT_EQ(beginnings(network, 0.0, 0.0), (Places{0.0, 3.2}));
+  EXPECT_EQ(beginnings(network, 3.0, 0.0), (Places{0.0, 3.2, 6.4}));
+  EXPECT_EQ(beginnings(network, 6.4, 0.0), (Places{0.0, 6.4, 9.6, 3.2}));
+  EXPECT_EQ(beginnings(network, 9.6, 0.0), (Places{0.0, 9.6, 6.4}));
+  EXPECT_EQ(beginnings(network, 6.4, 0.0, 3), (Places{0.0, 6.4, 9.6}));
+}
+
+// A lane is its own within 2 m and 60 degrees; else that of its route is.
+TEST(ReferenceLines, TheOwnLaneIsNearAndRunsItsWay) {
+  const map::RoadNetwork network = lanesAt({0.0, 3.2, 6.4});
+  using Places = std::vector<double>;
+  EXPECT_EQ(beginnings(network, 6.4, 55.0), (Places{0.0, 6.4, 3.2}));
+  EXPECT_EQ(beginnings(network, 6.4, -55.0), (Places{0.0, 6.4, 3.2}));
+  EXPECT_EQ(beginnings(network, 6.4, 65.0), (Places{0.0, 3.2}));
+  EXPECT_EQ(beginnings(network, 6.4, -65.0), (Places{0.0, 3.2}));
+  EXPECT_EQ(beginnings(network, 8.3, 0.0), (Places{0.0, 6.4, 3.2}));
+  EXPECT_EQ(beginnings(network, 8.5, 0.0), (Places{0.0, 3.2}));
+}
+
+// A line that stays within 0.5 m of one that is kept is no other line.
+TEST(ReferenceLines, LinesThatLieTogetherAreOne) {
+  EXPECT_EQ(beginnings(lanesAt({0.0, 0.4}), 0.0, 0.0).size(), 1U);
+  EXPECT_EQ(beginnings(lanesAt({0.0, 0.6}), 0.0, 0.0).size(), 2U);
+}
+
+// Both ways through the junction begin straight on; the one that is listed first ends turned by 45
+// degrees, the other goes on.
+TEST(ReferenceLines, StraightOnIsTheWayWhoseEndTurnsLeast) {
+  const map::RoadNetwork network = test::NetworkText()
+                                       .edge("a", {"0,0 50,0"})
+                                       .edge(":turn", {"50,0 55,0 60,5"})
+                                       .edge(":on", {"50,0 60,0"})
+                                       .edge("b", {"60,5 160,105"})
+                                       .edge("c", {"60,0 260,0"})
+                                       .connection("a_0", "b_0", ":turn_0")
+                                       .connection("a_0", "c_0", ":on_0")
+                                       .network();
+  const map::LaneGraph graph(network);
+  const map::Route route = graph.toRoute({{network.findLane("a_0")}, 50.0}, 0.0, 50.0);
+  const auto lines = referenceLines(network, route, 10.0, at(10.0, 0.0), 4);
+  ASSERT_EQ(lines.size(), 1U);
+  ASSERT_EQ(lines[0].poses.size(), 121U);
+  for (std::size_t i = 0; i < 121; ++i) {
+    EXPECT_NEAR(lines[0].poses[i].position.x(), 10.0 + static_cast<double>(i), 1e-9);
+    EXPECT_NEAR(lines[0].poses[i].position.y(), 0.0, 1e-9);
+  }
+}
+
+// 5 m along x, then 5 m along y.
+TEST(ReferenceLines, APlaceHasTheSideAndHeadingOfItsPart) {
+  ReferenceLine line;
+  for (int i = 0; i <= 5; ++i) line.poses.push_back({{1.0 * i, 0.0}, 0.0});
+  for (int i = 1; i <= 5; ++i) line.poses.push_back({{5.0, 1.0 * i}, 0.5 * core::kPi});
+  const LinePlace right = placeOn(line, {2.5, -1.5});
+  EXPECT_NEAR(right.offset, -1.5, 1e-12);
+  EXPECT_NEAR(right.heading, 0.0, 1e-12);
+  const LinePlace upper = placeOn(line, {4.25, 3.5});
+  EXPECT_NEAR(upper.arc_length, 8.5, 1e-12);
+  EXPECT_NEAR(upper.offset, 0.75, 1e-12);
+  EXPECT_NEAR(upper.heading, 0.5 * core::kPi, 1e-12);
+  EXPECT_NEAR(placeOn(line, {-3.0, 4.0}).distance, 5.0, 1e-12);
+  EXPECT_NEAR(placeOn(line, {-3.0, 4.0}).arc_length, 0.0, 1e-12);
 }
 
 }  // namespace

@@ -181,5 +181,43 @@ TEST_F(RiftEvaluatorTest, CandidatesAreJudgedEachByItself) {
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(together[i], returnOf(all[i])) << i;
 }
 
+// Two lines, the second 3 m beside the first and turned by 0.1: the nearest of all their points is
+// looked for at each step, and what the steps are worth is added up here once more.
+TEST_F(RiftEvaluatorTest, MeasuresFromTheNearestPointOfAllLines) {
+  ReferenceLine beside;
+  for (int i = 0; i <= 120; ++i)
+    beside.poses.push_back({{20.0 + i * std::cos(0.1), 3.0 + i * std::sin(0.1)}, 0.1});
+  state_.lines.push_back(beside);
+  state_.pose.heading = 0.05;
+  MaskWindow window(mask_, state_.pose.position);
+  for (const PlutoTrajectory& candidate :
+       {arc(8.0, 0.0), arc(6.0, 0.03), arc(5.0, -0.04), stop()}) {
+    const RiftPlan plan(candidate, 0.05);
+    const RiftRollout rollout = RiftDriver({}).drive(plan, 0.05, 6.0);
+    std::array<RiftStep, kRiftSteps> steps{};
+    for (std::size_t i = 0; i < kRiftSteps; ++i) {
+      steps[i].speed = smoothed(rollout.speed)[i + 1];
+      steps[i].acceleration = rateOf(smoothed(rollout.speed))[i + 1];
+      steps[i].yaw_acceleration = rateOf(rateOf(rollout.heading))[i + 1];
+      double nearest = 1e9;
+      for (const ReferenceLine& line : state_.lines) {
+        for (const geometry::Pose2d& pose : line.poses) {
+          const Eigen::Vector2d away = plan.places[i] + state_.pose.position - pose.position;
+          if (away.norm() >= nearest) continue;
+          nearest = away.norm();
+          steps[i].offset = away.dot(geometry::leftNormal(geometry::direction(pose.heading)));
+          steps[i].heading_error = core::angleDifference(
+              std::atan2(plan.directions[i].y(), plan.directions[i].x()), pose.heading);
+        }
+      }
+      const geometry::OrientedBox box{
+          {rollout.x[i + 1], rollout.y[i + 1]}, rollout.heading[i + 1], 4.5, 1.8};
+      for (const Eigen::Vector2d& corner : box.corners())
+        steps[i].off_road = steps[i].off_road || !window.drivable(corner.x(), corner.y());
+    }
+    EXPECT_NEAR(returnOf(candidate), riftReturn(steps), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace cdiff::planners

@@ -83,10 +83,12 @@ void expectSameAgents(const UniadMiniOutput& found, const NetAnswer& expected) {
                  "box");
     for (std::int64_t m = 0; m < kMotionModes; ++m) {
       const auto mode = static_cast<std::size_t>(m);
-      for (std::int64_t axis = 0; axis < 2; ++axis)
-        expectNear(
-            agent.ways[mode].back()[axis] - static_cast<double>(agent.box[axis == 0 ? 0 : 1]),
-            expected.motion.ways.back()[0][i][m][5][axis], "way");
+      for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {
+        const Eigen::Vector2d place = agent.ways[mode][static_cast<std::size_t>(k)];
+        for (std::int64_t axis = 0; axis < 2; ++axis)
+          expectNear(place[axis] - static_cast<double>(agent.box[axis == 0 ? 0 : 1]),
+                     expected.motion.ways.back()[0][i][m][k][axis], "way");
+      }
       expectNear(logistic(agent.way_scores[mode]), shares[0][i][m], "share of a mode");
     }
   }
@@ -117,8 +119,11 @@ void expectSame(const UniadMiniOutput& found, const NetAnswer& expected) {
     for (std::int64_t k = 0; k < kMapKinds; ++k)
       expectNear(found.lines[l].scores[static_cast<std::size_t>(k)],
                  expected.map.logits.back()[0][i][k], "line score");
-    for (std::int64_t p = 0; p < kMapPoints; ++p)
-      expectNear(found.lines[l].points[static_cast<std::size_t>(p)].y(), lines[0][i][p][1], "line");
+    for (std::int64_t p = 0; p < kMapPoints; ++p) {
+      const Eigen::Vector2d place = found.lines[l].points[static_cast<std::size_t>(p)];
+      expectNear(place.x(), lines[0][i][p][0], "line");
+      expectNear(place.y(), lines[0][i][p][1], "line");
+    }
   }
   expectSameOccupancy(found, expected.occupancy);
   for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {

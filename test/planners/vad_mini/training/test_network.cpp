@@ -34,9 +34,13 @@ void expectSame(const VadMiniOutput& found, const VadMiniAnswer& expected) {
       expectNear(found.agents[a].box[static_cast<std::size_t>(n)], expected.boxes.back()[0][i][n],
                  "box");
     for (std::int64_t m = 0; m < kMotionModes; ++m) {
-      const Eigen::Vector2d end = found.agents[a].ways[static_cast<std::size_t>(m)].back();
-      expectNear(end.x() - static_cast<double>(found.agents[a].box[0]),
-                 expected.ways[0][i][m][5][0], "way");
+      for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {
+        const Eigen::Vector2d place =
+            found.agents[a].ways[static_cast<std::size_t>(m)][static_cast<std::size_t>(k)];
+        for (std::int64_t axis = 0; axis < 2; ++axis)
+          expectNear(place[axis] - static_cast<double>(found.agents[a].box[axis == 0 ? 0 : 1]),
+                     expected.ways[0][i][m][k][axis], "way");
+      }
       expectNear(found.agents[a].way_scores[static_cast<std::size_t>(m)],
                  expected.way_logits[0][i][m], "way score");
     }
@@ -47,7 +51,11 @@ void expectSame(const VadMiniOutput& found, const VadMiniAnswer& expected) {
     for (std::int64_t k = 0; k < kMapKinds; ++k)
       expectNear(found.lines[l].scores[static_cast<std::size_t>(k)],
                  expected.line_logits.back()[0][i][k], "line score");
-    expectNear(found.lines[l].points.back().y(), lines[0][i][kMapPoints - 1][1], "line");
+    for (std::int64_t p = 0; p < kMapPoints; ++p) {
+      const Eigen::Vector2d place = found.lines[l].points[static_cast<std::size_t>(p)];
+      expectNear(place.x(), lines[0][i][p][0], "line");
+      expectNear(place.y(), lines[0][i][p][1], "line");
+    }
   }
   for (std::int64_t c = 0; c < kRoadCommands; ++c) {
     for (std::int64_t k = 0; k < kEgoWaypoints; ++k) {
