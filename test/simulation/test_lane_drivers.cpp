@@ -124,6 +124,10 @@ TEST_F(LaneDriver, DoesNotMindWhoIsBehindOrOnAnotherLevel) {
   EXPECT_NEAR(acceleration(8.0), freeAcceleration(8.0), 1e-12);
   traffic_.remove("a");
   traffic_.remove("ours");
+  addOurs(98.5, 0.0, 0.0);  // in contact, from behind
+  EXPECT_NEAR(acceleration(8.0), freeAcceleration(8.0), 1e-12);
+  traffic_.remove("a");
+  traffic_.remove("ours");
   addOurs(120.0, 0.0, 0.0, 0.0, 5.0);
   EXPECT_NEAR(acceleration(8.0), freeAcceleration(8.0), 1e-12);
 }
