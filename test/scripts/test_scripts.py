@@ -48,6 +48,19 @@ class Scripts(unittest.TestCase):
         self.assertEqual(lines[:len(lines) // 2], lines[len(lines) // 2:])
         self.assertTrue(lines)
 
+    def test_open_loop_measures_are_compared_in_pairs(self):
+        # Moments 1, 1, 2 and differences 0.1, 0.2, 0.3: pooled 0.9 / 4. With three networks the interval holds all draws, from 0.1 to 0.3.
+        with tempfile.TemporaryDirectory() as folder:
+            for name, values in (("base", [1, 1, 1]), ("other", [1.1, 1.2, 1.3]), ("fewer", [1, 1])):
+                rows = [f"{i},{moments},l2,{value}" for i, (moments, value) in enumerate(zip([1, 1, 2], values))]
+                (Path(folder) / name).write_text("\n".join(["network,moments,measure,value", *rows]), encoding="utf-8")
+
+            def compared(other):
+                return subprocess.run([SOURCE / "scripts/compare_open_loop", "base", other], cwd=folder, timeout=60, capture_output=True, text=True, check=False)
+
+            self.assertEqual(compared("other").stdout, "l2 1.000 1.225 +0.225 [+0.100, +0.300]\n")
+            self.assertNotEqual(compared("fewer").returncode, 0)
+
     def test_benchmark_builds_itself_only(self):
         self.assertEqual(targets_of(calls_of("benchmark", "camera")), [["cdiff_benchmark"]])
         self.assertEqual(targets_of(calls_of("benchmark", "--json", "x", "map")), [["cdiff_benchmark"]])
