@@ -56,7 +56,8 @@ class ReplayCommand : public testing::Test {
         "session.yaml",
         {{"deployment: \"cdiff run\"\n", ""},
          {"deployment: \"cdiff replay\"\nrecorded_by: \"cdiff run of e2e_cdiff .*\"\n", ""},
-         {"  ((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_instruction_set): .*\n",
+         {"  ((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_(instruction_set|precision)): "
+          ".*\n",
           ""}});
   }
   nlohmann::json summary() const {

@@ -141,7 +141,7 @@ class CandidateChoice : public DiffusionModes {
       requests[i].key = {core::hashText("cbv30"), static_cast<std::uint32_t>(tick), 0};
       requests[i].candidate = i;
     }
-    const auto precision = inference::precisionNamed("auto", "auto", "precision");
+    const auto precision = inference::precisionNamed(options_.precision, options_.isa, "precision");
     const std::vector<float> features =
         diffusion::ImageEncoder(model_, precision).encode(images_[0]);
     denoiser_.setContexts(
