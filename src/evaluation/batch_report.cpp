@@ -255,7 +255,9 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   for (const TableDefinition& definition : paperTables())
     tables.push_back(fillTable(withVariant(variant, definition), runs));
   std::vector<Figure> figures = paperFigures(pooled);
-  if (auto trails = trailFigure(runs)) figures.push_back(std::move(*trails));
+  for (const TrailsOf who : {TrailsOf::kCbvs, TrailsOf::kEgo}) {
+    if (auto trails = trailFigure(runs, who)) figures.push_back(std::move(*trails));
+  }
   makeFolder(results / "tables");
   for (const Table& table : tables) {
     core::writeFileAtomically(results / "tables" / (table.definition.id + ".csv"), tableCsv(table));

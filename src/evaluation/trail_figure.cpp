@@ -28,7 +28,7 @@ constexpr double kTextHeight = 20.0;      // below a panel [pixels]
 constexpr double kSceneMargin = 12.0;     // around all trails [m]
 constexpr double kContactRadius = 9.0;    // of a mark [pixels]
 constexpr double kSecondsPerPlace = 0.5;  // in the CSV file
-constexpr const char* kTrailHeader = "cbv_planner,tick,seconds,vehicle_id,role,x,y,contact_with\n";
+constexpr const char* kTrailHeader = ",tick,seconds,vehicle_id,role,x,y,contact_with\n";
 
 /// What all panels share, so that they can be compared.
 struct SceneView {
@@ -121,6 +121,19 @@ Markup touchesSvg(const DrivenScene& scene, const SceneView& view) {
   return svg;
 }
 
+/// "98.2 % of the route, driving score 68.7, 1 contact, 8.1 % off the road".
+std::string courseOf(const BatchRun& run) {
+  namespace known = metrics::known;
+  const auto text = [&run](const metrics::MeasureDefinition& measure, int digits) {
+    return core::formatFixed(run.number(measure.place).value_or(0.0), digits);
+  };
+  const std::string contacts = text(known::kEgoCollisions, 0);
+  return text(known::kRouteCompletion, 1) + " % of the route, driving score " +
+         text(known::kDrivingScore, 1) + ", " + contacts +
+         (contacts == "1" ? " contact, " : " contacts, ") + text(known::kEgoOffRoad, 1) +
+         " % off the road";
+}
+
 /// "2 contacts (1 with the ego), nearest 4.1 m" or "no contact, nearest 4.1 m", of CBVs.
 std::string countsOf(const BatchRun& run) {
   namespace known = metrics::known;
@@ -140,7 +153,7 @@ std::string titleOf(const std::string& planner) {
 }
 
 page::Panel scenePanel(const DrivenScene& scene, const SceneView& view,
-                       const session::SessionSetup* setup) {
+                       const session::SessionSetup* setup, TrailsOf who) {
   page::Panel panel;
   panel.title = titleOf(scene.planner);
   const double height = view.canvas.height();
@@ -152,8 +165,10 @@ page::Panel scenePanel(const DrivenScene& scene, const SceneView& view,
   for (const VehicleRole role : {VehicleRole::kCbv, VehicleRole::kEgo})
     map += endsSvg(scene, role, view);
   map += touchesSvg(scene, view) + page::scaleBarSvg(view.canvas);
-  panel.content = core::element("svg", {{"width", kSceneWidth}, {"height", height}}, "\n" + map) +
-                  "\n" + page::chartText("note", 0.0, height + 15.0, countsOf(*scene.run));
+  panel.content =
+      core::element("svg", {{"width", kSceneWidth}, {"height", height}}, "\n" + map) + "\n" +
+      page::chartText("note", 0.0, height + 15.0,
+                      who == TrailsOf::kEgo ? courseOf(*scene.run) : countsOf(*scene.run));
   return panel;
 }
 
@@ -177,9 +192,9 @@ std::string placesOf(const DrivenScene& scene) {
 
 /// What scene it is, how it is drawn, and planners whose runs broke.
 void addNotes(const std::vector<BatchRun>& runs, const DrivenScene& first, const SceneView& view,
-              page::PanelSheet& sheet) {
+              TrailsOf who, page::PanelSheet& sheet) {
   std::vector<std::string> levels;
-  const Factors scene = sceneOf(*first.run);
+  const Factors scene = sceneOf(*first.run, who);
   for (const std::string& factor : factorNames()) {
     const auto level = scene.find(factor);
     if (level != scene.end() && !level->second.empty())
@@ -191,30 +206,34 @@ void addNotes(const std::vector<BatchRun>& runs, const DrivenScene& first, const
   sheet.notes.push_back("The same scene: " + core::joinText(levels, ", ") + ".");
   sheet.notes.push_back("Trails darken with time, every " + core::formatFixed(shade, 1) +
                         " s; boxes (of the default size): where they end; circles: contacts of "
-                        "ego and CBVs. Below each picture contacts of CBVs, and the smallest "
-                        "distance of their centers to that of the ego.");
+                        "ego and CBVs. Below each picture " +
+                        (who == TrailsOf::kEgo
+                             ? "what became of the ego; off the road is its center."
+                             : "contacts of CBVs, and the smallest distance of their centers to "
+                               "that of the ego."));
   for (const BatchRun& run : runs) {
-    if (run.record.complete() || sceneOf(run) != scene) continue;
-    sheet.notes.push_back(titleOf(run.record.factors.at("cbv_planner")) + ": " + run.record.status +
+    if (run.record.complete() || sceneOf(run, who) != scene) continue;
+    sheet.notes.push_back(titleOf(run.record.factors.at(factorOf(who))) + ": " + run.record.status +
                           (run.record.cause.empty() ? "" : ", " + run.record.cause));
   }
 }
 
 }  // namespace
 
-std::optional<Figure> trailFigure(const std::vector<BatchRun>& runs) {
-  const std::vector<DrivenScene> scenes = chosenScene(runs);
+std::optional<Figure> trailFigure(const std::vector<BatchRun>& runs, TrailsOf who) {
+  const std::vector<DrivenScene> scenes = chosenScene(runs, who);
   if (scenes.empty()) return std::nullopt;
   Figure figure;
-  figure.id = "trails";
-  figure.csv = kTrailHeader;
-  figure.sheet.title = "One scene, driven by each CBV planner";
+  figure.id = who == TrailsOf::kEgo ? "ego_trails" : "trails";
+  figure.csv = factorOf(who) + kTrailHeader;
+  figure.sheet.title = std::string("One scene, driven by each ") +
+                       (who == TrailsOf::kEgo ? "ego planner" : "CBV planner");
   const SceneView view = viewOf(scenes);
-  addNotes(runs, scenes.front(), view, figure.sheet);
+  addNotes(runs, scenes.front(), view, who, figure.sheet);
   const auto setup = roadsOf(*scenes.front().run, figure.sheet);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (i % kScenesInRow == 0) figure.sheet.rows.emplace_back();
-    figure.sheet.rows.back().push_back(scenePanel(scenes[i], view, setup.get()));
+    figure.sheet.rows.back().push_back(scenePanel(scenes[i], view, setup.get(), who));
     figure.csv += placesOf(scenes[i]);
   }
   return figure;

@@ -12,7 +12,8 @@
 
 namespace cdiff::evaluation {
 
-// One scene as each CBV planner of a batch drove it: runs that differ in the CBV planner alone.
+// One scene as each planner of a batch drove it: runs that differ in the planner of CBVs, or of the
+// ego, alone.
 
 /// A contact of two vehicles and its place in the map frame [m].
 struct TouchPlace {
@@ -31,16 +32,23 @@ struct DrivenScene {
   std::vector<TouchPlace> touches;
 };
 
-/// The factors that the runs of a scene share: all but the CBV planner.
-Factors sceneOf(const BatchRun& run);
+/// Whose planner differs between the runs of a scene.
+enum class TrailsOf { kCbvs, kEgo };
 
-/// Of the scenes that two or more planners drove to an end that of most planners with a CBV, then
-/// with the smallest distance of any CBV to the ego; by planner. Empty where there is none. Throws
-/// InputError naming a damaged trace or summary.
-std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs);
+/// The factor in which they differ: "cbv_planner" or "ego_planner".
+std::string factorOf(TrailsOf who);
 
-/// "trails": a panel for each planner of that scene with road, trails, contacts and the smallest
-/// distance; none where there is no such scene.
-std::optional<Figure> trailFigure(const std::vector<BatchRun>& runs);
+/// The factors that the runs of a scene share: all but that one.
+Factors sceneOf(const BatchRun& run, TrailsOf who);
+
+/// One of the scenes that two or more planners drove to an end, by planner. Of CBVs that of most
+/// planners with a CBV, then with the smallest distance of any CBV to the ego; of egos that of most
+/// planners, then with the lowest mean driving score. Empty where there is none. Throws InputError
+/// naming a damaged trace or summary.
+std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs, TrailsOf who);
+
+/// "trails" or "ego_trails": a panel for each planner of that scene with road, trails, contacts and
+/// what became of it; none where there is no such scene.
+std::optional<Figure> trailFigure(const std::vector<BatchRun>& runs, TrailsOf who);
 
 }  // namespace cdiff::evaluation

@@ -16,11 +16,20 @@ using nlohmann::json;
 using record::TraceRow;
 using traffic::VehicleRole;
 
-/// Runs of one scene by CBV planner.
+/// Runs of one scene by planner.
 using PlannersOfScene = std::map<std::string, const BatchRun*>;
 
+/// How well a scene shows planners of egos: how many there are, and their mean score, negative.
+std::pair<std::ptrdiff_t, double> rankOfEgos(const PlannersOfScene& scene) {
+  double sum = 0.0;
+  for (const auto& [planner, run] : scene)
+    sum += run->number(metrics::known::kDrivingScore.place).value_or(0.0);
+  return {scene.size(), -sum / static_cast<double>(scene.size())};
+}
+
 /// How well a scene shows planners: how many drove a CBV, and their smallest distance, negative.
-std::pair<std::ptrdiff_t, double> rankOfScene(const PlannersOfScene& scene) {
+std::pair<std::ptrdiff_t, double> rankOfScene(const PlannersOfScene& scene, TrailsOf who) {
+  if (who == TrailsOf::kEgo) return rankOfEgos(scene);
   std::ptrdiff_t driven = 0;
   double nearest = 1e9;
   for (const auto& [planner, run] : scene) {
@@ -32,15 +41,16 @@ std::pair<std::ptrdiff_t, double> rankOfScene(const PlannersOfScene& scene) {
 }
 
 /// Empty where no scene was driven by two planners.
-PlannersOfScene bestScene(const std::vector<BatchRun>& runs) {
+PlannersOfScene bestScene(const std::vector<BatchRun>& runs, TrailsOf who) {
   std::map<Factors, PlannersOfScene> scenes;
   for (const BatchRun& run : runs) {
     if (run.record.complete())
-      scenes[sceneOf(run)].emplace(run.record.factors.at("cbv_planner"), &run);
+      scenes[sceneOf(run, who)].emplace(run.record.factors.at(factorOf(who)), &run);
   }
   PlannersOfScene best;
   for (const auto& [factors, scene] : scenes) {
-    if (scene.size() > 1 && (best.empty() || rankOfScene(scene) > rankOfScene(best))) best = scene;
+    if (scene.size() < 2) continue;
+    if (best.empty() || rankOfScene(scene, who) > rankOfScene(best, who)) best = scene;
   }
   return best;
 }
@@ -105,15 +115,18 @@ DrivenScene drivenScene(const std::string& planner, const BatchRun& run) {
 
 }  // namespace
 
-Factors sceneOf(const BatchRun& run) {
+std::string factorOf(TrailsOf who) { return who == TrailsOf::kEgo ? "ego_planner" : "cbv_planner"; }
+
+Factors sceneOf(const BatchRun& run, TrailsOf who) {
   Factors scene = run.record.factors;
-  scene.erase("cbv_planner");
+  scene.erase(factorOf(who));
   return scene;
 }
 
-std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs) {
+std::vector<DrivenScene> chosenScene(const std::vector<BatchRun>& runs, TrailsOf who) {
   std::vector<DrivenScene> scenes;
-  for (const auto& [planner, run] : bestScene(runs)) scenes.push_back(drivenScene(planner, *run));
+  for (const auto& [planner, run] : bestScene(runs, who))
+    scenes.push_back(drivenScene(planner, *run));
   return scenes;
 }
 

@@ -130,9 +130,7 @@ MetricDescriptor egoBlockedMetric() {
           [](const MetricContext&) { return std::make_unique<Blocked>(); }};
 }
 
-namespace {
-
-constexpr MeasureDefinition kOffRoad = {
+const MeasureDefinition known::kEgoOffRoad = {
     "ego_off_road_percent",
     "/ego/off_road_percent",
     "Ego off the road",
@@ -144,12 +142,16 @@ constexpr MeasureDefinition kOffRoad = {
     "",
 };
 
+namespace {
+
 class EgoOffRoad final : public Metric {
  public:
   void observe(const MetricTick& tick) override {
     if (tick.ego != nullptr && tick.ego->state.position.allFinite()) share_.add(tick.ego_off_road);
   }
-  void report(MetricSink& sink) const override { sink.set(kOffRoad, share_.measure(kNoEgo)); }
+  void report(MetricSink& sink) const override {
+    sink.set(known::kEgoOffRoad, share_.measure(kNoEgo));
+  }
 
  private:
   TickShare share_;
@@ -160,7 +162,7 @@ class EgoOffRoad final : public Metric {
 MetricDescriptor egoOffRoadMetric() {
   return {"ego_off_road",
           "Share of time that the ego was off the road.",
-          {kOffRoad},
+          {known::kEgoOffRoad},
           [](const MetricContext&) { return std::make_unique<EgoOffRoad>(); }};
 }
 

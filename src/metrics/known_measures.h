@@ -29,6 +29,7 @@ extern const MeasureDefinition kDrivingScore;
 extern const MeasureDefinition kEgoAvoidable;
 extern const MeasureDefinition kEgoCollisions;
 extern const MeasureDefinition kEgoDistance;
+extern const MeasureDefinition kEgoOffRoad;
 extern const MeasureDefinition kEgoStruckByCbvs;
 extern const MeasureDefinition kEgoStruckCbvs;
 extern const MeasureDefinition kEgoStruckStanding;

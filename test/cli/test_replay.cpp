@@ -56,7 +56,9 @@ class ReplayCommand : public testing::Test {
         "session.yaml",
         {{"deployment: \"cdiff run\"\n", ""},
          {"deployment: \"cdiff replay\"\nrecorded_by: \"cdiff run of e2e_cdiff .*\"\n", ""},
-         {"  ((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_(instruction_set|precision)): "
+         {"  "
+          "((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_(instruction_set|"
+          "precision)): "
           ".*\n",
           ""}});
   }

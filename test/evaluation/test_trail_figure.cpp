@@ -62,27 +62,37 @@ class TrailFigure : public testing::Test {
     }
     runs_.push_back(run);
   }
-  std::string svg() const { return page::sheetFile(trailFigure(runs_)->sheet); }
+  /// A complete run of another ego among CBVs of PDM-Lite.
+  void addEgo(const std::string& scenario, const std::string& planner, double score) {
+    add(scenario + "_" + planner, "pdm_lite", 4.0);
+    runs_.back().record.factors["scenario"] = scenario;
+    runs_.back().record.factors["ego_planner"] = planner;
+    runs_.back().numbers["/ego/driving_score"] = score;
+    runs_.back().numbers["/ego/route_completion_percent"] = 98.25;
+    runs_.back().numbers["/ego/collisions"] = 1.0;
+    runs_.back().numbers["/ego/off_road_percent"] = 8.0;
+  }
+  std::string svg() const { return page::sheetFile(trailFigure(runs_, TrailsOf::kCbvs)->sheet); }
 
   test::TemporaryFolder scratch_;
   std::vector<BatchRun> runs_;
 };
 
 TEST_F(TrailFigure, ThereIsNoneWithoutTwoPlannersOnOneScene) {
-  EXPECT_FALSE(trailFigure(runs_));
+  EXPECT_FALSE(trailFigure(runs_, TrailsOf::kCbvs));
   add("s", "pdm_lite", 4.0);
   add("t", "ppo", 4.0);
-  EXPECT_FALSE(trailFigure(runs_));
+  EXPECT_FALSE(trailFigure(runs_, TrailsOf::kCbvs));
   add("s", "ppo", 4.0);
   runs_.back().record.status = "error";
-  EXPECT_FALSE(trailFigure(runs_));
+  EXPECT_FALSE(trailFigure(runs_, TrailsOf::kCbvs));
   runs_.back().record.status = "completed";
-  EXPECT_TRUE(trailFigure(runs_));
+  EXPECT_TRUE(trailFigure(runs_, TrailsOf::kCbvs));
 }
 
 TEST_F(TrailFigure, ShowsTheSceneInWhichMostPlannersDroveACbvAndCameNearest) {
   const auto scene = [this] {
-    return chosenScene(runs_).front().run->record.factors.at("scenario");
+    return chosenScene(runs_, TrailsOf::kCbvs).front().run->record.factors.at("scenario");
   };
   for (const char* planner : {"pdm_lite", "ppo", "rift"}) add("r", planner, std::nullopt);
   add("s", "pdm_lite", 6.0);
@@ -127,7 +137,7 @@ TEST_F(TrailFigure, TrailsDarkenAndContactsAreMarkedWhereTheyWere) {
 TEST_F(TrailFigure, TheCsvFileHasPlacesEveryHalfSecondAndContacts) {
   add("s", "pdm_lite", 4.0);
   add("s", "ppo", std::nullopt);
-  EXPECT_EQ(trailFigure(runs_)->csv,
+  EXPECT_EQ(trailFigure(runs_, TrailsOf::kCbvs)->csv,
             "cbv_planner,tick,seconds,vehicle_id,role,x,y,contact_with\n"
             "pdm_lite,0,0.00,ego,ego,0,0,\n"
             "pdm_lite,10,0.50,ego,ego,10,0,\n"
@@ -147,7 +157,37 @@ TEST_F(TrailFigure, NamesPlannersWhoseRunsBroke) {
   runs_.back().record.status = "error";
   runs_.back().record.cause = "SUMO died";
   EXPECT_TRUE(has(svg(), "RIFT: error, SUMO died")) << svg();
-  EXPECT_EQ(chosenScene(runs_).size(), 2U);
+  EXPECT_EQ(chosenScene(runs_, TrailsOf::kCbvs).size(), 2U);
+}
+
+TEST_F(TrailFigure, ShowsTheSceneInWhichEgosScoredLeast) {
+  const auto scene = [this] {
+    return chosenScene(runs_, TrailsOf::kEgo).front().run->record.factors.at("scenario");
+  };
+  addEgo("s", "pdm_lite", 100.0);
+  EXPECT_FALSE(trailFigure(runs_, TrailsOf::kEgo));
+  addEgo("s", "plant", 90.0);
+  addEgo("t", "pdm_lite", 95.0);
+  addEgo("t", "plant", 80.0);
+  EXPECT_EQ(scene(), "t");
+  addEgo("s", "vad_mini", 90.0);  // worse on the average, and a planner more
+  EXPECT_EQ(scene(), "s");
+  EXPECT_FALSE(trailFigure(runs_, TrailsOf::kCbvs));  // no two differ in the planner of CBVs alone
+}
+
+TEST_F(TrailFigure, SaysWhatBecameOfEachEgo) {
+  addEgo("s", "pdm_lite", 68.72);
+  addEgo("s", "plant", 90.0);
+  const Figure figure = *trailFigure(runs_, TrailsOf::kEgo);
+  EXPECT_EQ(figure.id, "ego_trails");
+  EXPECT_EQ(figure.csv.substr(0, 17), "ego_planner,tick,");
+  const std::string text = page::sheetFile(figure.sheet);
+  EXPECT_TRUE(has(text, ">One scene, driven by each ego planner<")) << text;
+  EXPECT_TRUE(has(text, ">PlanT</text>")) << text;
+  EXPECT_TRUE(
+      has(text, ">98.2 % of the route, driving score 68.7, 1 contact, 8.0 % off the road</text>"))
+      << text;
+  EXPECT_TRUE(has(text, "cbv_planner pdm_lite")) << text;
 }
 
 TEST_F(TrailFigure, ADamagedSummaryIsNamed) {
@@ -155,7 +195,7 @@ TEST_F(TrailFigure, ADamagedSummaryIsNamed) {
   add("s", "ppo", 4.0);
   core::writeFileAtomically(runs_[1].folder / "summary.json", "{\"ego\": {}}");
   try {
-    trailFigure(runs_);
+    trailFigure(runs_, TrailsOf::kCbvs);
     FAIL() << "no error";
   } catch (const core::InputError& error) {
     EXPECT_TRUE(has(error.what(), "sppo/summary.json' is no summary of a session")) << error.what();
