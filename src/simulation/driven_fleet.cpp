@@ -180,10 +180,15 @@ bool DrivenFleet::mayJump(const Moved& moved) const {
   return moved.place.lane == map::kNoLane || moved.place.arc_length > needed;
 }
 
+bool DrivenFleet::mayLeaveRoad(const Moved& moved, const FrontPlace& place) const {
+  return !moved.placed || !place.lanes.empty() || moved.place.lane == map::kNoLane;
+}
+
 void DrivenFleet::keepToLane(const std::string& id, Moved& moved, const FrontPlace& place) {
   const geometry::Polyline& line = graph_.network().lane(moved.place.lane).centerline;
   const double ahead = line.project(place.position).arc_length - moved.place.arc_length;
   moved.speed = commandedSpeed(moved.state.speed, ahead, step_);
+  moved.placed = false;
   SumoVehicle::setSpeed(id, moved.speed);
 }
 
@@ -206,6 +211,7 @@ bool DrivenFleet::stayOnLane(const std::string& id, Moved& moved, const FrontPla
   if (moved.speed != 0.0) SumoVehicle::setSpeed(id, 0.0);
   moved.speed = 0.0;
   moved.along_lane = false;
+  moved.placed = true;
   return true;
 }
 
@@ -247,6 +253,11 @@ void DrivenFleet::move(const DrivenVehicle& vehicle) {
     return;
   }
   if (moved.reported && stayOnLane(vehicle.id, moved, place)) return;
+  if (moved.reported && !mayLeaveRoad(moved, place)) {
+    keepToLane(vehicle.id, moved, place);
+    return;
+  }
+  moved.placed = false;
   moveFreely(vehicle.id, moved, place);
 }
 

@@ -87,6 +87,7 @@ class DrivenFleet {
     std::string lane_id;          ///< SUMO's lane after the last step; empty off the road
     LanePlace place;              ///< the same, with the place on it
     bool along_lane = false;      ///< SUMO drives it along the lane
+    bool placed = false;          ///< put on its lane for the last step, not driven along it
     double changing = 0.0;        ///< until SUMO has ended a lane change of its own [s]
     double speed = -1.0;          ///< last commanded [m/s]
     traffic::VehicleState state;  ///< ours, after the coming step
@@ -107,6 +108,10 @@ class DrivenFleet {
   /// lane and not changing lanes; else followers find it on lanes that it has left, and SUMO ends
   /// itself.
   bool mayJump(const Moved& moved) const;
+  /// Whether it may leave the road: a vehicle that was put on its lane for the last step must be
+  /// driven for one first. Otherwise SUMO 1.15 ends itself a step later, as others still find it on
+  /// that lane.
+  bool mayLeaveRoad(const Moved& moved, const FrontPlace& place) const;
   /// Lets SUMO drive it on where it is, beside where we have it, until it may jump.
   void keepToLane(const std::string& id, Moved& moved, const FrontPlace& place);
   bool onAnotherLane(const FrontPlace& place, map::LaneIndex lane) const;
