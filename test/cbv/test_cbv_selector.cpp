@@ -54,6 +54,21 @@ TEST(CbvSelector, StandingVehiclesArriveAtTheLeastSpeed) {
   EXPECT_NEAR(selection.assignments[0].conflict_point.cbv_arrival, (27.0 + kTurn) / 2.0, 1e-9);
 }
 
+// Points at 100, 200 and, where the route ends, 290 m. To x the ego has x - 70 m at 10 m/s, "a" x -
+// 77.93 m at 9.64 m/s: both arrive after 22.0 s at 290 m, at 200 m they are 0.34 s apart.
+TEST(CbvSelector, TheEndOfTheEgosRouteIsExaminedToo) {
+  CbvOptions options;
+  options.sample_spacing = 100.0;
+  options.ego_route_length = 220.0;
+  options.interaction_radius = 1000.0;
+  options.field_of_view = 180.0;
+  CrossingWorld world(options);
+  const auto selection =
+      world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.64)}));
+  ASSERT_EQ(selection.assignments.size(), 1u);
+  EXPECT_NEAR(selection.assignments[0].conflict_point.ego_arc_length, 290.0, 1e-9);
+}
+
 TEST(CbvSelector, ConflictAwareRouteIsConnectedThroughThePointAndLongEnough) {
   CrossingWorld world;
   const auto selection =

@@ -225,6 +225,24 @@ TEST(LifeCycle, ReselectReplacesTheWeakest) {
   }
 }
 
+// By nearness "weak" comes first, though "better" has the better score: whoever is chosen at a
+// selection is not replaced in the same one.
+TEST(LifeCycle, ReselectKeepsWhomItHasJustChosen) {
+  CbvOptions options = reselecting();
+  options.ranking = "nearest";
+  CrossingWorld world(options, 1);
+  const std::vector<traffic::Vehicle> both = {fromSouth("weak", -20.0, 2.0),
+                                              fromNorth("better", 30.0, 9.0)};
+  const auto first = world.selector.update(crossingSnapshot(kFirst, 70.0, both));
+  ASSERT_EQ(first.assignments.size(), 1u);
+  EXPECT_EQ(first.assignments[0].vehicle_id, "weak");
+  EXPECT_TRUE(first.released.empty());
+  EXPECT_EQ(reasonOf(first, "better"), kOutranked);
+  const auto then = world.selector.update(
+      crossingSnapshot(kFirst + kPeriod, 70.0, {driven(both[0], 0), both[1]}));
+  EXPECT_EQ(then.assignments.at(0).vehicle_id, "better");
+}
+
 TEST(LifeCycle, ReselectReleasesALostConflictAfterItsTimeAndMayChooseAgain) {
   CrossingWorld world(reselecting(), 1);
   world.selector.update(crossingSnapshot(kFirst, 70.0, {fromSouth("a", -30.0, 9.0)}));

@@ -62,21 +62,30 @@ TEST(TrafficAvoidanceObjective, DrawsAPlanThroughALeaderBackBehindIt) {
 }
 
 // The vehicle is 5 m behind and 1 m beside the other in the other's frame; A = 8.5, B = 2.6. One
-// that heads the same way is a leader: (1 - (1 / B)^2)^2 (A - 5)^2. One that crosses, 90 degrees,
-// is passed: A^2 (1 - rho)^2 with rho^2 = (5 / A)^2 + (1 / B)^2 + 1e-4.
+// that heads the same way, within 60 degrees, is a leader: (1 - (1 / B)^2)^2 (A - 5)^2. One that
+// crosses is passed: A^2 (1 - rho)^2 with rho^2 = (5 / A)^2 + (1 / B)^2 + 1e-4, and so is one that
+// is 5 m behind.
 TEST(TrafficAvoidanceObjective, TakesOnlyWhoHeadsTheSameWayForALeader) {
   GuidanceWorld world;
   const TrafficAvoidanceObjective objective;
   const double across = 1.0 / 2.6;
-  world.scene().traffic.clear();
-  world.addTraffic(45.0, -1.0, 0.0);
   const double behind = std::pow(1.0 - across * across, 2) * 3.5 * 3.5;
-  EXPECT_NEAR(valueOf(objective, world.scene(), standing(0, 0, 0, 0, 1)), behind, 1e-9);
-  world.scene().traffic.clear();
-  world.addTraffic(41.0, 5.0, 0.5 * core::kPi);
   const double rho = std::sqrt(std::pow(5.0 / 8.5, 2) + across * across + 1e-4);
-  EXPECT_NEAR(valueOf(objective, world.scene(), standing(0, 0, 0, 0, 1)),
-              8.5 * 8.5 * std::pow(1.0 - rho, 2), 1e-9);
+  const double beside = 8.5 * 8.5 * std::pow(1.0 - rho, 2);
+  const auto value = [&](double along, double degrees) {
+    const double heading = core::degreesToRadians(degrees);
+    const Eigen::Vector2d forward = geometry::direction(heading);
+    const Eigen::Vector2d place =
+        Eigen::Vector2d(40.0, 0.0) - along * forward - geometry::leftNormal(forward);
+    world.scene().traffic.clear();
+    world.addTraffic(place.x(), place.y(), heading);
+    return valueOf(objective, world.scene(), standing(0, 0, 0, 0, 1));
+  };
+  for (const double degrees : {0.0, 59.0, -59.0})
+    EXPECT_NEAR(value(-5.0, degrees), behind, 1e-9) << degrees;
+  for (const double degrees : {61.0, -61.0, 90.0})
+    EXPECT_NEAR(value(-5.0, degrees), beside, 1e-9) << degrees;
+  EXPECT_NEAR(value(5.0, 0.0), beside, 1e-9);
 }
 
 TEST(TrafficAvoidanceObjective, LeavesPassingTrafficAloneAndEvadesWhoComesNear) {

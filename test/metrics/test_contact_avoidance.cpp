@@ -21,12 +21,12 @@ class ContactAvoidanceTest : public ::testing::Test {
                       const traffic::Vehicle& other) {
     avoidance.observe(test::snapshot(tick, {own, other}), own.state.position.x());
   }
-  /// The ego drives along the road from x = 0 at its speed, the other from its place at its
+  /// The ego drives along the road from (0, y) at its speed, the other from its place at its
   /// velocity, until their boxes overlap.
-  bool avoidable(double speed, traffic::Vehicle other) {
+  bool avoidable(double speed, traffic::Vehicle other, double y = 0.0) {
     ContactAvoidance avoidance(road_.route);
     for (std::uint64_t tick = 0; tick < 400; ++tick) {
-      const traffic::Vehicle own = ego(speed * kStep * static_cast<double>(tick), 0, speed);
+      const traffic::Vehicle own = ego(speed * kStep * static_cast<double>(tick), y, speed);
       observe(avoidance, tick, own, other);
       if (overlap(own.box(), other.box())) return avoidance.avoidable("v");
       other.state.position += kStep * other.state.velocity();
@@ -45,6 +45,13 @@ class ContactAvoidanceTest : public ::testing::Test {
 TEST_F(ContactAvoidanceTest, AStandingVehicleInPlainSightIsAvoidable) {
   // 8 m/s reach 8 (0.5 + 8 / 6) = 14.67 m, of which reaction and braking take 4 + 64 / 12 = 9.33 m.
   EXPECT_TRUE(avoidable(8.0, background("v", 60, 0, 0)));
+}
+
+// Beside its route the ego's path is the route's as long as it is not 2 m off: 0.9 m to each side,
+// where the other, from 1 m to 2.8 m, is not. Farther off it is straight ahead.
+TEST_F(ContactAvoidanceTest, TwoMetersOffItsRouteItsPathIsStraightAhead) {
+  EXPECT_FALSE(avoidable(8.0, background("v", 60, 1.9, 0), 1.9));
+  EXPECT_TRUE(avoidable(8.0, background("v", 60, 2.1, 0), 2.1));
 }
 
 TEST_F(ContactAvoidanceTest, WhatComesIntoThePathWithinTheReactionIsNot) {

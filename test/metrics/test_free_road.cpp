@@ -76,7 +76,7 @@ class FreeRoadAtALight : public ::testing::Test {
 
 TEST_F(FreeRoadAtALight, EndsAtRedAndYellowUpToTenMetersAhead) {
   ASSERT_EQ(route_.signals().size(), 1U);
-  for (const char* color : {"r", "u", "y"}) EXPECT_FALSE(isFree(58.0, color)) << color;
+  for (const char* color : {"r", "u", "y", "Y"}) EXPECT_FALSE(isFree(58.0, color)) << color;
   for (const char* color : {"g", "G"}) EXPECT_TRUE(isFree(58.0, color)) << color;
   // The line is at 60: 10 m are from 50 on. One meter beyond it a vehicle still stands at it.
   EXPECT_FALSE(isFree(50.5, "r"));
@@ -92,6 +92,9 @@ TEST_F(FreeRoadAtALight, MayHaveToYieldToWhatMovesNearTheJunction) {
   EXPECT_TRUE(isFree(58.0, "g", {background("v", 55.6, 20, 0.05)}));
   EXPECT_TRUE(isFree(58.0, "g", {background("v", 55.6, 25.5, 3)}));
   EXPECT_TRUE(isFree(49.0, "g", {background("v", 46.6, 20, 3)}));
+  // In the junction, from 60 to 70, and behind it; the center counts, 2.4 m behind the front.
+  EXPECT_FALSE(isFree(69.0, "g", {background("v", 66.6, 20, 3)}));
+  EXPECT_TRUE(isFree(74.0, "g", {background("v", 71.6, 20, 3)}));
 }
 
 }  // namespace

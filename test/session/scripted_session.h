@@ -18,7 +18,9 @@ namespace cdiff::test {
 
 class ScriptedSession {
  public:
-  explicit ScriptedSession(double start_speed = 0.0) : setup_(scenario(start_speed)) {}
+  /// `at_most` times real time; 0 is without limit.
+  explicit ScriptedSession(double start_speed = 0.0, double at_most = 0.0)
+      : setup_(scenario(start_speed, at_most)) {}
 
   const session::SessionSetup& setup() const { return setup_; }
   /// Of the world to come, and of it as long as it is there.
@@ -37,7 +39,7 @@ class ScriptedSession {
   }
 
  private:
-  session::ScenarioOptions scenario(double start_speed) const {
+  session::ScenarioOptions scenario(double start_speed, double at_most) const {
     const std::filesystem::path file = folder_.path() / "road.net.xml";
     std::ofstream(file) << NetworkText().edge("road", {"0,0 600,0"}).text();
     session::ScenarioOptions options;
@@ -48,6 +50,7 @@ class ScriptedSession {
     options.route.start_offset = 100.0;
     options.route.start_speed = start_speed;
     options.traffic.clear_start = 0.0;
+    options.at_most = at_most;
     return options;
   }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 // The decision cycle with parts of a test: who is asked, how a planner's failure ends, which
-// images a record holds. The ego stands at x = 100 m, the CBV "car" 100 m ahead of it.
+// images a record holds, how long it waits. The ego stands at x = 100 m, the CBV "car" 100 m ahead
+// of it.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <stdexcept>
+#include <thread>
 
 #include "session/closed_loop.h"
 #include "session/scripted_session.h"
@@ -72,7 +75,7 @@ class Record : public SessionObserver {
 /// Runs three ticks of a session, decisions at 0 and 2, then is stopped at tick 3.
 class Cycle {
  public:
-  Cycle() {
+  explicit Cycle(double at_most = 0.0) : scripted_(0.0, at_most) {
     scripted_.simulator().place("car", {200.0, 0.0, 0.0, 5.0});
     auto selector = std::make_unique<Always>(scripted_.selectionOf("car"));
     selector_ = selector.get();
@@ -86,17 +89,23 @@ class Cycle {
       void observe(const TickRecord& record) override { stop = record.snapshot->tick == 3; }
       std::atomic<bool> stop{false};
     } stop;
+    return run(stop, stop.stop);
+  }
+  Record run(SessionObserver& observer, const std::atomic<bool>& stop) {
     parts.world = scripted_.makeWorld();
     ClosedLoop loop(scripted_.setup(), std::move(parts));
     Record record;
     loop.addObserver(record);
-    loop.addObserver(stop);
-    EXPECT_EQ(loop.run(stop.stop), traffic::SessionStatus::kInterrupted);
+    loop.addObserver(observer);
+    EXPECT_EQ(loop.run(stop), traffic::SessionStatus::kInterrupted);
     updated = selector_->updated;
     observed = selector_->observed;
     return record;
   }
   const SessionSetup& setup() { return scripted_.setup(); }
+  double secondsSinceMade() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - made_).count();
+  }
 
   LoopParts parts;
   int updated = 0;
@@ -105,6 +114,7 @@ class Cycle {
  private:
   ScriptedSession scripted_;
   Always* selector_;
+  std::chrono::steady_clock::time_point made_ = std::chrono::steady_clock::now();
 };
 
 TEST(DecisionCycle, AsksEgoAndCbvAtEverySecondTick) {
@@ -186,6 +196,37 @@ TEST(DecisionCycle, APlannerIsGivenAllImagesOfItsRigInOrder) {
   const Record record = cycle.run();
   EXPECT_EQ(seen, 2);
   EXPECT_EQ(record.images[0], (std::vector<int>{-1, -1, -1, -1, -1, -1, 0}));
+}
+
+// Tick 2, at 0.1 s, is left when 0.1 s / 0.25 have passed.
+TEST(DecisionCycle, AtMostWaitsForTheClock) {
+  Cycle cycle(0.25);
+  EXPECT_EQ(cycle.run().actions.size(), 2U);
+  EXPECT_GE(cycle.secondsSinceMade(), 0.4);
+}
+
+// Tick 1, at 0.05 s, would be left after 50 s.
+TEST(DecisionCycle, AStopEndsTheWait) {
+  class StopLater : public SessionObserver {
+   public:
+    ~StopLater() override {
+      if (thread_.joinable()) thread_.join();
+    }
+    void observe(const TickRecord& record) override {
+      if (record.snapshot->tick != 1) return;
+      thread_ = std::thread([this] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        stop = true;
+      });
+    }
+    std::atomic<bool> stop{false};
+
+   private:
+    std::thread thread_;
+  } later;
+  Cycle cycle(0.001);
+  EXPECT_EQ(cycle.run(later, later.stop).faults, std::vector<std::string>{"user"});
+  EXPECT_LT(cycle.secondsSinceMade(), 20.0);
 }
 
 }  // namespace

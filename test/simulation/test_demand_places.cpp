@@ -3,6 +3,7 @@
 // Where and how fast a generated vehicle may start, and which ways it takes, on roads written here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
@@ -167,6 +168,96 @@ TEST_F(Router, EndsWhereItIsLongEnough) {
   EXPECT_EQ(length(60.0), 1U);
   EXPECT_EQ(length(62.0), 2U);
   EXPECT_EQ(length(1000.0), 2U);
+}
+
+/// Roads of 100 m, one behind the other along x, and the generator's vehicles on them.
+class Generated : public testing::Test {
+ protected:
+  static test::NetworkText roads(double limit) {
+    test::NetworkText text;
+    for (int i = 0; i < 12; ++i) {
+      const std::string begin = std::to_string(100 * i), end = std::to_string(100 * i + 100);
+      test::LaneText lane;
+      lane.speed = limit;
+      text.edge("e" + std::to_string(i), {begin + ",0 " + end + ",0"}, "n" + begin, "n" + end,
+                lane);
+      if (i > 0)
+        text.connection("e" + std::to_string(i - 1) + "_0", "e" + std::to_string(i) + "_0");
+    }
+    return text;
+  }
+  /// What is placed at once around an ego on the second road, among others that are there.
+  std::vector<DemandVehicle> fill(double limit, double ego_elevation = 0.0, bool warm_up = true,
+                                  const std::vector<traffic::Vehicle>& present = {}) {
+    const map::RoadNetwork network = roads(limit).network();
+    const map::LaneGraph graph(network);
+    const map::Route route = test::routeOnFirstLanes(graph, "e0", "e2");
+    DemandGenerator generator(options_, graph, route, seed_);
+    std::vector<DemandVehicle> vehicles;
+    while (auto vehicle = generator.next(present, kEgo, ego_elevation, warm_up))
+      vehicles.push_back(*vehicle);
+    return vehicles;
+  }
+  static double placeOf(const DemandVehicle& vehicle) {
+    return 100.0 * std::stod(vehicle.edges.front().substr(1)) + vehicle.depart_position;
+  }
+
+  inline static const Eigen::Vector2d kEgo{150.0, 0.0};
+  DemandOptions options_;
+  std::uint64_t seed_ = 1;
+};
+
+// 100 m less the place on the first road, and 100 m a road: the ninth makes it 800 m.
+TEST_F(Generated, RoutesAreEightHundredMetersLong) {
+  const std::vector<DemandVehicle> vehicles = fill(10.0);
+  EXPECT_GT(vehicles.size(), 3U);
+  for (const DemandVehicle& vehicle : vehicles) EXPECT_EQ(vehicle.edges.size(), 9U);
+}
+
+// 8 m/s, 0.7 of the limit where that is more, and never above the limit; 40 m before the end of its
+// road nobody is slower for it.
+TEST_F(Generated, TheFirstIsAsFastAsUsualOnItsRoad) {
+  for (const auto& [limit, speed] : {std::pair{20.0, 14.0}, {10.0, 8.0}, {5.0, 5.0}}) {
+    int found = 0;
+    for (seed_ = 1; seed_ < 10; ++seed_) {
+      const DemandVehicle first = fill(limit).at(0);
+      if (first.depart_position > 60.0) continue;
+      EXPECT_NEAR(first.depart_speed, speed, 1e-9);
+      ++found;
+    }
+    EXPECT_GT(found, 0);
+  }
+}
+
+// In a session vehicles begin out of sight, more than 60 m away; 30 m where the ego is on another
+// level.
+TEST_F(Generated, WhoCannotBeSeenBeginsNearer) {
+  const auto nearest = [&](double elevation) {
+    double least = 1e9;
+    for (seed_ = 1; seed_ < 10; ++seed_) {
+      for (const DemandVehicle& vehicle : fill(10.0, elevation, false))
+        least = std::min(least, std::abs(placeOf(vehicle) - kEgo.x()));
+    }
+    return least;
+  };
+  EXPECT_GT(nearest(0.0), 60.0);
+  EXPECT_GT(nearest(2.4), 60.0);
+  EXPECT_GT(nearest(2.6), 30.0);
+  EXPECT_LT(nearest(2.6), 60.0);
+}
+
+// One vehicle is wanted within 150 m: the ego is none, nor is who is farther away.
+TEST_F(Generated, CountsWhoIsNearButNotTheEgo) {
+  options_.density = 1;
+  traffic::Vehicle present;
+  present.id = "a";
+  present.state.position = kEgo;
+  present.role = traffic::VehicleRole::kEgo;
+  EXPECT_EQ(fill(10.0, 0.0, true, {present}).size(), 1U);
+  present.role = traffic::VehicleRole::kCbv;
+  EXPECT_TRUE(fill(10.0, 0.0, true, {present}).empty());
+  present.state.position = {299.0, 20.0};
+  EXPECT_EQ(fill(10.0, 0.0, true, {present}).size(), 1U) << "150.3 m away";
 }
 
 }  // namespace

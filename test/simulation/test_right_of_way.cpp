@@ -138,6 +138,14 @@ TEST_F(RightOfWayTest, WhoCannotGoLosesTheTurn) {
   EXPECT_EQ(firstToGo(waiting, 1.65), "b");
 }
 
+// 0.9 s each, and it moved up in between.
+TEST_F(RightOfWayTest, WhoMovesUpWaitsAnew) {
+  EXPECT_TRUE(changesWithin({on("a", "west", 2.0, 0.0)}, 0.9).empty());
+  EXPECT_TRUE(changesWithin({on("a", "west", 1.9, 0.2)}, 0.05).empty());
+  EXPECT_TRUE(changesWithin({on("a", "west", 1.0, 0.0)}, 0.9).empty());
+  EXPECT_EQ(changesWithin({on("a", "west", 1.0, 0.0)}, 0.15), std::vector<std::string>{"+a"});
+}
+
 // At most 8 m before the stop line a vehicle waits; nearer than 20 m and faster than 4 m/s it is
 // let through; in the junction 0.5 m/s is moving.
 TEST_F(RightOfWayTest, WhoWaitsAndWhoIsLetThrough) {

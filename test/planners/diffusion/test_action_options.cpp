@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,6 +79,24 @@ TEST_F(ActionOptions, TheMonotoneResponseCommandsNoThrottleThatBrakes) {
     }
   }
   EXPECT_GT(found, 0U);
+}
+
+// The random model's first vehicle drives, the second starts from standstill.
+TEST_F(ActionOptions, ExactStatesAreWhereTheirActionsLead) {
+  snapshot_.vehicles[2].state.speed = 0.0;
+  const dynamics::BicycleModel model;
+  double slowest = 5.0;
+  for (const PlannedAction& planned : plansOf(optionsOf("real_time", "exact"))) {
+    traffic::VehicleState state = startOf(planned);
+    for (const planning::RolloutPoint& point : planned.rollout) {
+      state = model.step(state, point.action, 0.1);
+      EXPECT_LT((point.state.position - state.position).norm(), 1e-4);
+      EXPECT_NEAR(point.state.heading, state.heading, 1e-4);
+      EXPECT_NEAR(point.state.speed, state.speed, 1e-4);
+      slowest = std::min(slowest, state.speed);
+    }
+  }
+  EXPECT_LT(slowest, 0.5);
 }
 
 /// With the learned head the response is a matter of execution: planned states and all commands

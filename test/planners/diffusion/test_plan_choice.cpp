@@ -30,6 +30,7 @@ TEST(PlanChoice, TheNearestToTheLastPlanStaysUntilAnotherIsClearlyBetter) {
   EXPECT_EQ(choosePlan(kPlans, {{0, 3.0}, {0, 1.82}, {0, 2.0}}, last, 0.1), 2U);
   EXPECT_EQ(choosePlan(kPlans, {{0, 3.0}, {0, 1.78}, {0, 2.0}}, last, 0.1), 1U);
   EXPECT_EQ(choosePlan(kPlans, {{0, 3.0}, {0, 1.99}, {0, 2.0}}, last, 0.0), 1U);
+  EXPECT_EQ(choosePlan(kPlans, {{0, 2.0}, {0, 2.0}, {0, 2.0}}, last, 0.0), 2U) << "as good";
 }
 
 TEST(PlanChoice, NegativeScoresKeepTheirMargin) {

@@ -47,6 +47,13 @@ TEST(Idm, FollowsALeaderOfItsOwnSpeedAtTheWantedGap) {
   EXPECT_NEAR(idmSpeed(8.0, 20.0, leader), 7.97334, 1e-5);
 }
 
+// 20 m behind a standing leader b is 8.7 m/s^2 up to 6.02 m/s and 3.72 m/s^2 above; Euler's method
+// in steps of 10 us. With the other b each would be 0.05 m/s off.
+TEST(Idm, BrakesLessHardAboveSixMetersPerSecond) {
+  EXPECT_NEAR(idmSpeed(6.02, 8.0, standingLeader(20.0)), 6.50532, 1e-4);
+  EXPECT_NEAR(idmSpeed(6.03, 8.0, standingLeader(20.0)), 6.46470, 1e-4);
+}
+
 TEST(Idm, NeverAsksForReverse) { EXPECT_EQ(idmSpeed(8.0, 8.0, standingLeader(5.0)), 0.0); }
 
 TEST(Idm, DesiredSpeedZeroStops) { EXPECT_EQ(idmSpeed(3.0, 0.0, standingLeader(100.0)), 0.0); }

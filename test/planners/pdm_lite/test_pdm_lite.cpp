@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "planners/course.h"
@@ -185,6 +186,51 @@ TEST(PdmLite, GivesCbvsDriversOfTheirOwnWhereAsked) {
   }
   EXPECT_NE(freeSpeed(spread, 1, 0), freeSpeed(spread, 2, 0));
   EXPECT_EQ(freeSpeed({}, 1, 0), freeSpeed({}, 2, 0));
+}
+
+// However far a driver's draw lies out, the factor is 0.5 to 1.5: 4 or 12 m/s, with pedals that
+// swing by half a meter per second. At 0.5 a draw beyond 1.2 would make it 1.6 or 0.4.
+TEST(PdmLite, KeepsDriversBetweenHalfAndOneAndAHalfTimesTheirSpeed) {
+  PdmLiteOptions spread;
+  spread.cbv_speed_spread = 0.5;
+  const core::RandomKey key{core::hashText("car"), 0, 0};
+  int fast = 0, slow = 0;
+  for (std::uint64_t seed = 1; seed < 60 && (fast == 0 || slow == 0); ++seed) {
+    const double z = core::RandomStream(seed, "driver").normal(key, 0);
+    if (std::abs(z) < 1.2 || (z > 0.0 ? fast : slow) > 0) continue;
+    ++(z > 0.0 ? fast : slow);
+    EXPECT_NEAR(freeSpeed(spread, seed, 0), z > 0.0 ? 12.0 : 4.0, 0.5) << "z " << z;
+  }
+  EXPECT_EQ(fast + slow, 2);
+}
+
+/// The first decision 14.5 m behind a leader, both at 7 m/s, with a longer time headway. The boxes
+/// are 10 m apart: 1.2 m/s (1 - (7 / 8)^4 - ((4 + 7 T) / 10)^2) is a gain of 0.10 m/s at T = 0.25 s
+/// and of 0.05 m/s at 0.30 s, for both of which there is a throttle between 0 and 1.
+traffic::ControlAction actionBehind(const PdmLiteOptions& options, int slot, double longer) {
+  const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
+  const map::DrivableArea area(network);
+  const map::Route route = routeAlong(network, {"road"});
+  PdmLite planner(options, {}, {network, area, 1});
+  traffic::TrafficSnapshot snapshot;
+  snapshot.vehicles = {vehicleAt("car", 5.0, 0.0, 0.0, 7.0),
+                       vehicleAt("leader", 19.5, 0.0, 0.0, 7.0)};
+  planning::PlanningTask task;
+  task.slot = slot;
+  task.vehicle = &snapshot.vehicles[0];
+  task.route = &route;
+  task.style.time_headway += longer;
+  return planner.plan(snapshot, {task})[0].action;
+}
+
+TEST(PdmLite, GivesCbvsGapsOfTheirOwnWhereAsked) {
+  PdmLiteOptions spread;
+  spread.cbv_headway_spread = 0.05;
+  const core::RandomKey key{core::hashText("car"), 0, 0};
+  const double z = core::RandomStream(1, "driver").normal(key, 1);
+  EXPECT_EQ(actionBehind(spread, 0, 0.0), actionBehind({}, 0, 0.05 * std::abs(z)));
+  EXPECT_EQ(actionBehind(spread, -1, 0.0), actionBehind({}, -1, 0.0)) << "the ego keeps its own";
+  EXPECT_FALSE(actionBehind(spread, 0, 0.0) == actionBehind({}, 0, 0.0)) << "z " << z;
 }
 
 }  // namespace

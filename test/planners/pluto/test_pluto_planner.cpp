@@ -87,6 +87,18 @@ TEST_F(PlutoCourse, TheHistoryCounts) {
   EXPECT_FALSE(sameAction(old.plan(snapshot_, tasks())[0], fresh.plan(snapshot_, tasks())[0]));
 }
 
+// Each joins what its query found with the vehicle's own token.
+TEST_F(PlutoCourse, AllCandidatesDependOnTheSpeed) {
+  PlutoPlanner planner = makePlanner();
+  const auto slow = planner.plan(snapshot_, tasks())[0].candidates;
+  snapshot_.vehicles[1].state.speed = 7.0;
+  PlutoPlanner other = makePlanner();
+  const auto fast = other.plan(snapshot_, tasks())[0].candidates;
+  ASSERT_EQ(slow.size(), fast.size());
+  for (std::size_t i = 0; i < slow.size(); ++i)
+    EXPECT_GT((slow[i].places.back() - fast[i].places.back()).norm(), 1e-3) << i;
+}
+
 TEST_F(PlutoCourse, BrakesWhereAStateIsNotFinite) {
   PlutoPlanner planner = makePlanner();
   planner.plan(snapshot_, tasks());
@@ -113,6 +125,28 @@ TEST_F(PlutoCourse, BrakesWhereItsAccelerationIsNotFinite) {
   EXPECT_EQ(planned.action, traffic::ControlAction::failSafe());
   EXPECT_EQ(planned.fault,
             "vehicle '" + driven + "': its acceleration is not finite; full braking instead");
+}
+
+TEST_F(PlutoCourse, BrakesOutsideTheSnapshot) {
+  PlutoPlanner planner = makePlanner();
+  const traffic::Vehicle gone = testing::vehicleAt("gone", 20.0, 0.0, 0.0, 5.0);
+  const planning::PlannedAction planned = planner.plan(snapshot_, {{0, &gone, &route_, 8.0}})[0];
+  EXPECT_EQ(planned.action, traffic::ControlAction::failSafe());
+  EXPECT_EQ(planned.fault, "vehicle 'gone': it is not in the snapshot; full braking instead");
+}
+
+// With a score of 1 it is chosen; its speeds are the ways of 0.1 s.
+TEST_F(PlutoCourse, TheFreePlanIsAsFastAsItsPlacesAreApart) {
+  PlutoOptions options;
+  options.free_score = 1.0;
+  PlutoPlanner planner(options, testing::randomPluto(), network_, 0.1);
+  const planning::PlannedAction planned = planner.plan(snapshot_, tasks())[0];
+  ASSERT_TRUE(planned.candidates.back().chosen);
+  Eigen::Vector2d last = snapshot_.vehicles[1].state.position;
+  for (const planning::RolloutPoint& point : planned.rollout) {
+    EXPECT_NEAR(point.state.speed, (point.state.position - last).norm() / 0.1, 1e-9);
+    last = point.state.position;
+  }
 }
 
 TEST_F(PlutoCourse, BrakesWithoutARoute) {

@@ -62,6 +62,16 @@ TEST(RiftReward, AgainstTheLineIsPunishedAndThePlaceDoesNotCount) {
   EXPECT_NEAR(riftReward(step), -0.925, 1e-6);
 }
 
+// The place counts up to 60 degrees. 0.125 (1 - 59 / 90) = 0.0430556 for the heading, 0.0494616 for
+// the place and 0.8 cos 59 = 0.4120305 for the speed; at 61 degrees 0.0402778 and 0.3878477.
+TEST(RiftReward, AnObliqueHeadingIsWorthLessAndBeyondSixtyDegreesThePlaceIsNot) {
+  RiftStep step = atSpeed(8.0);
+  step.heading_error = core::degreesToRadians(59.0);
+  EXPECT_NEAR(riftReward(step), 0.0430556 + 0.0494616 + 0.4120305 - 0.1, 1e-6);
+  step.heading_error = core::degreesToRadians(-61.0);
+  EXPECT_NEAR(riftReward(step), 0.0402778 + 0.3878477 - 0.1, 1e-6);
+}
+
 // 0.6 (1 - 0.05 / e^0.5) = 0.6 x 0.9696735, to either side.
 TEST(RiftReward, AMeterBesideTheLineCosts) {
   for (const double offset : {1.0, -1.0}) {

@@ -120,9 +120,9 @@ TEST_F(UniadMiniCourse, LimitsTheThrottleOnlyWhereTheQuirkIsAskedFor) {
   EXPECT_NEAR(planned.rollout.back().state.position.x(), 5.0 + 36.0, 1e-4);
   EXPECT_EQ(planned.action.throttle, 0.75);
   EXPECT_EQ(planOf(capped, task()).action.throttle, 0.0);
-  snapshot_.vehicles[0].state.speed = 4.0;
+  snapshot_.vehicles[0].state.speed = 5.0;
   goTo(2);
-  EXPECT_GT(planOf(capped, task()).action.throttle, 0.0) << "below 5 m/s";
+  EXPECT_GT(planOf(capped, task()).action.throttle, 0.0) << "5 m/s are not above 5 m/s";
 }
 
 TEST_F(UniadMiniCourse, OtherRigsAreRefused) {
