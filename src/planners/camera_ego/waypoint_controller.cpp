@@ -9,7 +9,7 @@ namespace cdiff::planners {
 using planning::turnErrorToward;
 
 WaypointControllerOptions::WaypointControllerOptions() {
-  pids.turn = {2.25, 0.75, 0.3};
+  pids.turn = {2.25, 0.0, 0.3};
   pids.speed = {5.0, 0.5, 1.0};
   pids.window = 40;
   pids.speed_error_limit = 0.25;

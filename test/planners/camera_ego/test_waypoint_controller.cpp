@@ -7,10 +7,10 @@
 namespace cdiff::planners {
 namespace {
 
-/// With the published gain of the steering.
+/// With the published gains of the steering.
 WaypointController published() {
   WaypointControllerOptions options;
-  options.pids.turn.kp = 0.75;
+  options.pids.turn = {0.75, 0.75, 0.3};
   return WaypointController(options);
 }
 
