@@ -20,6 +20,9 @@ void PlantOptions::describe(core::OptionsVisitor& visitor) {
   pids.describe(visitor);
   visitor.number({"steer_damping", "", "Factor on the steering while it brakes."}, steer_damping,
                  0.0, 1.0);
+  visitor.number({"least_own_speed", "m/s",
+                  "Least speed that its own token shows, of weights that know their own vehicle."},
+                 least_own_speed, 0.0, 20.0);
 }
 
 WaypointTracker::WaypointTracker(const PlantOptions& options)
@@ -46,6 +49,17 @@ bool allFinite(const PlantWaypoints& waypoints) {
 PlantPlanner::PlantPlanner(const PlantOptions& options, const PlantModel& model)
     : options_(options), architecture_(model.architecture), network_(model) {}
 
+PlantInput PlantPlanner::inputOf(const traffic::TrafficSnapshot& snapshot,
+                                 const planning::PlanningTask& task, double arc_length) const {
+  PlantInput input = plantInput(architecture_, snapshot, *task.vehicle, *task.route, arc_length);
+  const auto least = static_cast<float>(options_.least_own_speed / kPlantSpeedScale);
+  for (std::size_t i = 0; i < input.ids.size(); ++i) {
+    float& speed = input.vehicles[i][kPlantSpeedAttribute];
+    if (input.ids[i] == task.vehicle->id) speed = std::max(speed, least);
+  }
+  return input;
+}
+
 std::vector<planning::PlannedAction> PlantPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlannedAction> actions;
@@ -59,8 +73,7 @@ std::vector<planning::PlannedAction> PlantPlanner::plan(
       return Memory{{}, WaypointTracker(options_)};
     });
     memory.follower.update(*task.route, task.vehicle->state.position);
-    inputs.push_back(plantInput(architecture_, snapshot, *task.vehicle, *task.route,
-                                memory.follower.arcLength()));
+    inputs.push_back(inputOf(snapshot, task, memory.follower.arcLength()));
     planned.push_back(actions.size() - 1);
   }
   memories_.forgetOthers();

@@ -16,7 +16,8 @@ namespace cdiff::planners {
 /// Options of the planner: its weights, and the gains of its PIDs as published for PlanT.
 struct PlantOptions : WeightOptions {
   planning::PlanPidOptions pids;
-  double steer_damping = 0.5;  ///< on the steering while it brakes
+  double steer_damping = 0.5;    ///< on the steering while it brakes
+  double least_own_speed = 4.0;  ///< of its own token [m/s]: else standing is followed by standing
 
   PlantOptions();
   void describe(core::OptionsVisitor& visitor);
@@ -37,7 +38,7 @@ class WaypointTracker {
 };
 
 /// PlanT: a transformer over vehicles and route plans waypoints, which a PID follows. It knows all
-/// boxes around it, no map and not its own speed (docs/plant.md).
+/// boxes around it, its own with its speed where the weights say so, and no map (docs/plant.md).
 class PlantPlanner : public planning::Planner {
  public:
   /// Throws InputError for weights that are missing or do not fit.
@@ -55,6 +56,8 @@ class PlantPlanner : public planning::Planner {
     planning::RouteFollower follower;
     WaypointTracker tracker;
   };
+  PlantInput inputOf(const traffic::TrafficSnapshot& snapshot, const planning::PlanningTask& task,
+                     double arc_length) const;
   void conclude(const planning::PlanningTask& task, const PlantInput& input,
                 const PlantOutput& output, planning::PlannedAction& planned);
 

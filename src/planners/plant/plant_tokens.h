@@ -40,6 +40,7 @@ inline constexpr double kPlantWaypointPeriod = 0.5;  ///< from one waypoint to t
 inline constexpr double kPlantPlaceScale = 50.0;   ///< x and y [m]
 inline constexpr double kPlantSpeedScale = 20.0;   ///< [m/s]
 inline constexpr double kPlantExtentScale = 10.0;  ///< width and length [m]
+inline constexpr std::size_t kPlantSpeedAttribute = 3;
 
 /// Attributes of a box in the frame of the driven vehicle: x / 50 m, y / 50 m, heading / pi, speed
 /// / 20 m/s (of a route segment: its number, 0 or 1), width / 10 m, length / 10 m (PlanT, Renz et

@@ -116,6 +116,23 @@ TEST_F(PlantPlannerTest, SaysWhatItLookedAt) {
     EXPECT_NEAR(vehicle.weight, 0.2, 1e-6);
 }
 
+// What it looks at says whether the network was given another speed: below 4 m/s it is not.
+TEST_F(PlantPlannerTest, ItsOwnTokenShowsNoLessThanTheLeastSpeed) {
+  PlantArchitecture architecture = testing::smallPlant();
+  architecture.own_vehicle = true;
+  const auto weightAt = [&](double speed, double least) {
+    PlantOptions options;
+    options.least_own_speed = least;
+    PlantPlanner planner(options, drawnPlant(0.3, architecture));
+    const auto planned = planOf(planner, snapshotOf(speed, {vehicleAt("a", 20.0, 0.0, 0.0, 1.0)}));
+    return planned.attended.at(0).weight;
+  };
+  EXPECT_EQ(weightAt(0.0, 4.0), weightAt(4.0, 4.0));
+  EXPECT_NE(weightAt(0.0, 4.0), weightAt(4.5, 4.0));
+  EXPECT_NE(weightAt(0.0, 0.0), weightAt(4.0, 0.0));
+  EXPECT_EQ(PlantOptions().least_own_speed, 4.0);
+}
+
 TEST_F(PlantPlannerTest, OfMoreVehiclesThanTokensTheNearestCount) {
   std::vector<traffic::Vehicle> others;
   for (int i = 0; i < 6; ++i)
