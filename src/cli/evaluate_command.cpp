@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -36,6 +37,7 @@ struct EvaluateArguments {
   std::vector<std::string> routes;
   std::vector<std::string> seeds;
   std::vector<std::string> set;
+  std::vector<std::string> only;
   int jobs = 1;
   bool resume = false;
   bool overwrite = false;
@@ -133,10 +135,15 @@ void prepareFolder(const fs::path& folder, const MatrixOptions& matrix, bool ove
   core::writeFileAtomically(file, core::dumpOptions(matrix));
 }
 
-int exitCodeOf(const std::vector<RunRecord>& records) {
+/// Of the runs that were to be run.
+int exitCodeOf(const std::vector<RunRecord>& records,
+               const std::vector<evaluation::PlannedRun>& plan,
+               const evaluation::ChosenLevels& chosen) {
   if (core::stopRequested()) return ExitCode::kInterrupted;
   int exit_code = ExitCode::kPassed;
-  for (const RunRecord& record : records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!evaluation::isChosen(plan[i], chosen)) continue;
+    const RunRecord& record = records[i];
     const bool bad_input = record.failed() && record.exit_code == ExitCode::kBadInput;
     if (!record.complete() && !bad_input) return ExitCode::kRunTimeError;
     if (bad_input) exit_code = ExitCode::kBadInput;
@@ -148,14 +155,17 @@ int exitCodeOf(const std::vector<RunRecord>& records) {
 
 std::vector<RunRecord> execute(const std::vector<evaluation::PlannedRun>& plan,
                                const MatrixOptions& matrix, const fs::path& results,
-                               const EvaluateArguments& arguments) {
-  BatchProgress progress(plan.size());
+                               const EvaluateArguments& arguments,
+                               const evaluation::ChosenLevels& chosen) {
+  const auto isNow = [&](const auto& run) { return evaluation::isChosen(run, chosen); };
+  BatchProgress progress(static_cast<std::size_t>(std::count_if(plan.begin(), plan.end(), isNow)));
   evaluation::ExecutorOptions options;
   options.results = results;
   options.jobs = arguments.jobs;
   options.timeout = matrix.timeout;
   options.retries = static_cast<int>(matrix.retries);
   options.resume = arguments.resume;
+  options.chosen = isNow;
   options.repeated = [&](const auto& cause, const auto& ids) { progress.repeated(cause, ids); };
   options.ended = [&](const RunRecord& record, bool resumed) { progress.ended(record, resumed); };
   auto records = evaluation::executeRuns(plan, options, core::catchStopSignals());
@@ -173,11 +183,12 @@ int evaluate(const EvaluateArguments& arguments) {
     repeated = evaluation::repeatedText(evaluation::selectBench2Drive(matrix.bench2drive));
   const auto plan =
       evaluation::planRuns(matrix, arguments.matrix.empty() ? "evaluate" : arguments.matrix);
+  const evaluation::ChosenLevels chosen = evaluation::chosenLevels(arguments.only, plan);
   const core::FolderLock lock(results, "cdiff evaluate");
   requireFolder(results, arguments);
   prepareFolder(results, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
-  const auto records = execute(plan, matrix, results, arguments);
+  const auto records = execute(plan, matrix, results, arguments, chosen);
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
@@ -186,7 +197,7 @@ int evaluate(const EvaluateArguments& arguments) {
     core::writeFileAtomically(results / "table.md", text);
   }
   std::cout << text;
-  return exitCodeOf(records);
+  return exitCodeOf(records, plan, chosen);
 }
 
 }  // namespace
@@ -216,6 +227,11 @@ void addEvaluateCommand(CLI::App& program, int& exit_code) {
       ->delimiter(',');
   command
       ->add_option("--set", arguments->set, "Any key of the scenario as key=value; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--only", arguments->only,
+                   "Now only runs with these levels of a factor, as seed=1,2; may be repeated. The "
+                   "others are left for --resume")
       ->allow_extra_args(false);
   command->add_option("--jobs", arguments->jobs, "Sessions at a time")
       ->capture_default_str()

@@ -57,10 +57,14 @@ class Executor {
   void enqueue(std::size_t index) {
     records_.push_back(recordOf(plan_[index]));
     if (options_.resume && staysOrIsCounted(index)) return;
-    queue_.push_back(index);
+    (isChosen(index) ? queue_ : later_).push_back(index);
+  }
+  bool isChosen(std::size_t index) const {
+    return !options_.chosen || options_.chosen(plan_[index]);
   }
 
-  /// Whether the result of an earlier batch stands; else the cause to run it again is counted.
+  /// Whether the result of an earlier batch stands; else the cause to run it again is counted, if
+  /// it is to be.
   bool staysOrIsCounted(std::size_t index) {
     const auto earlier = readRecord(folderOf(index) / "record.json");
     if (!earlier) return false;
@@ -68,7 +72,7 @@ class Executor {
     if (cause.empty() && !fs::is_regular_file(folderOf(index) / "summary.json"))
       cause = "summary.json missing";
     if (!cause.empty()) {
-      repeated_[cause].push_back(plan_[index].id);
+      if (isChosen(index)) repeated_[cause].push_back(plan_[index].id);
       return false;
     }
     records_.back() = *earlier;
@@ -82,17 +86,20 @@ class Executor {
       if (options_.repeated) options_.repeated(cause, ids);
     }
     for (const std::size_t index : resumed_) {
-      if (options_.ended) options_.ended(records_[index], true);
+      if (options_.ended && isChosen(index)) options_.ended(records_[index], true);
     }
-    for (const std::size_t index : queue_) {
-      const fs::path folder = folderOf(index);
-      std::error_code error;
-      fs::create_directories(folder, error);
-      if (error) {
-        throw core::InputError("cannot make '" + folder.string() + "': " + error.message());
-      }
-      core::writeFileAtomically(folder / "record.json", recordJson(records_[index]));
+    for (const std::size_t index : queue_) writeRecord(index);
+    for (const std::size_t index : later_) {
+      if (!fs::exists(folderOf(index) / "record.json")) writeRecord(index);
     }
+  }
+
+  void writeRecord(std::size_t index) const {
+    const fs::path folder = folderOf(index);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::InputError("cannot make '" + folder.string() + "': " + error.message());
+    core::writeFileAtomically(folder / "record.json", recordJson(records_[index]));
   }
 
   core::ProcessJob start(std::size_t index) {
@@ -173,6 +180,7 @@ class Executor {
   std::vector<std::size_t> resumed_;                          ///< runs that were complete already
   std::map<std::string, std::vector<std::string>> repeated_;  ///< ids by cause
   std::deque<std::size_t> queue_;
+  std::deque<std::size_t> later_;  ///< not chosen
 };
 
 }  // namespace

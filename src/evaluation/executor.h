@@ -22,6 +22,8 @@ struct ExecutorOptions {
   int retries = 1;
   double grace = 20.0;  ///< to end in after an interrupt [s]
   bool resume = false;  ///< complete records of the same scenario, inputs and program stay
+  /// Runs that are run now; the others keep their record, or get one that says not_run. None: all.
+  std::function<bool(const PlannedRun&)> chosen = {};
   /// Called before the first run for each cause to repeat runs that have a record, with their ids.
   std::function<void(const std::string& cause, const std::vector<std::string>& ids)> repeated = {};
   /// Called after each record is written, and for each that stays.

@@ -274,4 +274,44 @@ std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string&
   return RunPlanner(matrix, source).plan();
 }
 
+namespace {
+
+/// Throws InputError unless a run has this level.
+void requireLevel(const std::string& factor, const std::string& level,
+                  const std::vector<PlannedRun>& plan) {
+  std::set<std::string> levels;
+  for (const PlannedRun& run : plan) levels.insert(run.factors.at(factor));
+  if (levels.count(level) != 0) return;
+  throw InputError("--only " + factor + "=" + level + ": no run of the matrix has it; levels are " +
+                   core::joinText({levels.begin(), levels.end()}, ", "));
+}
+
+}  // namespace
+
+ChosenLevels chosenLevels(const std::vector<std::string>& texts,
+                          const std::vector<PlannedRun>& plan) {
+  ChosenLevels chosen;
+  const std::vector<std::string>& factors = factorNames();
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    const std::string factor = text.substr(0, equals);
+    if (equals == std::string::npos ||
+        std::find(factors.begin(), factors.end(), factor) == factors.end()) {
+      throw InputError("--only '" + text + "': expected FACTOR=LEVEL[,LEVEL...] with a factor of " +
+                       core::joinText(factors, ", "));
+    }
+    for (const std::string& level : core::splitText(text.substr(equals + 1), ',')) {
+      requireLevel(factor, level, plan);
+      chosen[factor].insert(level);
+    }
+  }
+  return chosen;
+}
+
+bool isChosen(const PlannedRun& run, const ChosenLevels& levels) {
+  return std::all_of(levels.begin(), levels.end(), [&run](const auto& factor) {
+    return factor.second.count(run.factors.at(factor.first)) != 0;
+  });
+}
+
 }  // namespace cdiff::evaluation

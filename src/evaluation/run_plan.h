@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,5 +67,15 @@ struct PlannedRun {
 /// profile, a seed that is not a whole number, a variant that is not "name: key=value ...", and
 /// everything a scenario can have wrong.
 std::vector<PlannedRun> planRuns(const MatrixOptions& matrix, const std::string& source);
+
+/// Part of a plan: of each factor that is named the levels that count.
+using ChosenLevels = std::map<std::string, std::set<std::string>>;
+
+/// From texts as "ego_planner=plant,diffusion". Throws InputError for anything else, for a factor
+/// that is none and for a level that no run has.
+ChosenLevels chosenLevels(const std::vector<std::string>& texts,
+                          const std::vector<PlannedRun>& plan);
+
+bool isChosen(const PlannedRun& run, const ChosenLevels& levels);
 
 }  // namespace cdiff::evaluation

@@ -36,6 +36,17 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   EXPECT_GT(readRecord(run / "record.json")->measures.at("ego_completion_percent"), 0.0);
 
   fs::remove(run / "record.json");  // as if the batch had been cut off
+  std::vector<std::string> part = evaluate;
+  part.insert(part.end(), {"--only", "variant=slow,fast", "--only", "seed=1"});
+  ASSERT_EQ(cdiff(part), 0) << output();
+  EXPECT_EQ(readRecord(run / "record.json")->status, "not_run");
+  part.back() = "seed=3";
+  EXPECT_EQ(cdiff(part), 3);
+  expectOutput("--only seed=3: no run of the matrix has it; levels are 1, 2");
+  part.back() = "planner=plant";
+  EXPECT_EQ(cdiff(part), 3);
+  expectOutput(
+      "--only 'planner=plant': expected FACTOR=LEVEL[,LEVEL...] with a factor of scenario,");
   ASSERT_EQ(cdiff(evaluate), 0) << output();
   expectOutput("3 runs were complete already");
   EXPECT_TRUE(fs::exists(run / "record.json"));

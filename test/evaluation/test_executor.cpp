@@ -103,6 +103,36 @@ TEST_F(ExecutorTest, RecordsEveryRunInTheOrderOfThePlan) {
   EXPECT_EQ(ends_.size(), 4U);
 }
 
+TEST_F(ExecutorTest, RunsOnlyWhatIsChosenAndLeavesTheRestForLater) {
+  const std::vector<PlannedRun> runs = plan({"good", "good", "good"});
+  options_.chosen = [](const PlannedRun& run) { return run.id == "good1"; };
+  auto records = execute(runs);
+  EXPECT_EQ(records[0].status, "not_run");
+  EXPECT_EQ(records[1].status, "completed");
+  EXPECT_EQ(readRecord(file("good2", "record.json"))->status, "not_run");
+  EXPECT_EQ(ends_.size(), 1U);
+  options_.resume = true;
+  options_.chosen = [](const PlannedRun& run) { return run.id == "good2"; };
+  records = execute(runs);
+  EXPECT_EQ(records[1].status, "completed") << "what was run before counts";
+  EXPECT_EQ(ends_.count("good1"), 1U);
+  options_.chosen = {};
+  records = execute(runs);
+  for (const PlannedRun& run : runs) EXPECT_EQ(attempts(run.id), 1U) << run.id;
+  EXPECT_EQ(records[0].status, "completed");
+}
+
+TEST_F(ExecutorTest, AStaleRecordThatIsNotChosenStays) {
+  std::vector<PlannedRun> runs = plan({"good"});
+  execute(runs);
+  runs[0].inputs = {{"program", "later"}};
+  options_.resume = true;
+  options_.chosen = [](const PlannedRun&) { return false; };
+  options_.repeated = [](const std::string& cause, const auto&) { ADD_FAILURE() << cause; };
+  EXPECT_EQ(execute(runs)[0].status, "not_run");
+  EXPECT_EQ(readRecord(file("good0", "record.json"))->status, "completed");
+}
+
 TEST_F(ExecutorTest, TriesAgainWhenAProcessDied) {
   options_.retries = 2;
   const auto records = execute(plan({"dies", "dies_once"}));
