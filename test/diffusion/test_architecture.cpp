@@ -116,6 +116,39 @@ TEST(Architecture, EncoderTensorsAreThoseOfResnet34) {
   EXPECT_EQ(elementCount(list), 21797672 - 513000 + 32832 + 246016);
 }
 
+TEST(Architecture, SizesEndWhereTheyShould) {
+  struct Range {
+    const char* name;
+    std::int64_t Architecture::*size;
+    std::int64_t low;
+    std::int64_t high;
+  };
+  const Range ranges[] = {{"horizon", &Architecture::horizon, 2, 1024},
+                          {"diffusion_steps", &Architecture::diffusion_steps, 1, 10000},
+                          {"kernel", &Architecture::kernel, 1, 31},
+                          {"time_width", &Architecture::time_width, 4, 4096},
+                          {"image_width", &Architecture::image_width, 32, 4096},
+                          {"image_height", &Architecture::image_height, 32, 4096},
+                          {"image_features", &Architecture::image_features, 1, 4096},
+                          {"route_points", &Architecture::route_points, 1, 1024},
+                          {"state_hidden", &Architecture::state_hidden, 1, 4096}};
+  for (const Range& range : ranges) {
+    for (const std::int64_t beyond : {range.low - 1, range.high + 1}) {
+      Architecture a;
+      a.*range.size = beyond;
+      try {
+        a.validate();
+        ADD_FAILURE() << range.name << " " << beyond;
+      } catch (const core::InputError& error) {
+        const std::string expected = std::string(range.name) + " is " + std::to_string(beyond) +
+                                     "; " + std::to_string(range.low) + " to " +
+                                     std::to_string(range.high) + " was expected";
+        EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+      }
+    }
+  }
+}
+
 TEST(Architecture, OtherSizes) {
   Architecture a;
   a.horizon = 16;

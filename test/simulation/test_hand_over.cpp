@@ -26,6 +26,25 @@ void addOther(CrossingWorld& world, double speed, int lane = 0) {
   ASSERT_NE(world.find("other"), nullptr);
 }
 
+TEST(SimulatedVehicleTest, ASnapshotHoldsAllOfIt) {
+  SimulatedVehicle simulated;
+  simulated.id = "other";
+  simulated.state.position = {3.0, -1.6};
+  simulated.state.speed = 7.0;
+  simulated.dimensions.length = 12.0;
+  simulated.dimensions.width = 2.5;
+  simulated.acceleration = -1.5;
+  simulated.lane_id = "west_0";
+  const traffic::Vehicle vehicle = simulation::asBackground(simulated);
+  EXPECT_EQ(vehicle.id, "other");
+  EXPECT_EQ(vehicle.state.position, simulated.state.position);
+  EXPECT_EQ(vehicle.state.speed, 7.0);
+  EXPECT_EQ(vehicle.dimensions.length, 12.0);
+  EXPECT_EQ(vehicle.dimensions.width, 2.5);
+  EXPECT_EQ(vehicle.acceleration, -1.5);
+  EXPECT_EQ(vehicle.lane_id, "west_0");
+}
+
 /// Advances a state straight ahead, sideways by `drift` meters.
 DrivenVehicle ahead(const CrossingWorld& world, const traffic::VehicleState& state,
                     double drift = 0.0) {

@@ -120,16 +120,18 @@ TEST_F(PlantPlannerTest, SaysWhatItLookedAt) {
 TEST_F(PlantPlannerTest, ItsOwnTokenShowsNoLessThanTheLeastSpeed) {
   PlantArchitecture architecture = testing::smallPlant();
   architecture.own_vehicle = true;
-  const auto weightAt = [&](double speed, double least) {
+  const auto weightAt = [&](double speed, double least, double speed_of_other = 1.0) {
     PlantOptions options;
     options.least_own_speed = least;
     PlantPlanner planner(options, drawnPlant(0.3, architecture));
-    const auto planned = planOf(planner, snapshotOf(speed, {vehicleAt("a", 20.0, 0.0, 0.0, 1.0)}));
+    const auto planned =
+        planOf(planner, snapshotOf(speed, {vehicleAt("a", 20.0, 0.0, 0.0, speed_of_other)}));
     return planned.attended.at(0).weight;
   };
   EXPECT_EQ(weightAt(0.0, 4.0), weightAt(4.0, 4.0));
   EXPECT_NE(weightAt(0.0, 4.0), weightAt(4.5, 4.0));
   EXPECT_NE(weightAt(0.0, 0.0), weightAt(4.0, 0.0));
+  EXPECT_NE(weightAt(0.0, 4.0, 1.0), weightAt(0.0, 4.0, 3.0)) << "others are shown as they are";
   EXPECT_EQ(PlantOptions().least_own_speed, 4.0);
 }
 
