@@ -4,6 +4,7 @@
 
 #include "planners/course.h"
 #include "planners/pdm_lite/forecasts.h"
+#include "planning/route_follower.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planning {
@@ -14,6 +15,20 @@ using planners::testing::makeNetwork;
 using planners::testing::routeAlong;
 using planners::testing::straight;
 using planners::testing::vehicleAt;
+
+// The route crosses its own beginning at (5, 0), 115 m along: 40 m east, 20 m north, 35 m west and
+// 20 m south. A vehicle that starts there, nearer to the later pass, is at its beginning.
+TEST(RouteFollower, StartsAtTheBeginningOfARouteThatComesBack) {
+  const auto network =
+      makeNetwork({{"loop", {{0, 0, 0}, {40, 0, 0}, {40, 20, 0}, {5, 20, 0}, {5, -20, 0}}}});
+  const map::Route route = routeAlong(network, {"loop"});
+  RouteFollower follower;
+  follower.update(route, {5.0, 0.2});
+  EXPECT_NEAR(follower.arcLength(), 5.0, 1e-9);
+  RouteFollower later;
+  later.update(route, {40.0, 12.0});  // farther than 3 m from the first 20 m
+  EXPECT_NEAR(later.arcLength(), 52.0, 1e-9);
+}
 
 TEST(MotionForecast, HoldsTheActionOfADrivenVehicle) {
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 100.0, 0.0)}});

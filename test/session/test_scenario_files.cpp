@@ -12,6 +12,7 @@
 #include "planners/two_stage_pid/two_stage_pid.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
+#include "support/temporary_folder.h"
 
 namespace cdiff::session {
 namespace {
@@ -44,6 +45,12 @@ TEST_P(ShippedScenario, ResolvedFormReadsBackToTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::ValuesIn(shippedScenarios()),
                          [](const auto& info) { return info.param; });
+
+TEST(ScenarioFile, WithoutANameIsCalledAsItsFile) {
+  const test::TemporaryFolder folder;
+  core::writeFileAtomically(folder.path() / "my_scene.yaml", "network: crossing_district\n");
+  EXPECT_EQ(loadScenario((folder.path() / "my_scene.yaml").string()).name, "my_scene");
+}
 
 /// The scenario of a request with these overrides.
 ScenarioOptions withKeys(const std::vector<std::string>& set) {
