@@ -121,11 +121,13 @@ Markup touchesSvg(const DrivenScene& scene, const SceneView& view) {
   return svg;
 }
 
-/// "98.2 % of the route, driving score 68.7, 1 contact, 8.1 % off the road".
+/// "98.2 % of the route, driving score 68.7, 1 contact, 8.1 % off the road"; "?" for a measure that
+/// the run does not have.
 std::string courseOf(const BatchRun& run) {
   namespace known = metrics::known;
   const auto text = [&run](const metrics::MeasureDefinition& measure, int digits) {
-    return core::formatFixed(run.number(measure.place).value_or(0.0), digits);
+    const std::optional<double> value = run.number(measure.place);
+    return value ? core::formatFixed(*value, digits) : "?";
   };
   const std::string contacts = text(known::kEgoCollisions, 0);
   return text(known::kRouteCompletion, 1) + " % of the route, driving score " +

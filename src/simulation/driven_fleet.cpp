@@ -170,6 +170,7 @@ bool DrivenFleet::moveAlongLane(const std::string& id, Moved& moved, const Front
   if (speed != moved.speed) SumoVehicle::setSpeed(id, speed);
   moved.speed = speed;
   moved.along_lane = true;
+  moved.placed = false;
   return true;
 }
 

@@ -56,10 +56,7 @@ class ReplayCommand : public testing::Test {
         "session.yaml",
         {{"deployment: \"cdiff run\"\n", ""},
          {"deployment: \"cdiff replay\"\nrecorded_by: \"cdiff run of e2e_cdiff .*\"\n", ""},
-         {"  "
-          "((ego|cbv)_model_files_sha256|(ego|cbv)_(en|de)(coder|noiser)_(instruction_set|"
-          "precision)): "
-          ".*\n",
+         {"  (ego|cbv)_(model_files_sha256|(encoder|denoiser)_(instruction_set|precision)): .*\n",
           ""}});
   }
   nlohmann::json summary() const {

@@ -188,6 +188,9 @@ TEST_F(TrailFigure, SaysWhatBecameOfEachEgo) {
       has(text, ">98.2 % of the route, driving score 68.7, 1 contact, 8.0 % off the road</text>"))
       << text;
   EXPECT_TRUE(has(text, "cbv_planner pdm_lite")) << text;
+  runs_.back().numbers.erase("/ego/off_road_percent");
+  EXPECT_TRUE(has(page::sheetFile(trailFigure(runs_, TrailsOf::kEgo)->sheet),
+                  "driving score 90.0, 1 contact, ? % off the road</text>"));
 }
 
 TEST_F(TrailFigure, ADamagedSummaryIsNamed) {

@@ -37,10 +37,10 @@ inline constexpr std::int64_t kPlantWaypoints = 4;
 inline constexpr double kPlantWaypointPeriod = 0.5;  ///< from one waypoint to the next [s]
 
 // Scales of the attributes: what an input of 1 stands for.
-inline constexpr double kPlantPlaceScale = 50.0;   ///< x and y [m]
-inline constexpr double kPlantSpeedScale = 20.0;   ///< [m/s]
-inline constexpr double kPlantExtentScale = 10.0;  ///< width and length [m]
-inline constexpr std::size_t kPlantSpeedAttribute = 3;
+inline constexpr double kPlantPlaceScale = 50.0;        ///< x and y [m]
+inline constexpr double kPlantSpeedScale = 20.0;        ///< [m/s]
+inline constexpr double kPlantExtentScale = 10.0;       ///< width and length [m]
+inline constexpr std::size_t kPlantSpeedAttribute = 3;  ///< place of the speed in a token
 
 /// Attributes of a box in the frame of the driven vehicle: x / 50 m, y / 50 m, heading / pi, speed
 /// / 20 m/s (of a route segment: its number, 0 or 1), width / 10 m, length / 10 m (PlanT, Renz et
