@@ -76,7 +76,6 @@ TEST(TimeToCollision2d, IsAbsentForValuesThatAreNotFinite) {
   EXPECT_FALSE(timeToCollision2d(car(0, 0, 0, 10), car(20, 0, 0, nan)).has_value());
   EXPECT_FALSE(riftTimeToCollision(car(0, 0, nan, 10), car(20, 0, 0, 0)).has_value());
   EXPECT_FALSE(longitudinalLateralTimeToCollision(car(0, nan, 0, 10), car(9, 0, 0, 0)).has_value());
-  // A heading that is none leaves the way to it closing: only the check refuses the box.
   EXPECT_FALSE(rayCastTimeToCollision(car(0, 0, 0, 10), car(20, 0, nan, 0), OutlineOrder::kRing));
   EXPECT_FALSE(rayCastTimeToCollision(car(0, 0, nan, 10), car(20, 0, 0, 0), OutlineOrder::kRing));
 }
