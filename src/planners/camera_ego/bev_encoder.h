@@ -32,14 +32,16 @@ EgoMotion egoMotion(double speed, double yaw_rate, const EgoPoses& poses);
 /// the ego's motion; in each layer deformable attention to the past and the present BEV, then to
 /// the images that see the cell's pillar, then a feed-forward network, each followed by a
 /// normalization of the sum. Without a past BEV the present queries stand for it, as published.
-/// Float32, deterministic; one object per thread.
+/// Float32, deterministic; one object per thread. The networks of vad_mini and uniad_mini hold one
+/// each and call it at each decision. Cells are those of BevGrid, row by row.
 class BevEncoder {
  public:
   BevEncoder(const CameraEgoSizes& sizes, const WeightTensors& tensors,
              inference::InstructionSet set);
 
-  /// `images`: rgb8 of the rig's cameras in order, each of the sizes' size; `past`: the BEV of
-  /// poses.past, row by cell, or nullptr. The result lasts until the next call.
+  /// `images`: rgb8 of the rig's cameras in order, image_width x image_height pixels each; `past`:
+  /// the BEV at poses.past, [cells, width], or nullptr. Returns [cells, width], which lasts until
+  /// the next call.
   const inference::Rows& encode(const std::vector<const std::uint8_t*>& images,
                                 const EgoMotion& motion, const EgoPoses& poses,
                                 const inference::Rows* past);
