@@ -63,8 +63,8 @@ class Executor {
     return !options_.chosen || options_.chosen(plan_[index]);
   }
 
-  /// Whether the result of an earlier batch stands; else, of a chosen run, the cause to run it again
-  /// is counted.
+  /// Whether the result of an earlier batch stands; else, of a chosen run, the cause to run it
+  /// again is counted.
   bool staysOrIsCounted(std::size_t index) {
     const auto earlier = readRecord(folderOf(index) / "record.json");
     if (!earlier) return false;
