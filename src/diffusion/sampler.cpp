@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/text.h"
@@ -27,11 +28,13 @@ int firstFewStep(int diffusion_steps) { return std::max(1, diffusion_steps - kSk
 class Run {
  public:
   Run(Denoiser& denoiser, StateBranch& branch, const NoiseSchedule& schedule,
-      const core::RandomStream& noise, const std::vector<SampleRequest>& requests)
+      const core::RandomStream& noise, double correlation,
+      const std::vector<SampleRequest>& requests)
       : denoiser_(denoiser),
         branch_(branch),
         schedule_(schedule),
         noise_(noise),
+        correlation_(correlation),
         requests_(requests),
         batch_(requests.size(), denoiser.architecture().horizon),
         results_(requests.size()) {}
@@ -54,6 +57,7 @@ class Run {
   StateBranch& branch_;
   const NoiseSchedule& schedule_;
   const core::RandomStream& noise_;
+  double correlation_;
   const std::vector<SampleRequest>& requests_;
   SamplingBatch batch_;
   std::vector<SampledTrajectory> results_;
@@ -64,7 +68,11 @@ float Run::normal(std::size_t sample, int k, std::size_t cell) const {
   key.diffusion_step = static_cast<std::uint16_t>(k);
   const auto element =
       static_cast<std::uint32_t>(requests_[sample].candidate * batch_.cells() + cell);
-  return static_cast<float>(noise_.normal(key, element));
+  if (correlation_ == 0.0) return static_cast<float>(noise_.normal(key, element));
+  core::RandomKey lasting = key;
+  lasting.decision = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<float>(std::sqrt(correlation_) * noise_.normal(lasting, element) +
+                            std::sqrt(1.0 - correlation_) * noise_.normal(key, element));
 }
 
 void Run::start(int k, bool warm) {
@@ -184,6 +192,9 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"warm_start_step", "", "Diffusion step that the previous plan is noised to."},
                   warm_start_step, 1, 1000);
   visitor.integer({"warm_steps", "", "Denoising steps of a warm start."}, warm_steps, 1, 1000);
+  visitor.number({"noise_correlation", "",
+                  "Correlation of a vehicle's noise between any two of its decisions."},
+                 noise_correlation, 0.0, 1.0);
 }
 
 namespace {
@@ -262,7 +273,7 @@ std::vector<SampledTrajectory> Sampler::sample(Denoiser& denoiser, StateBranch& 
     if ((request.warm == nullptr) != (requests.front().warm == nullptr))
       throw std::invalid_argument("a batch holds cold starts only or warm starts only");
   }
-  Run run(denoiser, states, schedule_, noise_, requests);
+  Run run(denoiser, states, schedule_, noise_, options_.noise_correlation, requests);
   const bool warm = options_.mode == "real_time" && requests.front().warm != nullptr;
   const std::vector<int> steps = visitedSteps(warm);
   run.start(steps.front(), warm);

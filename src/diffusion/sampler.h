@@ -26,6 +26,8 @@ struct SamplerOptions {
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits
   std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
   std::int64_t warm_steps = 5;        ///< denoising steps from there
+  /// rho: correlation of a vehicle's noise between any two of its decisions, 0 to 1
+  double noise_correlation = 0.0;
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError; `diffusion_steps` is K of the model.

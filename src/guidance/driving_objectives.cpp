@@ -32,9 +32,6 @@ double addPoint(const GuidanceScene& scene, const traffic::Rollout& rollout, Eig
   return point.share * missing * missing;
 }
 
-// Part of the route that a rollout can be near, so that a loop's other pass is not taken [m].
-constexpr geometry::SearchWindow kReach{10.0, 80.0};
-
 /// Signed offset from the route, positive left, and its gradient on the map.
 struct Offset {
   double lateral = 0.0;
@@ -43,7 +40,7 @@ struct Offset {
 };
 
 Offset offsetFrom(const map::Route& route, double arc_length, const Eigen::Vector2d& position) {
-  const auto [begin, end] = route.path().around(arc_length, kReach);
+  const auto [begin, end] = route.path().around(arc_length, kRouteReach);
   const geometry::Projection nearest = route.path().project(position, begin, end);
   const Eigen::Vector2d away = position - route.path().positionAt(nearest.arc_length);
   const Eigen::Vector2d left = geometry::leftNormal(geometry::direction(nearest.heading));

@@ -6,6 +6,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "guidance/collision_objectives.h"
 #include "guidance/driving_objectives.h"
+#include "guidance/yielding_objective.h"
 
 namespace cdiff::guidance {
 namespace {
@@ -28,6 +29,7 @@ std::vector<ObjectiveDescriptor> packageObjectives() {
        make<CollisionSeekingObjective>},
       {"traffic_avoidance", "Keeps away from the vehicles around but the other one.",
        make<TrafficAvoidanceObjective>},
+      {"yielding", "Gives way to vehicles that cross its route.", make<YieldingObjective>},
       {"route", "Stays near the route.", make<RouteObjective>},
       {"comfort", "Moves the pedals and turns gently.", make<ComfortObjective>},
   };

@@ -20,7 +20,11 @@ TotalObjective::TotalObjective(const GuidanceOptions& options, const GuidanceSce
     : options_(options),
       scene_(scene),
       tallies_(options.objectives.size()),
-      shares_(options.objectives.size(), 0.0) {}
+      shares_(options.objectives.size(), 0.0) {
+  for (WeightedObjective& entry : options_.objectives) {
+    if (entry.weight > 0.0) entry.objective->prepare(scene_);
+  }
+}
 
 bool TotalObjective::actsAt(int diffusion_step) const {
   for (const WeightedObjective& entry : options_.objectives) {

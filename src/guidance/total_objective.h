@@ -52,7 +52,7 @@ class TotalObjective {
   double weighted(std::size_t index, const traffic::Rollout& rollout);
   /// c_i of a step that starts; 0 to leave the objective out.
   double shareOf(std::size_t index, double value, double norm);
-  const GuidanceOptions& options_;
+  GuidanceOptions options_;
   const GuidanceScene& scene_;
   std::vector<Tally> tallies_;  ///< by objective
   int step_ = 0;                ///< the diffusion step that shares_ are of

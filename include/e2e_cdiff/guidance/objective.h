@@ -19,6 +19,7 @@ struct OtherMotion {
   traffic::VehicleState now;
   traffic::VehicleDimensions dimensions;
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
+  bool by_same_rules = false;  ///< driven by the same planner, so that it gives way by these rules
 };
 
 /// What guidance objectives know about the planned vehicle and its surroundings at one decision
@@ -37,6 +38,9 @@ struct GuidanceScene {
   std::vector<OtherMotion> traffic;  ///< further vehicles around, on the same level
 };
 
+/// Part of a route that a rollout can be near, so that a loop's other pass is not taken [m].
+inline constexpr geometry::SearchWindow kRouteReach{10.0, 80.0};
+
 /// Map-frame position of a rollout row.
 inline Eigen::Vector2d positionOnMap(const GuidanceScene& scene, const traffic::Rollout& rollout,
                                      Eigen::Index row) {
@@ -54,7 +58,8 @@ inline void addPositionGradient(const GuidanceScene& scene, const Eigen::Vector2
 
 /// A guidance objective J(tau^0): what sampling minimizes (paper III-D), with its analytic gradient
 /// with respect to states and actions in metric units.
-/// Stateless besides its options; one row per objective in the table of objectives.
+/// Besides its options it holds what `prepare` found in the scene of one decision; one row per
+/// objective in the table of objectives.
 class Objective {
  public:
   virtual ~Objective() = default;
@@ -62,6 +67,9 @@ class Objective {
   virtual void describe(core::OptionsVisitor& visitor) = 0;
   /// Throws InputError naming the option.
   virtual void validate() const {}
+  /// Called once a decision and sample, before `evaluate` of the same scene: for what depends on
+  /// the scene alone.
+  virtual void prepare(const GuidanceScene&) {}
   /// J of a metric rollout (body frame of `scene`), summed over its rows; adds dJ/d(rollout) to
   /// `gradient` (same shape). The states are independent variables here: the state branch joins
   /// them to the actions.

@@ -249,6 +249,7 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
     }
   }
   encodeImages(seen);
+  setCompanions(seen);
   std::vector<std::unique_ptr<Situation>> situations(tasks.size());
   std::vector<Situation*> cold;
   std::vector<Situation*> warm;

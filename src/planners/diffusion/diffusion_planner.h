@@ -16,6 +16,7 @@
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
+#include "e2e_cdiff/guidance/objective.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "planners/diffusion/image_watch.h"
 #include "planning/route_follower.h"
@@ -112,6 +113,10 @@ class DiffusionPlanner : public planning::Planner {
   void encodeImages(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, Memory& memory);
+  /// The vehicles that this planner drives at this tick, on their routes, by id.
+  void setCompanions(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
+  /// A vehicle around a planned one, forecast along its route where this planner drives it.
+  guidance::OtherMotion motionOf(const traffic::Vehicle& near) const;
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
   std::unique_ptr<diffusion::StateBranch> stateBranch(
@@ -137,6 +142,7 @@ class DiffusionPlanner : public planning::Planner {
   planning::RouteFollower ego_follower_;
   std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
   std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
+  std::map<std::string, guidance::OtherMotion> companions_;  ///< of this tick, by vehicle
 };
 
 // The diffusion planner in the table of planners, and for planners that plan with it.

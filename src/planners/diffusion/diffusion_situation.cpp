@@ -125,6 +125,29 @@ std::uint64_t ticksOf(const planning::PlanningContext& context) {
 
 }  // namespace
 
+void DiffusionPlanner::setCompanions(
+    const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen) {
+  companions_.clear();
+  const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
+  for (const auto& [task, memory] : seen) {
+    if (task->route == nullptr || task->route->empty()) continue;
+    const traffic::Vehicle& vehicle = *task->vehicle;
+    memory->follower.update(*task->route, vehicle.state.position);
+    companions_[vehicle.id] = {vehicle.state, vehicle.dimensions,
+                               planning::forecastAlongRoute(
+                                   vehicle, *task->route, memory->follower.arcLength(), steps),
+                               true};
+  }
+}
+
+guidance::OtherMotion DiffusionPlanner::motionOf(const traffic::Vehicle& near) const {
+  const auto companion = companions_.find(near.id);
+  if (companion != companions_.end()) return companion->second;
+  const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
+  return {near.state, near.dimensions,
+          planning::forecastMotion(near, context_.network, vehicle_, steps), false};
+}
+
 /// For a CBV the other is the ego along its route; for the ego the nearest other vehicle. The
 /// vehicles around both are the traffic.
 void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation) {
@@ -134,9 +157,7 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
   const bool about_ego = situation.task->slot >= 0;
   const traffic::Vehicle* other = about_ego ? ego : planning::nearestVehicle(snapshot, vehicle);
   for (const traffic::Vehicle* near : planning::vehiclesAround(snapshot, vehicle, other)) {
-    situation.scene.traffic.push_back(
-        {near->state, near->dimensions,
-         planning::forecastMotion(*near, context_.network, vehicle_, steps)});
+    situation.scene.traffic.push_back(motionOf(*near));
   }
   if (other == nullptr || !planning::isFinite(other->state) ||
       traffic::onDifferentLevels(*other, vehicle))
@@ -195,7 +216,6 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   situation->context.speed = vehicle.state.speed;
   situation->context.image_features = memory.features;
   if (task.route != nullptr && !task.route->empty()) {
-    memory.follower.update(*task.route, vehicle.state.position);
     const double arc_length = memory.follower.arcLength();
     scene.route = task.route;
     scene.route_arc_length = arc_length;

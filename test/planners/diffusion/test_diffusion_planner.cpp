@@ -154,7 +154,7 @@ TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
   const planning::PlannedAction planned = planner.plan(snapshot_, tasks())[0];
   ASSERT_EQ(planned.fault, "");
   const traffic::Vehicle& cbv = snapshot_.vehicles[1];
-  guidance::OtherMotion ego{snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}};
+  guidance::OtherMotion ego{snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}, false};
   traffic::Rollout places = traffic::Rollout::Zero(32, traffic::kRolloutColumns);
   for (Eigen::Index row = 0; row < 32; ++row) {
     const double s = 0.5 * static_cast<double>(row + 1);
