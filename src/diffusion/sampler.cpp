@@ -70,7 +70,7 @@ float Run::normal(std::size_t sample, int k, std::size_t cell) const {
       static_cast<std::uint32_t>(requests_[sample].candidate * batch_.cells() + cell);
   if (correlation_ == 0.0) return static_cast<float>(noise_.normal(key, element));
   core::RandomKey lasting = key;
-  lasting.decision = std::numeric_limits<std::uint32_t>::max();
+  lasting.decision = std::numeric_limits<std::uint32_t>::max();  // no decision has this tick
   return static_cast<float>(std::sqrt(correlation_) * noise_.normal(lasting, element) +
                             std::sqrt(1.0 - correlation_) * noise_.normal(key, element));
 }
@@ -192,9 +192,6 @@ void SamplerOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"warm_start_step", "", "Diffusion step that the previous plan is noised to."},
                   warm_start_step, 1, 1000);
   visitor.integer({"warm_steps", "", "Denoising steps of a warm start."}, warm_steps, 1, 1000);
-  visitor.number({"noise_correlation", "",
-                  "Correlation of a vehicle's noise between any two of its decisions."},
-                 noise_correlation, 0.0, 1.0);
 }
 
 namespace {

@@ -26,7 +26,8 @@ struct SamplerOptions {
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits
   std::int64_t warm_start_step = 50;  ///< diffusion step k that it is noised to
   std::int64_t warm_steps = 5;        ///< denoising steps from there
-  /// rho: correlation of a vehicle's noise between any two of its decisions, 0 to 1
+  /// rho: correlation of a vehicle's noise between any two of its decisions, 0 to 1; a matter of
+  /// guidance, too
   double noise_correlation = 0.0;
 
   void describe(core::OptionsVisitor& visitor);
@@ -71,6 +72,8 @@ struct SampledTrajectory {
 ///    r_k per element, r_k^2 = s^2 (1 - alpha_bar_k) / (alpha_bar_k s^2 + 1 - alpha_bar_k), s =
 ///    spread given the context.
 ///  - `unguided`: DDPM over all K steps without J.
+/// All noise of a vehicle is sqrt(rho) z + sqrt(1 - rho) z_i, z the same at each decision i and z_i
+/// drawn anew: standard normal at each, with correlation rho between any two.
 /// One per planner; keeps references.
 class Sampler {
  public:

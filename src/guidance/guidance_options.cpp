@@ -99,7 +99,9 @@ GuidanceOptions::GuidanceOptions() {
 }
 
 GuidanceOptions::GuidanceOptions(const GuidanceOptions& other)
-    : trust_region(other.trust_region), last_step(other.last_step) {
+    : trust_region(other.trust_region),
+      last_step(other.last_step),
+      noise_correlation(other.noise_correlation) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -111,6 +113,7 @@ GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   objectives = std::move(copy.objectives);
   trust_region = copy.trust_region;
   last_step = copy.last_step;
+  noise_correlation = copy.noise_correlation;
   return *this;
 }
 
@@ -138,6 +141,9 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"last_step", "",
                    "No objective acts at diffusion steps below this one, whatever its window."},
                   last_step, 1, kLastDiffusionStep);
+  visitor.number({"noise_correlation", "",
+                  "Correlation of a vehicle's noise between any two of its decisions."},
+                 noise_correlation, 0.0, 1.0);
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }
@@ -151,6 +157,10 @@ void GuidanceOptions::validate(const std::string& group) const {
   if (last_step < 1) {
     throw InputError("key '" + group + "last_step' is " + std::to_string(last_step) +
                      "; diffusion steps count down to 1, so at least 1 is expected");
+  }
+  if (!(noise_correlation >= 0.0 && noise_correlation <= 1.0)) {
+    throw InputError("key '" + group + "noise_correlation' is " +
+                     core::formatNumber(noise_correlation) + "; expected a number in [0, 1]");
   }
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }

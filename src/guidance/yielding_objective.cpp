@@ -16,17 +16,7 @@ constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr double kSpacing = 0.5;             // of the places looked at along the route [m]
 constexpr double kGentleAcceleration = 1.5;  // [m/s^2]
 
-/// A stretch of the route [m]; empty where begin is not below end.
-struct Stretch {
-  double begin = kFree;
-  double end = -kFree;
-
-  bool empty() const { return begin > end; }
-  void add(double arc_length) {
-    begin = std::min(begin, arc_length);
-    end = std::max(end, arc_length);
-  }
-};
+using Stretch = YieldingObjective::Stretch;
 
 /// The vehicle's box, with the gaps, at places along its route from where it is.
 class Strip {
@@ -34,7 +24,8 @@ class Strip {
   Strip(const GuidanceScene& scene, const YieldingObjective& gaps, std::size_t rows)
       : start_(scene.route_arc_length) {
     const geometry::Polyline& path = scene.route->path();
-    const double offset = path.projectNear(scene.state.position, start_, kRouteReach).lateral_offset;
+    const double offset =
+        path.projectNear(scene.state.position, start_, kRouteReach).lateral_offset;
     const double fastest = std::max(scene.state.speed, scene.target_speed);
     const double reach =
         fastest * traffic::kRolloutStep * static_cast<double>(rows) + scene.dimensions.length;
@@ -81,8 +72,7 @@ double arrivalAt(const GuidanceScene& scene, double arc_length) {
   const double to_top = (top * top - speed * speed) / (2.0 * kGentleAcceleration);
   if (way >= to_top)
     return (top - speed) / kGentleAcceleration + (way - to_top) / std::max(top, 0.1);
-  return (std::sqrt(speed * speed + 2.0 * kGentleAcceleration * way) - speed) /
-         kGentleAcceleration;
+  return (std::sqrt(speed * speed + 2.0 * kGentleAcceleration * way) - speed) / kGentleAcceleration;
 }
 
 /// When the vehicle is at an arc length at its present speed [s].
@@ -93,8 +83,7 @@ double heldArrivalAt(const GuidanceScene& scene, double arc_length) {
 
 /// Place of the other's center along the vehicle's heading [m].
 double placeAhead(const GuidanceScene& scene, const OtherMotion& other) {
-  return geometry::direction(scene.state.heading)
-      .dot(other.now.position - scene.state.position);
+  return geometry::direction(scene.state.heading).dot(other.now.position - scene.state.position);
 }
 
 /// Whether the vehicle lets the other through that meets its way as `met`.
@@ -112,6 +101,27 @@ bool givesWay(const GuidanceScene& scene, const OtherMotion& other, const std::v
   return arrivalAt(scene, swept.end) + margin > enters;
 }
 
+/// Those to give way to: the vehicles around, and the other one.
+std::vector<const OtherMotion*> othersOf(const GuidanceScene& scene) {
+  std::vector<const OtherMotion*> others;
+  for (const OtherMotion& vehicle : scene.traffic) others.push_back(&vehicle);
+  const bool on_level =
+      scene.other != nullptr &&
+      !traffic::onDifferentLevels(scene.other->now.elevation, scene.state.elevation);
+  if (on_level) others.push_back(scene.other);
+  return others;
+}
+
+/// Arc length of a position on the route, straight on beyond its ends, and the heading there.
+geometry::Projection placeOn(const GuidanceScene& scene, const Eigen::Vector2d& position) {
+  const geometry::Polyline& path = scene.route->path();
+  geometry::Projection place = path.projectNear(position, scene.route_arc_length, kRouteReach);
+  if (place.arc_length > 0.0 && place.arc_length < path.length()) return place;
+  place.arc_length +=
+      geometry::direction(place.heading).dot(position - path.positionAt(place.arc_length));
+  return place;
+}
+
 }  // namespace
 
 void YieldingObjective::describe(core::OptionsVisitor& visitor) {
@@ -123,19 +133,25 @@ void YieldingObjective::describe(core::OptionsVisitor& visitor) {
 
 void YieldingObjective::prepare(const GuidanceScene& scene) {
   limits_.clear();
-  if (scene.route == nullptr || scene.route->empty() || scene.traffic.empty()) return;
-  const std::size_t rows = scene.traffic.front().predicted.size();
-  const Strip strip(scene, *this, rows);
-  const auto spread = std::lround(margin / traffic::kRolloutStep);
-  limits_.assign(rows, kFree);
-  for (const OtherMotion& other : scene.traffic) {
-    const std::vector<Stretch> met = meetings(strip, other);
-    if (!givesWay(scene, other, met, margin)) continue;
-    for (long row = 0; row < static_cast<long>(met.size()); ++row) {
-      const long from = std::max(0L, row - spread);
-      const long to = std::min(static_cast<long>(rows) - 1, row + spread);
-      for (long t = from; t <= to; ++t)
-        limits_[t] = std::min(limits_[t], met[static_cast<std::size_t>(row)].begin);
+  const std::vector<const OtherMotion*> others = othersOf(scene);
+  if (scene.route == nullptr || scene.route->empty() || others.empty()) return;
+  const Strip strip(scene, *this, others.front()->predicted.size());
+  limits_.assign(others.front()->predicted.size(), kFree);
+  for (const OtherMotion* other : others) {
+    const std::vector<Stretch> met = meetings(strip, *other);
+    if (givesWay(scene, *other, met, margin)) limitBy(met);
+  }
+}
+
+/// Lowers the limits to what `met` leaves, from `margin` before each row to `margin` after it.
+void YieldingObjective::limitBy(const std::vector<Stretch>& met) {
+  const auto rows = static_cast<long>(std::min(met.size(), limits_.size()));
+  const long spread = std::lround(margin / traffic::kRolloutStep);
+  for (long row = 0; row < rows; ++row) {
+    const double begin = met[static_cast<std::size_t>(row)].begin;
+    for (long t = std::max(0L, row - spread); t <= std::min(rows - 1, row + spread); ++t) {
+      double& limit = limits_[static_cast<std::size_t>(t)];
+      limit = std::min(limit, begin);
     }
   }
 }
@@ -147,8 +163,7 @@ double YieldingObjective::evaluate(const GuidanceScene& scene, const traffic::Ro
   for (Eigen::Index row = 0; row < std::min(rollout.rows(), known); ++row) {
     const double limit = limits_[static_cast<std::size_t>(row)];
     if (limit == kFree) continue;
-    const geometry::Projection place = scene.route->path().projectNear(
-        positionOnMap(scene, rollout, row), scene.route_arc_length, kRouteReach);
+    const geometry::Projection place = placeOn(scene, positionOnMap(scene, rollout, row));
     const double beyond = place.arc_length - limit;
     if (beyond <= 0.0) continue;
     sum += beyond * beyond;

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -10,17 +12,33 @@
 
 namespace cdiff::guidance {
 
-/// J_yield = sum_t max(0, s_t - L_t)^2 [m^2], s_t the arc length of row t on the vehicle's route and
-/// L_t the farthest at which its box does not meet the forecast box of a vehicle that it gives way
-/// to. Not in the paper, whose collision guidance is about the ego alone.
+/// J_yield = sum_t max(0, s_t - L_t)^2 [m^2]: s_t is the arc length of row t on the vehicle's
+/// route, straight on beyond its end, and L_t the first place on it at which the vehicle's box,
+/// with the gaps, would meet the box that another vehicle to give way to is forecast to have at row
+/// t, or within `margin` of it. Longitudinal alone. Not in the paper, whose collision guidance is
+/// about the ego alone.
 ///
-/// The route is what the vehicle will sweep, at its present lateral offset. Another vehicle is given
-/// way to where its forecast box, with a gap, first enters that strip ahead of the vehicle at row
-/// t_in, unless the vehicle, accelerating gently to its target speed, has cleared the part that the
-/// other sweeps `margin` before then. Its limits hold `margin` before and after each row. Vehicles
-/// ahead in the lane are those of traffic_avoidance.
+/// The vehicle's place on its route is that of its present lateral offset. One that enters its way
+/// at row t_in is given way to, unless
+///  - the planned vehicle has driven through all that the other will sweep `margin` before t_in,
+///    accelerating gently to its target speed;
+///  - it is driven by the same rules, and the planned one is first at the place where they meet, at
+///    its present speed;
+///  - it meets the vehicle where that is now, from beside or behind.
 class YieldingObjective : public Objective {
  public:
+  /// Part of the route [m]; nothing where begin is above end.
+  struct Stretch {
+    double begin = std::numeric_limits<double>::infinity();
+    double end = -std::numeric_limits<double>::infinity();
+
+    bool empty() const { return begin > end; }
+    void add(double arc_length) {
+      begin = std::min(begin, arc_length);
+      end = std::max(end, arc_length);
+    }
+  };
+
   double longitudinal_gap = 1.0;  ///< between bumpers [m]
   double lateral_gap = 0.3;       ///< between sides [m]
   double margin = 0.5;            ///< in time, before and after the other [s]
@@ -33,7 +51,10 @@ class YieldingObjective : public Objective {
   std::unique_ptr<Objective> clone() const override;
 
  private:
-  std::vector<double> limits_;  ///< L_t, infinite where the way is free; empty: everywhere
+  void limitBy(const std::vector<Stretch>& met);
+
+  std::vector<double>
+      limits_;  ///< L_t, infinite where the way is free [m]; empty: it is everywhere
 };
 
 }  // namespace cdiff::guidance

@@ -116,18 +116,22 @@ inline traffic::Rollout wandering(std::uint32_t trial) {
   return rollout;
 }
 
-/// J alone.
+/// J alone, of a decision of its own.
 inline double valueOf(const guidance::Objective& objective, const guidance::GuidanceScene& scene,
                       const traffic::Rollout& rollout) {
+  const auto prepared = objective.clone();
+  prepared->prepare(scene);
   traffic::Rollout unused = traffic::Rollout::Zero(rollout.rows(), traffic::kRolloutColumns);
-  return objective.evaluate(scene, rollout, unused);
+  return prepared->evaluate(scene, rollout, unused);
 }
 
 inline traffic::Rollout gradientOf(const guidance::Objective& objective,
                                    const guidance::GuidanceScene& scene,
                                    const traffic::Rollout& rollout) {
+  const auto prepared = objective.clone();
+  prepared->prepare(scene);
   traffic::Rollout gradient = traffic::Rollout::Zero(rollout.rows(), traffic::kRolloutColumns);
-  objective.evaluate(scene, rollout, gradient);
+  prepared->evaluate(scene, rollout, gradient);
   return gradient;
 }
 

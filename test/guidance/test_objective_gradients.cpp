@@ -104,6 +104,7 @@ TEST(ObjectiveGradients, AddToWhatIsThere) {
   const Rollout rollout = test::wandering(7);
   for (const std::string& name : objectiveNames()) {
     const auto objective = makeObjective(name);
+    objective->prepare(world.scene());
     Rollout gradient = Rollout::Constant(rollout.rows(), traffic::kRolloutColumns, 3.0);
     objective->evaluate(world.scene(), rollout, gradient);
     const Rollout alone = test::gradientOf(*objective, world.scene(), rollout);

@@ -45,6 +45,9 @@ struct GuidanceOptions {
   /// No objective acts at k below it, whatever its own window: the steps after it are the model's
   /// alone, so that what guidance did last is denoised once more.
   std::int64_t last_step = 1;
+  /// rho: correlation of the noise that a vehicle's plans are drawn from between any two of its
+  /// decisions; 0: drawn anew each time (the paper), 1: one noise for all its decisions.
+  double noise_correlation = 0.0;
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);

@@ -26,6 +26,7 @@ diffusion::SamplerOptions samplerOptions(const DiffusionOptions& options,
                                          const guidance::GuidanceOptions& guidance) {
   diffusion::SamplerOptions sampler = options.sampler;
   sampler.trust_region = guidance.trust_region;
+  sampler.noise_correlation = guidance.noise_correlation;
   return sampler;
 }
 

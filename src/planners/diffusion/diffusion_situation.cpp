@@ -133,10 +133,10 @@ void DiffusionPlanner::setCompanions(
     if (task->route == nullptr || task->route->empty()) continue;
     const traffic::Vehicle& vehicle = *task->vehicle;
     memory->follower.update(*task->route, vehicle.state.position);
-    companions_[vehicle.id] = {vehicle.state, vehicle.dimensions,
-                               planning::forecastAlongRoute(
-                                   vehicle, *task->route, memory->follower.arcLength(), steps),
-                               true};
+    companions_[vehicle.id] = {
+        vehicle.state, vehicle.dimensions,
+        planning::forecastAlongRoute(vehicle, *task->route, memory->follower.arcLength(), steps),
+        true};
   }
 }
 
