@@ -230,14 +230,16 @@ void SamplerOptions::validate(int diffusion_steps) const {
   requireAtMost("warm_start_step", warm_start_step, diffusion_steps, model);
   if (warm_start) requireRealTime("warm_start", "on", mode);
   if (solver != SamplerOptions().solver) requireRealTime("solver", solver.c_str(), mode);
-  if (clean_up_steps > 0) requireRealTime("clean_up_steps", "above 0", mode);
+  const bool clean_up_asked = clean_up_steps != SamplerOptions().clean_up_steps;
+  if (clean_up_asked)
+    requireRealTime("clean_up_steps", std::to_string(clean_up_steps).c_str(), mode);
   if (warm_steps > warm_start_step) {
     throw core::InputError("key 'diffusion.sampler.warm_steps' is " + std::to_string(warm_steps) +
                            "; expected at most warm_start_step (" +
                            std::to_string(warm_start_step) + ")");
   }
   for (const bool warm : {false, true}) {
-    if (mode != "real_time" || (warm && !warm_start)) continue;
+    if (mode != "real_time" || !clean_up_asked || (warm && !warm_start)) continue;
     const std::vector<int> visited = visitedSteps(diffusion_steps, warm);
     const auto even = static_cast<std::size_t>(warm ? warm_steps : steps);
     const auto halved = static_cast<int>(std::log2(visited[even - 1]));
@@ -252,7 +254,8 @@ std::vector<int> SamplerOptions::visitedSteps(int diffusion_steps, bool warm) co
   const int first = warm ? static_cast<int>(warm_start_step) : firstFewStep(diffusion_steps);
   std::vector<int> visited =
       evenSteps(first, std::min(first, static_cast<int>(warm ? warm_steps : steps)));
-  for (std::int64_t i = 0; i < clean_up_steps; ++i) visited.push_back(visited.back() / 2);
+  for (std::int64_t i = 0; i < clean_up_steps && visited.back() > 1; ++i)
+    visited.push_back(visited.back() / 2);
   return visited;
 }
 

@@ -18,9 +18,11 @@ namespace cdiff::diffusion {
 /// (counts without unit).
 struct SamplerOptions {
   std::string mode = "real_time";   ///< paper | real_time | unguided
-  std::string solver = "ddim";      ///< of mode `real_time`: ddim | dpmpp_2m
+  std::string solver = "dpmpp_2m";  ///< of mode `real_time`: ddim | dpmpp_2m
   std::int64_t steps = 10;          ///< evenly spaced steps of mode `real_time`
-  std::int64_t clean_up_steps = 0;  ///< real_time: steps after them, each at half of the one before
+  /// real_time: steps after them, each at half of the one before; these two where that can be
+  /// halved
+  std::int64_t clean_up_steps = 2;
   std::int64_t inner_iterations = 4;  ///< iterations of the proximal step
   double trust_region = 2.0;          ///< c; a matter of guidance, so its options set it
   bool warm_start = false;            ///< real_time: start from the previous plan where it fits

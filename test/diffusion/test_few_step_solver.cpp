@@ -234,19 +234,32 @@ std::string errorOf(const SamplerOptions& options) {
   return "";
 }
 
+TEST(FewStepSolver, CleanUpStepsThatNobodyAskedForAreLeftOutWhereNothingCanBeHalved) {
+  SamplerOptions options;
+  options.steps = 98;
+  EXPECT_EQ(errorOf(options), "");
+  EXPECT_EQ(options.visitedSteps(100, false).back(), 1);
+  EXPECT_EQ(options.visitedSteps(100, false).size(), 98U);
+  options.steps = 40;  // ends at 2
+  EXPECT_EQ(options.visitedSteps(100, false).size(), 41U);
+}
+
 TEST(FewStepSolver, WhatCannotTakeEffectIsRefused) {
   EXPECT_EQ(errorOf(optionsOf("dpmpp_2m", 3)), "");  // 5, 2, 1
   EXPECT_NE(errorOf(optionsOf("dpmpp_2m", 4))
                 .find("clean_up_steps' is 4; the steps before end at "
                       "10, which can be halved 3 times"),
             std::string::npos);
-  SamplerOptions paper = optionsOf("dpmpp_2m", 0);
+  SamplerOptions paper;  // what is not asked for needs no refusal
   paper.mode = "paper";
-  EXPECT_NE(errorOf(paper).find("'diffusion.sampler.solver' is dpmpp_2m; only mode real_time"),
+  EXPECT_EQ(errorOf(paper), "");
+  paper.solver = "ddim";
+  EXPECT_NE(errorOf(paper).find("'diffusion.sampler.solver' is ddim; only mode real_time"),
             std::string::npos);
-  paper = optionsOf("ddim", 2);
+  paper = SamplerOptions();
+  paper.clean_up_steps = 0;
   paper.mode = "unguided";
-  EXPECT_NE(errorOf(paper).find("'diffusion.sampler.clean_up_steps' is above 0; only mode"),
+  EXPECT_NE(errorOf(paper).find("'diffusion.sampler.clean_up_steps' is 0; only mode"),
             std::string::npos);
   SamplerOptions warm = optionsOf("ddim", 3);
   warm.warm_start = true;

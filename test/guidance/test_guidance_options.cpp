@@ -179,7 +179,9 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
       {"ablation_collision", {"collision_avoidance"}},
       {"ablation_drivable", {"drivable_area"}},
       {"ablation_speed", {"speed"}},
-      {"naturalistic", {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance"}},
+      {"naturalistic",
+       {"speed", "drivable_area", "collision_avoidance", "traffic_avoidance", "yielding",
+        "comfort"}},
       {"none", {}},
       {"paper_ablation_collision", {"collision_avoidance"}},
       {"paper_ablation_drivable", {"drivable_area"}},
@@ -191,8 +193,22 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
   for (const auto& [name, active] : expected) {
     names.push_back(name);
     EXPECT_EQ(activeOf(loadProfile(name)), active) << name;
+    EXPECT_EQ(loadProfile(name).noise_correlation, name == "naturalistic" ? 1.0 : 0.0) << name;
   }
   EXPECT_EQ(shippedProfiles(), names);
+}
+
+TEST(Profiles, NoiseCorrelationIsCopiedAndMustBeAShare) {
+  GuidanceOptions options;
+  options.noise_correlation = 0.5;
+  EXPECT_EQ(GuidanceOptions(options).noise_correlation, 0.5);
+  GuidanceOptions assigned;
+  assigned = options;
+  EXPECT_EQ(assigned.noise_correlation, 0.5);
+  for (const double bad : {-0.1, 1.1, std::nan("")}) {
+    options.noise_correlation = bad;
+    EXPECT_THROW(options.validate("guidance."), core::InputError) << bad;
+  }
 }
 
 TEST(Profiles, ThePapersSeekAndAvoidByOneSetOfValues) {

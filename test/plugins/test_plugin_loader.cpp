@@ -69,7 +69,7 @@ TEST(PluginLoader, WhatThrowsInPlanBrakesAndIsRecorded) {
 }
 
 TEST(PluginLoader, NamesWhatIsWrongAndWhoMustAct) {
-  expectIn("was built for version 3 of the API; this is version 2: build it again",
+  expectIn("was built for version 4 of the API; this is version 3: build it again",
            refusalOf("other_version"));
   expectIn("throws in its constructor: no license found; its author must mend it",
            refusalOf("throwing_constructor"));

@@ -258,7 +258,7 @@ TEST(SessionRequest, BadGuidanceOfTheEgoIsNamedSo) {
   EXPECT_TRUE(mentions(errorOf(request), "'naturalistic'")) << errorOf(request);
   request.set = {"ego_guidance.speed.first_step=5", "ego_guidance.speed.last_step=20"};
   EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.first_step'")) << errorOf(request);
-  request.set = {"ego_guidance.speed.first_step=9"};
+  request.set = {"ego_guidance.speed.first_step=1"};
   EXPECT_TRUE(mentions(errorOf(request), "'ego_guidance.speed.last_step'")) << errorOf(request);
 }
 

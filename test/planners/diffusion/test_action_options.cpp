@@ -151,6 +151,8 @@ TEST_F(ActionOptions, RouteScaleWithoutARouteIsRefused) {
 
 TEST_F(ActionOptions, SolverAndLastStepReachThePlan) {
   DiffusionOptions options = optionsOf();
+  options.sampler.solver = "ddim";
+  options.sampler.clean_up_steps = 0;
   std::vector<PlannedAction> seen = {plansOf(options)[0]};
   options.sampler.solver = "dpmpp_2m";
   seen.push_back(plansOf(options)[0]);
@@ -165,18 +167,29 @@ TEST_F(ActionOptions, SolverAndLastStepReachThePlan) {
   }
 }
 
+TEST_F(ActionOptions, LastingNoiseMakesPlansOfOnePictureAlike) {
+  const DiffusionOptions options = optionsOf();
+  guidance_.noise_correlation = 0.0;
+  const auto anew = plansOf(options, 2);
+  const std::size_t vehicles = anew.size() / 2;
+  EXPECT_FALSE(sameActions(anew[0], anew[vehicles]));
+  guidance_.noise_correlation = 1.0;
+  const auto lasting = plansOf(options, 2);
+  EXPECT_TRUE(sameActions(lasting[0], lasting[vehicles]));
+  EXPECT_FALSE(sameActions(lasting[0], anew[0]));
+}
+
 TEST_F(ActionOptions, RecordsSaySamplerResponseAndRouteScale) {
   planning::PlannerOptionsTable table = defaultOptions();
   const auto facts = [&] { return findPlanner("diffusion")->network(table, guidance_); };
-  EXPECT_EQ(facts().sampling, "DDIM over 10 steps, proximal guidance, 1 sample");
+  EXPECT_EQ(facts().sampling, "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample");
   EXPECT_EQ(facts().conditioning, "image_route");
   auto& options = table.of<DiffusionOptions>();
-  options.sampler.solver = "dpmpp_2m";
-  options.sampler.clean_up_steps = 2;
+  options.sampler.solver = "ddim";
+  options.sampler.clean_up_steps = 0;
   options.response = "monotone";
   options.route_scale = 0.5;
-  EXPECT_EQ(facts().sampling,
-            "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample, monotone response");
+  EXPECT_EQ(facts().sampling, "DDIM over 10 steps, proximal guidance, 1 sample, monotone response");
   EXPECT_EQ(facts().conditioning, "image_route, route scale 0.5");
 }
 

@@ -31,7 +31,7 @@ TEST_F(DiffusionPlannerTest, PlansAWholeRolloutForEveryVehicle) {
     EXPECT_TRUE(planned.action.valid());
     ASSERT_EQ(planned.rollout.size(), 32U);
     EXPECT_EQ(planned.rollout.front().action, planned.action);
-    ASSERT_EQ(planned.guidance.objectives.size(), 4U);
+    ASSERT_EQ(planned.guidance.objectives.size(), 6U);
     // The random state head knows nothing of the dynamics: its places are meters off.
     EXPECT_GT(planned.state_mismatch, 0.1);
   }
@@ -154,7 +154,8 @@ TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
   const planning::PlannedAction planned = planner.plan(snapshot_, tasks())[0];
   ASSERT_EQ(planned.fault, "");
   const traffic::Vehicle& cbv = snapshot_.vehicles[1];
-  guidance::OtherMotion ego{snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}, false};
+  guidance::OtherMotion ego{
+      snapshot_.vehicles[0].state, snapshot_.vehicles[0].dimensions, {}, false};
   traffic::Rollout places = traffic::Rollout::Zero(32, traffic::kRolloutColumns);
   for (Eigen::Index row = 0; row < 32; ++row) {
     const double s = 0.5 * static_cast<double>(row + 1);
