@@ -43,7 +43,7 @@ TEST_F(TwoStagePidTest, TracksThePlanOfTheDiffusionPlannerVehicleByVehicle) {
       EXPECT_EQ(actions[i].action, tracked(trackers[i], snapshot_.vehicles[i + 1], plans[i]));
       EXPECT_EQ(actions[i].state_mismatch, plans[i].state_mismatch);
       EXPECT_GT(actions[i].state_mismatch, 0.0);
-      EXPECT_EQ(actions[i].guidance.objectives.size(), 4U);
+      EXPECT_EQ(actions[i].guidance.objectives.size(), 6U);
       ASSERT_EQ(actions[i].rollout.size(), 32U);
       for (std::size_t k = 0; k < 32; ++k) {
         EXPECT_EQ(actions[i].rollout[k].state.position, plans[i].rollout[k].state.position);
