@@ -64,10 +64,16 @@ std::string samplerText(const diffusion::SamplerOptions& sampler) {
          (sampler.warm_start ? ", warm start" : "");
 }
 
-std::string samplingText(const DiffusionOptions& options) {
+std::string samplingText(const DiffusionOptions& options,
+                         const guidance::GuidanceOptions& guidance) {
   const std::string candidates =
       options.candidates == 1 ? "1 sample" : std::to_string(options.candidates) + " samples";
-  return samplerText(options.sampler) + ", " + candidates +
+  const std::string noise =
+      guidance.noise_correlation == 0.0 ? ""
+      : guidance.noise_correlation == 1.0
+          ? ", one noise a vehicle"
+          : ", noise correlated by " + core::formatNumber(guidance.noise_correlation);
+  return samplerText(options.sampler) + ", " + candidates + noise +
          (options.response == "fitted" ? "" : ", " + options.response + " response");
 }
 
@@ -83,7 +89,7 @@ planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
   const auto& options = table.of<DiffusionOptions>();
   return {options.model,
           conditioningText(options, guidance),
-          samplingText(options),
+          samplingText(options, guidance),
           {{"encoder_precision", inference::toText(inference::precisionNamed(
                                      options.precision, options.isa, "diffusion.precision"))},
            {"encoder_instruction_set", inference::oneDnnInstructionSet(options.isa)},

@@ -182,7 +182,12 @@ TEST_F(ActionOptions, LastingNoiseMakesPlansOfOnePictureAlike) {
 TEST_F(ActionOptions, RecordsSaySamplerResponseAndRouteScale) {
   planning::PlannerOptionsTable table = defaultOptions();
   const auto facts = [&] { return findPlanner("diffusion")->network(table, guidance_); };
-  EXPECT_EQ(facts().sampling, "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample");
+  EXPECT_EQ(facts().sampling,
+            "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample, one noise a vehicle");
+  guidance_.noise_correlation = 0.5;
+  EXPECT_EQ(facts().sampling,
+            "DPM-Solver++(2M) over 12 steps, proximal guidance, 1 sample, noise correlated by 0.5");
+  guidance_.noise_correlation = 0.0;
   EXPECT_EQ(facts().conditioning, "image_route");
   auto& options = table.of<DiffusionOptions>();
   options.sampler.solver = "ddim";
