@@ -24,7 +24,7 @@ namespace cdiff::guidance {
 ///    accelerating gently to its target speed;
 ///  - it is driven by the same rules, and the planned one is first at the place where they meet, at
 ///    its present speed;
-///  - it meets the vehicle where that is now, from beside or behind.
+///  - it meets the vehicle where that is now, with its center beside or behind.
 class YieldingObjective : public Objective {
  public:
   /// Part of the route [m]; nothing where begin is above end.

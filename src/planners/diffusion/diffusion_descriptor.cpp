@@ -59,9 +59,10 @@ namespace {
 std::string samplerText(const diffusion::SamplerOptions& sampler) {
   if (sampler.mode == "unguided") return "DDPM over all K steps without guidance";
   if (sampler.mode == "paper") return "DDPM over all K steps, gradient through the network";
+  const auto diffusion_steps = static_cast<int>(diffusion::Architecture().diffusion_steps);
   return diffusion::fewStepSolverTitle(sampler.solver) + " over " +
-         std::to_string(sampler.steps + sampler.clean_up_steps) + " steps, proximal guidance" +
-         (sampler.warm_start ? ", warm start" : "");
+         std::to_string(sampler.visitedSteps(diffusion_steps, false).size()) +
+         " steps, proximal guidance" + (sampler.warm_start ? ", warm start" : "");
 }
 
 std::string samplingText(const DiffusionOptions& options,
