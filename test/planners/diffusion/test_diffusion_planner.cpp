@@ -177,6 +177,25 @@ TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
   }
 }
 
+// The second CBV, 12 m ahead, brakes fully now, but not in the last tick: by its pedals it would
+// stand after a second, along its route it goes on. Only with its own task does this planner drive
+// it.
+TEST_F(DiffusionPlannerTest, ForecastsTheVehiclesThatItDrivesAlongTheirRoutes) {
+  guidance_ = guidance::loadProfile("none");
+  guidance_.find("yielding").weight = 10.0;
+  traffic::Vehicle& second = snapshot_.vehicles[2];
+  second.state.position.x() = snapshot_.vehicles[1].state.position.x() + 12.0;
+  second.applied_action = traffic::ControlAction{0.0, 0.0, 1.0};
+  const auto firstOf = [&](const std::vector<planning::PlanningTask>& driven) {
+    return makePlanner().plan(snapshot_, driven)[0].rollout.back().state.position;
+  };
+  const Eigen::Vector2d together = firstOf(tasks());
+  const Eigen::Vector2d alone = firstOf({tasks()[0]});
+  EXPECT_GT((together - alone).norm(), 1e-3);
+  second.applied_action.reset();
+  EXPECT_LT((firstOf(tasks()) - firstOf({tasks()[0]})).norm(), 1e-3);
+}
+
 // v* = 8 m/s on a lane with a limit of 5 m/s: J_speed = sum over the rows of (v - 5)^2.
 TEST_F(DiffusionPlannerTest, AimsAtTheLanesLimitWhereItIsLowerThanTheTarget) {
   const map::RoadNetwork slow =
