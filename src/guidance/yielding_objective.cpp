@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-
-#include "e2e_cdiff/core/angle.h"
 
 namespace cdiff::guidance {
 namespace {
@@ -15,8 +12,19 @@ namespace {
 constexpr double kFree = std::numeric_limits<double>::infinity();
 constexpr double kSpacing = 0.5;             // of the places looked at along the route [m]
 constexpr double kGentleAcceleration = 1.5;  // [m/s^2]
+constexpr double kSlowest = 0.1;             // speed that arrivals are divided by at least [m/s]
 
-using Stretch = YieldingObjective::Stretch;
+/// Part of the route [m]; nothing where begin is above end.
+struct Stretch {
+  double begin = kFree;
+  double end = -kFree;
+
+  bool empty() const { return begin > end; }
+  void add(double arc_length) {
+    begin = std::min(begin, arc_length);
+    end = std::max(end, arc_length);
+  }
+};
 
 /// The vehicle's box, with the gaps, at places along its route from where it is.
 class Strip {
@@ -55,6 +63,7 @@ class Strip {
   std::vector<geometry::OrientedBox> boxes_;
 };
 
+/// Where the other, as it is forecast, meets the strip: a stretch for each row.
 std::vector<Stretch> meetings(const Strip& strip, const OtherMotion& other) {
   std::vector<Stretch> met;
   for (const traffic::VehicleState& state : other.predicted) {
@@ -71,14 +80,14 @@ double arrivalAt(const GuidanceScene& scene, double arc_length) {
   const double top = std::max(speed, scene.target_speed);
   const double to_top = (top * top - speed * speed) / (2.0 * kGentleAcceleration);
   if (way >= to_top)
-    return (top - speed) / kGentleAcceleration + (way - to_top) / std::max(top, 0.1);
+    return (top - speed) / kGentleAcceleration + (way - to_top) / std::max(top, kSlowest);
   return (std::sqrt(speed * speed + 2.0 * kGentleAcceleration * way) - speed) / kGentleAcceleration;
 }
 
 /// When the vehicle is at an arc length at its present speed [s].
 double heldArrivalAt(const GuidanceScene& scene, double arc_length) {
   const double way = std::max(0.0, arc_length - scene.route_arc_length);
-  return way == 0.0 ? 0.0 : way / std::max(scene.state.speed, 0.1);
+  return way / std::max(scene.state.speed, kSlowest);
 }
 
 /// Place of the other's center along the vehicle's heading [m].
@@ -112,6 +121,19 @@ std::vector<const OtherMotion*> othersOf(const GuidanceScene& scene) {
   return others;
 }
 
+/// Lowers the limits to what `met` leaves, from `margin` [s] before each row to `margin` after it.
+void limitBy(const std::vector<Stretch>& met, double margin, std::vector<double>& limits) {
+  const auto rows = static_cast<long>(std::min(met.size(), limits.size()));
+  const long spread = std::lround(margin / traffic::kRolloutStep);
+  for (long row = 0; row < rows; ++row) {
+    const double begin = met[static_cast<std::size_t>(row)].begin;
+    for (long t = std::max(0L, row - spread); t <= std::min(rows - 1, row + spread); ++t) {
+      double& limit = limits[static_cast<std::size_t>(t)];
+      limit = std::min(limit, begin);
+    }
+  }
+}
+
 /// Arc length of a position on the route, straight on beyond its ends, and the heading there.
 geometry::Projection placeOn(const GuidanceScene& scene, const Eigen::Vector2d& position) {
   const geometry::Polyline& path = scene.route->path();
@@ -139,20 +161,7 @@ void YieldingObjective::prepare(const GuidanceScene& scene) {
   limits_.assign(others.front()->predicted.size(), kFree);
   for (const OtherMotion* other : others) {
     const std::vector<Stretch> met = meetings(strip, *other);
-    if (givesWay(scene, *other, met, margin)) limitBy(met);
-  }
-}
-
-/// Lowers the limits to what `met` leaves, from `margin` before each row to `margin` after it.
-void YieldingObjective::limitBy(const std::vector<Stretch>& met) {
-  const auto rows = static_cast<long>(std::min(met.size(), limits_.size()));
-  const long spread = std::lround(margin / traffic::kRolloutStep);
-  for (long row = 0; row < rows; ++row) {
-    const double begin = met[static_cast<std::size_t>(row)].begin;
-    for (long t = std::max(0L, row - spread); t <= std::min(rows - 1, row + spread); ++t) {
-      double& limit = limits_[static_cast<std::size_t>(t)];
-      limit = std::min(limit, begin);
-    }
+    if (givesWay(scene, *other, met, margin)) limitBy(met, margin, limits_);
   }
 }
 

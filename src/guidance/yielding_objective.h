@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -27,18 +25,6 @@ namespace cdiff::guidance {
 ///  - it meets the vehicle where that is now, with its center beside or behind.
 class YieldingObjective : public Objective {
  public:
-  /// Part of the route [m]; nothing where begin is above end.
-  struct Stretch {
-    double begin = std::numeric_limits<double>::infinity();
-    double end = -std::numeric_limits<double>::infinity();
-
-    bool empty() const { return begin > end; }
-    void add(double arc_length) {
-      begin = std::min(begin, arc_length);
-      end = std::max(end, arc_length);
-    }
-  };
-
   double longitudinal_gap = 1.0;  ///< between bumpers [m]
   double lateral_gap = 0.3;       ///< between sides [m]
   double margin = 0.5;            ///< in time, before and after the other [s]
@@ -51,8 +37,6 @@ class YieldingObjective : public Objective {
   std::unique_ptr<Objective> clone() const override;
 
  private:
-  void limitBy(const std::vector<Stretch>& met);
-
   std::vector<double>
       limits_;  ///< L_t, infinite where the way is free [m]; empty: it is everywhere
 };

@@ -207,6 +207,7 @@ TEST(Sampler, NoiseOfAVehicleIsCorrelatedAsAsked) {
   }
 }
 
+// The mean square of 6000 normal values has a standard error of 0.018.
 TEST(Sampler, CorrelatedNoiseStillDrawsThePriorAndDiffersByVehicle) {
   SamplerOptions options = mode("unguided");
   options.noise_correlation = 0.6;

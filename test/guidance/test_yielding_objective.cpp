@@ -34,11 +34,11 @@ class Yielding : public ::testing::Test {
     world_.scene().traffic.push_back(other);
     return world_.scene().traffic.back();
   }
-  double valueAt(double ahead, Eigen::Index rows = 32) const {
+  double valueAt(double ahead, Eigen::Index rows = 32) {
     return valueOf(objective_, world_.scene(), standing(ahead, 0.0, 0.0, 0.0, rows));
   }
 
-  mutable GuidanceWorld world_;
+  GuidanceWorld world_;
   YieldingObjective objective_;
 };
 

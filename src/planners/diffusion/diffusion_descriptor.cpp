@@ -59,6 +59,7 @@ namespace {
 std::string samplerText(const diffusion::SamplerOptions& sampler) {
   if (sampler.mode == "unguided") return "DDPM over all K steps without guidance";
   if (sampler.mode == "paper") return "DDPM over all K steps, gradient through the network";
+  // Of the shipped architecture; a model of another K is read by the planner alone.
   const auto diffusion_steps = static_cast<int>(diffusion::Architecture().diffusion_steps);
   return diffusion::fewStepSolverTitle(sampler.solver) + " over " +
          std::to_string(sampler.visitedSteps(diffusion_steps, false).size()) +

@@ -113,7 +113,8 @@ class DiffusionPlanner : public planning::Planner {
   void encodeImages(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, Memory& memory);
-  /// The vehicles that this planner drives at this tick, on their routes, by id.
+  /// Moves the vehicles that this planner drives along their routes to where they are now, and
+  /// forecasts them there, for each other.
   void setCompanions(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
   /// A vehicle around a planned one, forecast along its route where this planner drives it.
   guidance::OtherMotion motionOf(const traffic::Vehicle& near) const;

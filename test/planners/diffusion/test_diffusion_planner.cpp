@@ -177,9 +177,8 @@ TEST_F(DiffusionPlannerTest, ExpectsTheEgoOnTheEgosRouteNotOnTheCbvs) {
   }
 }
 
-// The second CBV, 12 m ahead, brakes fully now, but not in the last tick: by its pedals it would
-// stand after a second, along its route it goes on. Only with its own task does this planner drive
-// it.
+// The second CBV, 12 m ahead, brakes fully and has not slowed yet: by its pedals it would stand
+// after a second, along its route it goes on. Only with its own task does this planner drive it.
 TEST_F(DiffusionPlannerTest, ForecastsTheVehiclesThatItDrivesAlongTheirRoutes) {
   guidance_ = guidance::loadProfile("none");
   guidance_.find("yielding").weight = 10.0;
