@@ -34,6 +34,8 @@ std::string causeOf(int exit_code, const std::string& fault, const fs::path& log
   return "exit code " + std::to_string(exit_code) + (line.empty() ? "" : ": " + line);
 }
 
+/// One batch of `cdiff evaluate`: what is to run now waits in `queue_`, the rest of the plan keeps
+/// its record. Runs, records and folders are addressed by their place in the plan.
 class Executor {
  public:
   Executor(const std::vector<PlannedRun>& plan, const ExecutorOptions& options,
@@ -54,6 +56,7 @@ class Executor {
     return runFolder(options_.results, plan_[index].id);
   }
 
+  /// Gives the run a record, and puts it in line unless its earlier result stands.
   void enqueue(std::size_t index) {
     records_.push_back(recordOf(plan_[index]));
     if (options_.resume && staysOrIsCounted(index)) return;

@@ -11,16 +11,16 @@
 
 namespace cdiff::evaluation {
 
-/// Runs planned sessions in parallel processes: time-out, retry where a process or its simulator
-/// died, one record per run.
+/// How `cdiff evaluate` runs planned sessions in parallel processes: time-out, retries, what an
+/// earlier batch leaves to do, and whom it informs.
 struct ExecutorOptions {
   std::filesystem::path program =
       "/proc/self/exe";           ///< understands `run FILE --quiet --results DIR --overwrite`
   std::filesystem::path results;  ///< result folder of the batch
   int jobs = 1;                   ///< processes at a time
   double timeout = 600.0;         ///< wall time of one attempt [s]
-  int retries = 1;
-  double grace = 20.0;  ///< to end in after an interrupt [s]
+  int retries = 1;                ///< further attempts where a process or its simulator died
+  double grace = 20.0;            ///< to end in after an interrupt [s]
   bool resume = false;  ///< complete records of the same scenario, inputs and program stay
   /// Runs that are run now; the others keep their record, or get one that says not_run. None: all.
   std::function<bool(const PlannedRun&)> chosen = {};
