@@ -23,9 +23,11 @@ struct Score {
 /// GuidanceReport. c_i = min(1, gradient_cap / |w_i dJ_i/d tau|) where the step starts: value and
 /// gradient stay those of one function within a step. Not finite there -> the objective is left out
 /// of that step and counted.
-/// One per sample and decision. References must outlive it.
+/// One per sample and decision; a copy made before it acts is that of another sample, prepared for
+/// the same scene. References must outlive it.
 class TotalObjective {
  public:
+  /// Prepares the objectives for the scene.
   TotalObjective(const GuidanceOptions& options, const GuidanceScene& scene);
 
   /// Whether any objective acts at this diffusion step.

@@ -6,72 +6,34 @@
 #include <cmath>
 #include <limits>
 
+#include "guidance/right_of_way.h"
+
 namespace cdiff::guidance {
 namespace {
 
 constexpr double kFree = std::numeric_limits<double>::infinity();
-constexpr double kSpacing = 0.5;             // of the places looked at along the route [m]
 constexpr double kGentleAcceleration = 1.5;  // [m/s^2]
 constexpr double kSlowest = 0.1;             // speed that arrivals are divided by at least [m/s]
 
-/// Part of the route [m]; nothing where begin is above end.
-struct Stretch {
-  double begin = kFree;
-  double end = -kFree;
+/// Where another vehicle, as it is forecast, meets the strip.
+struct Encounter {
+  std::vector<Stretch> rows;
+  std::size_t first = 0;  ///< row that meets; their number where none does
+  Stretch swept;          ///< of all rows
 
-  bool empty() const { return begin > end; }
-  void add(double arc_length) {
-    begin = std::min(begin, arc_length);
-    end = std::max(end, arc_length);
-  }
-};
-
-/// The vehicle's box, with the gaps, at places along its route from where it is.
-class Strip {
- public:
-  Strip(const GuidanceScene& scene, const YieldingObjective& gaps, std::size_t rows)
-      : start_(scene.route_arc_length) {
-    const geometry::Polyline& path = scene.route->path();
-    const double offset =
-        path.projectNear(scene.state.position, start_, kRouteReach).lateral_offset;
-    const double fastest = std::max(scene.state.speed, scene.target_speed);
-    const double reach =
-        fastest * traffic::kRolloutStep * static_cast<double>(rows) + scene.dimensions.length;
-    for (double ahead = 0.0; ahead < reach && start_ + ahead <= path.length(); ahead += kSpacing) {
-      const double heading = path.headingAt(start_ + ahead);
-      const Eigen::Vector2d left = geometry::leftNormal(geometry::direction(heading));
-      boxes_.push_back({path.positionAt(start_ + ahead) + offset * left, heading,
-                        scene.dimensions.length + 2.0 * gaps.longitudinal_gap,
-                        scene.dimensions.width + 2.0 * gaps.lateral_gap});
+  Encounter(const RouteStrip& strip, const OtherMotion& other) {
+    for (const traffic::VehicleState& state : other.predicted) {
+      rows.push_back(strip.meeting(boxOf(state.pose(), other.dimensions)));
+      if (!rows.back().empty()) {
+        swept.add(rows.back().begin);
+        swept.add(rows.back().end);
+      } else if (swept.empty()) {
+        ++first;
+      }
     }
   }
-
-  /// Where the box meets another.
-  Stretch meeting(const geometry::OrientedBox& other) const {
-    Stretch met;
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const double near = 0.5 * (std::hypot(boxes_[i].length, boxes_[i].width) +
-                                 std::hypot(other.length, other.width));
-      if ((boxes_[i].center - other.center).squaredNorm() > near * near) continue;
-      if (geometry::overlap(boxes_[i], other)) met.add(start_ + kSpacing * static_cast<double>(i));
-    }
-    return met;
-  }
-
- private:
-  double start_;
-  std::vector<geometry::OrientedBox> boxes_;
+  bool never() const { return swept.empty(); }
 };
-
-/// Where the other, as it is forecast, meets the strip: a stretch for each row.
-std::vector<Stretch> meetings(const Strip& strip, const OtherMotion& other) {
-  std::vector<Stretch> met;
-  for (const traffic::VehicleState& state : other.predicted) {
-    met.push_back(strip.meeting(
-        {state.position, state.heading, other.dimensions.length, other.dimensions.width}));
-  }
-  return met;
-}
 
 /// When the vehicle is at an arc length, accelerating gently to its target speed [s].
 double arrivalAt(const GuidanceScene& scene, double arc_length) {
@@ -84,30 +46,24 @@ double arrivalAt(const GuidanceScene& scene, double arc_length) {
   return (std::sqrt(speed * speed + 2.0 * kGentleAcceleration * way) - speed) / kGentleAcceleration;
 }
 
-/// When the vehicle is at an arc length at its present speed [s].
-double heldArrivalAt(const GuidanceScene& scene, double arc_length) {
-  const double way = std::max(0.0, arc_length - scene.route_arc_length);
-  return way / std::max(scene.state.speed, kSlowest);
+/// Whether a vehicle that meets the planned one where that is now is before it: with its center,
+/// or, where it moves and so will be gone, with a part of it ahead of the front bumper.
+bool isBefore(const GuidanceScene& scene, const OtherMotion& other) {
+  constexpr double kMoves = 0.5;  // [m/s]
+  const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
+  const double center = forward.dot(other.now.position - scene.state.position);
+  const double front = center + geometry::halfExtent(boxOf(other.now.pose(), other.dimensions), forward);
+  return center > 0.0 || (other.now.speed > kMoves && front > 0.5 * scene.dimensions.length);
 }
 
-/// Place of the other's center along the vehicle's heading [m].
-double placeAhead(const GuidanceScene& scene, const OtherMotion& other) {
-  return geometry::direction(scene.state.heading).dot(other.now.position - scene.state.position);
-}
-
-/// Whether the vehicle lets the other through that meets its way as `met`.
-bool givesWay(const GuidanceScene& scene, const OtherMotion& other, const std::vector<Stretch>& met,
+/// Whether the vehicle lets the other through.
+bool givesWay(const GuidanceScene& scene, const OtherMotion& other, const Encounter& met,
               double margin) {
-  const auto first =
-      std::find_if(met.begin(), met.end(), [](const Stretch& m) { return !m.empty(); });
-  if (first == met.end()) return false;
-  const double ahead = placeAhead(scene, other);
-  if (first->begin <= scene.route_arc_length) return ahead > 0.0;
-  const double enters = traffic::kRolloutStep * static_cast<double>(first - met.begin() + 1);
-  if (other.by_same_rules) return heldArrivalAt(scene, first->begin) >= enters;
-  Stretch swept = *first;
-  for (auto row = first; row != met.end(); ++row) swept.end = std::max(swept.end, row->end);
-  return arrivalAt(scene, swept.end) + margin > enters;
+  if (met.never()) return false;
+  if (other.by_same_rules) return other.goes_first;
+  if (met.rows[met.first].begin <= scene.route_arc_length) return isBefore(scene, other);
+  const double enters = traffic::kRolloutStep * static_cast<double>(met.first + 1);
+  return arrivalAt(scene, met.swept.end) + margin > enters;
 }
 
 /// Those to give way to: the vehicles around, and the other one.
@@ -157,11 +113,15 @@ void YieldingObjective::prepare(const GuidanceScene& scene) {
   limits_.clear();
   const std::vector<const OtherMotion*> others = othersOf(scene);
   if (scene.route == nullptr || scene.route->empty() || others.empty()) return;
-  const Strip strip(scene, *this, others.front()->predicted.size());
-  limits_.assign(others.front()->predicted.size(), kFree);
+  const std::size_t rows = others.front()->predicted.size();
+  const RouteStrip strip({{}, scene.state, scene.dimensions, scene.route, scene.route_arc_length,
+                          scene.target_speed},
+                         {longitudinal_gap, lateral_gap},
+                         traffic::kRolloutStep * static_cast<double>(rows));
+  limits_.assign(rows, kFree);
   for (const OtherMotion* other : others) {
-    const std::vector<Stretch> met = meetings(strip, *other);
-    if (givesWay(scene, *other, met, margin)) limitBy(met, margin, limits_);
+    const Encounter met(strip, *other);
+    if (givesWay(scene, *other, met, margin)) limitBy(met.rows, margin, limits_);
   }
 }
 

@@ -16,13 +16,14 @@ namespace cdiff::guidance {
 /// t, or within `margin` of it. Longitudinal alone. Not in the paper, whose collision guidance is
 /// about the ego alone.
 ///
-/// The vehicle's place on its route is that of its present lateral offset. One that enters its way
-/// at row t_in is given way to, unless
+/// The vehicle keeps its present lateral offset to the route. One that enters its way at row t_in is
+/// given way to, unless
+///  - both are driven by the same rules and it does not go first (RightOfWay);
 ///  - the planned vehicle has driven through all that the other will sweep `margin` before t_in,
 ///    accelerating gently to its target speed;
-///  - it is driven by the same rules, and the planned one is first at the place where they meet, at
-///    its present speed;
-///  - it meets the vehicle where that is now, with its center beside or behind.
+///  - it meets the vehicle where that is now, and is neither ahead by its center nor passes with a
+///    part of it ahead of the front bumper.
+/// The last two are asked where the other goes by rules of its own.
 class YieldingObjective : public Objective {
  public:
   double longitudinal_gap = 1.0;  ///< between bumpers [m]

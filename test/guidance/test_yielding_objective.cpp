@@ -87,14 +87,14 @@ TEST_F(Yielding, GoesFirstWhereItHasClearedTheWayInTime) {
   EXPECT_GT(valueAt(20.0), 0.0);
 }
 
-TEST_F(Yielding, OfTwoByTheSameRulesTheFirstGoes) {
-  // We meet it 16 m ahead in 2 s.
-  addCrossing(60.0, -5.0 * 1.85 - 3.45, 5.0).by_same_rules = true;  // there after 1.85 s
-  EXPECT_GT(valueAt(20.0), 0.0);
-  world_.scene().traffic.clear();
-  addCrossing(60.0, -5.0 * 2.15 - 3.45, 5.0).by_same_rules = true;
+TEST_F(Yielding, OfTwoByTheSameRulesOneWaits) {
+  OtherMotion& other = addCrossing(60.0, -13.0, 5.0);
+  other.by_same_rules = true;
   EXPECT_EQ(valueAt(20.0), 0.0);
-  world_.scene().traffic.back().by_same_rules = false;  // one that does not know of us
+  other.goes_first = true;
+  EXPECT_GT(valueAt(20.0), 0.0);
+  addCrossing(60.0, -13.0, 5.0);  // one that does not know of us
+  other.goes_first = false;
   EXPECT_GT(valueAt(20.0), 0.0);
 }
 
@@ -108,6 +108,36 @@ TEST_F(Yielding, DoesNotBrakeForWhoComesFromBehindButForWhoIsBesideAndAhead) {
   for (std::size_t row = 0; row < 32; ++row)
     behind.predicted[row] = world_.placed(42.0 + 0.8 * static_cast<double>(row), 1.0, 0.0, 8.0);
   EXPECT_GT(valueAt(20.0), 0.0);
+}
+
+// It comes toward us at 150 degrees, 1 m past us with its center; a part of it is still ahead of our
+// front bumper until it is 2.4 m long.
+TEST_F(Yielding, WaitsUntilAllOfOneThatPassesIsBehindTheFront) {
+  OtherMotion& passing = addCrossing(39.0, 1.5, 0.0);
+  for (const double length : {9.0, 2.4}) {
+    passing.dimensions.length = length;
+    for (traffic::VehicleState* state : {&passing.now, &passing.predicted[0]})
+      *state = world_.placed(39.0, 1.5, core::kPi * 150.0 / 180.0, 4.0);
+    EXPECT_EQ(valueAt(20.0) > 0.0, length == 9.0) << length;
+  }
+  passing.dimensions.length = 9.0;
+  passing.now.speed = 0.0;  // it will not go on
+  EXPECT_EQ(valueAt(20.0), 0.0);
+}
+
+// 1 m left of the line that continues the route backward, 4 m before its start at x = 0; and 2 m
+// before its end at x = 100, for one that crosses 10 m beyond.
+TEST_F(Yielding, LooksBeyondBothEndsOfTheRoute) {
+  GuidanceScene& scene = world_.scene();
+  scene.state = world_.placed(-4.0, 1.0, 0.0, 8.0);
+  scene.route_arc_length = -4.0;
+  addCrossing(6.0, 4.4, 0.0);  // its front is 6.65 m to the left, its rear 2.15 m
+  EXPECT_GT(valueAt(9.0), 0.0);  // our left side with the gap: 1 + 0.9 + 0.3 m
+  scene.traffic.clear();
+  scene.state = world_.placed(98.0, 0.0, 0.0, 8.0);
+  scene.route_arc_length = 98.0;
+  addCrossing(110.0, 0.0, 0.0);
+  EXPECT_GT(valueAt(12.0), 0.0);
 }
 
 TEST_F(Yielding, GivesWayToTheOtherVehicleUnlessItIsOnABridge) {

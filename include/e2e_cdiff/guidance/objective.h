@@ -20,6 +20,7 @@ struct OtherMotion {
   traffic::VehicleDimensions dimensions;
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
   bool by_same_rules = false;  ///< driven by the same planner, so that it gives way by these rules
+  bool goes_first = false;     ///< then: the planned vehicle waits for it
 };
 
 /// What guidance objectives know about the planned vehicle and its surroundings at one decision
@@ -67,8 +68,8 @@ class Objective {
   virtual void describe(core::OptionsVisitor& visitor) = 0;
   /// Throws InputError naming the option.
   virtual void validate() const {}
-  /// Called once a decision and sample, before `evaluate` of the same scene: for what depends on
-  /// the scene alone.
+  /// Called once a decision, before `evaluate` of the same scene and before the samples of that
+  /// decision get their clones: for what depends on the scene alone.
   virtual void prepare(const GuidanceScene&) {}
   /// J of a metric rollout (body frame of `scene`), summed over its rows; adds dJ/d(rollout) to
   /// `gradient` (same shape). The states are independent variables here: the state branch joins

@@ -18,6 +18,7 @@
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/guidance/objective.h"
 #include "e2e_cdiff/planning/planner.h"
+#include "guidance/right_of_way.h"
 #include "planners/diffusion/image_watch.h"
 #include "planning/route_follower.h"
 
@@ -114,10 +115,11 @@ class DiffusionPlanner : public planning::Planner {
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, Memory& memory);
   /// Moves the vehicles that this planner drives along their routes to where they are now, and
-  /// forecasts them there, for each other.
+  /// forecasts them there, for each other, where they are given their routes.
   void setCompanions(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
-  /// A vehicle around a planned one, forecast along its route where this planner drives it.
-  guidance::OtherMotion motionOf(const traffic::Vehicle& near) const;
+  /// A vehicle around a planned one, forecast along its route where this planner drives it there.
+  guidance::OtherMotion motionOf(const traffic::Vehicle& near,
+                                 const traffic::Vehicle& planned) const;
   void setOther(const traffic::TrafficSnapshot& snapshot, Situation& situation);
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
   std::unique_ptr<diffusion::StateBranch> stateBranch(
@@ -144,6 +146,7 @@ class DiffusionPlanner : public planning::Planner {
   std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
   std::map<std::string, std::unique_ptr<Memory>> memories_;  ///< by vehicle
   std::map<std::string, guidance::OtherMotion> companions_;  ///< of this tick, by vehicle
+  guidance::RightOfWay right_of_way_;                        ///< among them
 };
 
 // The diffusion planner in the table of planners, and for planners that plan with it.

@@ -128,24 +128,34 @@ std::uint64_t ticksOf(const planning::PlanningContext& context) {
 void DiffusionPlanner::setCompanions(
     const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen) {
   companions_.clear();
+  std::vector<guidance::RoutedVehicle> routed;
   const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
   for (const auto& [task, memory] : seen) {
     if (task->route == nullptr || task->route->empty()) continue;
     const traffic::Vehicle& vehicle = *task->vehicle;
     memory->follower.update(*task->route, vehicle.state.position);
+    if (!conditions_on_route_) continue;
+    const double arc_length = memory->follower.arcLength();
     companions_[vehicle.id] = {
         vehicle.state, vehicle.dimensions,
-        planning::forecastAlongRoute(vehicle, *task->route, memory->follower.arcLength(), steps),
-        true};
+        planning::forecastAlongRoute(vehicle, *task->route, arc_length, steps), true, false};
+    routed.push_back({vehicle.id, vehicle.state, vehicle.dimensions, task->route, arc_length,
+                      task->target_speed});
   }
+  right_of_way_ = guidance::RightOfWay(routed);
 }
 
-guidance::OtherMotion DiffusionPlanner::motionOf(const traffic::Vehicle& near) const {
+guidance::OtherMotion DiffusionPlanner::motionOf(const traffic::Vehicle& near,
+                                                 const traffic::Vehicle& planned) const {
   const auto companion = companions_.find(near.id);
-  if (companion != companions_.end()) return companion->second;
+  if (companion != companions_.end()) {
+    guidance::OtherMotion motion = companion->second;
+    motion.goes_first = !right_of_way_.mayGo(planned.id, near.id);
+    return motion;
+  }
   const auto steps = static_cast<std::size_t>(model_.architecture.horizon);
   return {near.state, near.dimensions,
-          planning::forecastMotion(near, context_.network, vehicle_, steps), false};
+          planning::forecastMotion(near, context_.network, vehicle_, steps), false, false};
 }
 
 /// For a CBV the other is the ego along its route; for the ego the nearest other vehicle. The
@@ -157,7 +167,7 @@ void DiffusionPlanner::setOther(const traffic::TrafficSnapshot& snapshot, Situat
   const bool about_ego = situation.task->slot >= 0;
   const traffic::Vehicle* other = about_ego ? ego : planning::nearestVehicle(snapshot, vehicle);
   for (const traffic::Vehicle* near : planning::vehiclesAround(snapshot, vehicle, other)) {
-    situation.scene.traffic.push_back(motionOf(*near));
+    situation.scene.traffic.push_back(motionOf(*near, vehicle));
   }
   if (other == nullptr || !planning::isFinite(other->state) ||
       traffic::onDifferentLevels(*other, vehicle))
@@ -228,9 +238,9 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   }
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, *situation);
-  for (std::int64_t i = 0; i < options_.candidates; ++i) {
-    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(guidance_, scene));
-  }
+  const guidance::TotalObjective prepared(guidance_, scene);
+  for (std::int64_t i = 0; i < options_.candidates; ++i)
+    situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(prepared));
   return situation;
 }
 
