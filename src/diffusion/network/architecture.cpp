@@ -35,9 +35,9 @@ constexpr SizeField kSizes[] = {
     {"image_height", &Architecture::image_height, 32, 4096},
     {"image_features", &Architecture::image_features, 1, 4096},
     {"route_points", &Architecture::route_points, 1, 1024},
-    {"route_features", &Architecture::route_features, 1, 4096},
-    {"speed_features", &Architecture::speed_features, 1, 4096},
-    {"context_width", &Architecture::context_width, 1, 4096},
+    {"route_features", &Architecture::route_features, 0, 4096},
+    {"speed_features", &Architecture::speed_features, 0, 4096},
+    {"context_width", &Architecture::context_width, 0, 4096},
     {"state_hidden", &Architecture::state_hidden, 1, 4096},
 };
 constexpr std::int64_t kMinLevels = 2;
@@ -106,6 +106,14 @@ void requireKnownKeys(const inference::Json& object, const std::string& source) 
 }
 
 }  // namespace
+
+Architecture Architecture::imageAlone() const {
+  Architecture architecture = *this;
+  architecture.route_features = 0;
+  architecture.speed_features = 0;
+  architecture.context_width = 0;
+  return architecture;
+}
 
 void Architecture::validate() const {
   for (const SizeField& field : kSizes) {

@@ -28,10 +28,23 @@ struct Architecture {
   std::int64_t image_features = 256;                   ///< output of the image encoder
   std::int64_t route_points = 16;                      ///< route tokens
   double route_spacing = 3.0;                          ///< between route points [m]
-  std::int64_t route_features = 64;                    ///< their hidden layer has twice as many
-  std::int64_t speed_features = 32;
-  std::int64_t context_width = 128;  ///< c
+  std::int64_t route_features = 64;  ///< their hidden layer has twice as many; 0: no route
+  std::int64_t speed_features = 32;  ///< 0: the own speed is no input
+  std::int64_t context_width = 128;  ///< c; 0: the features are injected as they are
   std::int64_t state_hidden = 256;   ///< hidden units of the state head
+
+  bool takesRoute() const { return route_features > 0; }
+  bool takesSpeed() const { return speed_features > 0; }
+  /// Values of image, route and speed together.
+  std::int64_t joinedFeatures() const { return image_features + route_features + speed_features; }
+  /// Values of c.
+  std::int64_t contextValues() const {
+    return context_width > 0 ? context_width : joinedFeatures();
+  }
+
+  /// The same with the paper's inputs (III-C2): the image alone, its features injected into every
+  /// block as they are.
+  Architecture imageAlone() const;
 
   /// Throws InputError naming the size that is out of range or does not fit the others.
   void validate() const;

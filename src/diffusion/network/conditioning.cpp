@@ -41,13 +41,15 @@ void requireSize(const char* what, std::size_t size, std::int64_t expected, std:
 Conditioning::Conditioning(const inference::DenoiserKernels& kernels,
                            const Architecture& architecture, const inference::Tensors& tensors,
                            const std::vector<Injection>& injections)
-    : kernels_(&kernels),
-      architecture_(architecture),
-      layers_{inference::linearNamed(kernels, tensors, "route.0"),
-              inference::linearNamed(kernels, tensors, "route.2"),
-              inference::linearNamed(kernels, tensors, "speed.0"),
-              inference::linearNamed(kernels, tensors, "context.0")},
-      no_route_(inference::tensorNamed(tensors, "no_route").values) {
+    : kernels_(&kernels), architecture_(architecture) {
+  if (architecture.takesRoute()) {
+    route0_ = inference::linearNamed(kernels, tensors, "route.0");
+    route2_ = inference::linearNamed(kernels, tensors, "route.2");
+    no_route_ = inference::tensorNamed(tensors, "no_route").values;
+  }
+  if (architecture.takesSpeed()) speed0_ = inference::linearNamed(kernels, tensors, "speed.0");
+  if (architecture.context_width > 0)
+    context0_ = inference::linearNamed(kernels, tensors, "context.0");
   buildTimeEmbeddings(tensors);
   buildInjections(tensors, injections);
 }
@@ -71,8 +73,8 @@ void Conditioning::buildInjections(const inference::Tensors& tensors,
     const inference::Tensor& weight = inference::tensorNamed(tensors, injection.name + ".weight");
     const inference::Filter time_columns =
         inference::Filter::ofLinear(weight, 0, architecture_.time_width);
-    const inference::Filter context_columns =
-        inference::Filter::ofLinear(weight, architecture_.time_width, architecture_.context_width);
+    const inference::Filter context_columns = inference::Filter::ofLinear(
+        weight, architecture_.time_width, architecture_.contextValues());
     inference::Convolution(*kernels_, time_columns, inference::Spacing{},
                            &inference::tensorNamed(tensors, injection.name + ".bias"))
         .apply(time.view(), time_part_.view(0, injection.first), time.rows());
@@ -97,10 +99,10 @@ inference::Activation Conditioning::routeFeatures(const std::vector<Context>& co
     const std::vector<float>& route = contexts[static_cast<std::size_t>(b)].route;
     std::copy(route.begin(), route.end(), tokens.row(b));
   }
-  inference::Activation hidden = inference::matrix(layers_.route0.outputs(), rows);
-  layers_.route0.applyToRows(tokens, hidden);
+  inference::Activation hidden = inference::matrix(route0_->outputs(), rows);
+  route0_->applyToRows(tokens, hidden);
   inference::Activation result = inference::matrix(architecture_.route_features, rows);
-  layers_.route2.applyToRows(mished(hidden), result);
+  route2_->applyToRows(mished(hidden), result);
   for (std::int64_t b = 0; b < rows; ++b) {
     if (!contexts[static_cast<std::size_t>(b)].route.empty()) continue;
     std::copy(no_route_.begin(), no_route_.end(), result.row(b));
@@ -114,7 +116,7 @@ inference::Activation Conditioning::speedFeatures(const std::vector<Context>& co
     *speed.row(static_cast<std::int64_t>(b)) = static_cast<float>(contexts[b].speed / kSpeedScale);
   }
   inference::Activation result = inference::matrix(architecture_.speed_features, speed.rows());
-  layers_.speed0.applyToRows(speed, result);
+  speed0_->applyToRows(speed, result);
   return mished(result);
 }
 
@@ -122,26 +124,37 @@ void Conditioning::requireSizes(const Context& context, std::size_t sample) cons
   requireSize("image features", context.image_features.size(), architecture_.image_features,
               sample);
   if (context.route.empty()) return;
-  requireSize("route values", context.route.size(), 2 * architecture_.route_points, sample);
+  requireSize("route values", context.route.size(),
+              architecture_.takesRoute() ? 2 * architecture_.route_points : 0, sample);
+}
+
+inference::Activation Conditioning::joinedFeatures(const std::vector<Context>& contexts) const {
+  const auto rows = static_cast<std::int64_t>(contexts.size());
+  inference::Activation joined = inference::matrix(architecture_.joinedFeatures(), rows);
+  std::int64_t first = architecture_.image_features;
+  for (std::int64_t b = 0; b < rows; ++b) {
+    const std::vector<float>& image = contexts[static_cast<std::size_t>(b)].image_features;
+    std::copy(image.begin(), image.end(), joined.row(b));
+  }
+  const auto append = [&](const inference::Activation& part, std::int64_t count) {
+    for (std::int64_t b = 0; b < rows; ++b) std::copy_n(part.row(b), count, joined.row(b) + first);
+    first += count;
+  };
+  if (architecture_.takesRoute()) append(routeFeatures(contexts), architecture_.route_features);
+  if (architecture_.takesSpeed()) append(speedFeatures(contexts), architecture_.speed_features);
+  return joined;
 }
 
 void Conditioning::setContexts(const std::vector<Context>& contexts) {
   for (std::size_t b = 0; b < contexts.size(); ++b) requireSizes(contexts[b], b);
   const auto rows = static_cast<std::int64_t>(contexts.size());
-  const inference::Activation route = routeFeatures(contexts);
-  const inference::Activation speed = speedFeatures(contexts);
-  inference::Activation joined = inference::matrix(
-      architecture_.image_features + architecture_.route_features + architecture_.speed_features,
-      rows);
-  for (std::int64_t b = 0; b < rows; ++b) {
-    const std::vector<float>& image = contexts[static_cast<std::size_t>(b)].image_features;
-    float* to = std::copy(image.begin(), image.end(), joined.row(b));
-    to = std::copy_n(route.row(b), architecture_.route_features, to);
-    std::copy_n(speed.row(b), architecture_.speed_features, to);
+  inference::Activation context = joinedFeatures(contexts);
+  if (context0_) {
+    inference::Activation squeezed = inference::matrix(architecture_.context_width, rows);
+    context0_->applyToRows(context, squeezed);
+    context = mished(squeezed);
   }
-  inference::Activation context = inference::matrix(architecture_.context_width, rows);
-  layers_.context0.applyToRows(joined, context);
-  const inference::Activation injected = mished(mished(context));  // c, then the block's own Mish
+  const inference::Activation injected = mished(context);  // the blocks' own Mish of c
   context_part_ = inference::matrix(time_part_.channels(), rows);
   injection_ = inference::matrix(time_part_.channels(), rows);
   for (const ContextInjection& part : context_injections_) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "diffusion/denoiser.h"
@@ -18,7 +19,8 @@ class Conditioning {
   Conditioning(const inference::DenoiserKernels& kernels, const Architecture& architecture,
                const inference::Tensors& tensors, const std::vector<Injection>& injections);
 
-  /// Throws std::invalid_argument for features or tokens of another size.
+  /// Throws std::invalid_argument for features or tokens of another size, and for a route that the
+  /// architecture does not take.
   void setContexts(const std::vector<Context>& contexts);
   /// A row for each sample at step k = 1..K; valid until the next call.
   const inference::Activation& injection(int k);
@@ -26,9 +28,7 @@ class Conditioning {
   const inference::Activation& timeEmbeddings() const { return time_; }
 
  private:
-  struct Layers {
-    inference::Convolution route0, route2, speed0, context0;
-  };
+  using Layer = std::optional<inference::Convolution>;  ///< empty where the architecture has none
   void buildTimeEmbeddings(const inference::Tensors& tensors);
   void buildInjections(const inference::Tensors& tensors, const std::vector<Injection>& injections);
   void requireSizes(const Context& context, std::size_t sample) const;
@@ -37,10 +37,12 @@ class Conditioning {
   /// Rows of route features.
   inference::Activation routeFeatures(const std::vector<Context>& contexts) const;
   inference::Activation speedFeatures(const std::vector<Context>& contexts) const;
+  /// Rows of [image features; route; speed], as far as the architecture takes them.
+  inference::Activation joinedFeatures(const std::vector<Context>& contexts) const;
 
   const inference::DenoiserKernels* kernels_;
   Architecture architecture_;
-  Layers layers_;
+  Layer route0_, route2_, speed0_, context0_;
   std::vector<float> no_route_;
   inference::Activation time_;
   struct ContextInjection {

@@ -192,7 +192,6 @@ StateHead::StateHead(const inference::DenoiserKernels& kernels, const Architectu
       width_(architecture.state_hidden),
       actions_(kernels, columns(tensors, 0, action_values_), inference::Spacing{}),
       actions_reversed_(inference::reversedLinear(kernels, columns(tensors, 0, action_values_))),
-      speed_(kernels, columns(tensors, action_values_, 1), inference::Spacing{}),
       middle_(inference::linearNamed(kernels, tensors, "state.2")),
       middle_reversed_(inference::reversedLinear(
           kernels, inference::Filter::ofLinear(inference::tensorNamed(tensors, "state.2.weight")))),
@@ -200,7 +199,10 @@ StateHead::StateHead(const inference::DenoiserKernels& kernels, const Architectu
       out_reversed_(inference::reversedLinear(
           kernels, inference::Filter::ofLinear(inference::tensorNamed(tensors, "state.4.weight")))),
       time_part_(inference::matrix(width_, time_embeddings.rows())) {
-  inference::Convolution(kernels, columns(tensors, action_values_ + 1, architecture.time_width),
+  const std::int64_t speed = architecture.takesSpeed() ? 1 : 0;
+  if (speed > 0)
+    speed_.emplace(kernels, columns(tensors, action_values_, speed), inference::Spacing{});
+  inference::Convolution(kernels, columns(tensors, action_values_ + speed, architecture.time_width),
                          inference::Spacing{}, &inference::tensorNamed(tensors, "state.0.bias"))
       .applyToRows(time_embeddings, time_part_);
 }
@@ -212,7 +214,7 @@ void StateHead::setContexts(const std::vector<Context>& contexts) {
     *speeds.row(b) = static_cast<float>(contexts[static_cast<std::size_t>(b)].speed / kSpeedScale);
   }
   speed_part_ = inference::matrix(width_, rows);
-  speed_.applyToRows(speeds, speed_part_);
+  if (speed_) speed_->applyToRows(speeds, speed_part_);
   action_rows_ = inference::matrix(action_values_, rows);
   state_rows_ = inference::matrix(state_values_, rows);
   for (Hidden& hidden : hidden_) hidden = Hidden(width_, rows);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,7 +80,7 @@ class StateHead {
   std::int64_t state_values_;   ///< T x 4
   std::int64_t width_;
   inference::Convolution actions_, actions_reversed_;
-  inference::Convolution speed_;
+  std::optional<inference::Convolution> speed_;  ///< empty where it is no input
   inference::Convolution middle_, middle_reversed_;
   inference::Convolution out_, out_reversed_;
   inference::Activation time_part_;   ///< [K + 1, width], with the bias

@@ -42,11 +42,13 @@ class TensorList {
 };
 
 void addConditioning(TensorList& list, const Architecture& a) {
-  list.linear("route.0", 2 * a.route_points, 2 * a.route_features);
-  list.linear("route.2", 2 * a.route_features, a.route_features);
-  list.add("no_route", {a.route_features});
-  list.linear("speed.0", 1, a.speed_features);
-  list.linear("context.0", a.image_features + a.route_features + a.speed_features, a.context_width);
+  if (a.takesRoute()) {
+    list.linear("route.0", 2 * a.route_points, 2 * a.route_features);
+    list.linear("route.2", 2 * a.route_features, a.route_features);
+    list.add("no_route", {a.route_features});
+  }
+  if (a.takesSpeed()) list.linear("speed.0", 1, a.speed_features);
+  if (a.context_width > 0) list.linear("context.0", a.joinedFeatures(), a.context_width);
   list.linear("time.0", a.time_width, 4 * a.time_width);
   list.linear("time.2", 4 * a.time_width, a.time_width);
 }
@@ -55,7 +57,7 @@ void addResidualBlock(TensorList& list, const Architecture& a, const std::string
                       Size out) {
   list.convolution(name + ".block1.conv", in, out, a.kernel);
   list.norm(name + ".block1.norm", out);
-  list.linear(name + ".inject", a.time_width + a.context_width, out);
+  list.linear(name + ".inject", a.time_width + a.contextValues(), out);
   list.convolution(name + ".block2.conv", out, out, a.kernel);
   list.norm(name + ".block2.norm", out);
   if (in != out) list.convolution(name + ".skip", in, out, 1);
@@ -91,7 +93,9 @@ void addUNet(TensorList& list, const Architecture& a) {
 }
 
 void addStateHead(TensorList& list, const Architecture& a) {
-  list.linear("state.0", a.horizon * traffic::kActionColumns + 1 + a.time_width, a.state_hidden);
+  const Size speed = a.takesSpeed() ? 1 : 0;
+  list.linear("state.0", a.horizon * traffic::kActionColumns + speed + a.time_width,
+              a.state_hidden);
   list.linear("state.2", a.state_hidden, a.state_hidden);
   list.linear("state.4", a.state_hidden, a.horizon * traffic::kStateColumns);
 }

@@ -41,6 +41,13 @@ diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffus
   return diffusion::ImageEncoder(model, precision, instructionSetOf(options));
 }
 
+/// Throws InputError for a conditioning that gives vehicles a route which the model does not take.
+void requireInputs(const DiffusionOptions& options, const diffusion::Model& model) {
+  if (model.architecture.takesRoute() || options.conditioning == "image") return;
+  throw core::InputError("key 'diffusion.conditioning' is '" + options.conditioning +
+                         "', and model '" + model.name + "' takes no route; expected 'image'");
+}
+
 }  // namespace
 
 NetworkLane::NetworkLane(const DiffusionOptions& options, const diffusion::Model& model,
@@ -74,6 +81,7 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
       exact_(vehicle, dynamics::throttleResponse(options.response)) {
   options_.validate();
   guidance_.validate(guidance_group);
+  requireInputs(options, model_);
   const bool scaled = conditions_on_route_ && options.route_scale != 1.0;
   for (std::int64_t i = 0; i < options.threads; ++i)
     lanes_.push_back(std::make_unique<NetworkLane>(options, model_, scaled));

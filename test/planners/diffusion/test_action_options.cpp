@@ -149,6 +149,25 @@ TEST_F(ActionOptions, RouteScaleWithoutARouteIsRefused) {
   EXPECT_THROW(makeDiffusion(options), core::InputError);
 }
 
+TEST_F(ActionOptions, AModelOfTheImageAloneDrivesByTheImageAlone) {
+  DiffusionOptions options = optionsOf();
+  const std::filesystem::path folder = std::filesystem::path(options.model) / "image_alone";
+  options.model = cdiff::testing::writeRandomModel(folder, diffusion::Architecture().imageAlone());
+  options.conditioning = "image";
+  for (const PlannedAction& planned : plansOf(options)) EXPECT_EQ(planned.fault, "");
+  for (const char* conditioning : {"image_route", "by_guidance"}) {
+    options.conditioning = conditioning;
+    try {
+      makeDiffusion(options);
+      FAIL() << conditioning;
+    } catch (const core::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("takes no route; expected 'image'"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(ActionOptions, SolverAndLastStepReachThePlan) {
   DiffusionOptions options = optionsOf();
   options.sampler.solver = "ddim";

@@ -13,6 +13,9 @@ namespace cdiff::planners {
 void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.text({"precision", "", "Of the encoder in training."}, precision,
                {"auto", "f32", "bf16"});
+  visitor.text({"network", "",
+                "Inputs of the denoiser: image, route and speed, or the paper's, the image alone."},
+               network, {"default", "paper"});
   visitor.text({"loss", "", "Of diffusion stages: first actions weighted, or the paper's."}, loss,
                {"weighted", "plain"});
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
@@ -24,6 +27,10 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
                  yielding_share, 0.0, 1.0);
   visitor.flag({"mirror", "", "Mirror every second sample."}, mirror);
   visitor.flag({"light", "", "Change the light of images."}, change_light);
+}
+
+diffusion::Architecture DiffusionTrainingSettings::sizes() const {
+  return network == "paper" ? architecture.imageAlone() : architecture;
 }
 
 void DiffusionTrainingSettings::validate() const {

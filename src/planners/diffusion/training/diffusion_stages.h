@@ -23,7 +23,11 @@ struct DiffusionTrainingSettings {
   double yielding_share = 1.0;  ///< part kept of samples that stop to give way
   bool mirror = true;           ///< every second sample is mirrored
   bool change_light = true;     ///< photometric changes of images
+  std::string network = "default";       ///< default | paper (Architecture::imageAlone)
   diffusion::Architecture architecture;  ///< sizes that the data do not fix; not described
+
+  /// Those of `network` where it is not the default.
+  diffusion::Architecture sizes() const;
 
   void describe(core::OptionsVisitor& visitor);
   /// Throws InputError naming the key.

@@ -38,7 +38,7 @@ bool halfPrecision(const std::string& precision) {
 
 diffusion::Architecture architectureOf(const DiffusionTrainingSettings& settings,
                                        const learning::DrivingSchema& schema) {
-  diffusion::Architecture architecture = settings.architecture;
+  diffusion::Architecture architecture = settings.sizes();
   architecture.horizon = schema.horizon;
   architecture.image_width = schema.image_width;
   architecture.image_height = schema.image_height;
@@ -48,12 +48,24 @@ diffusion::Architecture architectureOf(const DiffusionTrainingSettings& settings
   return architecture;
 }
 
-/// The model of --init, if one is given.
+/// Whether the encoder of one fits the other; only the inputs of the denoiser differ.
+bool sameEncoder(diffusion::Architecture first, const diffusion::Architecture& second) {
+  first.route_features = second.route_features;
+  first.speed_features = second.speed_features;
+  first.context_width = second.context_width;
+  return first == second;
+}
+
+/// The model of --init, if one is given; without its denoiser where that takes other inputs.
 std::optional<diffusion::Model> initialModel(const std::string& name,
                                              const diffusion::Architecture& architecture) {
   if (name.empty()) return std::nullopt;
   diffusion::Model model = diffusion::loadModel(name);
   if (model.architecture == architecture) return model;
+  if (sameEncoder(model.architecture, architecture)) {
+    model.denoiser.clear();
+    return model;
+  }
   throw InputError("training: the architecture of '" + name + "' is " +
                    model.architecture.toJson() + ", this run has " + architecture.toJson());
 }
@@ -134,7 +146,8 @@ void DiffusionTask::start(const learning::TrainingRun& run) {
       halfPrecision(settings.precision)});
   if (initial) {
     state_->encoder.parameters().load(initial->encoder, run.options.init);
-    state_->denoiser.parameters().load(initial->denoiser, run.options.init);
+    if (!initial->denoiser.empty())
+      state_->denoiser.parameters().load(initial->denoiser, run.options.init);
   }
   state_->encoder.parameters().moveTo(run.device);
   state_->head.parameters().moveTo(run.device);
@@ -177,6 +190,8 @@ learning::TrainedModel DiffusionTask::finish() {
   trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.gray_features);
   trained.settings = {{"balance", settings.balance},
                       {"yielding_share", settings.yielding_share},
+                      {"network", settings.network},
+                      {"loss", settings.loss},
                       {"route_drop", settings.route_drop},
                       {"mirror", settings.mirror},
                       {"precision", state_->half_precision ? "bf16" : "f32"}};

@@ -132,8 +132,8 @@ DenoiserNet::DenoiserNet(const diffusion::Architecture& architecture, std::uint6
   parameters_.declareLayer("head.block.conv", {outputs, outputs, architecture.kernel});
   parameters_.declareNorm("head.block.norm", outputs);
   parameters_.declareLayer("head.out", {traffic::kActionColumns, outputs, 1});
-  const std::int64_t state_inputs =
-      traffic::kActionColumns * architecture.horizon + 1 + architecture.time_width;
+  const std::int64_t state_inputs = traffic::kActionColumns * architecture.horizon +
+                                    (architecture.takesSpeed() ? 1 : 0) + architecture.time_width;
   parameters_.declareLayer("state.0", {architecture.state_hidden, state_inputs});
   parameters_.declareLayer("state.2", {architecture.state_hidden, architecture.state_hidden});
   parameters_.declareLayer(
@@ -142,12 +142,14 @@ DenoiserNet::DenoiserNet(const diffusion::Architecture& architecture, std::uint6
 
 void DenoiserNet::declareContext() {
   const diffusion::Architecture& a = architecture_;
-  parameters_.declareLayer("route.0", {2 * a.route_features, 2 * a.route_points});
-  parameters_.declareLayer("route.2", {a.route_features, 2 * a.route_features});
-  parameters_.declare("no_route", {a.route_features}, {Start::Kind::kUniform, 0.1});
-  parameters_.declareLayer("speed.0", {a.speed_features, 1});
-  parameters_.declareLayer(
-      "context.0", {a.context_width, a.image_features + a.route_features + a.speed_features});
+  if (a.takesRoute()) {
+    parameters_.declareLayer("route.0", {2 * a.route_features, 2 * a.route_points});
+    parameters_.declareLayer("route.2", {a.route_features, 2 * a.route_features});
+    parameters_.declare("no_route", {a.route_features}, {Start::Kind::kUniform, 0.1});
+  }
+  if (a.takesSpeed()) parameters_.declareLayer("speed.0", {a.speed_features, 1});
+  if (a.context_width > 0)
+    parameters_.declareLayer("context.0", {a.context_width, a.joinedFeatures()});
   parameters_.declareLayer("time.0", {4 * a.time_width, a.time_width});
   parameters_.declareLayer("time.2", {a.time_width, 4 * a.time_width});
 }
@@ -157,7 +159,7 @@ void DenoiserNet::declareBlock(const std::string& name, std::int64_t inputs, std
   parameters_.declareLayer(name + ".block1.conv", {outputs, inputs, kernel});
   parameters_.declareNorm(name + ".block1.norm", outputs);
   parameters_.declareLayer(name + ".inject",
-                           {outputs, architecture_.time_width + architecture_.context_width});
+                           {outputs, architecture_.time_width + architecture_.contextValues()});
   parameters_.declareLayer(name + ".block2.conv", {outputs, outputs, kernel});
   parameters_.declareNorm(name + ".block2.norm", outputs);
   if (inputs != outputs) parameters_.declareLayer(name + ".skip", {outputs, inputs, 1});
@@ -189,11 +191,16 @@ void DenoiserNet::moveTo(const at::Device& device) {
 }
 
 at::Tensor DenoiserNet::contextOf(const ContextBatch& context) const {
-  at::Tensor route = fastMish(linear(parameters_, "route.0", context.route));
-  route = linear(parameters_, "route.2", route);
-  route = context.has_route * route + (1 - context.has_route) * parameters_("no_route");
-  const at::Tensor speed = fastMish(linear(parameters_, "speed.0", context.speed));
-  return fastMish(linear(parameters_, "context.0", at::cat({context.features, route, speed}, 1)));
+  std::vector<at::Tensor> joined = {context.features};
+  if (architecture_.takesRoute()) {
+    const at::Tensor hidden = fastMish(linear(parameters_, "route.0", context.route));
+    joined.push_back(context.has_route * linear(parameters_, "route.2", hidden) +
+                     (1 - context.has_route) * parameters_("no_route"));
+  }
+  if (architecture_.takesSpeed())
+    joined.push_back(fastMish(linear(parameters_, "speed.0", context.speed)));
+  if (architecture_.context_width == 0) return at::cat(joined, 1);
+  return fastMish(linear(parameters_, "context.0", at::cat(joined, 1)));
 }
 
 at::Tensor DenoiserNet::timeEmbedding(const at::Tensor& k) const {
@@ -257,7 +264,10 @@ at::Tensor DenoiserNet::predictActions(const at::Tensor& noisy, const at::Tensor
 at::Tensor DenoiserNet::predictStates(const at::Tensor& actions, const at::Tensor& k,
                                       const ContextBatch& context, bool detach) const {
   const at::Tensor flat = (detach ? actions.detach() : actions).reshape({actions.size(0), -1});
-  at::Tensor h = at::cat({flat, context.speed, timeEmbedding(k)}, 1);
+  std::vector<at::Tensor> inputs = {flat};
+  if (architecture_.takesSpeed()) inputs.push_back(context.speed);
+  inputs.push_back(timeEmbedding(k));
+  at::Tensor h = at::cat(inputs, 1);
   h = fastMish(linear(parameters_, "state.0", h));
   h = fastMish(linear(parameters_, "state.2", h));
   return linear(parameters_, "state.4", h)

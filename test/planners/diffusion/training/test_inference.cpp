@@ -30,9 +30,14 @@ std::vector<float> draws(std::size_t count, const char* name) {
   return values;
 }
 
-class Inference : public ::testing::Test {
+/// With all inputs, and with the paper's.
+class Inference : public ::testing::TestWithParam<bool> {
  protected:
-  Inference() : net_(sizes_, 1), ours_(model_) {
+  Inference()
+      : sizes_(GetParam() ? Architecture().imageAlone() : Architecture()),
+        model_(cdiff::testing::randomModel(sizes_)),
+        net_(sizes_, 1),
+        ours_(model_) {
     net_.parameters().load(model_.denoiser, "random");
     net_.parameters().setTrained(false);
     const auto b = static_cast<std::size_t>(kBatch);
@@ -43,7 +48,7 @@ class Inference : public ::testing::Test {
       contexts[i].image_features.assign(features.begin() + static_cast<long>(i * 256),
                                         features.begin() + static_cast<long>(i * 256 + 256));
       // The last one has no route.
-      if (i + 1 < b)
+      if (i + 1 < b && sizes_.takesRoute())
         contexts[i].route.assign(route.begin() + static_cast<long>(i * 32),
                                  route.begin() + static_cast<long>(i * 32 + 32));
       contexts[i].speed = 2.0 + 3.0 * static_cast<double>(i);
@@ -58,13 +63,13 @@ class Inference : public ::testing::Test {
   at::Tensor steps(std::int64_t k) const { return at::full({kBatch}, k, at::kLong); }
 
   Architecture sizes_;
-  Model model_ = cdiff::testing::randomModel();
+  Model model_;
   DenoiserNet net_;
   diffusion::CpuDenoiser ours_;
   ContextBatch context_;
 };
 
-TEST_F(Inference, ActionHeadAndItsPullBackAgree) {
+TEST_P(Inference, ActionHeadAndItsPullBackAgree) {
   const std::vector<float> noisy = draws(kBatch * 32 * 7, "noisy");
   const std::vector<float> gradient = draws(kBatch * 32 * 3, "gradient");
   for (const int k : {1, 50, 100}) {
@@ -80,7 +85,7 @@ TEST_F(Inference, ActionHeadAndItsPullBackAgree) {
   }
 }
 
-TEST_F(Inference, StateHeadAndItsPullBackAgree) {
+TEST_P(Inference, StateHeadAndItsPullBackAgree) {
   const std::vector<float> actions = draws(kBatch * 32 * 3, "actions");
   const std::vector<float> gradient = draws(kBatch * 32 * 4, "state gradient");
   at::Tensor input = toTensor(actions, {kBatch, 32, 3}, at::kCPU).clone().set_requires_grad(true);
@@ -94,7 +99,7 @@ TEST_F(Inference, StateHeadAndItsPullBackAgree) {
   EXPECT_LT(relativeDifference(pulled, toVector(input.grad())), 1e-5);
 }
 
-TEST_F(Inference, ImageEncoderAgrees) {
+TEST_P(Inference, ImageEncoderAgrees) {
   ImageEncoderNet net(sizes_, 1);
   net.parameters().load(model_.encoder, "random");
   net.parameters().setTrained(false);
@@ -112,6 +117,37 @@ TEST_F(Inference, ImageEncoderAgrees) {
   const at::Tensor expected = net.forward(toTensor(planes, {1, 3, 96, 160}, at::kCPU));
   EXPECT_LT(relativeDifference(ours.encode(image), toVector(expected)), 1e-4);
 }
+
+TEST_P(Inference, ARouteIsRefusedWhereItIsNoInput) {
+  diffusion::Context context;
+  context.image_features.assign(256, 0.0F);
+  context.route.assign(32, 0.0F);
+  if (sizes_.takesRoute()) {
+    EXPECT_NO_THROW(ours_.setContexts({context}));
+  } else {
+    EXPECT_THROW(ours_.setContexts({context}), std::invalid_argument);
+  }
+}
+
+TEST_P(Inference, WithoutItsInputTheSpeedChangesNothing) {
+  diffusion::Context context;
+  context.image_features = draws(256, "features");
+  const std::vector<float> noisy = draws(32 * 7, "noisy");
+  std::vector<float> actions[2];
+  std::vector<float> states[2];
+  for (int i = 0; i < 2; ++i) {
+    context.speed = 8.0 * i;
+    ours_.setContexts({context});
+    actions[i].resize(32 * 3);
+    states[i].resize(32 * 4);
+    ours_.predictActions(noisy.data(), 40, actions[i].data());
+    ours_.predictStates(actions[0].data(), 40, states[i].data());
+  }
+  EXPECT_EQ(actions[0] == actions[1], !sizes_.takesSpeed());
+  EXPECT_EQ(states[0] == states[1], !sizes_.takesSpeed());
+}
+
+INSTANTIATE_TEST_SUITE_P(Inputs, Inference, ::testing::Bool());
 
 }  // namespace
 }  // namespace cdiff::planners

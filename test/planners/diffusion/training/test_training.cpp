@@ -101,6 +101,25 @@ TEST_F(DiffusionTrainingTest, AnInitialModelBringsItsNormalizerAndMustFit) {
   }
 }
 
+TEST_F(DiffusionTrainingTest, ThePapersNetworkStartsFromTheEncoderOfAnother) {
+  run("encoder", 1);
+  run("denoiser", 1);
+  const diffusion::Model other = diffusion::loadModel(training_.options.output);
+  training_.options.init = training_.options.output;
+  training_.options.output = path("paper").string();
+  settings().network = "paper";
+  settings().loss = "plain";
+  run("denoiser", 2);
+  const diffusion::Model model = diffusion::loadModel(training_.options.output);
+  EXPECT_EQ(model.architecture, other.architecture.imageAlone());
+  EXPECT_EQ(model.encoder.at("project.weight").values, other.encoder.at("project.weight").values);
+  EXPECT_EQ(record("paper").at("network"), "paper");
+  run("joint", 2);
+  EXPECT_NE(diffusion::loadModel(training_.options.output).encoder.at("project.weight").values,
+            other.encoder.at("project.weight").values);
+  EXPECT_EQ(record("paper").at("stages").at("joint").at("steps"), 2);
+}
+
 TEST_F(DiffusionTrainingTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
   run("encoder", 1);
   EXPECT_NE(log_.str().find("no model is written yet: train stage denoiser"), std::string::npos);
