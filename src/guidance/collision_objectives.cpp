@@ -19,6 +19,18 @@ double logistic(double x) {
   return power / (1.0 + power);
 }
 
+/// Whether all of the other vehicle is behind the planned one, and does not come.
+bool standsBehind(const GuidanceScene& scene) {
+  constexpr double kStands = 0.5;  // [m/s]
+  const traffic::VehicleState& other = scene.other->now;
+  const geometry::OrientedBox box{other.position, other.heading, scene.other->dimensions.length,
+                                  scene.other->dimensions.width};
+  const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
+  const double front =
+      forward.dot(other.position - scene.state.position) + geometry::halfExtent(box, forward);
+  return other.speed < kStands && front < -0.5 * scene.dimensions.length;
+}
+
 double halfDiagonal(const traffic::VehicleDimensions& box) {
   return 0.5 * std::hypot(box.length, box.width);
 }
@@ -140,6 +152,8 @@ void CollisionSeekingObjective::describe(core::OptionsVisitor& visitor) {
                  trigger_distance, 0.0, 500.0);
   visitor.number({"trigger_width", "m", "Distance beyond it over which the smooth gate closes."},
                  trigger_width, 0.01, 500.0);
+  visitor.flag({"leave_behind", "", "Whether to drive on from a vehicle that stands behind."},
+               leave_behind);
 }
 
 double CollisionSeekingObjective::gateAt(double distance) const {
@@ -154,6 +168,7 @@ double CollisionSeekingObjective::evaluate(const GuidanceScene& scene,
                                            const traffic::Rollout& rollout,
                                            traffic::Rollout& gradient) const {
   if (scene.other == nullptr) return 0.0;
+  if (leave_behind && standsBehind(scene)) return 0.0;
   const double eta = gateAt((scene.other->now.position - scene.state.position).norm());
   if (eta <= 0.0) return 0.0;
   return proximity.evaluate(scene, rollout, -eta, gradient);

@@ -22,6 +22,7 @@ constexpr double kLargestCap = 1e6;
 constexpr double kLeastRegion = 0.01;     // of trust_region, in units of r_k
 constexpr double kLargestRegion = 100.0;  // likewise
 constexpr std::int64_t kLastDiffusionStep = 10000;
+constexpr std::int64_t kMostCandidates = 64;
 
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
 
@@ -101,7 +102,8 @@ GuidanceOptions::GuidanceOptions() {
 GuidanceOptions::GuidanceOptions(const GuidanceOptions& other)
     : trust_region(other.trust_region),
       last_step(other.last_step),
-      noise_correlation(other.noise_correlation) {
+      noise_correlation(other.noise_correlation),
+      candidates(other.candidates) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -114,6 +116,7 @@ GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   trust_region = copy.trust_region;
   last_step = copy.last_step;
   noise_correlation = copy.noise_correlation;
+  candidates = copy.candidates;
   return *this;
 }
 
@@ -144,6 +147,8 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
   visitor.number({"noise_correlation", "",
                   "Correlation of a vehicle's noise between any two of its decisions."},
                  noise_correlation, 0.0, 1.0);
+  visitor.integer({"candidates", "", "Samples per vehicle and decision; the best of them drives."},
+                  candidates, 1, kMostCandidates);
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }
@@ -161,6 +166,10 @@ void GuidanceOptions::validate(const std::string& group) const {
   if (!(noise_correlation >= 0.0 && noise_correlation <= 1.0)) {
     throw InputError("key '" + group + "noise_correlation' is " +
                      core::formatNumber(noise_correlation) + "; expected a number in [0, 1]");
+  }
+  if (candidates < 1 || candidates > kMostCandidates) {
+    throw InputError("key '" + group + "candidates' is " + std::to_string(candidates) +
+                     "; expected an integer in [1, " + std::to_string(kMostCandidates) + "]");
   }
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }

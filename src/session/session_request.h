@@ -44,7 +44,7 @@ struct MethodUse {
 /// Of a resolved scenario. Where no planner of it has a network, nothing counts as changed.
 MethodUse methodOf(const ScenarioOptions& scenario);
 
-/// For people: "default", "custom (paper but for diffusion.candidates)".
+/// For people: "default", "custom (paper but for diffusion.hysteresis)".
 std::string methodText(const MethodUse& method);
 
 // Samples of one quantity from a file, in the file's unit: one number a line, or the JSON that

@@ -194,8 +194,23 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
     names.push_back(name);
     EXPECT_EQ(activeOf(loadProfile(name)), active) << name;
     EXPECT_EQ(loadProfile(name).noise_correlation, name == "naturalistic" ? 1.0 : 0.0) << name;
+    EXPECT_EQ(loadProfile(name).candidates, name == "safety_critical" ? 8 : 1) << name;
   }
   EXPECT_EQ(shippedProfiles(), names);
+}
+
+TEST(Profiles, CandidatesAreCopiedAndAtLeastOne) {
+  GuidanceOptions options;
+  options.candidates = 3;
+  EXPECT_EQ(GuidanceOptions(options).candidates, 3);
+  GuidanceOptions assigned;
+  assigned = options;
+  EXPECT_EQ(assigned.candidates, 3);
+  EXPECT_NO_THROW(options.validate());
+  for (const std::int64_t wrong : {0, 65}) {
+    options.candidates = wrong;
+    EXPECT_THROW(options.validate(), core::InputError) << wrong;
+  }
 }
 
 TEST(Profiles, NoiseCorrelationIsCopiedAndMustBeAShare) {

@@ -169,6 +169,23 @@ TEST(CollisionSeeking, StillPullsFromTheTriggerDistance) {
               2e-4);
 }
 
+// Ours is 4.5 m long and at 40 m, its rear at 37.75 m.
+TEST(CollisionSeeking, LeavesOneAloneThatStandsBehind) {
+  GuidanceWorld world;
+  CollisionSeekingObjective objective;
+  objective.leave_behind = true;
+  const auto seeks = [&] { return valueOf(objective, world.scene(), standing(0.0, 0.0)) != 0.0; };
+  world.setOther(35.4, 0.0);  // its front at 37.65 m
+  EXPECT_FALSE(seeks());
+  world.other().now.speed = 1.0;  // it comes
+  EXPECT_TRUE(seeks());
+  world.setOther(35.6, 1.9);  // beside our rear
+  EXPECT_TRUE(seeks());
+  world.setOther(30.0, 0.0);
+  objective.leave_behind = false;
+  EXPECT_TRUE(seeks());
+}
+
 TEST(CollisionSeeking, MeetingCentersGiveFiniteNumbers) {
   GuidanceWorld world;
   world.setOther(40.0, 0.0);

@@ -177,7 +177,7 @@ TEST(SessionRequest, MethodPaperIsThePapersSamplingAndGuidance) {
   const auto& diffusion = paper.planner_options.of<planners::DiffusionOptions>();
   EXPECT_EQ(diffusion.sampler.mode, "paper");
   EXPECT_EQ(diffusion.conditioning, "image");
-  EXPECT_EQ(diffusion.candidates, 1);
+  EXPECT_EQ(paper.guidance.candidates, 1);
   EXPECT_TRUE(paper.guidance.isActive("collision_avoidance"));
   for (const guidance::GuidanceOptions* guidance : {&paper.guidance, &paper.ego_guidance}) {
     EXPECT_FALSE(guidance->isActive("traffic_avoidance"));
@@ -234,14 +234,14 @@ TEST(SessionRequest, SaysWhichMethodItsPlannersFollowAndWhatWasChanged) {
   };
   EXPECT_EQ(textOf({}), "default");
   EXPECT_EQ(textOf({"method=paper"}), "paper");
-  EXPECT_EQ(textOf({"method=paper", "diffusion.candidates=2"}),
-            "custom (paper but for diffusion.candidates)");
+  EXPECT_EQ(textOf({"method=paper", "diffusion.hysteresis=0.2"}),
+            "custom (paper but for diffusion.hysteresis)");
   EXPECT_EQ(textOf({"guidance.speed.weight=3"}), "custom (default but for guidance.speed.weight)");
   EXPECT_EQ(textOf({"guidance_profile=none"}), "custom (default but for guidance_profile)");
   // What no planner of the session follows changes nothing.
   EXPECT_EQ(textOf({"pdm_lite.cbv_speed_spread=0.1", "ego_guidance_profile=none"}), "default");
   request.cbv_planner = "pdm_lite";
-  EXPECT_EQ(textOf({"diffusion.candidates=2"}), "default");
+  EXPECT_EQ(textOf({"diffusion.hysteresis=0.2"}), "default");
   request.ego_planner = "diffusion";
   EXPECT_EQ(textOf({"ego_guidance_profile=none"}), "custom (default but for ego_guidance_profile)");
   ScenarioOptions recorded;

@@ -25,7 +25,6 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
                 "Of the executed throttle: as the dynamics was fitted, or monotone: one that would "
                 "slow the vehicle coasts."},
                response, {"fitted", "monotone"});
-  visitor.integer({"candidates", "", "Samples per vehicle and decision."}, candidates, 1, 64);
   visitor.number({"hysteresis", "", "Share of the score by which another mode must be better."},
                  hysteresis, 0.0, 1.0);
   visitor.number({"frozen_image_time", "s", "The same image for so long while moving is a fault."},
@@ -69,7 +68,7 @@ std::string samplerText(const diffusion::SamplerOptions& sampler) {
 std::string samplingText(const DiffusionOptions& options,
                          const guidance::GuidanceOptions& guidance) {
   const std::string candidates =
-      options.candidates == 1 ? "1 sample" : std::to_string(options.candidates) + " samples";
+      guidance.candidates == 1 ? "1 sample" : std::to_string(guidance.candidates) + " samples";
   const std::string noise =
       guidance.noise_correlation == 0.0 ? ""
       : guidance.noise_correlation == 1.0

@@ -159,7 +159,7 @@ void DiffusionPlanner::solve(std::uint64_t tick, NetworkLane& lane,
   const auto branch = stateBranch(denoiser, contexts);
   GuidedBatch guided(model_.normalizer, objectives);
   const auto samples = sampler_.sample(denoiser, *branch, requests, &guided);
-  const auto candidates = static_cast<std::size_t>(options_.candidates);
+  const auto candidates = static_cast<std::size_t>(guidance_.candidates);
   for (std::size_t i = 0; i < situations.size(); ++i)
     choose(*situations[i], samples, i * candidates);
 }
@@ -175,7 +175,7 @@ void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTra
   const std::size_t chosen = choosePlan(plans, scores, situation.previous, options_.hysteresis);
   situation.plan = plans[chosen];
   situation.report = situation.objectives[chosen]->report(situation.plan);
-  situation.report.candidates = options_.candidates;
+  situation.report.candidates = guidance_.candidates;
   situation.report.chosen = static_cast<std::int64_t>(chosen);
   const SampledTrajectory& sample = samples[first + chosen];
   if (sample.guided_steps > 0) {

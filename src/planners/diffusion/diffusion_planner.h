@@ -33,7 +33,6 @@ struct DiffusionOptions {
   double route_scale = 1.0;
   std::string state_branch = "learned";  ///< learned | exact
   std::string response = "fitted";       ///< of the executed throttle: fitted | monotone
-  std::int64_t candidates = 1;           ///< samples per vehicle
   double hysteresis = 0.1;               ///< a new mode must be better by this share of the score
   double frozen_image_time = 1.0;        ///< the same image for so long while moving is a fault [s]
   std::string precision = "auto";        ///< of the encoder: auto | fp32 | bf16 | int8

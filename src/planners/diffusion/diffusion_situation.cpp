@@ -239,7 +239,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, *situation);
   const guidance::TotalObjective prepared(guidance_, scene);
-  for (std::int64_t i = 0; i < options_.candidates; ++i)
+  for (std::int64_t i = 0; i < guidance_.candidates; ++i)
     situation->objectives.push_back(std::make_unique<guidance::TotalObjective>(prepared));
   return situation;
 }

@@ -123,7 +123,7 @@ class CandidateChoice : public DiffusionModes {
     options_ = optionsOf();
     options_.conditioning = "image";
     options_.precision = "fp32";
-    options_.candidates = kCandidates;
+    guidance_.candidates = kCandidates;
   }
 
   /// The candidates of the first CBV at a tick, metric, with their scores.
