@@ -51,9 +51,8 @@ Waiting whoWaits(const RoutedVehicle& first, double first_way, const RoutedVehic
   if (first_way <= 0.0 || second_way <= 0.0) return {second_way <= 0.0, first_way <= 0.0};
   const double first_time = first_way / std::max(first.state.speed, kSlowest);
   const double second_time = second_way / std::max(second.state.speed, kSlowest);
-  const bool second_goes = std::abs(first_time - second_time) <= kMargin
-                               ? second.id < first.id
-                               : second_time < first_time;
+  const bool second_goes = std::abs(first_time - second_time) <= kMargin ? second.id < first.id
+                                                                         : second_time < first_time;
   return {second_goes, !second_goes};
 }
 
@@ -108,9 +107,8 @@ RightOfWay::RightOfWay(const std::vector<RoutedVehicle>& vehicles) {
       const Stretch first = strips[i].meeting(strips[j]);
       const Stretch second = strips[j].meeting(strips[i]);
       if (first.empty() || second.empty()) continue;
-      const Waiting waiting =
-          whoWaits(vehicles[i], first.begin - vehicles[i].arc_length, vehicles[j],
-                   second.begin - vehicles[j].arc_length);
+      const Waiting waiting = whoWaits(vehicles[i], first.begin - vehicles[i].arc_length,
+                                       vehicles[j], second.begin - vehicles[j].arc_length);
       if (waiting.first) waits_.emplace_back(vehicles[i].id, vehicles[j].id);
       if (waiting.second) waits_.emplace_back(vehicles[j].id, vehicles[i].id);
     }

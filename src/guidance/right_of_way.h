@@ -43,8 +43,8 @@ struct RoutedVehicle {
   double target_speed = 0.0;          ///< [m/s]
 };
 
-/// What a vehicle can sweep within a time: its box, with gaps, every 0.5 m along its route from where
-/// it is, straight on beyond the ends of that, at its present lateral offset.
+/// What a vehicle can sweep within a time: its box, with gaps, every 0.5 m along its route from
+/// where it is, straight on beyond the ends of that, at its present lateral offset.
 class RouteStrip {
  public:
   RouteStrip(const RoutedVehicle& vehicle, const Gaps& gaps, double time);
@@ -59,10 +59,11 @@ class RouteStrip {
   std::vector<geometry::OrientedBox> boxes_;
 };
 
-/// Who of two vehicles goes first where their strips of 3.2 s at target speed meet, the one question
-/// answered once for both: the one whose box is in the other's strip already; where both are, the
-/// one ahead along the mean of their directions, and neither where they face each other; else the
-/// one that is there first at its present speed, within 0.5 s the one whose name sorts first.
+/// Who of two vehicles goes first where their strips of 3.2 s at target speed meet, the one
+/// question answered once for both: the one whose box is in the other's strip already; where both
+/// are, the one ahead along the mean of their directions, and neither where they face each other;
+/// else the one that is there first at its present speed, within 0.5 s the one whose name sorts
+/// first.
 class RightOfWay {
  public:
   RightOfWay() = default;

@@ -52,7 +52,8 @@ bool isBefore(const GuidanceScene& scene, const OtherMotion& other) {
   constexpr double kMoves = 0.5;  // [m/s]
   const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
   const double center = forward.dot(other.now.position - scene.state.position);
-  const double front = center + geometry::halfExtent(boxOf(other.now.pose(), other.dimensions), forward);
+  const double front =
+      center + geometry::halfExtent(boxOf(other.now.pose(), other.dimensions), forward);
   return center > 0.0 || (other.now.speed > kMoves && front > 0.5 * scene.dimensions.length);
 }
 
@@ -114,10 +115,9 @@ void YieldingObjective::prepare(const GuidanceScene& scene) {
   const std::vector<const OtherMotion*> others = othersOf(scene);
   if (scene.route == nullptr || scene.route->empty() || others.empty()) return;
   const std::size_t rows = others.front()->predicted.size();
-  const RouteStrip strip({{}, scene.state, scene.dimensions, scene.route, scene.route_arc_length,
-                          scene.target_speed},
-                         {longitudinal_gap, lateral_gap},
-                         traffic::kRolloutStep * static_cast<double>(rows));
+  const RouteStrip strip(
+      {{}, scene.state, scene.dimensions, scene.route, scene.route_arc_length, scene.target_speed},
+      {longitudinal_gap, lateral_gap}, traffic::kRolloutStep * static_cast<double>(rows));
   limits_.assign(rows, kFree);
   for (const OtherMotion* other : others) {
     const Encounter met(strip, *other);

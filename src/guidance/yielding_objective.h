@@ -16,8 +16,8 @@ namespace cdiff::guidance {
 /// t, or within `margin` of it. Longitudinal alone. Not in the paper, whose collision guidance is
 /// about the ego alone.
 ///
-/// The vehicle keeps its present lateral offset to the route. One that enters its way at row t_in is
-/// given way to, unless
+/// The vehicle keeps its present lateral offset to the route. One that enters its way at row t_in
+/// is given way to, unless
 ///  - both are driven by the same rules and it does not go first (RightOfWay);
 ///  - the planned vehicle has driven through all that the other will sweep `margin` before t_in,
 ///    accelerating gently to its target speed;

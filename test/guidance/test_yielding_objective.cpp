@@ -110,8 +110,8 @@ TEST_F(Yielding, DoesNotBrakeForWhoComesFromBehindButForWhoIsBesideAndAhead) {
   EXPECT_GT(valueAt(20.0), 0.0);
 }
 
-// It comes toward us at 150 degrees, 1 m past us with its center; a part of it is still ahead of our
-// front bumper until it is 2.4 m long.
+// It comes toward us at 150 degrees, 1 m past us with its center; a part of it is still ahead of
+// our front bumper until it is 2.4 m long.
 TEST_F(Yielding, WaitsUntilAllOfOneThatPassesIsBehindTheFront) {
   OtherMotion& passing = addCrossing(39.0, 1.5, 0.0);
   for (const double length : {9.0, 2.4}) {
@@ -131,7 +131,7 @@ TEST_F(Yielding, LooksBeyondBothEndsOfTheRoute) {
   GuidanceScene& scene = world_.scene();
   scene.state = world_.placed(-4.0, 1.0, 0.0, 8.0);
   scene.route_arc_length = -4.0;
-  addCrossing(6.0, 4.4, 0.0);  // its front is 6.65 m to the left, its rear 2.15 m
+  addCrossing(6.0, 4.4, 0.0);    // its front is 6.65 m to the left, its rear 2.15 m
   EXPECT_GT(valueAt(9.0), 0.0);  // our left side with the gap: 1 + 0.9 + 0.3 m
   scene.traffic.clear();
   scene.state = world_.placed(98.0, 0.0, 0.0, 8.0);

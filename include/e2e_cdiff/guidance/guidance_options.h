@@ -48,7 +48,7 @@ struct GuidanceOptions {
   /// rho: correlation of the noise that a vehicle's plans are drawn from between any two of its
   /// decisions; 0: drawn anew each time (the paper), 1: one noise for all its decisions.
   double noise_correlation = 0.0;
-  /// Samples drawn for each vehicle and decision, of which the one with the lowest J_total is driven.
+  /// Samples drawn of each vehicle and decision; the one with the lowest J_total is driven.
   std::int64_t candidates = 1;
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
