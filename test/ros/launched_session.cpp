@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 #include <thread>
 
 namespace cdiff::test {
@@ -37,8 +38,10 @@ double wallNow() {
 void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
 
 std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  const std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();  // does not throw where the process ends meanwhile
+  return content.str();
 }
 
 int freePort() {

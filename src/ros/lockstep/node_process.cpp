@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <pugixml.hpp>
+#include <sstream>
 #include <vector>
 
 #include "core/file.h"
@@ -53,8 +54,10 @@ fs::path processFolder(pid_t id) { return fs::path("/proc") / std::to_string(id)
 
 /// A file of /proc; empty when the process has ended or is another user's.
 std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  const std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();  // does not throw where the process ends meanwhile
+  return content.str();
 }
 
 /// The texts of cmdline or environ, which end with a zero byte each.
