@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
+#include "guidance/right_of_way.h"
 
 namespace cdiff::guidance {
 namespace {
@@ -23,11 +24,9 @@ double logistic(double x) {
 bool standsBehind(const GuidanceScene& scene) {
   constexpr double kStands = 0.5;  // [m/s]
   const traffic::VehicleState& other = scene.other->now;
-  const geometry::OrientedBox box{other.position, other.heading, scene.other->dimensions.length,
-                                  scene.other->dimensions.width};
   const Eigen::Vector2d forward = geometry::direction(scene.state.heading);
-  const double front =
-      forward.dot(other.position - scene.state.position) + geometry::halfExtent(box, forward);
+  const double front = forward.dot(other.position - scene.state.position) +
+                       geometry::halfExtent(boxOf(other.pose(), scene.other->dimensions), forward);
   return other.speed < kStands && front < -0.5 * scene.dimensions.length;
 }
 

@@ -56,7 +56,7 @@ class CollisionSeekingObjective : public Objective {
   std::string gate = "smooth";              ///< smooth | hard
   double trigger_distance = 25.0;           ///< d_th [m]
   double trigger_width = 10.0;              ///< width of the smooth gate [m]
-  bool leave_behind = false;
+  bool leave_behind = false;                ///< whether one that stands behind is left alone
 
   /// eta(d_ref) in [0, 1].
   double gateAt(double distance) const;

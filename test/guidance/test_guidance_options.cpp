@@ -199,29 +199,23 @@ TEST(Profiles, EveryShippedOneLoadsAndIsWhatItsNameSays) {
   EXPECT_EQ(shippedProfiles(), names);
 }
 
-TEST(Profiles, CandidatesAreCopiedAndAtLeastOne) {
-  GuidanceOptions options;
-  options.candidates = 3;
-  EXPECT_EQ(GuidanceOptions(options).candidates, 3);
-  GuidanceOptions assigned;
-  assigned = options;
-  EXPECT_EQ(assigned.candidates, 3);
-  EXPECT_NO_THROW(options.validate());
-  for (const std::int64_t wrong : {0, 65}) {
-    options.candidates = wrong;
-    EXPECT_THROW(options.validate(), core::InputError) << wrong;
-  }
-}
-
-TEST(Profiles, NoiseCorrelationIsCopiedAndMustBeAShare) {
+TEST(Profiles, NoiseCorrelationAndCandidatesAreCopiedAndInRange) {
   GuidanceOptions options;
   options.noise_correlation = 0.5;
-  EXPECT_EQ(GuidanceOptions(options).noise_correlation, 0.5);
+  options.candidates = 3;
   GuidanceOptions assigned;
   assigned = options;
-  EXPECT_EQ(assigned.noise_correlation, 0.5);
+  for (const GuidanceOptions& copy : {GuidanceOptions(options), assigned}) {
+    EXPECT_EQ(copy.noise_correlation, 0.5);
+    EXPECT_EQ(copy.candidates, 3);
+    EXPECT_NO_THROW(copy.validate());
+  }
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
-    options.noise_correlation = bad;
+    assigned.noise_correlation = bad;
+    EXPECT_THROW(assigned.validate("guidance."), core::InputError) << bad;
+  }
+  for (const std::int64_t bad : {0, 65}) {
+    options.candidates = bad;
     EXPECT_THROW(options.validate("guidance."), core::InputError) << bad;
   }
 }

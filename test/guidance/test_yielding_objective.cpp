@@ -89,12 +89,10 @@ TEST_F(Yielding, GoesFirstWhereItHasClearedTheWayInTime) {
 
 TEST_F(Yielding, OfTwoByTheSameRulesOneWaits) {
   OtherMotion& other = addCrossing(60.0, -13.0, 5.0);
+  EXPECT_GT(valueAt(20.0), 0.0);  // one that does not know of us
   other.by_same_rules = true;
   EXPECT_EQ(valueAt(20.0), 0.0);
   other.goes_first = true;
-  EXPECT_GT(valueAt(20.0), 0.0);
-  addCrossing(60.0, -13.0, 5.0);  // one that does not know of us
-  other.goes_first = false;
   EXPECT_GT(valueAt(20.0), 0.0);
 }
 

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <pugixml.hpp>
 #include <sstream>
 #include <vector>

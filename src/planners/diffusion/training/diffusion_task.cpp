@@ -56,13 +56,17 @@ bool sameEncoder(diffusion::Architecture first, const diffusion::Architecture& s
   return first == second;
 }
 
-/// The model of --init, if one is given; without its denoiser where that takes other inputs.
-std::optional<diffusion::Model> initialModel(const std::string& name,
+/// The model of --init, if one is given. Where the paper's inputs are asked for, its encoder alone
+/// will do for a stage that trains the denoiser.
+std::optional<diffusion::Model> initialModel(const learning::TrainingOptions& options,
+                                             const std::string& network,
                                              const diffusion::Architecture& architecture) {
+  const std::string& name = options.init;
   if (name.empty()) return std::nullopt;
   diffusion::Model model = diffusion::loadModel(name);
   if (model.architecture == architecture) return model;
-  if (sameEncoder(model.architecture, architecture)) {
+  const bool trains_denoiser = options.stage == "denoiser" || options.stage == "joint";
+  if (network == "paper" && trains_denoiser && sameEncoder(model.architecture, architecture)) {
     model.denoiser.clear();
     return model;
   }
@@ -132,7 +136,7 @@ std::vector<std::string> DiffusionTask::otherFiles() const { return {kFeatureFil
 void DiffusionTask::start(const learning::TrainingRun& run) {
   const learning::DrivingDataset dataset(run.dataset);
   const diffusion::Architecture architecture = architectureOf(settings, dataset.schema());
-  const auto initial = initialModel(run.options.init, architecture);
+  const auto initial = initialModel(run.options, settings.network, architecture);
   const diffusion::Normalizer normalizer =
       chooseNormalizer(run.options, settings.mirror, dataset, initial ? &*initial : nullptr);
   const auto seed = static_cast<std::uint64_t>(run.options.seed);

@@ -109,6 +109,9 @@ TEST_F(DiffusionTrainingTest, ThePapersNetworkStartsFromTheEncoderOfAnother) {
   training_.options.output = path("paper").string();
   settings().network = "paper";
   settings().loss = "plain";
+  for (const char* stage :
+       {"fine_tune", "export", "all"})  // would keep a denoiser that is not there
+    EXPECT_NE(refusal(stage).find("the architecture of '"), std::string::npos) << stage;
   run("denoiser", 2);
   const diffusion::Model model = diffusion::loadModel(training_.options.output);
   EXPECT_EQ(model.architecture, other.architecture.imageAlone());
@@ -118,6 +121,10 @@ TEST_F(DiffusionTrainingTest, ThePapersNetworkStartsFromTheEncoderOfAnother) {
   EXPECT_NE(diffusion::loadModel(training_.options.output).encoder.at("project.weight").values,
             other.encoder.at("project.weight").values);
   EXPECT_EQ(record("paper").at("stages").at("joint").at("steps"), 2);
+  training_.options.init = training_.options.output;
+  training_.options.output = path("back").string();
+  settings().network = "default";
+  EXPECT_NE(refusal("denoiser").find("the architecture of '"), std::string::npos);
 }
 
 TEST_F(DiffusionTrainingTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
