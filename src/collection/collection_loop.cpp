@@ -29,6 +29,11 @@ constexpr std::uint32_t kHeadway = 2;
 constexpr std::uint32_t kAcceleration = 3;
 constexpr std::uint32_t kDeceleration = 4;
 
+// Elements of a period's draws.
+constexpr std::uint32_t kPhase = 6;
+constexpr std::uint32_t kChance = 7;
+constexpr double kShortestSpell = 0.25;  // of the longest
+
 constexpr double kSlow = 1.0;           // [m/s] slower vehicles get no noise
 constexpr double kSmallest = 0.3;       // of the largest steering noise
 constexpr double kStallBrake = 0.5;     // so that who follows can stop, too
@@ -41,14 +46,39 @@ std::uint64_t seedOf(const session::SessionSetup& setup) {
 std::unique_ptr<PerturbedPlanner> perturbedPlanner(const session::SessionSetup& setup,
                                                    const CollectionOptions& options,
                                                    std::unique_ptr<planning::Planner> planner,
-                                                   const std::string& name) {
+                                                   Policy policy, const std::string& name) {
   if (planner->needsImages())
     throw core::InputError(
         "planner '" + name +
         "' needs images; data are collected with planners that do not, such as '" +
         std::string(planners::kDefaultEgoPlanner) + "'");
   return std::make_unique<PerturbedPlanner>(std::move(planner), options, seedOf(setup),
-                                            setup.options().decision_period);
+                                            setup.options().decision_period, std::move(policy));
+}
+
+/// Empty where none is asked for.
+Policy policyOf(const session::SessionSetup& setup, const CollectionOptions& options) {
+  if (options.policy.empty()) return {};
+  Policy policy{setup.makeCbvPlanner(options.policy), nullptr};
+  if (!policy.planner->needsImages()) return policy;
+  session::ScenarioOptions driven_by_it = setup.options();
+  driven_by_it.cbv_planner = options.policy;
+  policy.cameras =
+      std::make_unique<session::VehicleCameras>(setup, session::VehicleRigs(driven_by_it));
+  return policy;
+}
+
+planning::DrivingStyle styleOf(const CollectionOptions& options, const core::RandomStream& random,
+                               const core::RandomKey& key) {
+  planning::DrivingStyle style;
+  style.minimum_gap = random.uniform(key, kGap, style.minimum_gap, options.maximum_gap);
+  style.time_headway = random.uniform(key, kHeadway, style.time_headway, options.maximum_headway);
+  if (options.pedals == "published") return style;
+  style.acceleration = random.uniform(key, kAcceleration, options.minimum_acceleration,
+                                      options.maximum_acceleration);
+  style.deceleration = random.uniform(key, kDeceleration, options.minimum_deceleration,
+                                      options.maximum_deceleration);
+  return style;
 }
 
 std::unique_ptr<session::World> disturbedWorld(const session::SessionSetup& setup,
@@ -63,14 +93,59 @@ std::unique_ptr<session::World> disturbedWorld(const session::SessionSetup& setu
 
 }  // namespace
 
+Driver driverOf(const CollectionOptions& options, std::uint64_t seed,
+                const std::string& vehicle_id) {
+  const core::RandomStream random(seed, "collection_target_speed");
+  const core::RandomKey key{core::hashText(vehicle_id), 0, 0};
+  return {random.uniform(key, kTargetSpeed, options.minimum_speed, options.maximum_speed),
+          styleOf(options, random, key)};
+}
+
 PerturbedPlanner::PerturbedPlanner(std::unique_ptr<planning::Planner> planner,
                                    const CollectionOptions& options, std::uint64_t seed,
-                                   double decision_period)
+                                   double decision_period, Policy policy)
     : planner_(std::move(planner)),
+      policy_(std::move(policy)),
       options_(options),
+      seed_(seed),
       noise_(seed, "collection_noise"),
-      styles_(seed, "collection_target_speed"),
+      spells_(seed, "collection_policy"),
       decision_period_(decision_period) {}
+
+/// Time is cut into periods, by vehicle; the policy drives at the start of some of them.
+bool PerturbedPlanner::policyDrives(const std::string& vehicle_id, double time) const {
+  if (!policy_.planner) return false;
+  const std::uint64_t vehicle = core::hashText(vehicle_id);
+  const double phase = spells_.uniform({vehicle, 0, 0}, kPhase);
+  const double place = time / options_.policy_period + phase;
+  const core::RandomKey key{vehicle, static_cast<std::uint32_t>(place), 0};
+  if (spells_.uniform(key, kChance) >= options_.policy_share) return false;
+  const double longest = options_.policy_time;
+  const double duration = spells_.uniform(key, kDuration, kShortestSpell * longest, longest);
+  return (place - std::floor(place)) * options_.policy_period < duration;
+}
+
+void PerturbedPlanner::takePolicy(const traffic::TrafficSnapshot& snapshot,
+                                  const std::vector<planning::PlanningTask>& asked,
+                                  std::vector<planning::PlannedAction>& actions) {
+  std::vector<planning::PlanningTask> tasks;
+  for (const planning::PlanningTask& task : asked) {
+    if (policyDrives(task.vehicle->id, snapshot.time)) tasks.push_back(task);
+  }
+  if (!policy_.planner) return;
+  std::vector<session::SlotImage> images;
+  if (policy_.cameras) {
+    for (const planning::PlanningTask& task : tasks)
+      policy_.cameras->render(snapshot, *task.vehicle, task.slot, images);
+    session::attachImages(images, policy_.cameras->rigs(), tasks);
+  }
+  for (planning::PlannedAction& action : policy_.planner->plan(snapshot, tasks)) {
+    perturbed_.insert(action.vehicle_id);
+    for (planning::PlannedAction& own : actions) {
+      if (own.vehicle_id == action.vehicle_id) std::swap(own, action);
+    }
+  }
+}
 
 PerturbedPlanner::Burst PerturbedPlanner::drawn(const std::string& vehicle, std::uint32_t count,
                                                 double after) const {
@@ -122,24 +197,6 @@ void PerturbedPlanner::disturb(const Burst& burst, double speed,
   }
 }
 
-planning::DrivingStyle PerturbedPlanner::styleOf(const core::RandomKey& key) const {
-  planning::DrivingStyle style;
-  style.minimum_gap = styles_.uniform(key, kGap, style.minimum_gap, options_.maximum_gap);
-  style.time_headway = styles_.uniform(key, kHeadway, style.time_headway, options_.maximum_headway);
-  if (options_.pedals == "published") return style;
-  style.acceleration = styles_.uniform(key, kAcceleration, options_.minimum_acceleration,
-                                       options_.maximum_acceleration);
-  style.deceleration = styles_.uniform(key, kDeceleration, options_.minimum_deceleration,
-                                       options_.maximum_deceleration);
-  return style;
-}
-
-PerturbedPlanner::Driver PerturbedPlanner::driverOf(const std::string& vehicle_id) const {
-  const core::RandomKey key{core::hashText(vehicle_id), 0, 0};
-  return {styles_.uniform(key, kTargetSpeed, options_.minimum_speed, options_.maximum_speed),
-          styleOf(key)};
-}
-
 std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlanningTask> asked = tasks;
@@ -166,6 +223,7 @@ std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     kept.emplace(id, burst);
   }
   bursts_ = std::move(kept);
+  takePolicy(snapshot, asked, actions);
   return actions;
 }
 
@@ -204,8 +262,10 @@ CollectionLoop::CollectionLoop(const session::SessionSetup& setup, const Collect
 
 session::LoopParts CollectionLoop::makeParts(const session::SessionSetup& setup,
                                              const CollectionOptions& options, bool images) {
-  auto ego = perturbedPlanner(setup, options, setup.makeEgoPlanner(), setup.options().ego_planner);
-  auto cbv = perturbedPlanner(setup, options, setup.makeCbvPlanner(), setup.options().cbv_planner);
+  auto ego =
+      perturbedPlanner(setup, options, setup.makeEgoPlanner(), {}, setup.options().ego_planner);
+  auto cbv = perturbedPlanner(setup, options, setup.makeCbvPlanner(), policyOf(setup, options),
+                              setup.options().cbv_planner);
   ego_planner_ = ego.get();
   cbv_planner_ = cbv.get();
   session::LoopParts parts;

@@ -14,18 +14,35 @@
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "session/closed_loop.h"
+#include "session/vehicle_cameras.h"
 
 namespace cdiff::collection {
 
+/// Who drives a vehicle in data collection: its target speed [m/s] and its style.
+struct Driver {
+  double target_speed;
+  planning::DrivingStyle style;
+};
+/// Drawn by vehicle id and the session's seed.
+Driver driverOf(const CollectionOptions& options, std::uint64_t seed,
+                const std::string& vehicle_id);
+
+/// A planner that drives now and then in data collection, and what it sees by.
+struct Policy {
+  std::unique_ptr<planning::Planner> planner;
+  std::unique_ptr<session::VehicleCameras> cameras;  ///< nullptr: it needs no images
+};
+
 /// Wraps another planner: gives each vehicle its own target speed [m/s] and driving style, and now
-/// and then adds a burst of noise to an action or stops the vehicle for some seconds, so that the
-/// record shows how the planner recovers and starts.
+/// and then adds a burst of noise to an action, stops the vehicle for some seconds, or lets a
+/// policy drive it, so that the record shows how the planner recovers and starts, and what it does
+/// where the policy leads (DAgger; Ross et al. 2011, with time slices in place of single actions).
 class PerturbedPlanner : public planning::Planner {
  public:
   /// Draws are keyed by vehicle id and number of its bursts. `decision_period` [s] decides whether
-  /// a decision was left out.
+  /// a decision was left out. Without a policy none drives.
   PerturbedPlanner(std::unique_ptr<planning::Planner> planner, const CollectionOptions& options,
-                   std::uint64_t seed, double decision_period);
+                   std::uint64_t seed, double decision_period, Policy policy = {});
 
   /// The noise of a vehicle that was not among the tasks of the last decision starts over.
   std::vector<planning::PlannedAction> plan(
@@ -33,14 +50,13 @@ class PerturbedPlanner : public planning::Planner {
       const std::vector<planning::PlanningTask>& tasks) override;
   bool needsImages() const override { return planner_->needsImages(); }
 
-  /// Who drives a vehicle: its target speed [m/s] and its style.
-  struct Driver {
-    double target_speed;
-    planning::DrivingStyle style;
-  };
-  Driver driverOf(const std::string& vehicle_id) const;
+  Driver driverOf(const std::string& vehicle_id) const {
+    return collection::driverOf(options_, seed_, vehicle_id);
+  }
+  /// Whether the policy drives the vehicle at this time [s].
+  bool policyDrives(const std::string& vehicle_id, double time) const;
 
-  /// Vehicles whose actions of the last call carry noise.
+  /// Vehicles whose actions of the last call carry noise, or are the policy's.
   const std::set<std::string>& perturbed() const { return perturbed_; }
 
  private:
@@ -53,15 +69,20 @@ class PerturbedPlanner : public planning::Planner {
     bool stall = false;       ///< stops the vehicle instead
     bool begun = false;       ///< has acted; a stall that finds a standing vehicle never does
   };
-  planning::DrivingStyle styleOf(const core::RandomKey& key) const;
+  /// Puts the policy's actions in place of the planner's where it drives.
+  void takePolicy(const traffic::TrafficSnapshot& snapshot,
+                  const std::vector<planning::PlanningTask>& asked,
+                  std::vector<planning::PlannedAction>& actions);
   Burst drawn(const std::string& vehicle, std::uint32_t count, double after) const;
   bool acts(double time, double speed, Burst& burst) const;
   void disturb(const Burst& burst, double speed, traffic::ControlAction& action) const;
 
   std::unique_ptr<planning::Planner> planner_;
+  Policy policy_;
   CollectionOptions options_;
+  std::uint64_t seed_;
   core::RandomStream noise_;
-  core::RandomStream styles_;
+  core::RandomStream spells_;
   double decision_period_;
   double last_time_ = 0.0;  ///< time of the last call [s]
   std::map<std::string, Burst> bursts_;
@@ -96,8 +117,8 @@ class ImageSchedule {
 class CollectionLoop {
  public:
   /// `setup` must outlive the loop. `images`: whether records hold what vehicles see, as
-  /// ImageSchedule defines it. Throws InputError for unknown planners, planners that need images,
-  /// and a real_time_factor.
+  /// ImageSchedule defines it. Throws InputError for unknown planners, planners that need images
+  /// (the policy may), and a real_time_factor.
   CollectionLoop(const session::SessionSetup& setup, const CollectionOptions& options, bool images);
   CollectionLoop(const CollectionLoop&) = delete;
   CollectionLoop& operator=(const CollectionLoop&) = delete;
@@ -109,7 +130,7 @@ class CollectionLoop {
   const session::World& world() const { return loop_.world(); }
   /// Whether the last action decided for a vehicle carries noise.
   bool perturbed(const std::string& vehicle_id) const;
-  PerturbedPlanner::Driver driverOf(const std::string& vehicle_id) const {
+  Driver driverOf(const std::string& vehicle_id) const {
     return cbv_planner_->driverOf(vehicle_id);
   }
 

@@ -111,6 +111,12 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
                  3.0);
   visitor.number({"offset_heading", "deg", "Largest turn of a displaced vehicle."}, offset_heading,
                  0.0, 45.0);
+  visitor.text({"policy", "", "Planner that drives CBVs now and then; empty: none."}, policy, {});
+  visitor.number({"policy_period", "s", "From one such time of a vehicle to the next."},
+                 policy_period, 1.0, 100.0);
+  visitor.number({"policy_time", "s", "Longest time that it drives."}, policy_time, 0.1, 100.0);
+  visitor.number({"policy_share", "", "Share of the periods in which it does."}, policy_share, 0.0,
+                 1.0);
   visitor.group({"noise", "", "Disturbances."}, noise);
 }
 
@@ -123,6 +129,7 @@ void CollectionOptions::validate() const {
   requireOrder("minimum_density", minimum_density, "maximum_density", maximum_density);
   requireOrder("minimum_route", minimum_route, "route_length", route_length);
   requireOrder("route_end", route_end, "minimum_route", minimum_route);
+  requireOrder("policy_time", policy_time, "policy_period", policy_period);
   requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
                noise.stall_maximum_time);
   if (noise.stall_share > 0.0)
@@ -147,6 +154,8 @@ learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture) {
   schema.image_height = architecture.image_height;
   schema.route_points = architecture.route_points;
   schema.route_spacing = architecture.route_spacing;
+  schema.previous_interval = kPreviousInterval;
+  schema.target_speeds = true;
   return schema;
 }
 

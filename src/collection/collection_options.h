@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +65,10 @@ struct CollectionOptions {
   double offset_share = 0.2;          ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;       ///< largest displacement to the side [m]
   double offset_heading = 12.0;       ///< largest turn of a displaced vehicle [deg]
+  std::string policy;                 ///< planner that drives CBVs now and then; empty: none
+  double policy_period = 8.0;         ///< from one such time of a vehicle to the next [s]
+  double policy_time = 4.0;           ///< longest time that it drives, drawn from a quarter on [s]
+  double policy_share = 0.7;          ///< share of the periods in which it drives
   NoiseOptions noise;
 
   void describe(core::OptionsVisitor& visitor);
@@ -78,10 +83,14 @@ struct DatasetOptions {
   double offset_share = 0.2;             ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;          ///< largest displacement to the side [m]
   double offset_heading = 12.0;          ///< largest turn of a displaced vehicle [deg]
+  std::function<double(const std::string&)> target_speed;  ///< v* by vehicle [m/s]; empty: unknown
 };
 
 /// Those that a collection's own options give.
 DatasetOptions datasetOptions(const CollectionOptions& options);
+
+/// How long before a sample's image the one before it was seen [s].
+inline constexpr double kPreviousInterval = 0.4;
 
 /// The schema that such samples fit.
 learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture);

@@ -63,9 +63,10 @@ namespace {
 
 using core::InputError;
 
-constexpr double kLeastPath = 0.5;  // a shorter path has no direction [m]
-constexpr double kPart = 60.0;      // [s] of a drive that count as one session
-constexpr double kReversing = 0.1;  // [m/s] backwards that is more than noise at standstill
+constexpr double kLeastPath = 0.5;        // a shorter path has no direction [m]
+constexpr double kPart = 60.0;            // [s] of a drive that count as one session
+constexpr double kImageTolerance = 0.05;  // [s]
+constexpr double kReversing = 0.1;        // [m/s] backwards that is more than noise at standstill
 
 class DriveSamples {
  public:
@@ -88,6 +89,7 @@ class DriveSamples {
       next = time + drive_options_.period - 1e-6;
       sample->image = image;
       sample->image.tick = sample->tick;
+      sample->previous_image = imageBefore(time);
       countUp(*sample, statistics);
       samples.push_back(std::move(*sample));
     }
@@ -95,6 +97,14 @@ class DriveSamples {
   }
 
  private:
+  /// The image kPreviousInterval before, give or take kImageTolerance; empty where there is none.
+  traffic::CameraImage imageBefore(double time) const {
+    const auto before = drive_.images.lower_bound(time - kPreviousInterval - kImageTolerance);
+    if (before == drive_.images.end() || before->first > time - kPreviousInterval + kImageTolerance)
+      return {};
+    return before->second;
+  }
+
   static bool reverses(const learning::DrivingSample& sample) {
     return std::min(sample.speed, sample.rollout.col(traffic::kRolloutSpeed).minCoeff()) <
            -kReversing;

@@ -17,6 +17,15 @@ OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOp
       model_(setup.options().vehicle),
       camera_(setup.options().camera, setup.network()) {}
 
+traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
+                                     const traffic::VehicleState& here,
+                                     const traffic::VehicleState& displaced) {
+  traffic::VehicleState alike = state;
+  alike.position = displaced.pose().toMap(here.pose().toBody(state.position));
+  alike.heading = core::wrapAngle(state.heading + displaced.heading - here.heading);
+  return alike;
+}
+
 bool OffsetSamples::free(const traffic::Vehicle& vehicle,
                          const traffic::TrafficSnapshot& snapshot) const {
   const geometry::OrientedBox box = vehicle.box();
@@ -64,6 +73,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
 
 std::optional<DisplacedSample> OffsetSamples::displace(
     const learning::DrivingSample& sample, const SampleSurroundings& around,
+    const traffic::TrafficSnapshot& previous,
     const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
   traffic::Vehicle vehicle = *around.snapshot.find(sample.vehicle);
   vehicle.state.position +=
@@ -75,6 +85,12 @@ std::optional<DisplacedSample> OffsetSamples::displace(
   if (!driveBack(vehicle, around, future, displaced.rollout)) return std::nullopt;
   displaced.recovering = true;
   displaced.image = camera_.render(around.snapshot, vehicle);
+  if (!sample.previous_image.empty()) {
+    const traffic::Vehicle& before = *previous.find(sample.vehicle);
+    const traffic::VehicleState& here = around.snapshot.find(sample.vehicle)->state;
+    displaced.previous_image =
+        seen(previous, before, displacedAlike(before.state, here, vehicle.state));
+  }
   displaced.route = diffusion::routeTokens(options_.architecture, around.route.path(),
                                            around.arc_length, vehicle.state.pose());
   return found;

@@ -17,6 +17,8 @@ namespace {
 
 using core::InputError;
 
+constexpr std::size_t kPreviousDecisions = 4;  // kPreviousInterval before
+
 /// Where a vehicle is on its route at a decision.
 struct Place {
   DriveKey drive;
@@ -88,6 +90,7 @@ class SampleMaker {
     if (reason != nullptr) return reason;
     learning::DrivingSample sample = sampleAt(at->second, place->second);
     sample.image = image.image;
+    addPrevious(at->second, place->second, sample);
     const SampleSurroundings surroundings{*session_.setup, session_.decisions[at->second],
                                           session_.routes.at(place->second.drive),
                                           place->second.arc_length};
@@ -99,6 +102,17 @@ class SampleMaker {
     samples.push_back(std::move(sample));
     addDisplaced(at->second, surroundings, kinds, samples);
     return nullptr;
+  }
+
+  /// The image before, where the vehicle was driven by then: at a take-over it may jump. Rendered
+  /// here, which gives the bytes that it saw.
+  void addPrevious(std::size_t begin, const Place& place, learning::DrivingSample& sample) {
+    if (options_.target_speed) sample.target_speed = options_.target_speed(sample.vehicle);
+    if (place.decisions < kPreviousDecisions || begin < kPreviousDecisions) return;
+    const traffic::TrafficSnapshot& snapshot = session_.decisions[begin - kPreviousDecisions];
+    const traffic::Vehicle* vehicle = snapshot.find(sample.vehicle);
+    if (vehicle == nullptr) return;
+    sample.previous_image = offset_samples_.seen(snapshot, *vehicle, vehicle->state);
   }
 
   /// For a share of the moving vehicles, appends a second sample: the last one with its vehicle
@@ -116,7 +130,9 @@ class SampleMaker {
         offsets_.uniform(key, 2, -heading, heading)};
     std::vector<const traffic::TrafficSnapshot*> future;
     for (std::size_t t = 1; t <= horizon_; ++t) future.push_back(&session_.decisions[begin + t]);
-    auto displaced = offset_samples_.displace(sample, surroundings, future, offset);
+    const std::size_t back = sample.previous_image.empty() ? 0 : kPreviousDecisions;
+    auto displaced = offset_samples_.displace(sample, surroundings,
+                                              session_.decisions[begin - back], future, offset);
     if (!displaced) return;
     kinds.displaced = true;
     kinds.off_course = displaced->off_course;

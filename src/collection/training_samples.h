@@ -103,6 +103,11 @@ struct SampleOffset {
   double heading = 0.0;
 };
 
+/// `state` as it would be had the vehicle come to `displaced` in place of `here`.
+traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
+                                     const traffic::VehicleState& here,
+                                     const traffic::VehicleState& displaced);
+
 /// A sample as it would be beside its route, made by OffsetSamples.
 struct DisplacedSample {
   learning::DrivingSample sample;
@@ -119,11 +124,19 @@ class OffsetSamples {
   /// `setup` and `options` must outlive this object.
   OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options);
 
-  /// The sample with its vehicle displaced by `offset`; `future`: snapshots of the T decisions that
-  /// follow. nullopt when the vehicle would start off the drivable area, leave it, or touch another
+  /// What the vehicle sees in the snapshot from `state`.
+  traffic::CameraImage seen(const traffic::TrafficSnapshot& snapshot, traffic::Vehicle vehicle,
+                            const traffic::VehicleState& state) {
+    vehicle.state = state;
+    return camera_.render(snapshot, vehicle);
+  }
+  /// The sample with its vehicle displaced by `offset`; `previous`: the snapshot of its image
+  /// before, where it has one; `future`: those of the T decisions that follow. nullopt when the
+  /// vehicle would start off the drivable area, leave it, or touch another
   /// vehicle.
   std::optional<DisplacedSample> displace(
       const learning::DrivingSample& sample, const SampleSurroundings& around,
+      const traffic::TrafficSnapshot& previous,
       const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset);
 
  private:

@@ -40,7 +40,10 @@ void RouteScaledDenoiser::mixInto(float* values) {
 void RouteScaledDenoiser::setContexts(const std::vector<Context>& contexts) {
   with_route_.setContexts(contexts);
   std::vector<Context> without = contexts;
-  for (Context& context : without) context.route.clear();
+  for (Context& context : without) {
+    context.route.clear();
+    context.target_speed.reset();
+  }
   without_route_.setContexts(without);
   rows_ = contexts.size() * static_cast<std::size_t>(architecture().horizon);
 }

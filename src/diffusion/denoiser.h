@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "diffusion/network/architecture.h"
@@ -13,9 +14,11 @@ namespace cdiff::diffusion {
 
 /// What one trajectory is conditioned on.
 struct Context {
-  std::vector<float> image_features;  ///< [image_features]
-  std::vector<float> route;           ///< [route_points, 2] tokens; empty: no route ("image" mode)
-  double speed = 0.0;                 ///< own speed [m/s]
+  std::vector<float> image_features;   ///< [image_features]
+  std::vector<float> route;            ///< [route_points, 2] tokens; empty: no route ("image" mode)
+  double speed = 0.0;                  ///< own speed [m/s]
+  std::vector<float> previous;         ///< [image_features] of the image before; empty: not known
+  std::optional<double> target_speed;  ///< v* [m/s]
 };
 
 /// The denoiser f_theta(tau^k, k, c) of a batch (paper III-C2): action head, state head on actions,
@@ -62,9 +65,10 @@ class LearnedStateBranch : public StateBranch {
   Denoiser& denoiser_;
 };
 
-/// Classifier-free guidance on the route: actions x_u + w (x_c - x_u), x_c of the contexts as they
-/// are, x_u of the same without their routes, w = `scale`; 0 is without route, 1 with it, above 1
-/// beyond it. States are those of the actions, which no route decides. Normalized.
+/// Classifier-free guidance on the route and, where the model takes it, the target speed: actions
+/// x_u + w (x_c - x_u), x_c of the contexts as they are, x_u of the same without both, w = `scale`;
+/// 0 is without, 1 with them, above 1 beyond them. States are those of the actions, which no route
+/// decides. Normalized.
 class RouteScaledDenoiser : public Denoiser {
  public:
   /// Two denoisers of the same model; both must outlive it.

@@ -52,11 +52,10 @@ std::unique_ptr<planning::Planner> SessionSetup::makeEgoPlanner() const {
        options_.ego_guidance, "ego_guidance.", options_.ego_rig, "ego_rig"});
 }
 
-std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner() const {
+std::unique_ptr<planning::Planner> SessionSetup::makeCbvPlanner(const std::string& name) const {
   return planners::makePlanner(
-      options_.cbv_planner,
-      {planningContext(), options_.planner_options, options_.vehicle, options_.camera,
-       options_.guidance, "guidance.", options_.cbv_rig, "cbv_rig"});
+      name, {planningContext(), options_.planner_options, options_.vehicle, options_.camera,
+             options_.guidance, "guidance.", options_.cbv_rig, "cbv_rig"});
 }
 
 std::unique_ptr<simulation::SumoSimulator> SessionSetup::makeSimulator() const {

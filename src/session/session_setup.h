@@ -43,7 +43,11 @@ class SessionSetup {
   planning::PlanningContext planningContext() const;
   /// The planners that the scenario names; they refer to this setup. Throw InputError.
   std::unique_ptr<planning::Planner> makeEgoPlanner() const;
-  std::unique_ptr<planning::Planner> makeCbvPlanner() const;
+  std::unique_ptr<planning::Planner> makeCbvPlanner() const {
+    return makeCbvPlanner(options_.cbv_planner);
+  }
+  /// One of another name in its place.
+  std::unique_ptr<planning::Planner> makeCbvPlanner(const std::string& name) const;
   /// SUMO with the network, the demand file and the lights of the scenario. Throws InputError and
   /// SimulatorError as it does.
   std::unique_ptr<simulation::SumoSimulator> makeSimulator() const;

@@ -8,6 +8,7 @@
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
 #include "collection/traffic_driver.h"
+#include "collection/training_samples.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
@@ -203,6 +204,73 @@ TEST(PerturbedPlanner, AStallThatFindsAStandingVehicleIsLeftOut) {
     marked += !planner.perturbed().empty();
   }
   EXPECT_EQ(marked, 0);
+}
+
+/// A policy that is told from the planner it takes turns with.
+class Turning : public planning::Planner {
+ public:
+  std::vector<planning::PlannedAction> plan(
+      const traffic::TrafficSnapshot&, const std::vector<planning::PlanningTask>& tasks) override {
+    std::vector<planning::PlannedAction> actions;
+    for (const planning::PlanningTask& task : tasks)
+      actions.push_back({task.slot, task.vehicle->id, {0.0, -0.7, 0.0}, {}});
+    return actions;
+  }
+};
+
+TEST(PerturbedPlanner, APolicyDrivesInItsTurnsWhichCountAsNoise) {
+  CollectionOptions options;
+  options.noise.interval = 1e9;
+  options.policy_share = 1.0;
+  PerturbedPlanner planner(std::make_unique<Steady>(), options, 1, 0.1,
+                           {std::make_unique<Turning>(), nullptr});
+  std::map<std::string, std::vector<int>> turns;  // decisions of each
+  std::map<std::string, bool> drove;
+  for (int i = 0; i < 4000; ++i) {
+    const auto snapshot = snapshotWith(0.1 * i, {test::vehicle("a", {0.0, 0.0, 0.0, 5.0}),
+                                                 test::vehicle("b", {9.0, 0.0, 0.0, 5.0})});
+    const auto actions = planner.plan(snapshot, {{0, &snapshot.vehicles[1], nullptr, 8.0},
+                                                 {1, &snapshot.vehicles[2], nullptr, 8.0}});
+    for (const planning::PlannedAction& action : actions) {
+      const std::string& id = action.vehicle_id;
+      const bool policy = action.action.steer == -0.7;
+      EXPECT_EQ(policy, planner.policyDrives(id, snapshot.time));
+      EXPECT_EQ(policy, planner.perturbed().count(id) != 0);
+      if (policy && !drove[id]) turns[id].push_back(0);
+      if (policy) ++turns[id].back();
+      drove[id] = policy;
+    }
+  }
+  for (const char* id : {"a", "b"}) {
+    ASSERT_NEAR(static_cast<double>(turns[id].size()), 50.0, 1.0) << "one each 8 s";
+    for (std::size_t i = 1; i + 1 < turns[id].size(); ++i) {
+      EXPECT_GE(turns[id][i], 9) << "1 s";
+      EXPECT_LE(turns[id][i], 41) << "4 s";
+    }
+  }
+  EXPECT_NE(turns["a"], turns["b"]);
+}
+
+TEST(PerturbedPlanner, WithoutAPolicyNoneTakesTurns) {
+  PerturbedPlanner planner(std::make_unique<Steady>(), {}, 1, 0.1);
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(planner.policyDrives("a", 0.1 * i));
+}
+
+TEST(DisplacedSample, TheImageBeforeIsSeenFromWhereTheVehicleWouldHaveBeen) {
+  traffic::VehicleState before;
+  before.position = {10.0, 4.0};
+  before.heading = 0.1;
+  traffic::VehicleState here = before;
+  here.position = {12.0, 4.2};
+  EXPECT_NEAR((displacedAlike(before, here, here).position - before.position).norm(), 0.0, 1e-12);
+  traffic::VehicleState beside = here;
+  beside.position += Eigen::Vector2d(-0.5, 0.5);
+  beside.heading += 0.2;
+  const traffic::VehicleState moved = displacedAlike(before, here, beside);
+  // It saw the same of its own motion.
+  EXPECT_NEAR((beside.pose().toBody(moved.position) - here.pose().toBody(before.position)).norm(),
+              0.0, 1e-12);
+  EXPECT_NEAR(moved.heading, 0.3, 1e-12);
 }
 
 TEST(CollectionOptions, AStallMustEndBeforeAStandingVehicleIsReleased) {

@@ -176,6 +176,18 @@ TEST(Architecture, JsonRoundTrip) {
   EXPECT_TRUE(Architecture::fromJson(a.toJson(), "test") == a);
 }
 
+// Weights that were made before the image before and the target speed were inputs do not name them.
+TEST(Architecture, InputsOfMotionAreNamedOnlyWhereTheyAreTaken) {
+  EXPECT_EQ(Architecture().toJson().find("previous_frame"), std::string::npos);
+  EXPECT_EQ(Architecture().toJson().find("target_features"), std::string::npos);
+  const Architecture motion = Architecture().withMotion();
+  EXPECT_NE(motion.toJson().find("\"previous_frame\":4"), std::string::npos);
+  EXPECT_TRUE(Architecture::fromJson(motion.toJson(), "test") == motion);
+  EXPECT_FALSE(motion == Architecture());
+  EXPECT_TRUE(motion.imageAlone() == Architecture().imageAlone());
+  EXPECT_EQ(motion.joinedFeatures(), Architecture().joinedFeatures() + 256 + 32);
+}
+
 /// The default architecture as JSON with a piece of its text replaced.
 std::string jsonError(const std::string& from, const std::string& to) {
   std::string text = Architecture().toJson();

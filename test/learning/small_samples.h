@@ -78,10 +78,28 @@ inline diffusion::Architecture smallArchitecture() {
   return architecture;
 }
 
+/// Of samples with an image before and a target speed.
+inline learning::DrivingSchema motionSchema() {
+  learning::DrivingSchema schema = smallSchema();
+  schema.previous_interval = 0.4;
+  schema.target_speeds = true;
+  return schema;
+}
+
+/// A small sample with both; every third lacks the image before, every fifth the target speed.
+inline learning::DrivingSample motionSample(std::size_t index, std::uint64_t session) {
+  learning::DrivingSample sample = smallSample(index, session);
+  if (index % 3 != 2) sample.previous_image = smallSample(index + 1, session).image;
+  if (index % 5 != 4) sample.target_speed = 6.0 + static_cast<double>(index);
+  return sample;
+}
+
 /// The first `count` samples, all of session 1, as one shard.
-inline void writeShard(const std::filesystem::path& path, std::size_t count) {
-  learning::DrivingShardWriter writer(smallSchema());
-  for (std::size_t i = 0; i < count; ++i) writer.append(smallSample(i, 1));
+inline void writeShard(const std::filesystem::path& path, std::size_t count,
+                       const learning::DrivingSchema& schema = smallSchema()) {
+  learning::DrivingShardWriter writer(schema);
+  for (std::size_t i = 0; i < count; ++i)
+    writer.append(schema.target_speeds ? motionSample(i, 1) : smallSample(i, 1));
   writer.write(path);
 }
 

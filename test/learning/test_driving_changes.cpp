@@ -31,6 +31,30 @@ TEST(Mirror, ExchangesLeftAndRightAndIsItsOwnInverse) {
   EXPECT_EQ(sample.rollout, before.rollout);
 }
 
+TEST(Mirror, TurnsTheImageBeforeAsWell) {
+  DrivingSample sample = test::motionSample(0, 1);
+  const DrivingSample before = sample;
+  mirrorSample(test::motionSchema(), sample);
+  EXPECT_EQ(sample.previous_image.rgb[(5 * 64 + 2) * 3 + 1],
+            before.previous_image.rgb[(5 * 64 + 61) * 3 + 1]);
+  EXPECT_EQ(sample.target_speed, before.target_speed);
+}
+
+// The mean of an image shows brightness and contrast, its pixels also show the noise.
+TEST(Light, TwoFramesOfASampleShareTheirLightAndNotTheirNoise) {
+  const core::RandomStream random(3, "light");
+  traffic::CameraImage frames[2];
+  double means[2] = {0.0, 0.0};
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    frames[i] = test::smallSample(0, 1).image;
+    changeLight(random, {1, 5}, frames[i], i);
+    for (const std::uint8_t value : frames[i].rgb) means[i] += value;
+    means[i] /= static_cast<double>(frames[i].rgb.size());
+  }
+  EXPECT_NE(frames[0].rgb, frames[1].rgb);
+  EXPECT_NEAR(means[0], means[1], 0.5);  // noise of at most 12 levels on 12,288 values
+}
+
 TEST(Light, ChangesTheImageTheSameWayForTheSameKey) {
   const core::RandomStream random(3, "light");
   traffic::CameraImage first = test::smallSample(0, 1).image;

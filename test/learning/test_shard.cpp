@@ -86,6 +86,28 @@ TEST_F(ShardTest, KeepsEverySampleToTheBit) {
   expectSmallSamples();
 }
 
+TEST_F(ShardTest, KeepsTheImageBeforeAndTheTargetSpeedWhereTheyAreKnown) {
+  test::TemporaryFolder folder;
+  test::writeShard(folder.path() / "motion.shard", 6, test::motionSchema());
+  const Dataset stored(folder.path(), 0.0);
+  const DrivingDataset dataset(stored);
+  EXPECT_TRUE(dataset.schema() == test::motionSchema());
+  EXPECT_FALSE(dataset.schema() == smallSchema());
+  for (std::size_t i = 0; i < 6; ++i) {
+    const DrivingSample expected = test::motionSample(i, 1);
+    const DrivingSample found = dataset.sample(i);
+    EXPECT_EQ(found.image.rgb, expected.image.rgb);
+    EXPECT_EQ(found.previous_image.rgb, expected.previous_image.rgb) << i;
+    EXPECT_EQ(found.previous_image.empty(), i % 3 == 2);
+    EXPECT_EQ(std::isnan(found.target_speed), i % 5 == 4);
+    if (i % 5 != 4) {
+      EXPECT_EQ(found.target_speed, expected.target_speed);
+    }
+    EXPECT_TRUE(dataset.withoutImage(i).previous_image.empty());
+    EXPECT_EQ(dataset.withoutImage(i).speed, expected.speed);
+  }
+}
+
 TEST_F(ShardTest, AuxiliaryTargetsMayBeUnknown) {
   DrivingSchema schema = smallSchema();
   schema.auxiliary = {"gap", "offset"};

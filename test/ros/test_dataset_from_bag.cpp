@@ -140,6 +140,25 @@ TEST_F(DatasetFromBag, NoSampleHoldsNoiseAndEachHasItsImage) {
   }
 }
 
+// What the vehicle was shown 0.4 s before, where that image was recorded.
+TEST_F(DatasetFromBag, TheImageBeforeHasTheBytesThatTheVehicleSawThen) {
+  DatasetStatistics statistics;
+  std::size_t compared = 0;
+  std::size_t known = 0;
+  for (const learning::DrivingSample& sample : samplesFromBag(bag(), noneDisplaced(), statistics)) {
+    EXPECT_TRUE(std::isnan(sample.target_speed)) << "no bag says it";
+    if (sample.previous_image.empty()) continue;
+    ++known;
+    EXPECT_NE(sample.previous_image.rgb, sample.image.rgb);
+    const auto seen = witness_->images.find({sample.vehicle, sample.tick - 8});
+    if (seen == witness_->images.end()) continue;
+    ++compared;
+    EXPECT_EQ(sample.previous_image.rgb, seen->second) << sample.vehicle << ' ' << sample.tick;
+  }
+  EXPECT_GT(known, 10U);
+  EXPECT_GT(compared, 0U);
+}
+
 TEST_F(DatasetFromBag, DisplacedSamplesLookFromBesideTheRouteAndReturnToIt) {
   DatasetStatistics statistics;
   const auto samples = samplesFromBag(bag(), allDisplaced(), statistics);

@@ -23,6 +23,7 @@ struct SizeField {
   std::int64_t Architecture::*member;
   std::int64_t low;
   std::int64_t high;
+  bool optional = false;  // 0 where it is not named
 };
 
 constexpr SizeField kSizes[] = {
@@ -39,6 +40,8 @@ constexpr SizeField kSizes[] = {
     {"speed_features", &Architecture::speed_features, 0, 4096},
     {"context_width", &Architecture::context_width, 0, 4096},
     {"state_hidden", &Architecture::state_hidden, 1, 4096},
+    {"previous_frame", &Architecture::previous_frame, 0, 1024, true},
+    {"target_features", &Architecture::target_features, 0, 4096, true},
 };
 constexpr std::int64_t kMinLevels = 2;
 constexpr std::int64_t kMaxLevels = 6;
@@ -112,6 +115,15 @@ Architecture Architecture::imageAlone() const {
   architecture.route_features = 0;
   architecture.speed_features = 0;
   architecture.context_width = 0;
+  architecture.previous_frame = 0;
+  architecture.target_features = 0;
+  return architecture;
+}
+
+Architecture Architecture::withMotion() const {
+  Architecture architecture = *this;
+  architecture.previous_frame = 4;
+  architecture.target_features = 32;
   return architecture;
 }
 
@@ -137,7 +149,9 @@ void Architecture::validate() const {
 
 std::string Architecture::toJson() const {
   nlohmann::ordered_json object;
-  for (const SizeField& field : kSizes) object[field.name] = this->*field.member;
+  for (const SizeField& field : kSizes) {
+    if (!field.optional || this->*field.member != 0) object[field.name] = this->*field.member;
+  }
   object["channels"] = channels;
   object["route_spacing"] = route_spacing;
   return object.dump();
@@ -153,6 +167,7 @@ Architecture Architecture::fromJson(const std::string& text, const std::string& 
   const std::string prefix = source + ": the architecture's ";
   Architecture result;
   for (const SizeField& field : kSizes) {
+    if (field.optional && !object.contains(field.name)) continue;
     result.*field.member = integerOf(valueOf(object, field.name, source), prefix + field.name);
   }
   result.channels = channelsOf(valueOf(object, "channels", source), prefix + "channels");

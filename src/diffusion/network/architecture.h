@@ -32,11 +32,18 @@ struct Architecture {
   std::int64_t speed_features = 32;  ///< 0: the own speed is no input
   std::int64_t context_width = 128;  ///< c; 0: the features are injected as they are
   std::int64_t state_hidden = 256;   ///< hidden units of the state head
+  std::int64_t previous_frame = 0;   ///< rollout steps that a second image lies back; 0: no second
+  std::int64_t target_features = 0;  ///< 0: the target speed is no input
 
   bool takesRoute() const { return route_features > 0; }
   bool takesSpeed() const { return speed_features > 0; }
-  /// Values of image, route and speed together.
-  std::int64_t joinedFeatures() const { return image_features + route_features + speed_features; }
+  bool takesPrevious() const { return previous_frame > 0; }
+  bool takesTarget() const { return target_features > 0; }
+  /// Values of image, route, speed, image before and target speed together.
+  std::int64_t joinedFeatures() const {
+    return image_features * (takesPrevious() ? 2 : 1) + route_features + speed_features +
+           target_features;
+  }
   /// Values of c.
   std::int64_t contextValues() const {
     return context_width > 0 ? context_width : joinedFeatures();
@@ -45,11 +52,13 @@ struct Architecture {
   /// The same with the paper's inputs (III-C2): the image alone, its features injected into every
   /// block as they are.
   Architecture imageAlone() const;
+  /// The same that sees motion, by the image of 0.4 s before, and is told the target speed.
+  Architecture withMotion() const;
 
   /// Throws InputError naming the size that is out of range or does not fit the others.
   void validate() const;
-  /// As JSON text and back; throws InputError naming the key that is missing, unknown or of the
-  /// wrong type.
+  /// As JSON text and back; the inputs of withMotion are named where they are there. Throws
+  /// InputError naming the key that is missing, unknown or of the wrong type.
   std::string toJson() const;
   static Architecture fromJson(const std::string& text, const std::string& source);
 };

@@ -48,6 +48,12 @@ Conditioning::Conditioning(const inference::DenoiserKernels& kernels,
     no_route_ = inference::tensorNamed(tensors, "no_route").values;
   }
   if (architecture.takesSpeed()) speed0_ = inference::linearNamed(kernels, tensors, "speed.0");
+  if (architecture.takesPrevious())
+    no_previous_ = inference::tensorNamed(tensors, "no_previous").values;
+  if (architecture.takesTarget()) {
+    target0_ = inference::linearNamed(kernels, tensors, "target.0");
+    no_target_ = inference::tensorNamed(tensors, "no_target").values;
+  }
   if (architecture.context_width > 0)
     context0_ = inference::linearNamed(kernels, tensors, "context.0");
   buildTimeEmbeddings(tensors);
@@ -120,12 +126,46 @@ inference::Activation Conditioning::speedFeatures(const std::vector<Context>& co
   return mished(result);
 }
 
+inference::Activation Conditioning::previousFeatures(const std::vector<Context>& contexts) const {
+  inference::Activation result =
+      inference::matrix(architecture_.image_features, static_cast<std::int64_t>(contexts.size()));
+  for (std::size_t b = 0; b < contexts.size(); ++b) {
+    const std::vector<float>& known = contexts[b].previous;
+    const std::vector<float>& values = known.empty() ? no_previous_ : known;
+    std::copy(values.begin(), values.end(), result.row(static_cast<std::int64_t>(b)));
+  }
+  return result;
+}
+
+inference::Activation Conditioning::targetFeatures(const std::vector<Context>& contexts) const {
+  inference::Activation target = inference::matrix(1, static_cast<std::int64_t>(contexts.size()));
+  for (std::size_t b = 0; b < contexts.size(); ++b) {
+    *target.row(static_cast<std::int64_t>(b)) =
+        static_cast<float>(contexts[b].target_speed.value_or(0.0) / kSpeedScale);
+  }
+  inference::Activation hidden = inference::matrix(architecture_.target_features, target.rows());
+  target0_->applyToRows(target, hidden);
+  inference::Activation result = mished(hidden);
+  for (std::size_t b = 0; b < contexts.size(); ++b) {
+    if (contexts[b].target_speed) continue;
+    std::copy(no_target_.begin(), no_target_.end(), result.row(static_cast<std::int64_t>(b)));
+  }
+  return result;
+}
+
 void Conditioning::requireSizes(const Context& context, std::size_t sample) const {
   requireSize("image features", context.image_features.size(), architecture_.image_features,
               sample);
-  if (context.route.empty()) return;
-  requireSize("route values", context.route.size(),
-              architecture_.takesRoute() ? 2 * architecture_.route_points : 0, sample);
+  if (!context.route.empty()) {
+    requireSize("route values", context.route.size(),
+                architecture_.takesRoute() ? 2 * architecture_.route_points : 0, sample);
+  }
+  if (!context.previous.empty()) {
+    requireSize("features of the image before", context.previous.size(),
+                architecture_.takesPrevious() ? architecture_.image_features : 0, sample);
+  }
+  if (context.target_speed && !architecture_.takesTarget())
+    requireSize("target speeds", 1, 0, sample);
 }
 
 inference::Activation Conditioning::joinedFeatures(const std::vector<Context>& contexts) const {
@@ -142,6 +182,9 @@ inference::Activation Conditioning::joinedFeatures(const std::vector<Context>& c
   };
   if (architecture_.takesRoute()) append(routeFeatures(contexts), architecture_.route_features);
   if (architecture_.takesSpeed()) append(speedFeatures(contexts), architecture_.speed_features);
+  if (architecture_.takesPrevious())
+    append(previousFeatures(contexts), architecture_.image_features);
+  if (architecture_.takesTarget()) append(targetFeatures(contexts), architecture_.target_features);
   return joined;
 }
 

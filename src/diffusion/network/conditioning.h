@@ -19,8 +19,8 @@ class Conditioning {
   Conditioning(const inference::DenoiserKernels& kernels, const Architecture& architecture,
                const inference::Tensors& tensors, const std::vector<Injection>& injections);
 
-  /// Throws std::invalid_argument for features or tokens of another size, and for a route that the
-  /// architecture does not take.
+  /// Throws std::invalid_argument for features or tokens of another size, and for a route, an image
+  /// before or a target speed that the architecture does not take.
   void setContexts(const std::vector<Context>& contexts);
   /// A row for each sample at step k = 1..K; valid until the next call.
   const inference::Activation& injection(int k);
@@ -37,13 +37,16 @@ class Conditioning {
   /// Rows of route features.
   inference::Activation routeFeatures(const std::vector<Context>& contexts) const;
   inference::Activation speedFeatures(const std::vector<Context>& contexts) const;
-  /// Rows of [image features; route; speed], as far as the architecture takes them.
+  inference::Activation previousFeatures(const std::vector<Context>& contexts) const;
+  inference::Activation targetFeatures(const std::vector<Context>& contexts) const;
+  /// Rows of [image features; route; speed; image before; target speed], as far as the
+  /// architecture takes them.
   inference::Activation joinedFeatures(const std::vector<Context>& contexts) const;
 
   const inference::DenoiserKernels* kernels_;
   Architecture architecture_;
-  Layer route0_, route2_, speed0_, context0_;
-  std::vector<float> no_route_;
+  Layer route0_, route2_, speed0_, target0_, context0_;
+  std::vector<float> no_route_, no_previous_, no_target_;
   inference::Activation time_;
   struct ContextInjection {
     std::int64_t first;

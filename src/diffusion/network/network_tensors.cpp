@@ -48,6 +48,11 @@ void addConditioning(TensorList& list, const Architecture& a) {
     list.add("no_route", {a.route_features});
   }
   if (a.takesSpeed()) list.linear("speed.0", 1, a.speed_features);
+  if (a.takesPrevious()) list.add("no_previous", {a.image_features});
+  if (a.takesTarget()) {
+    list.linear("target.0", 1, a.target_features);
+    list.add("no_target", {a.target_features});
+  }
   if (a.context_width > 0) list.linear("context.0", a.joinedFeatures(), a.context_width);
   list.linear("time.0", a.time_width, 4 * a.time_width);
   list.linear("time.2", 4 * a.time_width, a.time_width);

@@ -15,6 +15,13 @@ namespace {
 using core::InputError;
 using nlohmann::json;
 
+constexpr const char* kImage = "image";
+// Fields that not all driving samples have.
+constexpr const char* kTargetSpeed = "target_speed";
+constexpr const char* kPreviousImage = "previous_image";
+constexpr const char* kPreviousKnown = "previous_known";
+constexpr const char* kSecondsBefore = "seconds_before";  // of kPreviousImage
+
 void requireCount(const std::string& what, std::int64_t found, std::int64_t expected) {
   if (found == expected) return;
   throw InputError("sample: " + what + " is " + std::to_string(found) + ", the schema says " +
@@ -61,18 +68,33 @@ Value first(const Sample& sample, const char* name) {
   return sample.get<std::vector<Value>>(name).at(0);
 }
 
-Sample toFields(const DrivingSample& sample) {
-  return {{{"session", one(sample.session)},
-           {"tick", one(sample.tick)},
-           {"speed", one(sample.speed)},
-           {"recovering", one(static_cast<std::uint8_t>(sample.recovering))},
-           {"maneuver", one(sample.maneuver)},
-           {"stop_reason", one(sample.stop_reason)},
-           {"vehicle", sample.vehicle},
-           {"rollout", rolloutValues(sample.rollout)},
-           {"route", sample.route},
-           {"auxiliary", sample.auxiliary},
-           {"image", sample.image.rgb}}};
+Sample toFields(const DrivingSample& sample, const DrivingSchema& schema) {
+  Sample stored{{{"session", one(sample.session)},
+                 {"tick", one(sample.tick)},
+                 {"speed", one(sample.speed)},
+                 {"recovering", one(static_cast<std::uint8_t>(sample.recovering))},
+                 {"maneuver", one(sample.maneuver)},
+                 {"stop_reason", one(sample.stop_reason)},
+                 {"vehicle", sample.vehicle},
+                 {"rollout", rolloutValues(sample.rollout)},
+                 {"route", sample.route},
+                 {"auxiliary", sample.auxiliary},
+                 {kImage, sample.image.rgb}}};
+  if (schema.target_speeds) stored.fields[kTargetSpeed] = one(sample.target_speed);
+  if (schema.previous_interval <= 0.0) return stored;
+  const bool known = !sample.previous_image.empty();
+  stored.fields[kPreviousKnown] = one(static_cast<std::uint8_t>(known));
+  stored.fields[kPreviousImage] =
+      known ? sample.previous_image.rgb : std::vector<std::uint8_t>(sample.image.rgb.size(), 0);
+  return stored;
+}
+
+traffic::CameraImage emptyImage(const DrivingSchema& schema, std::uint64_t tick) {
+  traffic::CameraImage image;
+  image.width = static_cast<int>(schema.image_width);
+  image.height = static_cast<int>(schema.image_height);
+  image.tick = tick;
+  return image;
 }
 
 /// All but the pixels.
@@ -91,9 +113,8 @@ DrivingSample fromFields(const Sample& stored, const DrivingSchema& schema) {
                        .cast<double>();
   sample.route = stored.get<std::vector<float>>("route");
   sample.auxiliary = stored.get<std::vector<float>>("auxiliary");
-  sample.image.width = static_cast<int>(schema.image_width);
-  sample.image.height = static_cast<int>(schema.image_height);
-  sample.image.tick = sample.tick;
+  sample.image = emptyImage(schema, sample.tick);
+  if (schema.target_speeds) sample.target_speed = first<double>(stored, kTargetSpeed);
   return sample;
 }
 
@@ -117,19 +138,29 @@ SampleSchema DrivingSchema::fields() const {
   FieldSpec targets("auxiliary", FieldType::kF32, {static_cast<std::int64_t>(auxiliary.size())});
   targets.columns = auxiliary;
   targets.finite = false;
-  FieldSpec image("image", FieldType::kU8, {image_height, image_width, 3});
+  FieldSpec image(kImage, FieldType::kU8, {image_height, image_width, 3});
   image.packed = true;
-  return {{{"session", FieldType::kU64},
-           {"tick", FieldType::kU64},
-           {"speed", FieldType::kF64},
-           {"recovering", FieldType::kU8},
-           {"maneuver", FieldType::kU8},
-           {"stop_reason", FieldType::kU8},
-           {"vehicle", FieldType::kText},
-           rollout,
-           route,
-           targets,
-           image}};
+  SampleSchema schema{{{"session", FieldType::kU64},
+                       {"tick", FieldType::kU64},
+                       {"speed", FieldType::kF64},
+                       {"recovering", FieldType::kU8},
+                       {"maneuver", FieldType::kU8},
+                       {"stop_reason", FieldType::kU8},
+                       {"vehicle", FieldType::kText},
+                       rollout,
+                       route,
+                       targets,
+                       image}};
+  if (target_speeds) {
+    schema.fields.emplace_back(kTargetSpeed, FieldType::kF64);
+    schema.fields.back().finite = false;
+  }
+  if (previous_interval <= 0.0) return schema;
+  image.name = kPreviousImage;
+  image.numbers = {{kSecondsBefore, previous_interval}};
+  schema.fields.emplace_back(kPreviousKnown, FieldType::kU8);
+  schema.fields.push_back(image);
+  return schema;
 }
 
 DrivingSchema DrivingSchema::fromFields(const SampleSchema& stored, const std::string& source) {
@@ -143,6 +174,14 @@ DrivingSchema DrivingSchema::fromFields(const SampleSchema& stored, const std::s
   const auto spacing = route.numbers.find("spacing");
   if (spacing != route.numbers.end()) schema.route_spacing = spacing->second;
   schema.auxiliary = fieldIn(stored, "auxiliary", 1, source).columns;
+  schema.target_speeds = stored.find(kTargetSpeed) != nullptr;
+  if (const FieldSpec* previous = stored.find(kPreviousImage)) {
+    const auto seconds = previous->numbers.find(kSecondsBefore);
+    if (seconds == previous->numbers.end() || !(seconds->second > 0.0))
+      throw InputError(source + ": field '" + kPreviousImage + "' does not say its " +
+                       kSecondsBefore);
+    schema.previous_interval = seconds->second;
+  }
   for (const FieldSpec& field : schema.fields().fields) {
     if (field == fieldIn(stored, field.name, field.shape.size(), source)) continue;
     throw InputError(source + ": field '" + field.name + "' is another than in driving samples");
@@ -161,6 +200,10 @@ void DrivingSchema::check(const DrivingSample& sample) const {
   requireCount("image height", sample.image.height, image_height);
   requireCount("count of image bytes", static_cast<std::int64_t>(sample.image.rgb.size()),
                image_width * image_height * 3);
+  if (!sample.previous_image.empty())
+    requireCount("count of bytes of the image before",
+                 static_cast<std::int64_t>(sample.previous_image.rgb.size()),
+                 image_width * image_height * 3);
   requireCount("count of rollout rows", sample.rollout.rows(), horizon);
   requireCount("count of route values", static_cast<std::int64_t>(sample.route.size()),
                2 * route_points);
@@ -192,14 +235,15 @@ DrivingSchema DrivingSchema::fromJson(const std::string& text, const std::string
 bool operator==(const DrivingSchema& left, const DrivingSchema& right) {
   const auto fields = [](const DrivingSchema& schema) {
     return std::tie(schema.horizon, schema.image_width, schema.image_height, schema.route_points,
-                    schema.route_spacing, schema.auxiliary);
+                    schema.route_spacing, schema.auxiliary, schema.previous_interval,
+                    schema.target_speeds);
   };
   return fields(left) == fields(right);
 }
 
 void DrivingShardWriter::append(const DrivingSample& sample) {
   schema_.check(sample);
-  writer_.append(toFields(sample));
+  writer_.append(toFields(sample, schema_));
 }
 
 DrivingDataset::DrivingDataset(const Dataset& stored)
@@ -208,12 +252,16 @@ DrivingDataset::DrivingDataset(const Dataset& stored)
 DrivingSample DrivingDataset::sample(std::size_t index) const {
   const Sample stored = stored_.sample(index);
   DrivingSample sample = fromFields(stored, schema_);
-  sample.image.rgb = stored.get<std::vector<std::uint8_t>>("image");
+  sample.image.rgb = stored.get<std::vector<std::uint8_t>>(kImage);
+  if (schema_.previous_interval <= 0.0 || first<std::uint8_t>(stored, kPreviousKnown) == 0)
+    return sample;
+  sample.previous_image = emptyImage(schema_, sample.tick);
+  sample.previous_image.rgb = stored.get<std::vector<std::uint8_t>>(kPreviousImage);
   return sample;
 }
 
 DrivingSample DrivingDataset::withoutImage(std::size_t index) const {
-  return fromFields(stored_.sample(index, {"image"}), schema_);
+  return fromFields(stored_.sample(index, {kImage, kPreviousImage}), schema_);
 }
 
 namespace {
@@ -224,6 +272,16 @@ bool endsInLeft(const std::string& name) {
          name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
 }
 
+void mirrorImage(traffic::CameraImage& image) {
+  const auto width = static_cast<std::size_t>(image.width);
+  for (std::size_t pixel = 0; pixel < image.rgb.size() / 3; ++pixel) {
+    const std::size_t column = pixel % width;
+    const std::size_t other = pixel - column + width - 1 - column;
+    for (std::size_t c = 0; other > pixel && c < 3; ++c)
+      std::swap(image.rgb[3 * pixel + c], image.rgb[3 * other + c]);
+  }
+}
+
 }  // namespace
 
 void mirrorRollout(traffic::Rollout& rollout) {
@@ -232,13 +290,8 @@ void mirrorRollout(traffic::Rollout& rollout) {
 }
 
 void mirrorSample(const DrivingSchema& schema, DrivingSample& sample) {
-  const int width = sample.image.width;
-  for (std::size_t pixel = 0; pixel < sample.image.rgb.size() / 3; ++pixel) {
-    const std::size_t column = pixel % static_cast<std::size_t>(width);
-    const std::size_t other = pixel - column + static_cast<std::size_t>(width) - 1 - column;
-    for (std::size_t c = 0; other > pixel && c < 3; ++c)
-      std::swap(sample.image.rgb[3 * pixel + c], sample.image.rgb[3 * other + c]);
-  }
+  mirrorImage(sample.image);
+  mirrorImage(sample.previous_image);
   mirrorRollout(sample.rollout);
   for (std::size_t i = 1; i < sample.route.size(); i += 2) sample.route[i] *= -1.0F;
   for (std::size_t i = 0; i < sample.auxiliary.size(); ++i) {
@@ -247,13 +300,14 @@ void mirrorSample(const DrivingSchema& schema, DrivingSample& sample) {
 }
 
 void changeLight(const core::RandomStream& random, const core::RandomKey& key,
-                 traffic::CameraImage& image) {
+                 traffic::CameraImage& image, std::uint32_t frame) {
   const double brightness = random.uniform(key, 0, -40.0, 40.0);
   const double contrast = random.uniform(key, 1, 0.8, 1.2);
   const double noise = random.uniform(key, 2, 0.0, 12.0) / 127.5;
+  const std::size_t first = 3 + frame * ((image.rgb.size() + 7) / 8);
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    if (i % 8 == 0) bits = random.bits(key, static_cast<std::uint32_t>(3 + i / 8));
+    if (i % 8 == 0) bits = random.bits(key, static_cast<std::uint32_t>(first + i / 8));
     const double jitter = noise * (static_cast<double>(bits & 255U) - 127.5);
     bits >>= 8;
     const double value =

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct DrivingSample {
   std::uint8_t maneuver = 0;   ///< the collector's: 0 straight on, 1 left, 2 right, 3 other
   std::uint8_t stop_reason = kStopNone;  ///< the collector's StopReason
   std::vector<float> auxiliary;  ///< targets that the schema names, of order 1; NaN: not known
+  /// What it saw DrivingSchema::previous_interval before; empty: not known.
+  traffic::CameraImage previous_image;
+  double target_speed = std::numeric_limits<double>::quiet_NaN();  ///< v* [m/s]; NaN: not known
 };
 
 /// What every sample of a data set has in common.
@@ -48,6 +52,8 @@ struct DrivingSchema {
   double route_spacing = 3.0;      ///< [m]
   std::vector<std::string>
       auxiliary;  ///< names of the auxiliary targets; "..._left" changes sign in a mirror
+  double previous_interval = 0.0;  ///< of the image before [s]; 0: none is stored
+  bool target_speeds = false;      ///< whether the samples say how fast the driver wanted to drive
 
   /// Throws InputError naming the first part of `sample` that does not fit or is not finite.
   void check(const DrivingSample& sample) const;
@@ -60,7 +66,7 @@ struct DrivingSchema {
   static DrivingSchema fromFields(const SampleSchema& stored, const std::string& source);
 };
 
-/// The names of all fields of DrivingSchema::fields().
+/// The names of the fields that all driving samples have: those of DrivingSchema().fields().
 std::vector<std::string> drivingFields();
 
 bool operator==(const DrivingSchema& left, const DrivingSchema& right);
@@ -95,6 +101,7 @@ class DrivingDataset {
   const DrivingSchema& schema() const { return schema_; }
   std::size_t size() const { return stored_.size(); }
   DrivingSample sample(std::size_t index) const;
+  /// With no image, nor that before.
   DrivingSample withoutImage(std::size_t index) const;
   const std::vector<std::size_t>& training() const { return stored_.training(); }
   const std::vector<std::size_t>& validation() const { return stored_.validation(); }
@@ -109,13 +116,13 @@ class DrivingDataset {
 /// y, heading and steer change sign.
 void mirrorRollout(traffic::Rollout& rollout);
 
-/// Left and right exchanged: image, y, heading, steer, y of the route, and the auxiliary targets
+/// Left and right exchanged: images, y, heading, steer, y of the route, and the auxiliary targets
 /// whose name in `schema` ends in "_left".
 void mirrorSample(const DrivingSchema& schema, DrivingSample& sample);
 
 /// Brightness by up to 40 of 255 gray levels, contrast by up to 20 %, and noise of up to 12 gray
-/// levels on each value, in place.
+/// levels on each value, in place. Images of another `frame` get the same light and other noise.
 void changeLight(const core::RandomStream& random, const core::RandomKey& key,
-                 traffic::CameraImage& image);
+                 traffic::CameraImage& image, std::uint32_t frame = 0);
 
 }  // namespace cdiff::learning

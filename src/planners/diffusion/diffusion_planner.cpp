@@ -258,6 +258,7 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
     }
   }
   encodeImages(seen);
+  rememberFeatures(snapshot.tick, seen);
   setCompanions(seen);
   std::vector<std::unique_ptr<Situation>> situations(tasks.size());
   std::vector<Situation*> cold;

@@ -29,7 +29,8 @@ struct DiffusionOptions {
   std::string model = "default";  ///< shipped model or folder of the weight files
   /// image_route | image (the paper's) | by_guidance
   std::string conditioning = "by_guidance";
-  /// w of classifier-free guidance on the route: 0 without, 1 with it, between and beyond a mix
+  /// w of classifier-free guidance on the route (and the target speed, where the model takes it):
+  /// 0 without, 1 with it, between and beyond a mix
   double route_scale = 1.0;
   std::string state_branch = "learned";  ///< learned | exact
   std::string response = "fitted";       ///< of the executed throttle: fitted | monotone
@@ -74,7 +75,9 @@ class NetworkLane {
 ///  - the image is encoded once per decision, the denoiser runs on its features;
 ///  - collision objectives are about the ego, for a CBV (forecast along its route), and about the
 ///    nearest other vehicle, for the ego;
-///  - attackers are not given their route (DiffusionOptions::conditioningUnder);
+///  - attackers are not given their route (DiffusionOptions::conditioningUnder); whoever is not
+///    gets neither the image before nor the target speed of a model that takes them, so that
+///    `image` is the paper's single image;
 ///  - actions are clamped to their range, a brake below 0.05 counts as none, and of throttle and
 ///    brake the larger one acts; with response `monotone` a throttle that would slow the vehicle is
 ///    commanded as 0 (dynamics::commandedAction);
@@ -111,6 +114,13 @@ class DiffusionPlanner : public planning::Planner {
   using LanePart = std::function<void(NetworkLane& lane, std::size_t begin, std::size_t end)>;
   void inLanes(std::size_t count, const LanePart& part);
   void encodeImages(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
+  void rememberFeatures(
+      std::uint64_t tick,
+      const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen) const;
+  /// Ticks between a decision's image and the one before that the model takes; 0: it takes none.
+  std::uint64_t ticksToPrevious() const;
+  /// Gives the network the image before and the target speed, where it takes them.
+  void addMotion(std::uint64_t tick, Situation& situation) const;
   std::unique_ptr<Situation> situationOf(const traffic::TrafficSnapshot& snapshot,
                                          const planning::PlanningTask& task, Memory& memory);
   /// Moves the vehicles that this planner drives along their routes to where they are now, and
@@ -133,7 +143,7 @@ class DiffusionPlanner : public planning::Planner {
 
   DiffusionOptions options_;
   guidance::GuidanceOptions guidance_;
-  bool conditions_on_route_;  ///< whether the network is given the route
+  bool conditions_on_route_;  ///< whether the network is given more than the image
   dynamics::BicycleModelOptions vehicle_;
   planning::PlanningContext context_;
   diffusion::Model model_;

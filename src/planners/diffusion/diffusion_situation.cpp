@@ -212,6 +212,34 @@ void DiffusionPlanner::encodeImages(
   });
 }
 
+std::uint64_t DiffusionPlanner::ticksToPrevious() const {
+  const auto steps = static_cast<double>(model_.architecture.previous_frame);
+  return static_cast<std::uint64_t>(
+      std::llround(steps * traffic::kRolloutStep / context_.simulation_step));
+}
+
+/// Keeps the features of this decision and of those since the image before.
+void DiffusionPlanner::rememberFeatures(
+    std::uint64_t tick,
+    const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen) const {
+  const std::uint64_t back = ticksToPrevious();
+  if (back == 0) return;
+  for (const auto& [task, memory] : seen) {
+    std::map<std::uint64_t, std::vector<float>>& earlier = memory->earlier;
+    earlier[tick] = memory->features;
+    earlier.erase(earlier.begin(), earlier.lower_bound(tick - std::min(tick, back)));
+  }
+}
+
+void DiffusionPlanner::addMotion(std::uint64_t tick, Situation& situation) const {
+  const std::uint64_t back = ticksToPrevious();
+  const auto& earlier = situation.memory->earlier;
+  const auto before = back > 0 && tick >= back ? earlier.find(tick - back) : earlier.end();
+  if (before != earlier.end()) situation.context.previous = before->second;
+  if (model_.architecture.takesTarget())
+    situation.context.target_speed = situation.task->target_speed;
+}
+
 std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
     const traffic::TrafficSnapshot& snapshot, const planning::PlanningTask& task, Memory& memory) {
   auto situation = std::make_unique<Situation>();
@@ -236,6 +264,7 @@ std::unique_ptr<DiffusionPlanner::Situation> DiffusionPlanner::situationOf(
                                                         arc_length, vehicle.state.pose());
     }
   }
+  if (conditions_on_route_) addMotion(snapshot.tick, *situation);
   setOther(snapshot, *situation);
   setWarmStart(snapshot.tick, *situation);
   const guidance::TotalObjective prepared(guidance_, scene);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -77,6 +78,8 @@ struct DiffusionPlanner::Memory {
   ImageWatch watch;
   std::optional<LastPlan> plan;
   std::vector<float> features;  ///< of the last image
+  /// Features by tick, as far back as the model's image before lies; none where it takes none.
+  std::map<std::uint64_t, std::vector<float>> earlier;
   std::uint64_t features_hash = 0;
 };
 

@@ -195,7 +195,11 @@ void record(const collection::CollectRequest& request, const collection::Collect
 collection::DatasetStatistics writeShard(const collection::CollectRequest& request,
                                          const collection::CollectSettings& settings,
                                          const fs::path& bag, const fs::path& shard) {
-  const collection::DatasetOptions options = collection::datasetOptions(settings.collection);
+  collection::DatasetOptions options = collection::datasetOptions(settings.collection);
+  const auto seed = static_cast<std::uint64_t>(settings.scenario.seed);
+  options.target_speed = [&](const std::string& id) {
+    return collection::driverOf(settings.collection, seed, id).target_speed;
+  };
   collection::DatasetStatistics statistics;
   learning::DrivingShardWriter writer(collection::schemaOf(options.architecture));
   for (const learning::DrivingSample& sample : samplesFromBag(bag, options, statistics))

@@ -168,6 +168,36 @@ TEST_F(ActionOptions, AModelOfTheImageAloneDrivesByTheImageAlone) {
   }
 }
 
+// The image of 0.4 s before and the target speed reach a network that takes them, and only where it
+// is given its route.
+TEST_F(ActionOptions, AModelThatSeesMotionRemembersItsImages) {
+  DiffusionOptions options = optionsOf();
+  const std::filesystem::path folder = std::filesystem::path(options.model) / "motion";
+  options.model = cdiff::testing::writeRandomModel(folder, diffusion::Architecture().withMotion());
+  options.sampler.warm_start = false;
+  guidance_.candidates = 1;
+  /// The plan at tick 8, after decisions from tick `first` on.
+  const auto planFrom = [&](std::uint64_t first, double target_speed) {
+    const auto planner = makeDiffusion(options);
+    std::optional<PlannedAction> last;
+    for (std::uint64_t tick = first; tick <= 8; tick += 2) {
+      goTo(tick);
+      auto asked = tasks();
+      asked[0].target_speed = target_speed;
+      last = planner->plan(snapshot_, asked)[0];
+      EXPECT_EQ(last->fault, "");
+    }
+    return *last;
+  };
+  options.sampler.mode = "unguided";  // no objective about the target speed
+  options.conditioning = "image_route";
+  EXPECT_FALSE(sameActions(planFrom(0, 8.0), planFrom(8, 8.0)));
+  EXPECT_TRUE(sameActions(planFrom(2, 8.0), planFrom(8, 8.0))) << "0.3 s is too short";
+  EXPECT_FALSE(sameActions(planFrom(8, 8.0), planFrom(8, 5.0)));
+  options.conditioning = "image";
+  EXPECT_TRUE(sameActions(planFrom(0, 8.0), planFrom(8, 5.0)));
+}
+
 TEST_F(ActionOptions, SolverAndLastStepReachThePlan) {
   DiffusionOptions options = optionsOf();
   options.sampler.solver = "ddim";

@@ -145,7 +145,7 @@ class CandidateChoice : public DiffusionModes {
     const std::vector<float> features =
         diffusion::ImageEncoder(model_, precision).encode(images_[0]);
     denoiser_.setContexts(
-        std::vector<diffusion::Context>(kCandidates, {features, {}, scene.state.speed}));
+        std::vector<diffusion::Context>(kCandidates, {features, {}, scene.state.speed, {}, {}}));
     diffusion::LearnedStateBranch branch(denoiser_);
     GuidedBatch batch(model_.normalizer, objectives);
     plans_.clear();

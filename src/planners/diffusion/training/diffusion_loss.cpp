@@ -18,6 +18,11 @@ using learning::toTensor;
 constexpr double kSpeedScale = 10.0;
 constexpr std::uint32_t kMirrorDraw = 1000000;
 constexpr std::uint32_t kRouteDraw = 1000001;
+constexpr std::uint32_t kPreviousDraw = 1000002;
+constexpr std::uint32_t kTargetDraw = 1000003;
+// Dropped of the samples that keep their route; the others keep nothing but the image.
+constexpr double kPreviousDrop = 0.125;
+constexpr double kTargetDrop = 0.1;
 
 /// Key of what is drawn for one place in the batch of a step.
 core::RandomKey keyOf(std::int64_t step, std::size_t place) {
@@ -53,6 +58,8 @@ DrivingSample BatchMaker::changedSample(std::size_t index, const core::RandomKey
   DrivingSample sample = with_image ? dataset_.sample(index) : dataset_.withoutImage(index);
   if (mirrored) learning::mirrorSample(dataset_.schema(), sample);
   if (with_image && options_.change_light) learning::changeLight(change_, key, sample.image);
+  if (with_image && options_.change_light)
+    learning::changeLight(change_, key, sample.previous_image, 1);
   return sample;
 }
 
@@ -60,20 +67,66 @@ TrainingBatch BatchMaker::training(std::int64_t step, const FeatureCache* cache)
   const std::vector<std::size_t> indices = order_.at(step);
   std::vector<DrivingSample> samples;
   std::vector<float> has_route;
-  std::vector<at::Tensor> features;
+  std::vector<at::Tensor> features, previous, known;
   for (std::size_t place = 0; place < indices.size(); ++place) {
     const core::RandomKey key = keyOf(step, place);
     const bool mirrored = isMirrored(indices[place], key, cache != nullptr);
     samples.push_back(changedSample(indices[place], key, mirrored, cache == nullptr));
     has_route.push_back(change_.uniform(key, kRouteDraw) < options_.route_drop ? 0.0F : 1.0F);
     if (cache == nullptr) continue;
-    features.push_back(cache->features[static_cast<std::int64_t>(indices[place])]);
+    const auto row = static_cast<std::int64_t>(indices[place]);
+    features.push_back(cache->features[row]);
+    if (!options_.with_motion) continue;
+    previous.push_back(cache->previous[row]);
+    known.push_back(cache->previous_known[row]);
   }
   TrainingBatch batch = pack(samples, has_route);
   batch.samples = indices;
   if (cache != nullptr) batch.context.features = at::stack(features).to(device_);
+  if (!previous.empty()) {
+    batch.context.previous = at::stack(previous).to(device_);
+    batch.context.has_previous = at::stack(known).to(device_);
+  }
+  if (options_.with_motion) dropMotion(step, batch);
   addNoise(step, batch);
   return batch;
+}
+
+/// What a sample is not given at a step: without its route it is the image alone, else the image
+/// before and the target speed are left out now and then.
+void BatchMaker::dropMotion(std::int64_t step, TrainingBatch& batch) const {
+  std::vector<float> keeps_previous, keeps_target;
+  for (std::size_t place = 0; place < batch.samples.size(); ++place) {
+    const core::RandomKey key = keyOf(step, place);
+    keeps_previous.push_back(change_.uniform(key, kPreviousDraw) < kPreviousDrop ? 0.0F : 1.0F);
+    keeps_target.push_back(change_.uniform(key, kTargetDraw) < kTargetDrop ? 0.0F : 1.0F);
+  }
+  const auto count = static_cast<std::int64_t>(batch.samples.size());
+  ContextBatch& context = batch.context;
+  context.has_previous =
+      context.has_previous * context.has_route * toTensor(keeps_previous, {count, 1}, device_);
+  context.has_target =
+      context.has_target * context.has_route * toTensor(keeps_target, {count, 1}, device_);
+}
+
+void BatchMaker::packMotion(const std::vector<DrivingSample>& samples, TrainingBatch& batch) const {
+  std::vector<float> targets, has_target, has_previous;
+  std::vector<const traffic::CameraImage*> images;
+  traffic::CameraImage black = samples.front().image;
+  black.rgb.assign(black.rgb.size(), 0);
+  for (const DrivingSample& sample : samples) {
+    const bool known = std::isfinite(sample.target_speed);
+    targets.push_back(known ? static_cast<float>(sample.target_speed / kSpeedScale) : 0.0F);
+    has_target.push_back(known ? 1.0F : 0.0F);
+    has_previous.push_back(sample.previous_image.empty() ? 0.0F : 1.0F);
+    images.push_back(sample.previous_image.empty() ? &black : &sample.previous_image);
+  }
+  const auto count = static_cast<std::int64_t>(samples.size());
+  batch.context.target = toTensor(targets, {count, 1}, device_);
+  batch.context.has_target = toTensor(has_target, {count, 1}, device_);
+  batch.context.has_previous = toTensor(has_previous, {count, 1}, device_);
+  if (!black.rgb.empty())
+    batch.previous_images = learning::imageTensor(images, options_.image_scale, device_);
 }
 
 TrainingBatch BatchMaker::plain(const std::vector<std::size_t>& indices, bool with_images) const {
@@ -112,6 +165,7 @@ TrainingBatch BatchMaker::pack(const std::vector<DrivingSample>& samples,
   batch.auxiliary = toTensor(targets, {count, auxiliary}, device_);
   batch.auxiliary_known = toTensor(known, {count, auxiliary}, device_);
   if (!images.empty()) batch.images = learning::imageTensor(images, options_.image_scale, device_);
+  if (options_.with_motion) packMotion(samples, batch);
   return batch;
 }
 
@@ -243,6 +297,15 @@ void DiffusionLoss::addMeasures(const std::string& prefix, const at::Tensor& pre
   measures[prefix + "brake"] = mean(traffic::kRolloutBrake);
 }
 
+namespace {
+
+ContextBatch withoutTarget(ContextBatch context) {
+  context.has_target = at::zeros_like(context.has_route);
+  return context;
+}
+
+}  // namespace
+
 at::Tensor DiffusionLoss::fixedNoise(const at::Tensor& like, const std::string& name) const {
   const core::RandomStream stream(0, name);
   std::vector<float> values(static_cast<std::size_t>(like.numel()));
@@ -269,6 +332,16 @@ Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& 
   ContextBatch context = held_out.context;
   context.has_route = at::zeros_like(context.has_route);
   addMeasures("sample_no_route_", sample(denoiser, noise, context, count), clean, measures);
+  if (architecture_.takesPrevious()) {
+    context.has_previous = at::zeros_like(context.has_route);
+    addMeasures("sample_image_alone_", sample(denoiser, noise, withoutTarget(context), count),
+                clean, measures);
+    ContextBatch one_image = held_out.context;
+    one_image.has_previous = context.has_previous;
+    addMeasures("sample_one_image_", sample(denoiser, noise, one_image, count), clean, measures);
+    addMeasures("sample_no_target_",
+                sample(denoiser, noise, withoutTarget(held_out.context), count), clean, measures);
+  }
   context.features = gray_features.view({1, -1}).expand_as(context.features).contiguous();
   addMeasures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, measures);
   context.has_route = held_out.context.has_route;

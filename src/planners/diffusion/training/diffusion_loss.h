@@ -23,6 +23,9 @@ namespace cdiff::planners {
 /// the cases mirrored (one variant takes half the time, and the other samples show the other side).
 struct FeatureCache {
   at::Tensor features;  ///< [samples, image_features]
+  /// Of the images before, and which samples have one [samples, 1], 0 or 1; undefined where the
+  /// network takes none.
+  at::Tensor previous, previous_known;
 };
 /// Which samples those are.
 bool mirroredInCache(std::size_t index);
@@ -32,6 +35,7 @@ bool mirroredInCache(std::size_t index);
 struct TrainingBatch {
   std::vector<std::size_t> samples;
   at::Tensor images;           ///< [B, 3, H, W] scaled; undefined on cached features
+  at::Tensor previous_images;  ///< likewise, black where not known; undefined without `with_motion`
   ContextBatch context;        ///< without features where there are images
   at::Tensor rollouts;         ///< [B, T, 7] normalized
   at::Tensor auxiliary;        ///< [B, A], 0 where not known
@@ -46,6 +50,7 @@ struct BatchOptions {
   std::int64_t batch = 32;
   double image_scale = 1.0;
   double route_drop = 0.2;
+  bool with_motion = false;  ///< also the image before and the target speed
   double balance = 0.5;
   double yielding_share = 1.0;
   bool mirror = true;
@@ -75,6 +80,8 @@ class BatchMaker {
   void addNoise(std::int64_t step, TrainingBatch& batch) const;
   TrainingBatch pack(const std::vector<learning::DrivingSample>& samples,
                      const std::vector<float>& has_route) const;
+  void packMotion(const std::vector<learning::DrivingSample>& samples, TrainingBatch& batch) const;
+  void dropMotion(std::int64_t step, TrainingBatch& batch) const;
 
   const learning::DrivingDataset& dataset_;
   diffusion::Normalizer normalizer_;

@@ -14,8 +14,9 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.text({"precision", "", "Of the encoder in training."}, precision,
                {"auto", "f32", "bf16"});
   visitor.text({"network", "",
-                "Inputs of the denoiser: image, route and speed, or the paper's, the image alone."},
-               network, {"default", "paper"});
+                "Inputs of the denoiser: image, route and speed; the paper's, the image alone; or "
+                "also the image of 0.4 s before and the target speed."},
+               network, {"default", "paper", "motion"});
   visitor.text({"loss", "", "Of diffusion stages: first actions weighted, or the paper's."}, loss,
                {"weighted", "plain"});
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
@@ -30,7 +31,8 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
 }
 
 diffusion::Architecture DiffusionTrainingSettings::sizes() const {
-  return network == "paper" ? architecture.imageAlone() : architecture;
+  if (network == "paper") return architecture.imageAlone();
+  return network == "motion" ? architecture.withMotion() : architecture;
 }
 
 void DiffusionTrainingSettings::validate() const {
@@ -58,6 +60,7 @@ BatchOptions batchOptions(const TrainingState& state, const std::string& stage,
   result.stage = stage;
   result.batch = state.run.batchSize(default_batch);
   result.route_drop = settings.route_drop;
+  result.with_motion = state.architecture.takesPrevious();
   result.balance = settings.balance;
   result.yielding_share = settings.yielding_share;
   result.mirror = settings.mirror;
@@ -126,6 +129,7 @@ class EncoderStage : public learning::Stage {
     BatchOptions options = batchOptions(state, name, kImageBatch);
     options.image_scale = image_scale;
     options.route_drop = kHeadRouteDrop;
+    options.with_motion = false;
     return options;
   }
 
@@ -169,6 +173,8 @@ class DiffusionStage : public learning::Stage {
     if (cache_ == nullptr) {
       state_.encoder.setHalfPrecision(state_.half_precision);
       batch.context.features = state_.encoder.forward(batch.images);
+      if (options_.with_motion)
+        batch.context.previous = state_.encoder.forward(batch.previous_images);
       state_.encoder.setHalfPrecision(false);
     }
     return state_.loss.loss(state_.denoiser, batch);
@@ -205,17 +211,23 @@ HeldOut encodeHeldOut(const TrainingState& state) {
   const BatchMaker batches(state.dataset, state.normalizer,
                            batchOptions(state, "held out", kImageBatch), state.run.device);
   HeldOut held_out{batches.plain(state.run.held_out, false), {}};
-  std::vector<at::Tensor> features;
+  std::vector<at::Tensor> features, previous, known;
   for (std::size_t begin = 0; begin < state.run.held_out.size(); begin += kEncodeBatch) {
     const std::size_t end = std::min(begin + kEncodeBatch, state.run.held_out.size());
-    std::vector<traffic::CameraImage> images;
-    for (std::size_t i = begin; i < end; ++i)
-      images.push_back(state.dataset.sample(state.run.held_out[i]).image);
-    std::vector<const traffic::CameraImage*> views;
-    for (const traffic::CameraImage& image : images) views.push_back(&image);
-    features.push_back(state.encoder.forward(learning::imageTensor(views, 1.0, state.run.device)));
+    const TrainingBatch part =
+        batches.plain({state.run.held_out.begin() + static_cast<std::ptrdiff_t>(begin),
+                       state.run.held_out.begin() + static_cast<std::ptrdiff_t>(end)},
+                      true);
+    features.push_back(state.encoder.forward(part.images));
+    if (!state.architecture.takesPrevious()) continue;
+    previous.push_back(state.encoder.forward(part.previous_images));
+    known.push_back(part.context.has_previous);
   }
   held_out.batch.context.features = at::cat(features);
+  if (!previous.empty()) {
+    held_out.batch.context.previous = at::cat(previous);
+    held_out.batch.context.has_previous = at::cat(known);
+  }
   traffic::CameraImage gray;
   gray.width = static_cast<int>(state.architecture.image_width);
   gray.height = static_cast<int>(state.architecture.image_height);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/diffusion/training/diffusion_task.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -53,11 +54,38 @@ bool sameEncoder(diffusion::Architecture first, const diffusion::Architecture& s
   first.route_features = second.route_features;
   first.speed_features = second.speed_features;
   first.context_width = second.context_width;
+  first.previous_frame = second.previous_frame;
+  first.target_features = second.target_features;
   return first == second;
 }
 
-/// The model of --init, if one is given. Where the paper's inputs are asked for, its encoder alone
-/// will do for a stage that trains the denoiser.
+using Tensors = std::map<std::string, inference::Tensor>;
+
+/// The denoiser `narrow` with the inputs that `wide` has more, which it does not heed yet: the
+/// columns of their weights are 0. New tensors are those of `wide`. Throws InputError naming
+/// `source` and the tensor that is not a part of its counterpart.
+Tensors widened(const Tensors& narrow, Tensors wide, const std::string& source) {
+  for (const auto& [name, from] : narrow) {
+    const auto found = wide.find(name);
+    const bool fits = found != wide.end() && found->second.shape.size() == from.shape.size() &&
+                      found->second.shape.front() == from.shape.front() &&
+                      found->second.values.size() >= from.values.size();
+    if (!fits) throw InputError("training: tensor '" + name + "' of '" + source + "' does not fit");
+    inference::Tensor& to = found->second;
+    const auto rows = static_cast<std::size_t>(to.shape.front());
+    const std::size_t columns = from.values.size() / rows;
+    const std::size_t wide_columns = to.values.size() / rows;
+    std::fill(to.values.begin(), to.values.end(), 0.0F);
+    for (std::size_t row = 0; row < rows; ++row)
+      std::copy_n(from.values.begin() + static_cast<long>(row * columns), columns,
+                  to.values.begin() + static_cast<long>(row * wide_columns));
+  }
+  return wide;
+}
+
+/// The model of --init, if one is given. For a stage that trains the denoiser one with other inputs
+/// will do, too: its encoder alone where the paper's are asked for, and a denoiser that lacks those
+/// of withMotion.
 std::optional<diffusion::Model> initialModel(const learning::TrainingOptions& options,
                                              const std::string& network,
                                              const diffusion::Architecture& architecture) {
@@ -66,9 +94,9 @@ std::optional<diffusion::Model> initialModel(const learning::TrainingOptions& op
   diffusion::Model model = diffusion::loadModel(name);
   if (model.architecture == architecture) return model;
   const bool trains_denoiser = options.stage == "denoiser" || options.stage == "joint";
-  if (network == "paper" && trains_denoiser && sameEncoder(model.architecture, architecture)) {
-    model.denoiser.clear();
-    return model;
+  if (trains_denoiser && sameEncoder(model.architecture, architecture)) {
+    if (network == "paper") model.denoiser.clear();
+    if (network == "paper" || model.architecture.withMotion() == architecture) return model;
   }
   throw InputError("training: the architecture of '" + name + "' is " +
                    model.architecture.toJson() + ", this run has " + architecture.toJson());
@@ -96,6 +124,12 @@ std::string heldOutTable(const Measures& held_out) {
          heldOutRow("DDIM sample, gray image", "sample_grey_", held_out) +
          heldOutRow("DDIM sample, no route", "sample_no_route_", held_out) +
          heldOutRow("DDIM sample, gray image, no route", "sample_grey_no_route_", held_out);
+}
+
+std::string motionRows(const Measures& held_out) {
+  return heldOutRow("DDIM sample, one image", "sample_one_image_", held_out) +
+         heldOutRow("DDIM sample, no target speed", "sample_no_target_", held_out) +
+         heldOutRow("DDIM sample, image alone", "sample_image_alone_", held_out);
 }
 
 }  // namespace
@@ -131,6 +165,12 @@ std::vector<std::string> DiffusionTask::weightFiles() const {
   return {diffusion::kEncoderFile, diffusion::kDenoiserFile};
 }
 
+std::vector<std::string> DiffusionTask::fields() const {
+  std::vector<std::string> names = learning::drivingFields();
+  if (settings.network == "motion") names.insert(names.end(), {"target_speed", "previous_image"});
+  return names;
+}
+
 std::vector<std::string> DiffusionTask::otherFiles() const { return {kFeatureFile}; }
 
 void DiffusionTask::start(const learning::TrainingRun& run) {
@@ -150,8 +190,10 @@ void DiffusionTask::start(const learning::TrainingRun& run) {
       halfPrecision(settings.precision)});
   if (initial) {
     state_->encoder.parameters().load(initial->encoder, run.options.init);
+    learning::ParameterSet& denoiser = state_->denoiser.parameters();
     if (!initial->denoiser.empty())
-      state_->denoiser.parameters().load(initial->denoiser, run.options.init);
+      denoiser.load(widened(initial->denoiser, denoiser.values(), run.options.init),
+                    run.options.init);
   }
   state_->encoder.parameters().moveTo(run.device);
   state_->head.parameters().moveTo(run.device);
@@ -201,6 +243,7 @@ learning::TrainedModel DiffusionTask::finish() {
                       {"precision", state_->half_precision ? "bf16" : "f32"}};
   trained.title = "Diffusion planner";
   trained.measures = heldOutTable(trained.held_out);
+  if (state_->architecture.takesPrevious()) trained.measures += motionRows(trained.held_out);
   return trained;
 }
 

@@ -25,7 +25,7 @@ class DiffusionTask : public learning::Task {
   std::vector<learning::PartSource> model() const override;
   std::vector<std::string> weightFiles() const override;
   std::vector<std::string> otherFiles() const override;
-  std::vector<std::string> fields() const override { return learning::drivingFields(); }
+  std::vector<std::string> fields() const override;
   void describe(core::OptionsVisitor& visitor) override { settings.describe(visitor); }
   void validate() const override { settings.validate(); }
 

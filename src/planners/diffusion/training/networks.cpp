@@ -148,6 +148,12 @@ void DenoiserNet::declareContext() {
     parameters_.declare("no_route", {a.route_features}, {Start::Kind::kUniform, 0.1});
   }
   if (a.takesSpeed()) parameters_.declareLayer("speed.0", {a.speed_features, 1});
+  if (a.takesPrevious())
+    parameters_.declare("no_previous", {a.image_features}, {Start::Kind::kUniform, 0.1});
+  if (a.takesTarget()) {
+    parameters_.declareLayer("target.0", {a.target_features, 1});
+    parameters_.declare("no_target", {a.target_features}, {Start::Kind::kUniform, 0.1});
+  }
   if (a.context_width > 0)
     parameters_.declareLayer("context.0", {a.context_width, a.joinedFeatures()});
   parameters_.declareLayer("time.0", {4 * a.time_width, a.time_width});
@@ -199,6 +205,14 @@ at::Tensor DenoiserNet::contextOf(const ContextBatch& context) const {
   }
   if (architecture_.takesSpeed())
     joined.push_back(fastMish(linear(parameters_, "speed.0", context.speed)));
+  if (architecture_.takesPrevious())
+    joined.push_back(context.has_previous * context.previous +
+                     (1 - context.has_previous) * parameters_("no_previous"));
+  if (architecture_.takesTarget()) {
+    joined.push_back(context.has_target *
+                         fastMish(linear(parameters_, "target.0", context.target)) +
+                     (1 - context.has_target) * parameters_("no_target"));
+  }
   if (architecture_.context_width == 0) return at::cat(joined, 1);
   return fastMish(linear(parameters_, "context.0", at::cat(joined, 1)));
 }

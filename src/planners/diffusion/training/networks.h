@@ -42,6 +42,11 @@ struct ContextBatch {
   at::Tensor route;      ///< [B, 2 route_points]
   at::Tensor has_route;  ///< [B, 1], 0 or 1
   at::Tensor speed;      ///< [B, 1], v / 10
+  // Where the architecture takes them:
+  at::Tensor previous;      ///< [B, image_features] of the image before
+  at::Tensor has_previous;  ///< [B, 1], 0 or 1
+  at::Tensor target;        ///< [B, 1], v* / 10
+  at::Tensor has_target;    ///< [B, 1], 0 or 1
 };
 
 /// The denoiser with gradients: action head, and state head on actions; everything normalized.

@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "diffusion/network/image_encoder.h"
+#include "inference/precision.h"
 #include "learning/batches.h"
 #include "learning/samples/driving_sample.h"
 #include "learning/training_folder.h"
@@ -39,16 +40,24 @@ std::string hashOf(const learning::ParameterSet& parameters) {
   return digest.finish();
 }
 
-std::vector<traffic::CameraImage> imagesOf(const TrainingState& state, std::size_t begin,
-                                           std::size_t end) {
-  std::vector<traffic::CameraImage> images;
+std::vector<learning::DrivingSample> samplesOf(const TrainingState& state, std::size_t begin,
+                                               std::size_t end) {
+  std::vector<learning::DrivingSample> samples;
   for (std::size_t i = begin; i < end; ++i) {
-    learning::DrivingSample sample = state.dataset.sample(i);
+    samples.push_back(state.dataset.sample(i));
     if (state.settings.mirror && mirroredInCache(i))
-      learning::mirrorSample(state.dataset.schema(), sample);
-    images.push_back(std::move(sample.image));
+      learning::mirrorSample(state.dataset.schema(), samples.back());
   }
-  return images;
+  return samples;
+}
+
+using Images = std::vector<const traffic::CameraImage*>;
+
+/// That of `diffusion.precision: auto`, so that the denoiser learns on the features it will be
+/// given, or float32 where the training names a precision.
+inference::Precision featurePrecision(const DiffusionTrainingSettings& settings) {
+  return inference::precisionNamed(settings.precision == "auto" ? "auto" : "fp32", "auto",
+                                   "precision");
 }
 
 /// Encodes images: on a CPU by the encoder that drives, one thread per encoder, which is faster
@@ -62,14 +71,13 @@ class Encoders {
     model.encoder = state.encoder.parameters().values();
     const auto threads =
         static_cast<std::size_t>(std::max<std::int64_t>(1, state.run.options.threads));
-    for (std::size_t i = 0; i < threads; ++i) encoders_.emplace_back(model);
+    for (std::size_t i = 0; i < threads; ++i)
+      encoders_.emplace_back(model, featurePrecision(state.settings));
   }
 
-  at::Tensor encode(const std::vector<traffic::CameraImage>& images) {
+  at::Tensor encode(const Images& images) {
     if (encoders_.empty()) {
-      std::vector<const traffic::CameraImage*> views;
-      for (const traffic::CameraImage& image : images) views.push_back(&image);
-      return state_.encoder.forward(learning::imageTensor(views, 1.0, state_.run.device))
+      return state_.encoder.forward(learning::imageTensor(images, 1.0, state_.run.device))
           .to(at::kCPU);
     }
     const auto width = static_cast<std::size_t>(state_.architecture.image_features);
@@ -78,7 +86,7 @@ class Encoders {
     for (std::size_t first = 0; first < encoders_.size(); ++first) {
       threads.emplace_back([&, first] {
         for (std::size_t i = first; i < images.size(); i += encoders_.size()) {
-          const std::vector<float> one = encoders_[first].encode(images[i]);
+          const std::vector<float> one = encoders_[first].encode(*images[i]);
           std::copy(one.begin(), one.end(), features.begin() + static_cast<long>(i * width));
         }
       });
@@ -107,12 +115,20 @@ struct Progress {
     if (stored.facts.at("key") != key) return;
     const std::string source = "cache '" + path.string() + "'";
     cache.features = stored.tensor("features", cache.features.sizes(), source);
+    if (cache.previous.defined()) {
+      cache.previous = stored.tensor("previous", cache.previous.sizes(), source);
+      cache.previous_known = stored.tensor("previous_known", cache.previous_known.sizes(), source);
+    }
     done = stored.facts.at("done");
   }
   void save() const {
     learning::Checkpoint stored;
     stored.facts = json{{"key", key}, {"done", done}};
     stored.tensors = {{"features", cache.features}};
+    if (cache.previous.defined()) {
+      stored.tensors.insert({{"previous", cache.previous}});
+      stored.tensors.insert({{"previous_known", cache.previous_known}});
+    }
     learning::writeCheckpoint(path, stored);
   }
 };
@@ -121,9 +137,24 @@ void computeChunk(const TrainingState& state, Encoders& encoders, Progress& prog
   const std::size_t end = std::min(progress.done + kChunk, state.dataset.size());
   const auto first = static_cast<std::int64_t>(progress.done);
   const auto count = static_cast<std::int64_t>(end - progress.done);
-  progress.cache.features.narrow(0, first, count)
-      .copy_(encoders.encode(imagesOf(state, progress.done, end)));
+  const std::vector<learning::DrivingSample> samples = samplesOf(state, progress.done, end);
+  Images images;
+  for (const learning::DrivingSample& sample : samples) images.push_back(&sample.image);
+  progress.cache.features.narrow(0, first, count).copy_(encoders.encode(images));
   progress.done = end;
+  if (!progress.cache.previous.defined()) return;
+  images.clear();
+  std::vector<std::int64_t> rows;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].previous_image.empty()) continue;
+    images.push_back(&samples[i].previous_image);
+    rows.push_back(first + static_cast<std::int64_t>(i));
+  }
+  if (images.empty()) return;
+  const at::Tensor at_rows =
+      learning::toIndices(rows, {static_cast<std::int64_t>(rows.size())}, at::kCPU);
+  progress.cache.previous.index_copy_(0, at_rows, encoders.encode(images));
+  progress.cache.previous_known.index_fill_(0, at_rows, 1.0);
 }
 
 /// Empty, or what an earlier run with the same encoder and data left.
@@ -132,9 +163,15 @@ Progress progressOf(const TrainingState& state) {
   progress.path = fs::path(state.run.options.output) / kFeatureFile;
   progress.key = {{"encoder", hashOf(state.encoder.parameters())},
                   {"data", state.run.dataset.sha256()},
-                  {"mirrored_half", state.settings.mirror}};
+                  {"mirrored_half", state.settings.mirror},
+                  {"precision", inference::toText(featurePrecision(state.settings))},
+                  {"previous", state.architecture.takesPrevious()}};
   const auto samples = static_cast<std::int64_t>(state.dataset.size());
   progress.cache.features = at::zeros({samples, state.architecture.image_features}, at::kFloat);
+  if (state.architecture.takesPrevious()) {
+    progress.cache.previous = at::zeros_like(progress.cache.features);
+    progress.cache.previous_known = at::zeros({samples, 1}, at::kFloat);
+  }
   progress.load();
   return progress;
 }

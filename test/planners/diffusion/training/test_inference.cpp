@@ -30,11 +30,16 @@ std::vector<float> draws(std::size_t count, const char* name) {
   return values;
 }
 
-/// With all inputs, and with the paper's.
-class Inference : public ::testing::TestWithParam<bool> {
+/// Every set of inputs that a network may take.
+class Inference : public ::testing::TestWithParam<const char*> {
  protected:
+  static Architecture sizesOf(const std::string& inputs) {
+    if (inputs == "paper") return Architecture().imageAlone();
+    return inputs == "motion" ? Architecture().withMotion() : Architecture();
+  }
+
   Inference()
-      : sizes_(GetParam() ? Architecture().imageAlone() : Architecture()),
+      : sizes_(sizesOf(GetParam())),
         model_(cdiff::testing::randomModel(sizes_)),
         net_(sizes_, 1),
         ours_(model_) {
@@ -53,11 +58,27 @@ class Inference : public ::testing::TestWithParam<bool> {
                                  route.begin() + static_cast<long>(i * 32 + 32));
       contexts[i].speed = 2.0 + 3.0 * static_cast<double>(i);
     }
+    if (sizes_.takesPrevious()) addMotion(contexts);
     ours_.setContexts(contexts);
     context_.features = toTensor(features, {kBatch, 256}, at::kCPU);
     context_.route = toTensor(route, {kBatch, 32}, at::kCPU);
     context_.has_route = toTensor({1.0F, 1.0F, 0.0F}, {kBatch, 1}, at::kCPU);
     context_.speed = toTensor({0.2F, 0.5F, 0.8F}, {kBatch, 1}, at::kCPU);
+  }
+
+  /// The first one has no image before, the second no target speed.
+  void addMotion(std::vector<diffusion::Context>& contexts) {
+    const std::vector<float> previous = draws(static_cast<std::size_t>(kBatch) * 256, "previous");
+    for (std::size_t i = 0; i < contexts.size(); ++i) {
+      if (i != 0)
+        contexts[i].previous.assign(previous.begin() + static_cast<long>(i * 256),
+                                    previous.begin() + static_cast<long>(i * 256 + 256));
+      if (i != 1) contexts[i].target_speed = 10.0 - 2.0 * static_cast<double>(i);
+    }
+    context_.previous = toTensor(previous, {kBatch, 256}, at::kCPU);
+    context_.has_previous = toTensor({0.0F, 1.0F, 1.0F}, {kBatch, 1}, at::kCPU);
+    context_.target = toTensor({1.0F, 0.0F, 0.6F}, {kBatch, 1}, at::kCPU);
+    context_.has_target = toTensor({1.0F, 0.0F, 1.0F}, {kBatch, 1}, at::kCPU);
   }
 
   at::Tensor steps(std::int64_t k) const { return at::full({kBatch}, k, at::kLong); }
@@ -118,15 +139,29 @@ TEST_P(Inference, ImageEncoderAgrees) {
   EXPECT_LT(relativeDifference(ours.encode(image), toVector(expected)), 1e-4);
 }
 
-TEST_P(Inference, ARouteIsRefusedWhereItIsNoInput) {
-  diffusion::Context context;
-  context.image_features.assign(256, 0.0F);
-  context.route.assign(32, 0.0F);
-  if (sizes_.takesRoute()) {
-    EXPECT_NO_THROW(ours_.setContexts({context}));
-  } else {
-    EXPECT_THROW(ours_.setContexts({context}), std::invalid_argument);
-  }
+TEST_P(Inference, WhatIsNoInputIsRefused) {
+  const auto refuses = [&](const diffusion::Context& context) {
+    try {
+      ours_.setContexts({context});
+    } catch (const std::invalid_argument&) {
+      return true;
+    }
+    return false;
+  };
+  diffusion::Context plain;
+  plain.image_features.assign(256, 0.0F);
+  EXPECT_FALSE(refuses(plain));
+  diffusion::Context route = plain;
+  route.route.assign(32, 0.0F);
+  EXPECT_EQ(refuses(route), !sizes_.takesRoute());
+  diffusion::Context previous = plain;
+  previous.previous.assign(256, 0.0F);
+  EXPECT_EQ(refuses(previous), !sizes_.takesPrevious());
+  previous.previous.pop_back();
+  EXPECT_TRUE(refuses(previous));
+  diffusion::Context target = plain;
+  target.target_speed = 8.0;
+  EXPECT_EQ(refuses(target), !sizes_.takesTarget());
 }
 
 TEST_P(Inference, WithoutItsInputTheSpeedChangesNothing) {
@@ -147,7 +182,7 @@ TEST_P(Inference, WithoutItsInputTheSpeedChangesNothing) {
   EXPECT_EQ(states[0] == states[1], !sizes_.takesSpeed());
 }
 
-INSTANTIATE_TEST_SUITE_P(Inputs, Inference, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Inputs, Inference, ::testing::Values("default", "paper", "motion"));
 
 }  // namespace
 }  // namespace cdiff::planners

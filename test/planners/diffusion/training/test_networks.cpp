@@ -34,8 +34,14 @@ ContextBatch contextOf(const diffusion::Architecture& architecture) {
   const auto ramp = [](std::int64_t columns) {
     return at::linspace(-1.0, 1.0, 2 * columns).view({2, columns});
   };
-  return {ramp(architecture.image_features), ramp(2 * architecture.route_points),
-          toTensor({1.0F, 0.0F}, {2, 1}, at::kCPU), toTensor({0.5F, 1.2F}, {2, 1}, at::kCPU)};
+  return {ramp(architecture.image_features),
+          ramp(2 * architecture.route_points),
+          toTensor({1.0F, 0.0F}, {2, 1}, at::kCPU),
+          toTensor({0.5F, 1.2F}, {2, 1}, at::kCPU),
+          {},
+          {},
+          {},
+          {}};
 }
 
 bool belongsToStates(const std::string& name) {

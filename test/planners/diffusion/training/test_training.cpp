@@ -127,6 +127,38 @@ TEST_F(DiffusionTrainingTest, ThePapersNetworkStartsFromTheEncoderOfAnother) {
   EXPECT_NE(refusal("denoiser").find("the architecture of '"), std::string::npos);
 }
 
+TEST_F(DiffusionTrainingTest, MotionIsLearnedOnFromAModelWithoutIt) {
+  run("encoder", 1);
+  run("denoiser", 3);
+  const diffusion::Model narrow = diffusion::loadModel(training_.options.output);
+  training_.options.init = training_.options.output;
+  training_.options.output = path("motion").string();
+  settings().network = "motion";
+  EXPECT_NE(refusal("denoiser").find("needs the field 'target_speed' of the samples"),
+            std::string::npos);
+  test::writeShard(path("data") / "a.shard", 8, test::motionSchema());
+  EXPECT_NE(refusal("fine_tune").find("the architecture of '"), std::string::npos);
+  training_.options.learning_rate = 1e-9;  // leaves the weights as they are
+  run("denoiser", 1);
+  const diffusion::Model wide = diffusion::loadModel(training_.options.output);
+  EXPECT_EQ(wide.architecture, narrow.architecture.withMotion());
+  const auto measure = [&](const std::string& name, const char* figure) {
+    return record(name).at("held_out").at(figure).get<double>();
+  };
+  // What the wide one is given more than the narrow one changes nothing yet.
+  EXPECT_FLOAT_EQ(measure("motion", "sample_ade_m"), measure("model", "sample_ade_m"));
+  EXPECT_FLOAT_EQ(measure("motion", "sample_one_image_ade_m"), measure("model", "sample_ade_m"));
+  training_.options.learning_rate = 2e-3;
+  training_.options.overwrite = true;
+  run("denoiser", 40);
+  EXPECT_NE(measure("motion", "sample_ade_m"), measure("motion", "sample_one_image_ade_m"));
+  EXPECT_NE(measure("motion", "sample_ade_m"), measure("motion", "sample_no_target_ade_m"));
+  EXPECT_NE(measure("motion", "sample_no_route_ade_m"),
+            measure("motion", "sample_image_alone_ade_m"));
+  run("joint", 2);
+  EXPECT_EQ(record("motion").at("network"), "motion");
+}
+
 TEST_F(DiffusionTrainingTest, FineTuneLeavesAModelWithTheDenoiserOfTheInitialOne) {
   run("encoder", 1);
   EXPECT_NE(log_.str().find("no model is written yet: train stage denoiser"), std::string::npos);
