@@ -86,7 +86,6 @@ std::string lossText(const DatasetStatistics& statistics, const std::string& rem
 
 constexpr double kTurn = core::degreesToRadians(15.0);  // of heading over the horizon [rad]
 
-constexpr const char* kManeuvers[] = {"straight", "left", "right", "other"};
 constexpr const char* kStopReasons[] = {"none", "light", "leader", "yielding", "other"};
 static_assert(std::size(kStopReasons) == learning::kStopOther + 1);
 
@@ -238,7 +237,7 @@ bool offCourse(const SampleSurroundings& around, const traffic::VehicleState& st
 
 void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
            DatasetStatistics& statistics) {
-  ++statistics.maneuvers[kManeuvers[kinds.maneuver]];
+  ++statistics.maneuvers[learning::kManeuvers[kinds.maneuver]];
   ++statistics.stop_reasons[kStopReasons[kinds.stop_reason]];
   const std::pair<const char*, bool> flags[] = {
       {"standing", kinds.standing},       {"starting", kinds.starting},

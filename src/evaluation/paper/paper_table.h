@@ -40,9 +40,8 @@ inline constexpr PaperSystem kPpo("PPO");
 inline constexpr PaperSystem kPluto("Pluto");
 inline constexpr PaperSystem kRift("RIFT");
 inline constexpr PaperSystem kDiffusion("E2E-CDiff", "E2E-CDiff (method default)");
-inline constexpr PaperSystem kPaperMethod("E2E-CDiff",
-                                          "E2E-CDiff (paper's sampling and guidance, our weights)",
-                                          "paper");
+inline constexpr PaperSystem kPaperMethod(
+    "E2E-CDiff", "E2E-CDiff (paper's sampling, guidance and inputs, our weights)", "paper");
 inline constexpr PaperSystem kTwoStage("Two-stage trajectory-then-PID");
 }  // namespace paper
 

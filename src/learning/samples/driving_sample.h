@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -23,6 +24,9 @@ enum StopReason : std::uint8_t {
   kStopOther = 4
 };
 
+/// By DrivingSample::maneuver.
+inline constexpr std::array<const char*, 4> kManeuvers = {"straight", "left", "right", "other"};
+
 /// The samples that collection records: one vehicle at one planning time with what it saw, knew and
 /// then did. On disk they are samples of named fields (learning/samples/field.h), whose names are
 /// those of the struct; planners that need others store others.
@@ -35,7 +39,7 @@ struct DrivingSample {
   std::string vehicle;         ///< id
   std::uint64_t tick = 0;      ///< planning time
   bool recovering = false;     ///< shortly (about 2 s) after a disturbance
-  std::uint8_t maneuver = 0;   ///< the collector's: 0 straight on, 1 left, 2 right, 3 other
+  std::uint8_t maneuver = 0;   ///< the collector's, an index of kManeuvers
   std::uint8_t stop_reason = kStopNone;  ///< the collector's StopReason
   std::vector<float> auxiliary;  ///< targets that the schema names, of order 1; NaN: not known
   /// What it saw DrivingSchema::previous_interval before; empty: not known.

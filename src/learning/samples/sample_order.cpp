@@ -30,8 +30,8 @@ const char* paceOf(const DrivingSample& sample) {
 }  // namespace
 
 std::string balanceClass(const DrivingSample& sample) {
-  constexpr const char* kManeuvers[] = {"straight ", "left ", "right ", "other "};
-  return std::string(kManeuvers[std::min<std::size_t>(sample.maneuver, 3)]) + paceOf(sample);
+  const std::size_t maneuver = std::min<std::size_t>(sample.maneuver, kManeuvers.size() - 1);
+  return std::string(kManeuvers[maneuver]) + " " + paceOf(sample);
 }
 
 std::vector<double> balanceWeights(const DrivingDataset& dataset, double balance,

@@ -19,6 +19,10 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
       {"route_scale", "",
        "Of vehicles that are given their route: 0 ignores it, 1 heeds it, above 1 more."},
       route_scale, 0.0, 5.0);
+  visitor.text({"motion", "",
+                "Given with the route to a model that takes them: the image of 0.4 s before, the "
+                "target speed, or all of that."},
+               motion, {"all", "previous_image", "target_speed", "none"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
                state_branch, {"learned", "exact"});
   visitor.text({"response", "",
@@ -81,8 +85,10 @@ std::string samplingText(const DiffusionOptions& options,
 std::string conditioningText(const DiffusionOptions& options,
                              const guidance::GuidanceOptions& guidance) {
   const std::string conditioning = options.conditioningUnder(guidance);
-  if (options.route_scale == 1.0 || conditioning != "image_route") return conditioning;
-  return conditioning + ", route scale " + core::formatNumber(options.route_scale);
+  if (conditioning != "image_route") return conditioning;
+  const std::string motion = options.motion == "all" ? "" : ", motion " + options.motion;
+  if (options.route_scale == 1.0) return conditioning + motion;
+  return conditioning + motion + ", route scale " + core::formatNumber(options.route_scale);
 }
 
 planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,

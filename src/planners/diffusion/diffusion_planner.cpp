@@ -41,8 +41,15 @@ diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffus
   return diffusion::ImageEncoder(model, precision, instructionSetOf(options));
 }
 
-/// Throws InputError for a conditioning that gives vehicles a route which the model does not take.
+/// Throws InputError for a conditioning that gives vehicles a route, and for a choice of further
+/// inputs, which the model does not take.
 void requireInputs(const DiffusionOptions& options, const diffusion::Model& model) {
+  const bool moves = model.architecture.takesPrevious() || model.architecture.takesTarget();
+  if (options.motion != "all" && !moves)
+    throw core::InputError("key 'diffusion.motion' is '" + options.motion + "', and model '" +
+                           model.name +
+                           "' takes neither the image before nor the target speed; "
+                           "expected 'all'");
   if (model.architecture.takesRoute() || options.conditioning == "image") return;
   throw core::InputError("key 'diffusion.conditioning' is '" + options.conditioning +
                          "', and model '" + model.name + "' takes no route; expected 'image'");

@@ -32,6 +32,9 @@ struct DiffusionOptions {
   /// w of classifier-free guidance on the route (and the target speed, where the model takes it):
   /// 0 without, 1 with it, between and beyond a mix
   double route_scale = 1.0;
+  /// Of the inputs beside the route that a model may take (Architecture::withMotion), those that it
+  /// is given: all | previous_image | target_speed | none
+  std::string motion = "all";
   std::string state_branch = "learned";  ///< learned | exact
   std::string response = "fitted";       ///< of the executed throttle: fitted | monotone
   double hysteresis = 0.1;               ///< a new mode must be better by this share of the score

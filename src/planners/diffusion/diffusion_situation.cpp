@@ -235,8 +235,12 @@ void DiffusionPlanner::addMotion(std::uint64_t tick, Situation& situation) const
   const std::uint64_t back = ticksToPrevious();
   const auto& earlier = situation.memory->earlier;
   const auto before = back > 0 && tick >= back ? earlier.find(tick - back) : earlier.end();
-  if (before != earlier.end()) situation.context.previous = before->second;
-  if (model_.architecture.takesTarget())
+  const auto given = [&](const char* input) {
+    return options_.motion == "all" || options_.motion == input;
+  };
+  if (before != earlier.end() && given("previous_image"))
+    situation.context.previous = before->second;
+  if (model_.architecture.takesTarget() && given("target_speed"))
     situation.context.target_speed = situation.task->target_speed;
 }
 

@@ -166,6 +166,9 @@ TEST_F(ActionOptions, AModelOfTheImageAloneDrivesByTheImageAlone) {
           << error.what();
     }
   }
+  options.conditioning = "image";
+  options.motion = "none";
+  EXPECT_THROW(makeDiffusion(options), core::InputError);
 }
 
 // The image of 0.4 s before and the target speed reach a network that takes them, and only where it
@@ -194,6 +197,15 @@ TEST_F(ActionOptions, AModelThatSeesMotionRemembersItsImages) {
   EXPECT_FALSE(sameActions(planFrom(0, 8.0), planFrom(8, 8.0)));
   EXPECT_TRUE(sameActions(planFrom(2, 8.0), planFrom(8, 8.0))) << "0.3 s is too short";
   EXPECT_FALSE(sameActions(planFrom(8, 8.0), planFrom(8, 5.0)));
+  options.motion = "previous_image";
+  EXPECT_FALSE(sameActions(planFrom(0, 8.0), planFrom(8, 8.0)));
+  EXPECT_TRUE(sameActions(planFrom(8, 8.0), planFrom(8, 5.0)));
+  options.motion = "target_speed";
+  EXPECT_TRUE(sameActions(planFrom(0, 8.0), planFrom(8, 8.0)));
+  EXPECT_FALSE(sameActions(planFrom(8, 8.0), planFrom(8, 5.0)));
+  options.motion = "none";
+  EXPECT_TRUE(sameActions(planFrom(0, 8.0), planFrom(8, 5.0)));
+  options.motion = "all";
   options.conditioning = "image";
   EXPECT_TRUE(sameActions(planFrom(0, 8.0), planFrom(8, 5.0)));
 }
@@ -245,6 +257,8 @@ TEST_F(ActionOptions, RecordsSaySamplerResponseAndRouteScale) {
   options.route_scale = 0.5;
   EXPECT_EQ(facts().sampling, "DDIM over 10 steps, proximal guidance, 1 sample, monotone response");
   EXPECT_EQ(facts().conditioning, "image_route, route scale 0.5");
+  options.motion = "target_speed";
+  EXPECT_EQ(facts().conditioning, "image_route, motion target_speed, route scale 0.5");
 }
 
 }  // namespace

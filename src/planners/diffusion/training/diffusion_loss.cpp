@@ -142,12 +142,14 @@ TrainingBatch BatchMaker::plain(const std::vector<std::size_t>& indices, bool wi
 TrainingBatch BatchMaker::pack(const std::vector<DrivingSample>& samples,
                                const std::vector<float>& has_route) const {
   std::vector<float> rollouts, routes, speeds, targets, known;
+  std::vector<std::uint8_t> maneuvers;
   std::vector<const traffic::CameraImage*> images;
   for (const DrivingSample& sample : samples) {
     const diffusion::Trajectory normalized = normalizer_.normalize(sample.rollout);
     rollouts.insert(rollouts.end(), normalized.data(), normalized.data() + normalized.size());
     routes.insert(routes.end(), sample.route.begin(), sample.route.end());
     speeds.push_back(static_cast<float>(sample.speed / kSpeedScale));
+    maneuvers.push_back(sample.maneuver);
     for (const float value : sample.auxiliary) {
       known.push_back(std::isfinite(value) ? 1.0F : 0.0F);
       targets.push_back(std::isfinite(value) ? value : 0.0F);
@@ -158,6 +160,7 @@ TrainingBatch BatchMaker::pack(const std::vector<DrivingSample>& samples,
   const auto count = static_cast<std::int64_t>(samples.size());
   const auto auxiliary = static_cast<std::int64_t>(schema.auxiliary.size());
   TrainingBatch batch;
+  batch.maneuvers = std::move(maneuvers);
   batch.rollouts = toTensor(rollouts, {count, schema.horizon, traffic::kRolloutColumns}, device_);
   batch.context.route = toTensor(routes, {count, 2 * schema.route_points}, device_);
   batch.context.has_route = toTensor(has_route, {count, 1}, device_);
@@ -189,6 +192,7 @@ namespace {
 
 using learning::Loss;
 using learning::Measures;
+using learning::toIndices;
 using learning::toVector;
 
 constexpr std::int64_t kJudgeSteps = 10;
@@ -230,10 +234,13 @@ DiffusionLoss::DiffusionLoss(Kind kind, const diffusion::Architecture& architect
   signal_ = toTensor(signal, {schedule_.steps() + 1}, device);
   noise_ = toTensor(noise, {schedule_.steps() + 1}, device);
   weights_ = toTensor(weights, {1, architecture.horizon, 1}, device);
-  const Eigen::Matrix<float, Eigen::Dynamic, traffic::kRolloutColumns, Eigen::RowMajor> scale =
-      normalizer.scale.cast<float>();
-  scale_ = toTensor({scale.data(), scale.data() + scale.size()},
+  const auto cells = [&](const traffic::Rollout& metric) {
+    const diffusion::Trajectory plain = metric.cast<float>();
+    return toTensor({plain.data(), plain.data() + plain.size()},
                     {architecture.horizon, traffic::kRolloutColumns}, device);
+  };
+  mean_ = cells(normalizer.mean);
+  scale_ = cells(normalizer.scale);
 }
 
 at::Tensor DiffusionLoss::addNoise(const at::Tensor& clean, const at::Tensor& k,
@@ -281,12 +288,16 @@ at::Tensor DiffusionLoss::sample(const DenoiserNet& denoiser, const at::Tensor& 
   return noisy;
 }
 
+at::Tensor DiffusionLoss::distances(const at::Tensor& predicted, const at::Tensor& clean) const {
+  const at::Tensor error = (predicted - clean) * scale_;
+  return (error.select(2, traffic::kRolloutX).pow(2) + error.select(2, traffic::kRolloutY).pow(2))
+      .sqrt();
+}
+
 void DiffusionLoss::addMeasures(const std::string& prefix, const at::Tensor& predicted,
                                 const at::Tensor& clean, Measures& measures) const {
   const at::Tensor error = ((predicted - clean) * scale_).abs();
-  const at::Tensor distance =
-      (error.select(2, traffic::kRolloutX).pow(2) + error.select(2, traffic::kRolloutY).pow(2))
-          .sqrt();
+  const at::Tensor distance = distances(predicted, clean);
   const auto mean = [&](int column) { return error.select(2, column).mean().item<double>(); };
   measures[prefix + "ade_m"] = distance.mean().item<double>();
   measures[prefix + "fde_m"] = distance.select(1, architecture_.horizon - 1).mean().item<double>();
@@ -346,6 +357,49 @@ Measures DiffusionLoss::judge(const DenoiserNet& denoiser, const TrainingBatch& 
   addMeasures("sample_grey_no_route_", sample(denoiser, noise, context, count), clean, measures);
   context.has_route = held_out.context.has_route;
   addMeasures("sample_grey_", sample(denoiser, noise, context, count), clean, measures);
+  return measures;
+}
+
+at::Tensor DiffusionLoss::constantVelocity(const TrainingBatch& batch) const {
+  const at::Tensor metric = at::zeros_like(batch.rollouts);
+  const at::Tensor speed = batch.context.speed * kSpeedScale;  // [B, 1]
+  const at::Tensor time =
+      at::arange(1, architecture_.horizon + 1, batch.rollouts.options()) * traffic::kRolloutStep;
+  metric.select(2, traffic::kRolloutX).copy_(speed * time);
+  metric.select(2, traffic::kRolloutSpeed).copy_(speed.expand({-1, architecture_.horizon}));
+  return (metric - mean_) / scale_;
+}
+
+Measures DiffusionLoss::judgeFurther(const DenoiserNet& denoiser,
+                                     const TrainingBatch& held_out) const {
+  const at::NoGradGuard no_gradient;
+  const at::Tensor& clean = held_out.rollouts;
+  const std::int64_t count = std::min<std::int64_t>(kJudgeSteps, schedule_.steps());
+  Measures measures;
+  addMeasures("constant_velocity_", constantVelocity(held_out), clean, measures);
+  for (const char* action : {"throttle", "steer", "brake"})
+    measures.erase(std::string("constant_velocity_") + action);
+  std::vector<at::Tensor> averages, ends;
+  for (int i = 0; i < kManySamples; ++i) {
+    const at::Tensor noise = fixedNoise(clean, "card noise " + std::to_string(i));
+    const at::Tensor distance = distances(sample(denoiser, noise, held_out.context, count), clean);
+    averages.push_back(distance.mean(1));
+    ends.push_back(distance.select(1, architecture_.horizon - 1));
+  }
+  measures["least_of_8_ade_m"] = at::stack(averages).amin(0).mean().item<double>();
+  measures["least_of_8_fde_m"] = at::stack(ends).amin(0).mean().item<double>();
+  const at::Tensor sampled =
+      sample(denoiser, fixedNoise(clean, "validation noise"), held_out.context, count);
+  for (std::size_t maneuver = 0; maneuver < learning::kManeuvers.size(); ++maneuver) {
+    std::vector<std::int64_t> rows;
+    for (std::size_t i = 0; i < held_out.maneuvers.size(); ++i)
+      if (held_out.maneuvers[i] == maneuver) rows.push_back(static_cast<std::int64_t>(i));
+    if (rows.empty()) continue;
+    const at::Tensor at_rows = toIndices(rows, {static_cast<std::int64_t>(rows.size())}, device_);
+    const std::string prefix = std::string("sample_") + learning::kManeuvers[maneuver] + "_";
+    addMeasures(prefix, sampled.index_select(0, at_rows), clean.index_select(0, at_rows), measures);
+    measures[prefix + "samples"] = static_cast<double>(rows.size());
+  }
   return measures;
 }
 

@@ -34,7 +34,8 @@ bool mirroredInCache(std::size_t index);
 /// targets, diffusion steps and noise.
 struct TrainingBatch {
   std::vector<std::size_t> samples;
-  at::Tensor images;           ///< [B, 3, H, W] scaled; undefined on cached features
+  std::vector<std::uint8_t> maneuvers;  ///< DrivingSample::maneuver
+  at::Tensor images;                    ///< [B, 3, H, W] scaled; undefined on cached features
   at::Tensor previous_images;  ///< likewise, black where not known; undefined without `with_motion`
   ContextBatch context;        ///< without features where there are images
   at::Tensor rollouts;         ///< [B, T, 7] normalized
@@ -123,10 +124,20 @@ class DiffusionLoss {
   /// the features of a gray image and without route.
   learning::Measures judge(const DenoiserNet& denoiser, const TrainingBatch& held_out,
                            const at::Tensor& gray_features) const;
+  /// What a card sets beside it: errors of going straight on at the own speed
+  /// (`constant_velocity_`, states alone), the least ADE and FDE of kManySamples DDIM samples
+  /// (`least_of_8_`), and errors of DDIM samples by maneuver (`sample_left_`, ...).
+  learning::Measures judgeFurther(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
   /// Standard deviation of the clean prediction's error at k = K, [T, 7] normalized.
   traffic::Rollout spread(const DenoiserNet& denoiser, const TrainingBatch& held_out) const;
 
+  static constexpr int kManySamples = 8;
+
  private:
+  /// Of the places [B, T], m.
+  at::Tensor distances(const at::Tensor& predicted, const at::Tensor& clean) const;
+  /// Normalized; the actions are the mean ones.
+  at::Tensor constantVelocity(const TrainingBatch& batch) const;
   at::Tensor fixedNoise(const at::Tensor& like, const std::string& name) const;
 
   Kind kind_;
@@ -136,6 +147,7 @@ class DiffusionLoss {
   at::Tensor signal_;   ///< sqrt(alpha_bar) [K + 1]
   at::Tensor noise_;    ///< sqrt(1 - alpha_bar) [K + 1]
   at::Tensor weights_;  ///< of the rows [1, T, 1]
+  at::Tensor mean_;     ///< [T, 7]
   at::Tensor scale_;    ///< [T, 7]
 };
 

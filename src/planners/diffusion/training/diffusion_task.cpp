@@ -126,6 +126,19 @@ std::string heldOutTable(const Measures& held_out) {
          heldOutRow("DDIM sample, gray image, no route", "sample_grey_no_route_", held_out);
 }
 
+std::string furtherRows(const Measures& held_out) {
+  std::string rows = heldOutRow("DDIM sample, least of 8", "least_of_8_", held_out);
+  for (const char* maneuver : learning::kManeuvers) {
+    const std::string prefix = std::string("sample_") + maneuver + "_";
+    const auto samples = held_out.find(prefix + "samples");
+    if (samples == held_out.end()) continue;
+    rows += heldOutRow("DDIM sample, " + std::string(maneuver) + " (" +
+                           core::formatFixed(samples->second, 0) + " samples)",
+                       prefix, held_out);
+  }
+  return rows + heldOutRow("straight on at the own speed", "constant_velocity_", held_out);
+}
+
 std::string motionRows(const Measures& held_out) {
   return heldOutRow("DDIM sample, one image", "sample_one_image_", held_out) +
          heldOutRow("DDIM sample, no target speed", "sample_no_target_", held_out) +
@@ -234,6 +247,7 @@ learning::TrainedModel DiffusionTask::finish() {
       {diffusion::kEncoderFile, std::move(files.encoder), false, diffusion::kEncoderKey},
       {diffusion::kDenoiserFile, std::move(files.denoiser), true, ""}};
   trained.held_out = state_->loss.judge(state_->denoiser, held_out.batch, held_out.gray_features);
+  trained.held_out.merge(state_->loss.judgeFurther(state_->denoiser, held_out.batch));
   trained.settings = {{"balance", settings.balance},
                       {"yielding_share", settings.yielding_share},
                       {"network", settings.network},
@@ -244,6 +258,7 @@ learning::TrainedModel DiffusionTask::finish() {
   trained.title = "Diffusion planner";
   trained.measures = heldOutTable(trained.held_out);
   if (state_->architecture.takesPrevious()) trained.measures += motionRows(trained.held_out);
+  trained.measures += furtherRows(trained.held_out);
   return trained;
 }
 

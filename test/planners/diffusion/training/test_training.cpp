@@ -61,7 +61,23 @@ TEST_F(DiffusionTrainingTest, AllStagesMakeAModelThatFitsEightSamples) {
   // Predicting the mean alone costs 1 on the two state columns that vary, so 0.5, and the mean of
   // w_t / 12 = 0.26 on the steer; fitted samples cost far less.
   EXPECT_LT(training.at("stages").at("denoiser").at("loss").get<double>(), 0.2);
-  EXPECT_LT(training.at("held_out").at("sample_ade_m").get<double>(), 0.5);
+  const auto held_out = [&](const std::string& figure) {
+    return training.at("held_out").at(figure).get<double>();
+  };
+  EXPECT_LT(held_out("sample_ade_m"), 0.5);
+  // The vehicles keep their speed; there are two of each maneuver.
+  EXPECT_NEAR(held_out("constant_velocity_ade_m"), 0.0, 1e-5);
+  EXPECT_NEAR(held_out("constant_velocity_speed_mps"), 0.0, 1e-5);
+  EXPECT_FALSE(training.at("held_out").contains("constant_velocity_steer"));
+  EXPECT_GT(held_out("least_of_8_ade_m"), 0.0);
+  EXPECT_LT(held_out("least_of_8_ade_m"), held_out("sample_ade_m"));
+  EXPECT_LE(held_out("least_of_8_ade_m"), held_out("least_of_8_fde_m"));
+  double by_maneuver = 0.0;
+  for (const std::string maneuver : {"straight", "left", "right", "other"}) {
+    EXPECT_EQ(held_out("sample_" + maneuver + "_samples"), 2.0);
+    by_maneuver += held_out("sample_" + maneuver + "_ade_m") / 4.0;
+  }
+  EXPECT_NEAR(by_maneuver, held_out("sample_ade_m"), 1e-6);
   const diffusion::Model model = diffusion::loadModel(path("model").string());
   EXPECT_EQ(model.spread.rows(), 8);
   EXPECT_GT(model.spread.minCoeff(), 0.0);
