@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
+#include "collection/camera_sight.h"
 #include "collection/traffic_driver.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -43,15 +45,20 @@ std::uint64_t seedOf(const session::SessionSetup& setup) {
   return static_cast<std::uint64_t>(setup.options().seed);
 }
 
+using MakePlanner = std::function<std::unique_ptr<planning::Planner>()>;
+
 std::unique_ptr<PerturbedPlanner> perturbedPlanner(const session::SessionSetup& setup,
                                                    const CollectionOptions& options,
-                                                   std::unique_ptr<planning::Planner> planner,
-                                                   Policy policy, const std::string& name) {
+                                                   const MakePlanner& make, Policy policy,
+                                                   const std::string& name) {
+  std::unique_ptr<planning::Planner> planner = make();
   if (planner->needsImages())
     throw core::InputError(
         "planner '" + name +
         "' needs images; data are collected with planners that do not, such as '" +
         std::string(planners::kDefaultEgoPlanner) + "'");
+  if (options.sight == "camera")
+    planner = std::make_unique<SightedPlanner>(make, setup.options().camera, setup.network());
   return std::make_unique<PerturbedPlanner>(std::move(planner), options, seedOf(setup),
                                             setup.options().decision_period, std::move(policy));
 }
@@ -262,10 +269,11 @@ CollectionLoop::CollectionLoop(const session::SessionSetup& setup, const Collect
 
 session::LoopParts CollectionLoop::makeParts(const session::SessionSetup& setup,
                                              const CollectionOptions& options, bool images) {
-  auto ego =
-      perturbedPlanner(setup, options, setup.makeEgoPlanner(), {}, setup.options().ego_planner);
-  auto cbv = perturbedPlanner(setup, options, setup.makeCbvPlanner(), policyOf(setup, options),
-                              setup.options().cbv_planner);
+  auto ego = perturbedPlanner(
+      setup, options, [&setup] { return setup.makeEgoPlanner(); }, {}, setup.options().ego_planner);
+  auto cbv = perturbedPlanner(
+      setup, options, [&setup] { return setup.makeCbvPlanner(); }, policyOf(setup, options),
+      setup.options().cbv_planner);
   ego_planner_ = ego.get();
   cbv_planner_ = cbv.get();
   session::LoopParts parts;

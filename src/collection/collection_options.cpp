@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collection/camera_sight.h"
 #include "collection/traffic_driver.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -111,12 +112,18 @@ void CollectionOptions::describe(core::OptionsVisitor& visitor) {
                  3.0);
   visitor.number({"offset_heading", "deg", "Largest turn of a displaced vehicle."}, offset_heading,
                  0.0, 45.0);
+  visitor.text({"sight", "", "Others that the expert knows of: all, or those its camera shows."},
+               sight, {"all", "camera"});
   visitor.text({"policy", "", "Planner that drives CBVs now and then; empty: none."}, policy, {});
   visitor.number({"policy_period", "s", "From one such time of a vehicle to the next."},
                  policy_period, 1.0, 100.0);
   visitor.number({"policy_time", "s", "Longest time that it drives."}, policy_time, 0.1, 100.0);
   visitor.number({"policy_share", "", "Share of the periods in which it does."}, policy_share, 0.0,
                  1.0);
+  visitor.integer({"policy_plans", "",
+                   "Plans of diffusion.model drawn for each moving sample, of which one, drawn by "
+                   "its return, makes another sample; 0: none."},
+                  policy_plans, 0, 64);
   visitor.group({"noise", "", "Disturbances."}, noise);
 }
 
@@ -129,6 +136,8 @@ void CollectionOptions::validate() const {
   requireOrder("minimum_density", minimum_density, "maximum_density", maximum_density);
   requireOrder("minimum_route", minimum_route, "route_length", route_length);
   requireOrder("route_end", route_end, "minimum_route", minimum_route);
+  if (policy_plans == 1)
+    throw core::InputError("collection: policy_plans is 1; a choice needs 2 or more, 0 makes none");
   requireOrder("policy_time", policy_time, "policy_period", policy_period);
   requireOrder("noise.stall_minimum_time", noise.stall_minimum_time, "noise.stall_maximum_time",
                noise.stall_maximum_time);
@@ -144,6 +153,7 @@ DatasetOptions datasetOptions(const CollectionOptions& options) {
   dataset.offset_share = options.offset_share;
   dataset.offset_lateral = options.offset_lateral;
   dataset.offset_heading = options.offset_heading;
+  dataset.policy_plans = options.policy_plans;
   return dataset;
 }
 
@@ -154,6 +164,7 @@ learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture) {
   schema.image_height = architecture.image_height;
   schema.route_points = architecture.route_points;
   schema.route_spacing = architecture.route_spacing;
+  schema.auxiliary = sightTargets();
   schema.previous_interval = kPreviousInterval;
   schema.target_speeds = true;
   return schema;

@@ -65,10 +65,12 @@ struct CollectionOptions {
   double offset_share = 0.2;          ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;       ///< largest displacement to the side [m]
   double offset_heading = 12.0;       ///< largest turn of a displaced vehicle [deg]
-  std::string policy;                 ///< planner that drives CBVs now and then; empty: none
-  double policy_period = 8.0;         ///< from one such time of a vehicle to the next [s]
-  double policy_time = 4.0;           ///< longest time that it drives, drawn from a quarter on [s]
-  double policy_share = 0.7;          ///< share of the periods in which it drives
+  std::string sight = "all";      ///< what the expert knows of others: all | camera (what it shows)
+  std::string policy;             ///< planner that drives CBVs now and then; empty: none
+  double policy_period = 8.0;     ///< from one such time of a vehicle to the next [s]
+  double policy_time = 4.0;       ///< longest time that it drives, drawn from a quarter on [s]
+  double policy_share = 0.7;      ///< share of the periods in which it drives
+  std::int64_t policy_plans = 0;  ///< of diffusion.model, of which one makes a further sample
   NoiseOptions noise;
 
   void describe(core::OptionsVisitor& visitor);
@@ -83,6 +85,7 @@ struct DatasetOptions {
   double offset_share = 0.2;             ///< part of moving samples that is displaced once more
   double offset_lateral = 0.75;          ///< largest displacement to the side [m]
   double offset_heading = 12.0;          ///< largest turn of a displaced vehicle [deg]
+  std::int64_t policy_plans = 0;         ///< plans of diffusion.model a moving sample (PolicyPlans)
   std::function<double(const std::string&)> target_speed;  ///< v* by vehicle [m/s]; empty: unknown
 };
 

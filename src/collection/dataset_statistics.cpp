@@ -243,7 +243,8 @@ void count(const learning::DrivingSample& sample, const SampleKinds& kinds,
       {"standing", kinds.standing},       {"starting", kinds.starting},
       {"stopping", kinds.stopping},       {"off_road", kinds.off_road},
       {"in_junction", kinds.in_junction}, {"off_course", kinds.off_course},
-      {"recovering", sample.recovering},  {"displaced", kinds.displaced}};
+      {"recovering", sample.recovering},  {"displaced", kinds.displaced},
+      {"planned", kinds.planned}};
   for (const auto& [name, is] : flags) statistics.kinds[name] += is;
   const auto bin = static_cast<std::size_t>(std::max(0.0, sample.speed / 2.0));
   ++statistics.speeds[std::min(bin, statistics.speeds.size() - 1)];

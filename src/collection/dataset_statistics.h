@@ -74,6 +74,7 @@ struct SampleKinds {
   bool off_road = false;                           ///< its center at planning time
   bool in_junction = false;
   bool off_course = false;  ///< more than kOffCourse or kOffTurn off its route
+  bool planned = false;     ///< the rollout is a plan (PolicyPlans)
   bool displaced = false;   ///< put beside its route (OffsetSamples)
 };
 

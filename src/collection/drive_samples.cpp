@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "collection/dataset_statistics.h"
 #include "collection/training_samples.h"
@@ -129,6 +130,7 @@ class DriveSamples {
     const auto tokens = routeAt(time, *start);
     if (!tokens) return std::nullopt;
     sample.route = *tokens;
+    sample.auxiliary.assign(sightTargets().size(), std::numeric_limits<float>::quiet_NaN());
     return sample;
   }
 

@@ -15,7 +15,8 @@ OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOp
     : setup_(setup),
       options_(options),
       model_(setup.options().vehicle),
-      camera_(setup.options().camera, setup.network()) {}
+      camera_(setup.options().camera, setup.network()),
+      sight_(setup.options().camera, setup.network()) {}
 
 traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
                                      const traffic::VehicleState& here,
@@ -85,6 +86,7 @@ std::optional<DisplacedSample> OffsetSamples::displace(
   if (!driveBack(vehicle, around, future, displaced.rollout)) return std::nullopt;
   displaced.recovering = true;
   displaced.image = camera_.render(around.snapshot, vehicle);
+  displaced.auxiliary = targets(vehicle, around);
   if (!sample.previous_image.empty()) {
     const traffic::Vehicle& before = *previous.find(sample.vehicle);
     const traffic::VehicleState& here = around.snapshot.find(sample.vehicle)->state;

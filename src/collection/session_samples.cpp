@@ -5,11 +5,13 @@
 #include <optional>
 
 #include "collection/dataset_statistics.h"
+#include "collection/policy_plans.h"
 #include "collection/training_samples.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "planners/diffusion/diffusion_planner.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::collection {
@@ -18,6 +20,7 @@ namespace {
 using core::InputError;
 
 constexpr std::size_t kPreviousDecisions = 4;  // kPreviousInterval before
+constexpr double kSlow = 2.0;                  // [m/s]
 
 /// Where a vehicle is on its route at a decision.
 struct Place {
@@ -41,6 +44,11 @@ class SampleMaker {
         offset_samples_(*session.setup, options) {
     for (std::size_t i = 0; i < session.decisions.size(); ++i)
       index_[session.decisions[i].tick] = i;
+    if (options.policy_plans > 0) {
+      const auto& planners = session.setup->options().planner_options;
+      plans_.emplace(planners.of<planners::DiffusionOptions>().model, options.policy_plans,
+                     *session.setup);
+    }
     followAll();
   }
 
@@ -98,9 +106,13 @@ class SampleMaker {
     if (kinds.standing && !keepsStanding(sample)) return "standing_thinned";
     sample.maneuver = kinds.maneuver;
     sample.stop_reason = kinds.stop_reason;
+    sample.auxiliary =
+        offset_samples_.targets(*surroundings.snapshot.find(sample.vehicle), surroundings);
     count(sample, kinds, statistics_);
     samples.push_back(std::move(sample));
+    const std::size_t recorded = samples.size() - 1;
     addDisplaced(at->second, surroundings, kinds, samples);
+    addPlanned(at->second, surroundings, samples[recorded], samples);
     return nullptr;
   }
 
@@ -115,11 +127,31 @@ class SampleMaker {
     sample.previous_image = offset_samples_.seen(snapshot, *vehicle, vehicle->state);
   }
 
+  std::vector<const traffic::TrafficSnapshot*> futureOf(std::size_t begin) const {
+    std::vector<const traffic::TrafficSnapshot*> future;
+    for (std::size_t t = 1; t <= horizon_; ++t) future.push_back(&session_.decisions[begin + t]);
+    return future;
+  }
+
+  /// Appends a plan of the policy for the recorded sample, where it moves and plans are drawn.
+  void addPlanned(std::size_t begin, const SampleSurroundings& surroundings,
+                  const learning::DrivingSample& recorded,
+                  std::vector<learning::DrivingSample>& samples) {
+    if (!plans_ || recorded.speed < kSlow) return;
+    auto planned = plans_->improved(recorded, surroundings, futureOf(begin));
+    if (!planned) return;
+    SampleKinds kinds = kindsOf(*planned, surroundings);
+    kinds.planned = true;
+    planned->maneuver = kinds.maneuver;
+    planned->stop_reason = kinds.stop_reason;
+    count(*planned, kinds, statistics_);
+    samples.push_back(std::move(*planned));
+  }
+
   /// For a share of the moving vehicles, appends a second sample: the last one with its vehicle
   /// displaced from its route (OffsetSamples).
   void addDisplaced(std::size_t begin, const SampleSurroundings& surroundings, SampleKinds kinds,
                     std::vector<learning::DrivingSample>& samples) {
-    constexpr double kSlow = 2.0;  // [m/s]
     const learning::DrivingSample& sample = samples.back();
     const core::RandomKey key{core::hashText(sample.vehicle),
                               static_cast<std::uint32_t>(sample.tick), 0};
@@ -128,11 +160,9 @@ class SampleMaker {
     const SampleOffset offset{
         offsets_.uniform(key, 1, -options_.offset_lateral, options_.offset_lateral),
         offsets_.uniform(key, 2, -heading, heading)};
-    std::vector<const traffic::TrafficSnapshot*> future;
-    for (std::size_t t = 1; t <= horizon_; ++t) future.push_back(&session_.decisions[begin + t]);
     const std::size_t back = sample.previous_image.empty() ? 0 : kPreviousDecisions;
-    auto displaced = offset_samples_.displace(sample, surroundings,
-                                              session_.decisions[begin - back], future, offset);
+    auto displaced = offset_samples_.displace(
+        sample, surroundings, session_.decisions[begin - back], futureOf(begin), offset);
     if (!displaced) return;
     kinds.displaced = true;
     kinds.off_course = displaced->off_course;
@@ -238,6 +268,7 @@ class SampleMaker {
   core::RandomStream thinning_;
   core::RandomStream offsets_;
   OffsetSamples offset_samples_;
+  std::optional<PolicyPlans> plans_;
   std::map<std::uint64_t, std::size_t> index_;             ///< of the decision, by tick
   std::map<std::pair<std::uint64_t, int>, Place> places_;  ///< by tick and slot
   std::set<std::string> driven_;                           ///< ids of vehicles

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "collection/camera_sight.h"
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
 #include "e2e_cdiff/core/options.h"
@@ -130,6 +131,11 @@ class OffsetSamples {
     vehicle.state = state;
     return camera_.render(snapshot, vehicle);
   }
+  /// The auxiliary targets of what `vehicle` sees, the driven one or a copy in another place.
+  std::vector<float> targets(const traffic::Vehicle& vehicle, const SampleSurroundings& around) {
+    return sightTargetsOf(vehicle, around.snapshot, sight_.seenBy(vehicle, around.snapshot),
+                          around.route, around.arc_length);
+  }
   /// The sample with its vehicle displaced by `offset`; `previous`: the snapshot of its image
   /// before, where it has one; `future`: those of the T decisions that follow. nullopt when the
   /// vehicle would start off the drivable area, leave it, or touch another
@@ -152,6 +158,7 @@ class OffsetSamples {
   const DatasetOptions& options_;
   dynamics::BicycleModel model_;
   rendering::FrontCamera camera_;
+  CameraSight sight_;
 };
 
 }  // namespace cdiff::collection

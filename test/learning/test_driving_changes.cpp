@@ -10,14 +10,14 @@ namespace {
 
 TEST(Mirror, ExchangesLeftAndRightAndIsItsOwnInverse) {
   DrivingSchema schema = test::smallSchema();
-  schema.auxiliary = {"gap", "offset_left"};
+  schema.auxiliary = {"gap", "offset_left", "free_left_1", "free_right_1"};
   DrivingSample sample = test::smallSample(0, 1);
-  sample.auxiliary = {2.0F, 3.0F};
+  sample.auxiliary = {2.0F, 3.0F, 4.0F, 5.0F};
   sample.rollout.col(traffic::kRolloutY).setConstant(1.5);
   sample.rollout.col(traffic::kRolloutHeading).setConstant(0.25);
   const DrivingSample before = sample;
   mirrorSample(schema, sample);
-  EXPECT_EQ(sample.auxiliary, (std::vector<float>{2.0F, -3.0F}));
+  EXPECT_EQ(sample.auxiliary, (std::vector<float>{2.0F, -3.0F, 5.0F, 4.0F}));
   EXPECT_EQ(sample.rollout(3, traffic::kRolloutY), -1.5);
   EXPECT_EQ(sample.rollout(3, traffic::kRolloutHeading), -0.25);
   EXPECT_EQ(sample.rollout(3, traffic::kRolloutSteer), -0.5);
@@ -29,6 +29,7 @@ TEST(Mirror, ExchangesLeftAndRightAndIsItsOwnInverse) {
   mirrorSample(schema, sample);
   EXPECT_EQ(sample.image.rgb, before.image.rgb);
   EXPECT_EQ(sample.rollout, before.rollout);
+  EXPECT_EQ(sample.auxiliary, before.auxiliary);
 }
 
 TEST(Mirror, TurnsTheImageBeforeAsWell) {

@@ -272,6 +272,22 @@ bool endsInLeft(const std::string& name) {
          name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
 }
 
+/// Where in the schema the target lies that `name` is in a mirror: of "A_left_B" that is
+/// "A_right_B" and the other way round, of others the target itself.
+std::size_t mirrored(const DrivingSchema& schema, std::size_t index) {
+  std::string name = schema.auxiliary[index];
+  for (const auto& [side, other] : {std::pair{"_left_", "_right_"}, {"_right_", "_left_"}}) {
+    const std::size_t at = name.find(side);
+    if (at == std::string::npos) continue;
+    name.replace(at, std::string(side).size(), other);
+    const auto found = std::find(schema.auxiliary.begin(), schema.auxiliary.end(), name);
+    return found == schema.auxiliary.end()
+               ? index
+               : static_cast<std::size_t>(found - schema.auxiliary.begin());
+  }
+  return index;
+}
+
 void mirrorImage(traffic::CameraImage& image) {
   const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t pixel = 0; pixel < image.rgb.size() / 3; ++pixel) {
@@ -294,7 +310,9 @@ void mirrorSample(const DrivingSchema& schema, DrivingSample& sample) {
   mirrorImage(sample.previous_image);
   mirrorRollout(sample.rollout);
   for (std::size_t i = 1; i < sample.route.size(); i += 2) sample.route[i] *= -1.0F;
+  const std::vector<float> targets = sample.auxiliary;
   for (std::size_t i = 0; i < sample.auxiliary.size(); ++i) {
+    sample.auxiliary[i] = targets[mirrored(schema, i)];
     if (endsInLeft(schema.auxiliary[i])) sample.auxiliary[i] *= -1.0F;
   }
 }

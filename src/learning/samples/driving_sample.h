@@ -121,7 +121,7 @@ class DrivingDataset {
 void mirrorRollout(traffic::Rollout& rollout);
 
 /// Left and right exchanged: images, y, heading, steer, y of the route, and the auxiliary targets
-/// whose name in `schema` ends in "_left".
+/// whose name in `schema` ends in "_left"; targets "A_left_B" and "A_right_B" change places.
 void mirrorSample(const DrivingSchema& schema, DrivingSample& sample);
 
 /// Brightness by up to 40 of 255 gray levels, contrast by up to 20 %, and noise of up to 12 gray

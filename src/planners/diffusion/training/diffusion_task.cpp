@@ -161,7 +161,13 @@ std::vector<learning::StageInfo> DiffusionTask::stages() const {
            {denoiserOf({"joint", "denoiser"}, "")},
            kNoDenoiser},
           {"denoiser", {tuned}, true, {}, ""},
-          {"joint", {tuned, denoiserOf({"denoiser"}, "")}, true, {}, ""}};
+          {"joint",
+           {tuned,
+            denoiserOf({"denoiser"}, ""),
+            {"head", "a regression head", {"fine_tune", "encoder"}, ""}},
+           true,
+           {},
+           ""}};
 }
 
 std::vector<std::string> DiffusionTask::allStages() const {
