@@ -58,7 +58,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
     // Throttle and brake as recorded; steering toward the route.
     const traffic::ControlAction action{
         row(traffic::kRolloutThrottle),
-        controller.steer(state.pose(), planning::extendedPositionAt(around.route, aim_arc_length)),
+        controller.steer(state.pose(), around.route.path().extendedPoseAt(aim_arc_length).position),
         row(traffic::kRolloutBrake)};
     const double previous_heading = state.heading;
     state = model_.step(state, action, traffic::kRolloutStep);

@@ -95,6 +95,12 @@ double Polyline::headingAt(double arc_length) const {
   return std::atan2(along.y(), along.x());
 }
 
+Pose2d Polyline::extendedPoseAt(double arc_length) const {
+  const double inside = std::clamp(arc_length, 0.0, length());
+  const double heading = headingAt(inside);
+  return {positionAt(inside) + (arc_length - inside) * direction(heading), heading};
+}
+
 Projection Polyline::project(const Eigen::Vector2d& point) const {
   return project(point, 0.0, length());
 }

@@ -13,13 +13,6 @@ constexpr double kHorizon = 3.2;  // [s]
 constexpr double kMargin = 0.5;   // [s]
 constexpr Gaps kHalfGaps{0.5, 0.15};
 
-/// A place on the path, straight on beyond its ends.
-geometry::Pose2d poseOn(const geometry::Polyline& path, double arc_length) {
-  const double inside = std::clamp(arc_length, 0.0, path.length());
-  const double heading = path.headingAt(inside);
-  return {path.positionAt(inside) + (arc_length - inside) * geometry::direction(heading), heading};
-}
-
 bool meet(const geometry::OrientedBox& first, const geometry::OrientedBox& second) {
   const double near =
       0.5 * (std::hypot(first.length, first.width) + std::hypot(second.length, second.width));
@@ -72,11 +65,11 @@ void Stretch::add(double arc_length) {
 RouteStrip::RouteStrip(const RoutedVehicle& vehicle, const Gaps& gaps, double time)
     : start_(vehicle.arc_length) {
   const geometry::Polyline& path = vehicle.route->path();
-  const double offset = poseOn(path, start_).toBody(vehicle.state.position).y();
+  const double offset = path.extendedPoseAt(start_).toBody(vehicle.state.position).y();
   const double fastest = std::max(vehicle.state.speed, vehicle.target_speed);
   const double reach = fastest * time + vehicle.dimensions.length;
   for (double ahead = 0.0; ahead < reach; ahead += kSpacing) {
-    const geometry::Pose2d pose = poseOn(path, start_ + ahead);
+    const geometry::Pose2d pose = path.extendedPoseAt(start_ + ahead);
     boxes_.push_back(boxOf({pose.toMap({0.0, offset}), pose.heading}, vehicle.dimensions, gaps));
   }
 }

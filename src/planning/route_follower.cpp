@@ -21,12 +21,6 @@ double beforeStart(const map::Route& route, const Eigen::Vector2d& position) {
 
 }  // namespace
 
-Eigen::Vector2d extendedPositionAt(const map::Route& route, double arc_length) {
-  const double inside = std::clamp(arc_length, 0.0, route.length());
-  return route.path().positionAt(inside) +
-         (arc_length - inside) * geometry::direction(route.path().headingAt(inside));
-}
-
 double extendedProjection(const map::Route& route, const Eigen::Vector2d& position, double begin,
                           double end) {
   const double length = route.length();

@@ -6,10 +6,6 @@
 
 namespace cdiff::planning {
 
-/// Point of the route, of its straight extension where `arc_length` is negative or beyond the
-/// length (map frame).
-Eigen::Vector2d extendedPositionAt(const map::Route& route, double arc_length);
-
 /// Arc length of the point nearest to `position` on the extended route, among those with arc
 /// lengths in [begin, end].
 double extendedProjection(const map::Route& route, const Eigen::Vector2d& position, double begin,

@@ -10,7 +10,6 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "planning/route_follower.h"
 
 namespace cdiff::planning {
 namespace {
@@ -224,7 +223,8 @@ std::vector<traffic::VehicleState> forecastAlongRoute(const traffic::Vehicle& ve
     return geometry::direction(heading + 0.5 * core::kPi);
   };
   const double offset =
-      normal(arc_length).dot(vehicle.state.position - extendedPositionAt(route, arc_length));
+      normal(arc_length)
+          .dot(vehicle.state.position - route.path().extendedPoseAt(arc_length).position);
   std::vector<traffic::VehicleState> states;
   traffic::VehicleState state = vehicle.state;
   for (std::size_t i = 1; i <= steps; ++i) {
@@ -232,7 +232,7 @@ std::vector<traffic::VehicleState> forecastAlongRoute(const traffic::Vehicle& ve
     const double held = std::min(time, kHeldAcceleration);
     state.speed = std::max(0.0, vehicle.state.speed + held * vehicle.acceleration);
     arc_length += state.speed * traffic::kRolloutStep;
-    state.position = extendedPositionAt(route, arc_length) + offset * normal(arc_length);
+    state.position = route.path().extendedPoseAt(arc_length).position + offset * normal(arc_length);
     state.heading = route.path().headingAt(std::clamp(arc_length, 0.0, route.length()));
     states.push_back(state);
   }

@@ -102,6 +102,9 @@ class Polyline {
   Eigen::Vector2d positionAt(double arc_length) const { return pointAt(arc_length).head<2>(); }
   /// Heading of the segment at an arc length, clamped to the ends [rad].
   double headingAt(double arc_length) const;
+  /// Point and heading at an arc length; before its start and beyond its end the line goes straight
+  /// on.
+  Pose2d extendedPoseAt(double arc_length) const;
   /// Nearest point of the line; the first of equals.
   Projection project(const Eigen::Vector2d& point) const;
   /// Nearest point among those with an arc length in [begin, end].

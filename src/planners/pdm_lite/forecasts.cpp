@@ -186,7 +186,7 @@ double steerAlong(const map::Route& route, const traffic::VehicleState& state,
                   DriverState& driver) {
   driver.follower.update(route, state.position);
   const double aim = driver.follower.arcLength() + lookAheadDistance(state.speed);
-  return driver.lateral.steer(state.pose(), planning::extendedPositionAt(route, aim));
+  return driver.lateral.steer(state.pose(), route.path().extendedPoseAt(aim).position);
 }
 
 std::vector<planning::RolloutPoint> forecastEgo(const traffic::VehicleState& start,

@@ -34,7 +34,7 @@ bool follows(const map::Route& route, std::pair<double, double> stretch,
              const traffic::VehicleState& vehicle, double max_distance, double max_angle) {
   const double s =
       planning::extendedProjection(route, vehicle.position, stretch.first, stretch.second);
-  const double distance = (planning::extendedPositionAt(route, s) - vehicle.position).norm();
+  const double distance = (route.path().extendedPoseAt(s).position - vehicle.position).norm();
   if (distance >= max_distance) return false;
   const double heading = route.path().headingAt(std::clamp(s, 0.0, route.length()));
   return std::abs(core::angleDifference(vehicle.heading, heading)) < max_angle;
@@ -82,7 +82,7 @@ bool nearLaneChange(const map::Route& route, double arc_length, double speed) {
 
 double leaderReach(const map::Route& route, double arc_length,
                    const traffic::VehicleState& vehicle) {
-  const Eigen::Vector2d place = planning::extendedPositionAt(route, arc_length);
+  const Eigen::Vector2d place = route.path().extendedPoseAt(arc_length).position;
   return kSearchDistance + kLeaderDistance + (place - vehicle.position).norm();
 }
 

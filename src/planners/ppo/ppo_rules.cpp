@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planning/route_follower.h"
 
 namespace cdiff::planners {
 namespace {
@@ -66,8 +65,8 @@ const traffic::Vehicle* nearestOther(const traffic::TrafficSnapshot& snapshot,
 PpoGoal ppoGoal(const map::Route& ego_route, double ego_arc_length) {
   constexpr int kIndex = kPpoLocalRoutePoints / 3;
   const double place = ego_arc_length + kPpoLocalRouteStart + kIndex * kPpoLocalRouteSpacing;
-  const double inside = std::clamp(place, 0.0, ego_route.length());
-  return {planning::extendedPositionAt(ego_route, place), ego_route.path().headingAt(inside)};
+  const geometry::Pose2d pose = ego_route.path().extendedPoseAt(place);
+  return {pose.position, pose.heading};
 }
 
 double ppoGoalDistance(const PpoGoal& goal, const traffic::VehicleState& cbv) {

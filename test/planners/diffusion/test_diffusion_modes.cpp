@@ -313,7 +313,7 @@ class EgoUnderWay : public DiffusionModes {
     goTo(static_cast<std::uint64_t>(10 * number));
     const double way = 10.0 * number;
     traffic::VehicleState& ego = snapshot_.vehicles[0].state;
-    ego.position = planning::extendedPositionAt(there_and_back_, way);
+    ego.position = there_and_back_.path().extendedPoseAt(way).position;
     ego.heading = there_and_back_.path().headingAt(std::min(way, there_and_back_.length()));
     ego.speed = 20.0;
   }

@@ -178,8 +178,8 @@ TEST(RouteRules, BicyclesAreToldByTheirWidth) {
 TEST(RouteFollower, GoesStraightOnBeyondTheEnds) {
   const auto network = makeNetwork({{"bend", leftBend(20.0, 12.0, 20.0)}});
   const map::Route route = routeAlong(network, {"bend"});
-  EXPECT_TRUE(planning::extendedPositionAt(route, -5.0).isApprox(Eigen::Vector2d(-5.0, 0.0)));
-  const Eigen::Vector2d end = planning::extendedPositionAt(route, route.length() + 4.0);
+  EXPECT_TRUE(route.path().extendedPoseAt(-5.0).position.isApprox(Eigen::Vector2d(-5.0, 0.0)));
+  const Eigen::Vector2d end = route.path().extendedPoseAt(route.length() + 4.0).position;
   EXPECT_NEAR(end.x(), 32.0, 1e-9);
   EXPECT_NEAR(end.y(), 36.0, 1e-9);
   planning::RouteFollower follower;

@@ -103,7 +103,7 @@ bool insertLeader(ChangedMoment& changed, const ExampleDraws& draws) {
   for (std::size_t i = 0; i < changed.frames.size(); ++i) {
     const auto ago = static_cast<double>(changed.frames.size() - 1 - i);
     const double then = place - speed * kPlutoPeriod * ago;
-    point.state.position = planning::extendedPositionAt(*moment.route, then);
+    point.state.position = moment.route->path().extendedPoseAt(then).position;
     point.state.heading = moment.route->path().headingAt(then);
     point.state.elevation = own.state.elevation;
     point.state.speed = speed;
