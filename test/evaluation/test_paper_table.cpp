@@ -79,6 +79,15 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
   EXPECT_EQ(note("pdm_lite", {runOf("1", {{"/r", 1.0}, {"/w", 1.0}}), broken}), "");
 }
 
+TEST(PaperTable, TellsBrokenRunsFromThoseThatWereNotRun) {
+  std::vector<BatchRun> runs(4, runOf("1", {{"/r", 1.0}, {"/w", 1.0}}));
+  runs[1].record.status = "error";
+  runs[2].record.status = "not_run";
+  runs[3].record.status = "interrupted";
+  const TableCell cell = fillTable(rateTable("pdm_lite"), runs).cells[0][0];
+  EXPECT_EQ(cellText(cell, false), "1.00 (1 route, 1 seed, 1 run, 1 failed, 2 not run)");
+}
+
 TEST(PaperTable, SaysInWhichModeACellIsNotApplicable) {
   TableDefinition table = rateTable("pdm_lite");
   table.rows[0].levels["mode"] = "safety_critical";
@@ -160,9 +169,9 @@ TEST(PaperTable, CsvHoldsThePublishedValuesBesideOurs) {
   EXPECT_EQ(csv,
             "row,column,unit,definition,paper_mean,paper_std,rift_repository_mean,"
             "rift_repository_std,mean,std,interval_95_low,interval_95_high,seeds,routes,events,km,"
-            "runs,runs_with_figure,runs_failed,note\n"
-            "ours,rate,1/km,clean,5,0.5,6,0.25,2,,,,1,1,,,1,1,0,\n"
-            "ours,rate,1/km,rift_compat,5,0.5,6,0.25,,,,,0,1,,,1,1,0,no run has this measure\n");
+            "runs,runs_with_figure,runs_failed,runs_not_run,note\n"
+            "ours,rate,1/km,clean,5,0.5,6,0.25,2,,,,1,1,,,1,1,0,0,\n"
+            "ours,rate,1/km,rift_compat,5,0.5,6,0.25,,,,,0,1,,,1,1,0,0,no run has this measure\n");
 }
 
 TEST(PaperTable, NamesTheSubjectInAKey) {

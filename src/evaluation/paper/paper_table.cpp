@@ -78,6 +78,7 @@ std::vector<std::string> ownCells(const TableCell& cell, bool rift) {
           std::to_string(cell.runs),
           std::to_string(cell.used),
           std::to_string(cell.failed),
+          std::to_string(cell.missing),
           statistics.mean     ? ""
           : cell.note.empty() ? kNoRunHasIt
                               : cell.note};
@@ -127,7 +128,7 @@ std::string tableCsv(const Table& table) {
   std::string text =
       "row,column,unit,definition,paper_mean,paper_std,rift_repository_mean,rift_repository_std,"
       "mean,std,interval_95_low,interval_95_high,seeds,routes,events,km,runs,runs_with_figure,"
-      "runs_failed,note\n";
+      "runs_failed,runs_not_run,note\n";
   for (std::size_t row = 0; row < table.cells.size(); ++row) {
     for (std::size_t column = 0; column < table.cells[row].size(); ++column) {
       text += csvLine(table, row, column, false);
@@ -146,7 +147,8 @@ std::string cellText(const TableCell& cell, bool with_interval) {
   return events + statisticsText(cell.seeds, with_interval) + " (" +
          countText(cell.routes, "route") + ", " + countText(cell.seeds.n, "seed") + ", " +
          countText(cell.used, "run") +
-         (cell.failed > 0 ? ", " + std::to_string(cell.failed) + " failed" : "") + ")";
+         (cell.failed > 0 ? ", " + std::to_string(cell.failed) + " failed" : "") +
+         (cell.missing > 0 ? ", " + std::to_string(cell.missing) + " not run" : "") + ")";
 }
 
 std::string paperText(const PaperFigure& figure) {

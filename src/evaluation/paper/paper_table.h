@@ -122,7 +122,8 @@ struct TableCell {
   std::optional<std::size_t> events;  ///< of events per km
   double kilometers = 0.0;            ///< for these events
   std::size_t runs = 0;               ///< runs at these levels, however they ended
-  std::size_t failed = 0;             ///< those of them that broke, were interrupted or not run
+  std::size_t failed = 0;             ///< those of them that broke
+  std::size_t missing = 0;            ///< those of them that were interrupted or not run
   std::size_t used = 0;               ///< those of them that have the measure
   std::string note;                   ///< why it is empty: not run, ...
 };

@@ -151,7 +151,10 @@ TableCell fillCell(const TableRow& row, std::size_t index, const TableColumn& co
   if (index < row.paper.size()) cell.paper = row.paper[index];
   if (index < row.repository.size()) cell.repository = row.repository[index];
   cell.runs = own.size();
-  for (const BatchRun* run : own) cell.failed += !run->record.complete();
+  for (const BatchRun* run : own) {
+    cell.failed += run->record.failed();
+    cell.missing += !run->record.complete() && !run->record.failed();
+  }
   const std::string weight = withSubject(column.weight, row.subject);
   if (!column.rift_key.empty())
     cell.rift =
