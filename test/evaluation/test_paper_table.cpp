@@ -80,7 +80,8 @@ TEST(PaperTable, SaysWhyACellIsEmpty) {
 }
 
 TEST(PaperTable, TellsBrokenRunsFromThoseThatWereNotRun) {
-  std::vector<BatchRun> runs(4, runOf("1", {{"/r", 1.0}, {"/w", 1.0}}));
+  std::vector<BatchRun> runs(4, runOf("1", {}));
+  runs[0] = runOf("1", {{"/r", 1.0}, {"/w", 1.0}});
   runs[1].record.status = "error";
   runs[2].record.status = "not_run";
   runs[3].record.status = "interrupted";
