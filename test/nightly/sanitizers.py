@@ -18,6 +18,8 @@ from source_copy import environment_of  # noqa: E402
 
 KIND, BUILD, SOURCE, RESULT = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), Path(sys.argv[4])
 FLAGS = {"address": "-fsanitize=address,undefined -fno-sanitize-recover=undefined", "thread": "-fsanitize=thread"}
+# Instrumented, gcc 12 takes the vector that its own avx512fintrin.h leaves undefined on purpose for a fault of ours.
+WARNINGS = "-Wno-error=uninitialized -Wno-error=maybe-uninitialized"
 LAYERS = ["core", "geometry", "map", "traffic", "dynamics", "cbv", "metrics", "rendering", "guidance", "inference", "diffusion", "planning",
           "planners", "pdm_lite", "two_stage_pid", "simulation", "session", "collection", "suite", "record", "page", "video", "evaluation"]
 # Nothing of memory or threads is in these that the others do not run too, and with a sanitizer they take many minutes.
@@ -43,7 +45,7 @@ def programs(folder):
 def build(folder):
     subprocess.run(["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DE2E_CDIFF_ROS=OFF",
                     "-DE2E_CDIFF_TRAINING=OFF", "-DE2E_CDIFF_BENCHMARKS=OFF", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache",
-                    f"-DCMAKE_CXX_FLAGS=-O1 -g1 -fno-omit-frame-pointer {FLAGS[KIND]}"], check=True, stdout=subprocess.DEVNULL)
+                    f"-DCMAKE_CXX_FLAGS=-O1 -g1 -fno-omit-frame-pointer {FLAGS[KIND]} {WARNINGS}"], check=True, stdout=subprocess.DEVNULL)
     names = programs(folder)
     subprocess.run(["ninja", "-C", folder, *names], check=True)
     return names
