@@ -23,6 +23,7 @@ constexpr double kLeastRegion = 0.01;     // of trust_region, in units of r_k
 constexpr double kLargestRegion = 100.0;  // likewise
 constexpr std::int64_t kLastDiffusionStep = 10000;
 constexpr std::int64_t kMostCandidates = 64;
+constexpr double kLongestHorizon = 10.0;  // of road_horizon [s]
 
 fs::path profileFolder() { return core::shareFolder() / "config" / "guidance"; }
 
@@ -103,7 +104,8 @@ GuidanceOptions::GuidanceOptions(const GuidanceOptions& other)
     : trust_region(other.trust_region),
       last_step(other.last_step),
       noise_correlation(other.noise_correlation),
-      candidates(other.candidates) {
+      candidates(other.candidates),
+      road_horizon(other.road_horizon) {
   for (const WeightedObjective& entry : other.objectives) {
     objectives.push_back({entry.name, entry.weight, entry.first_step, entry.last_step,
                           entry.gradient_cap, entry.objective->clone()});
@@ -117,6 +119,7 @@ GuidanceOptions& GuidanceOptions::operator=(const GuidanceOptions& other) {
   last_step = copy.last_step;
   noise_correlation = copy.noise_correlation;
   candidates = copy.candidates;
+  road_horizon = copy.road_horizon;
   return *this;
 }
 
@@ -149,6 +152,9 @@ void GuidanceOptions::describe(core::OptionsVisitor& visitor) {
                  noise_correlation, 0.0, 1.0);
   visitor.integer({"candidates", "", "Samples per vehicle and decision; the best of them drives."},
                   candidates, 1, kMostCandidates);
+  visitor.number({"road_horizon", "s",
+                  "Candidates that keep on the road for so long come first; 0: no such rule."},
+                 road_horizon, 0.0, kLongestHorizon);
   for (WeightedObjective& entry : objectives) {
     visitor.group({entry.name.c_str(), "", objectiveText(entry.name)}, entry);
   }
@@ -171,6 +177,7 @@ void GuidanceOptions::validate(const std::string& group) const {
     throw InputError("key '" + group + "candidates' is " + std::to_string(candidates) +
                      "; expected an integer in [1, " + std::to_string(kMostCandidates) + "]");
   }
+  requireRange(group + "road_horizon", road_horizon, kLongestHorizon);
   for (const WeightedObjective& entry : objectives) validateEntry(entry, group);
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "guidance/total_objective.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,20 @@ double normOf(const Rollout& gradient, const Rollout& scale) {
 }
 
 }  // namespace
+
+std::size_t rowsOffRoad(const GuidanceScene& scene, const Rollout& rollout, Eigen::Index rows) {
+  std::size_t off = 0;
+  for (Eigen::Index row = 0; row < std::min(rows, rollout.rows()); ++row) {
+    const geometry::OrientedBox box{positionOnMap(scene, rollout, row),
+                                    scene.state.heading + rollout(row, traffic::kRolloutHeading),
+                                    scene.dimensions.length, scene.dimensions.width};
+    const auto corners = box.corners();
+    off += std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& corner) {
+      return !scene.drivable_area->contains(corner, scene.state.elevation);
+    });
+  }
+  return off;
+}
 
 TotalObjective::TotalObjective(const GuidanceOptions& options, const GuidanceScene& scene)
     : options_(options),

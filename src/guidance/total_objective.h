@@ -4,20 +4,30 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "e2e_cdiff/guidance/guidance_options.h"
 
 namespace cdiff::guidance {
 
-/// For ranking samples: fewer undefined objectives first, then the lower value.
+/// For ranking samples: fewer undefined objectives first, then fewer rows off the road, then the
+/// lower value.
 struct Score {
   std::size_t undefined = 0;  ///< objectives that are not finite
   double value = 0.0;         ///< weighted sum of the others
+  std::size_t off_road = 0;   ///< rows that were looked at and leave the road
+
   bool operator<(const Score& other) const {
-    return undefined != other.undefined ? undefined < other.undefined : value < other.value;
+    return std::tie(undefined, off_road, value) <
+           std::tie(other.undefined, other.off_road, other.value);
   }
 };
+
+/// Number of the first `rows` rows of a rollout (body frame of `scene`) at which a corner of the
+/// vehicle's box is off the drivable area.
+std::size_t rowsOffRoad(const GuidanceScene& scene, const traffic::Rollout& rollout,
+                        Eigen::Index rows);
 
 /// J_total = sum_i c_i w_i J_i of one sample at one diffusion step, with the bookkeeping of
 /// GuidanceReport. c_i = min(1, gradient_cap / |w_i dJ_i/d tau|) where the step starts: value and

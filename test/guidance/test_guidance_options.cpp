@@ -203,16 +203,23 @@ TEST(Profiles, NoiseCorrelationAndCandidatesAreCopiedAndInRange) {
   GuidanceOptions options;
   options.noise_correlation = 0.5;
   options.candidates = 3;
+  options.road_horizon = 1.5;
   GuidanceOptions assigned;
   assigned = options;
   for (const GuidanceOptions& copy : {GuidanceOptions(options), assigned}) {
     EXPECT_EQ(copy.noise_correlation, 0.5);
     EXPECT_EQ(copy.candidates, 3);
+    EXPECT_EQ(copy.road_horizon, 1.5);
     EXPECT_NO_THROW(copy.validate());
   }
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
     assigned.noise_correlation = bad;
     EXPECT_THROW(assigned.validate("guidance."), core::InputError) << bad;
+  }
+  for (const double bad : {-0.1, 10.1, std::nan("")}) {
+    GuidanceOptions changed(options);
+    changed.road_horizon = bad;
+    EXPECT_THROW(changed.validate("guidance."), core::InputError) << bad;
   }
   for (const std::int64_t bad : {0, 65}) {
     options.candidates = bad;

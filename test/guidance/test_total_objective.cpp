@@ -270,5 +270,28 @@ TEST(TotalObjective, RaisingAWeightRaisesItsShareOfTheGradient) {
   EXPECT_EQ(strong(0, traffic::kRolloutY), 2.0 * weak(0, traffic::kRolloutY));
 }
 
+TEST(RowsOffRoad, CountsRowsWithACornerBeyondTheBorder) {
+  GuidanceWorld world;  // the lane reaches from -2 to 2 m
+  world.scene().dimensions.length = 4.0;
+  world.scene().dimensions.width = 1.8;
+  Rollout rollout = test::standing(0.0, 1.0);
+  EXPECT_EQ(rowsOffRoad(world.scene(), rollout, test::kRows), 0U);
+  rollout(2, traffic::kRolloutY) = 1.2;                     // the left side at 2.1 m
+  rollout(5, traffic::kRolloutHeading) = 0.5 * 3.14159265;  // across: the front at 3 m
+  EXPECT_EQ(rowsOffRoad(world.scene(), rollout, test::kRows), 2U);
+  EXPECT_EQ(rowsOffRoad(world.scene(), rollout, 3), 1U);
+  EXPECT_EQ(rowsOffRoad(world.scene(), rollout, 0), 0U);
+  EXPECT_EQ(rowsOffRoad(world.scene(), rollout, 1000), 2U);
+}
+
+TEST(Score, RanksByWhatIsUndefinedThenByTheRoadThenByItsValue) {
+  const Score good{0, 5.0, 0};
+  EXPECT_LT(good, (Score{1, 0.0, 0}));
+  EXPECT_LT(good, (Score{0, 0.0, 1}));
+  EXPECT_LT((Score{0, 9.0, 3}), (Score{1, 0.0, 0}));
+  EXPECT_LT((Score{0, 4.0, 1}), (Score{0, 5.0, 1}));
+  EXPECT_FALSE(good < good);
+}
+
 }  // namespace
 }  // namespace cdiff::guidance

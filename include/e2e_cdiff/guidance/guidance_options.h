@@ -50,6 +50,9 @@ struct GuidanceOptions {
   double noise_correlation = 0.0;
   /// Samples drawn of each vehicle and decision; the one with the lowest J_total is driven.
   std::int64_t candidates = 1;
+  /// Of these, the ones come first that keep every corner of the box on the drivable area for so
+  /// long [s] when they are driven; 0: J_total alone ranks them.
+  double road_horizon = 0.0;
 
   /// The entry of an objective. Throws InputError naming the nearest one for an unknown name.
   WeightedObjective& find(const std::string& name);

@@ -69,16 +69,22 @@ std::string samplerText(const diffusion::SamplerOptions& sampler) {
          " steps, proximal guidance" + (sampler.warm_start ? ", warm start" : "");
 }
 
+std::string candidatesText(const guidance::GuidanceOptions& guidance) {
+  if (guidance.candidates == 1) return "1 sample";
+  const std::string samples = std::to_string(guidance.candidates) + " samples";
+  if (guidance.road_horizon == 0.0) return samples;
+  return samples + ", first those on the road for " + core::formatNumber(guidance.road_horizon) +
+         " s";
+}
+
 std::string samplingText(const DiffusionOptions& options,
                          const guidance::GuidanceOptions& guidance) {
-  const std::string candidates =
-      guidance.candidates == 1 ? "1 sample" : std::to_string(guidance.candidates) + " samples";
   const std::string noise =
       guidance.noise_correlation == 0.0 ? ""
       : guidance.noise_correlation == 1.0
           ? ", one noise a vehicle"
           : ", noise correlated by " + core::formatNumber(guidance.noise_correlation);
-  return samplerText(options.sampler) + ", " + candidates + noise +
+  return samplerText(options.sampler) + ", " + candidatesText(guidance) + noise +
          (options.response == "fitted" ? "" : ", " + options.response + " response");
 }
 

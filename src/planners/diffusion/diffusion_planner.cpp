@@ -171,13 +171,23 @@ void DiffusionPlanner::solve(std::uint64_t tick, NetworkLane& lane,
     choose(*situations[i], samples, i * candidates);
 }
 
+Rollout DiffusionPlanner::drivenBy(const Situation& situation, const Rollout& plan) const {
+  Rollout driven = plan;
+  dynamics::makeExecutable(driven);
+  exact_.rollOut(situation.task->vehicle->state.speed, driven);
+  return driven;
+}
+
 void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTrajectory>& samples,
                               std::size_t first) const {
   std::vector<Rollout> plans;
   std::vector<guidance::Score> scores;
+  const Eigen::Index rows = std::lround(guidance_.road_horizon / traffic::kRolloutStep);
   for (std::size_t i = 0; i < situation.objectives.size(); ++i) {
     plans.push_back(model_.normalizer.denormalize(samples[first + i].clean));
     scores.push_back(situation.objectives[i]->score(plans.back()));
+    scores.back().off_road =
+        guidance::rowsOffRoad(situation.scene, drivenBy(situation, plans.back()), rows);
   }
   const std::size_t chosen = choosePlan(plans, scores, situation.previous, options_.hysteresis);
   situation.plan = plans[chosen];
@@ -194,9 +204,7 @@ void DiffusionPlanner::choose(Situation& situation, const std::vector<SampledTra
 planning::PlannedAction DiffusionPlanner::actionOf(const Situation& situation) const {
   const planning::PlanningTask& task = *situation.task;
   const traffic::VehicleState& start = task.vehicle->state;
-  Rollout driven = situation.plan;
-  dynamics::makeExecutable(driven);
-  exact_.rollOut(start.speed, driven);
+  const Rollout driven = drivenBy(situation, situation.plan);
   planning::PlannedAction planned{task.slot, task.vehicle->id, {}, {}};
   planned.guidance = situation.report;
   for (Eigen::Index row = 0; row < driven.rows(); ++row) {

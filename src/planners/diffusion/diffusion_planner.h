@@ -85,7 +85,8 @@ class NetworkLane {
 ///    brake the larger one acts; with response `monotone` a throttle that would slow the vehicle is
 ///    commanded as 0 (dynamics::commandedAction);
 ///  - of several candidates the one with the lowest weighted objective drives, unless the one
-///    nearest to the previous plan is no worse by `hysteresis`.
+///    nearest to the previous plan is no worse by `hysteresis`; those that keep on the road as long
+///    as GuidanceOptions::road_horizon asks come before that.
 class DiffusionPlanner : public planning::Planner {
  public:
   /// Loads the model. Throws InputError for a bad model or bad options; `guidance_group` is put
@@ -140,6 +141,8 @@ class DiffusionPlanner : public planning::Planner {
   void solveInLanes(std::uint64_t tick, const std::vector<Situation*>& situations);
   void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
               std::size_t first) const;
+  /// What the vehicle does when a plan's actions are executed to its end (body frame, [T, 7]).
+  traffic::Rollout drivenBy(const Situation& situation, const traffic::Rollout& plan) const;
   planning::PlannedAction actionOf(const Situation& situation) const;
   void conclude(std::uint64_t tick, const Situation& situation,
                 planning::PlannedAction& planned) const;

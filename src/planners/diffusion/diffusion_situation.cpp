@@ -61,7 +61,9 @@ std::size_t choosePlan(const std::vector<Rollout>& plans,
       *std::min_element(finite.begin(), finite.end(), [&](std::size_t a, std::size_t b) {
         return planDistance(plans[a], *previous) < planDistance(plans[b], *previous);
       });
-  if (scores[nearest].undefined != scores[best].undefined) return best;
+  if (scores[nearest].undefined != scores[best].undefined ||
+      scores[nearest].off_road != scores[best].off_road)
+    return best;
   const double margin = hysteresis * std::abs(scores[nearest].value);
   return scores[nearest].value - scores[best].value <= margin ? nearest : best;
 }

@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <numeric>
 
 #include "planners/course.h"
 #include "planners/diffusion/diffusion_planner.h"
@@ -34,6 +36,25 @@ std::vector<Eigen::Vector2d> drivenPlaces(const traffic::Vehicle& vehicle,
     places.push_back(state.position);
   }
   return places;
+}
+
+/// How many of the first 16 places that a plan's actions lead to have a corner of the box off the
+/// area.
+int rowsOffTheRoad(const traffic::Vehicle& vehicle, const planning::PlannedAction& planned,
+                   const map::DrivableArea& area) {
+  const dynamics::BicycleModel model;
+  traffic::Vehicle moved = vehicle;
+  int off = 0;
+  for (std::size_t row = 0; row < 16; ++row) {
+    const traffic::ControlAction& action = planned.rollout[row].action;
+    moved.state = model.step(model.step(moved.state, action, 0.05), action, 0.05);
+    const auto corners = moved.box().corners();
+    off += std::any_of(corners.begin(), corners.end(),
+                       [&](const Eigen::Vector2d& corner) { return !area.contains(corner); })
+               ? 1
+               : 0;
+  }
+  return off;
 }
 
 /// Two lanes along +x, y = 0 and y = 3.2; a CBV on the right one, driven by the shipped model, and
@@ -92,6 +113,25 @@ class GuidedPlans : public ::testing::Test {
     }
   }
 
+  /// rowsOffTheRoad of the plan of each of 16 draws, of eight candidates without guidance.
+  std::vector<int> rowsOffWith(double road_horizon) {
+    guidance::GuidanceOptions guidance;
+    guidance.candidates = 8;
+    guidance.road_horizon = road_horizon;
+    traffic::CameraImage image = rendering::FrontCamera({}, network_).render(snapshot_, cbv());
+    DiffusionOptions options;
+    options.conditioning = "image";
+    DiffusionPlanner planner(options, guidance, {}, planning::PlanningContext{network_, area_});
+    std::vector<int> rows;
+    for (std::uint64_t draw = 0; draw < 16; ++draw) {
+      // Not consecutive decisions: no plan is the last one of the next.
+      snapshot_.tick = image.tick = 100 * draw;
+      const auto planned = planner.plan(snapshot_, {{0, &cbv(), &route_, 8.0, &image}});
+      rows.push_back(rowsOffTheRoad(cbv(), planned[0], area_));
+    }
+    return rows;
+  }
+
   /// Mean distance to where the ego is forecast to be.
   double distanceToEgo(const std::vector<Eigen::Vector2d>& places) const {
     const auto forecast = planning::forecastMotion(ego(), network_, {}, places.size());
@@ -127,6 +167,17 @@ TEST_F(GuidedPlans, CollisionAvoidanceDepartsFromTheEgo) {
 TEST_F(GuidedPlans, DrivableAreaPullsAnOffsetPlanIn) {
   cbv().state.position.y() = -1.2;  // 0.4 m from the border
   expectEffect("ablation_drivable", -1.0, beyondMargin);
+}
+
+TEST_F(GuidedPlans, CandidatesThatKeepOnTheRoadComeFirst) {
+  cbv().state.position.y() = 0.5;
+  cbv().state.heading = -0.25;  // toward the border, at y = -1.6
+  const std::vector<int> any = rowsOffWith(0.0);
+  const std::vector<int> road_first = rowsOffWith(1.6);
+  for (std::size_t draw = 0; draw < any.size(); ++draw)
+    EXPECT_LE(road_first[draw], any[draw]) << "draw " << draw;
+  EXPECT_LT(std::accumulate(road_first.begin(), road_first.end(), 0),
+            std::accumulate(any.begin(), any.end(), 0));
 }
 
 }  // namespace

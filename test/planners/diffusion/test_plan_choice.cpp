@@ -45,6 +45,13 @@ TEST(PlanChoice, AnUndefinedObjectiveRanksBehindEveryDefinedOne) {
   EXPECT_EQ(choosePlan(kPlans, {{1, 9.0}, {1, 1.0}, {1, 2.0}}, std::nullopt, 0.1), 1U);
 }
 
+TEST(PlanChoice, APlanThatLeavesTheRoadRanksBehindOneThatDoesNot) {
+  EXPECT_EQ(choosePlan(kPlans, {{0, 9.0, 0}, {0, 1.0, 2}, {0, 0.0, 1}}, std::nullopt, 0.1), 0U);
+  EXPECT_EQ(choosePlan(kPlans, {{0, 9.0, 0}, {0, 9.0, 2}, {0, 9.0, 1}}, planAt(2.0), 1.0), 0U)
+      << "the last plan is no reason to leave it";
+  EXPECT_EQ(choosePlan(kPlans, {{0, 9.0, 3}, {0, 9.5, 1}, {0, 9.0, 1}}, planAt(1.0), 0.1), 1U);
+}
+
 TEST(PlanChoice, APlanThatIsNotFiniteIsNotTaken) {
   std::vector<Rollout> plans = kPlans;
   plans[0](2, 0) = std::numeric_limits<double>::quiet_NaN();
