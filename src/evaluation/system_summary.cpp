@@ -99,7 +99,8 @@ std::size_t countIntervals(const std::vector<System>& systems) {
   return count;
 }
 
-/// How to read the table, then a warning where a system has few seeds or routes.
+/// How to read the table, then a warning where a system has few seeds or routes; one without a
+/// complete run has none, its row says so.
 std::vector<std::string> remarks(const std::vector<System>& systems) {
   const std::size_t intervals = countIntervals(systems);
   const std::string compare =
@@ -114,6 +115,7 @@ std::vector<std::string> remarks(const std::vector<System>& systems) {
                 " of them are expected to miss." + compare};
   std::set<std::string> warnings;
   for (const System& system : systems) {
+    if (system.routes == 0) continue;
     const std::string warning = fewWarning(system.seeds, system.routes, true);
     if (!warning.empty()) warnings.insert("Warning: " + warning);
   }

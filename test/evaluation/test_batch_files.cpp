@@ -129,6 +129,16 @@ TEST_F(BatchFiles, ARowOfSystemsShowsAllIntervalsOrNone) {
   EXPECT_EQ(text.find("95 %"), std::string::npos) << text;
 }
 
+TEST_F(BatchFiles, ASystemThatWasNotRunIsNoReasonForAWarning) {
+  std::vector<RunRecord> records;
+  for (int route = 0; route < 10; ++route) {
+    for (const char* seed : {"1", "2", "3", "4", "5"})
+      records.push_back(recordWith({std::to_string(route), seed}, 10.0 + route));
+  }
+  records.push_back(recordWithout({"0", "1", "speed"}, "not_run"));
+  EXPECT_EQ(batchMarkdown("night", records).find("Warning"), std::string::npos);
+}
+
 TEST_F(BatchFiles, JunitReportsErrorsFailuresAndWhatWasNotRun) {
   const std::string xml = batchJunitXml("night", records_);
   expectIn("<testsuites tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"1\"", xml);
