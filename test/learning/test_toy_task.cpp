@@ -124,6 +124,15 @@ TEST_F(ToyTaskTest, ATaskWithoutSamplesSaysWhoMustCollect) {
       << trainingText(training_);
 }
 
+TEST_F(ToyTaskTest, AGpuThatIsNotThereIsRefused) {
+  if (at::hasCUDA()) GTEST_SKIP() << "libtorch finds a GPU here";
+  training_.options.device = "cuda";
+  EXPECT_NE(trainingText(training_).find("device is 'cuda', but libtorch finds none here; choose"),
+            std::string::npos)
+      << trainingText(training_);
+  EXPECT_FALSE(std::filesystem::exists(path("model")));
+}
+
 TEST_F(ToyTaskTest, AStageOfAnotherTaskIsRefused) {
   training_.options.stage = "encoder";
   EXPECT_NE(trainingText(training_).find("'encoder'; expected one of"), std::string::npos)
