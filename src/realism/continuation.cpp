@@ -31,6 +31,32 @@ class NoPlanner : public planning::Planner {
   }
 };
 
+/// A driver whose target speeds are those of a HandOverDriver, in place of the session's.
+class DriverWithItsSpeed : public planning::Planner {
+ public:
+  DriverWithItsSpeed(std::unique_ptr<planning::Planner> planner, const HandOverDriver& driver,
+                     double fixed)
+      : planner_(std::move(planner)),
+        speeds_(driver.target_speed),
+        seed_(driver.planner_seed),
+        fixed_(fixed) {}
+  std::vector<planning::PlannedAction> plan(
+      const traffic::TrafficSnapshot& snapshot,
+      const std::vector<planning::PlanningTask>& tasks) override {
+    std::vector<planning::PlanningTask> own = tasks;
+    for (planning::PlanningTask& task : own)
+      task.target_speed = session::cbvTargetSpeed(speeds_, fixed_, seed_, task.vehicle->id);
+    return planner_->plan(snapshot, own);
+  }
+  bool needsImages() const override { return planner_->needsImages(); }
+
+ private:
+  std::unique_ptr<planning::Planner> planner_;
+  session::CbvSpeedOptions speeds_;
+  std::uint64_t seed_;
+  double fixed_;
+};
+
 std::unique_ptr<planning::Planner> makeDriver(const session::SessionSetup& setup,
                                               const HandOverDriver& driver) {
   if (driver.planner.empty()) return std::make_unique<NoPlanner>();
@@ -38,9 +64,10 @@ std::unique_ptr<planning::Planner> makeDriver(const session::SessionSetup& setup
   planning::PlanningContext context{setup.network(),         setup.drivableArea(),
                                     driver.planner_seed,     options.simulation_step,
                                     options.decision_period, &setup.egoRoute()};
-  return planners::makePlanner(driver.planner,
-                               {context, options.planner_options, options.vehicle, options.camera,
-                                options.guidance, "guidance.", options.cbv_rig, "cbv_rig"});
+  auto planner = planners::makePlanner(
+      driver.planner, {context, options.planner_options, options.vehicle, options.camera,
+                       options.guidance, "guidance.", options.cbv_rig, "cbv_rig"});
+  return std::make_unique<DriverWithItsSpeed>(std::move(planner), driver, options.target_speed);
 }
 
 /// The CBVs' cameras are those of their driver's planner.
@@ -107,7 +134,8 @@ std::vector<std::vector<Course>> rolloutsOf(const session::SessionSetup& setup,
   std::optional<Continuation> rollout;
   for (std::size_t i = 1; i <= count; ++i) {
     if (i == 1 || !planner.empty())
-      rollout = continueSession(setup, {planner, seedOf(setup, i)}, options.seconds);
+      rollout = continueSession(
+          setup, {planner, seedOf(setup, i), setup.options().cbv_target_speed}, options.seconds);
     if (!rollout) throw std::logic_error("a rollout has no hand-over");
     requireSameStart(log, *rollout);
     for (std::size_t object = 0; object < courses.size(); ++object)

@@ -9,6 +9,7 @@
 
 #include "realism/likelihood.h"
 #include "session/session_setup.h"
+#include "session/target_speed.h"
 
 namespace cdiff::realism {
 
@@ -17,6 +18,8 @@ struct HandOverDriver {
   std::string planner;             ///< of the table of planners; empty: SUMO, as if nothing was
                                    ///< handed over
   std::uint64_t planner_seed = 1;  ///< root seed of the planner's draws, instead of the session's
+  /// v* of each vehicle: the scenario's target_speed, or a draw of `planner_seed`.
+  session::CbvSpeedOptions target_speed = {};
 };
 
 /// What became of the vehicles of a session's first hand-over.
@@ -57,7 +60,9 @@ struct ContinuationScore {
 
 /// Rollouts of a driver (a planner, or SUMO where it is empty) against the log of the same
 /// hand-over: PDM-Lite with a driver that no rollout has. Seeds are draws of the session's stream
-/// "realism": 0 is the log's, 1 to n are those of the rollouts, the same for every planner. SUMO
+/// "realism": 0 is the log's, 1 to n are those of the rollouts, the same for every planner. Where
+/// the scenario draws cbv_target_speed, each rollout draws anew; the log's driver keeps to
+/// target_speed (and its own spread), so that every row has the same log. SUMO
 /// has no seed of its own after the hand-over: its one course counts as all rollouts. Throws
 /// InputError where PDM-Lite's drivers do not differ (pdm_lite.cbv_speed_spread,
 /// pdm_lite.cbv_headway_spread), std::logic_error when two courses differ before the hand-over.

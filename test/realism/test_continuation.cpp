@@ -71,6 +71,25 @@ TEST(Continuation, ScoresADriverAgainstTheLog) {
   EXPECT_LE(meta, 1.0);
 }
 
+TEST(Continuation, DriversDrawTheirTargetSpeedsAndTheLogKeepsIts) {
+  session::CbvSpeedOptions drawn;
+  drawn.distribution = "normal";
+  const session::SessionSetup setup(scenario(kDrivers));
+  const session::SessionSetup other(scenario({kDrivers[0], kDrivers[1], "target_speed=6"}));
+  const auto speed = [](const session::SessionSetup& of, const HandOverDriver& driver) {
+    return continueSession(of, driver, 3.0).value().courses[0][kLinearSpeed];
+  };
+  EXPECT_FALSE(same(speed(setup, {"diffusion", 1}), speed(setup, {"diffusion", 1, drawn})));
+  EXPECT_TRUE(same(speed(setup, {"diffusion", 1, drawn}), speed(setup, {"diffusion", 1, drawn})));
+  EXPECT_FALSE(same(speed(setup, {"pdm_lite", 1}), speed(other, {"pdm_lite", 1})))
+      << "fixed: the scenario's";
+  // The log is the same whether or not the scenario draws.
+  std::vector<std::string> set = kDrivers;
+  set.push_back("cbv_target_speed.distribution=normal");
+  const session::SessionSetup drawing(scenario(set));
+  EXPECT_TRUE(same(speed(setup, {"pdm_lite", 1}), speed(drawing, {"pdm_lite", 1})));
+}
+
 TEST(Continuation, RefusesOneDriverForAll) {
   const session::SessionSetup setup(scenario({}));
   EXPECT_THROW(scoreDriver(setup, "pdm_lite", {}), core::InputError);
