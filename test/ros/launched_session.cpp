@@ -150,6 +150,17 @@ void LaunchedSession::signalLaunch(int number) {
   ::kill(launch_, number);
 }
 
+bool LaunchedSession::isScript() const {
+  const fs::path command = "/proc/" + std::to_string(launch_) + "/cmdline";
+  for (const double begin = now(); now() - begin < kPatience; pause()) {
+    const std::string words = contentOf(command);  // bash, SCRIPT, ... with zero bytes between
+    const std::size_t second = words.find('\0') + 1;
+    if (fs::path(words.substr(second, words.find('\0', second) - second)).filename() == "session")
+      return true;
+  }
+  return false;
+}
+
 bool LaunchedSession::hasFile(const std::string& name) const {
   for (const double begin = now(); now() - begin < kPatience; pause()) {
     if (fs::exists(results() / name)) return true;

@@ -33,6 +33,8 @@ class LaunchedSession {
   bool signal(const std::string& name, int number);
   /// The same for what was started itself.
   void signalLaunch(int number);
+  /// Waits until what was started has sourced its environment and is scripts/session (20 s).
+  bool isScript() const;
   /// Waits until a file of the result folder is there (20 s).
   bool hasFile(const std::string& name) const;
   /// Waits until the session has had some ticks: 4 KiB of the trace are written (20 s).
