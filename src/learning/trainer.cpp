@@ -126,8 +126,9 @@ using core::InputError;
 
 at::Device chooseDevice(const std::string& name) {
   if (name == "cuda" && !at::hasCUDA())
-    throw InputError("training: device is 'cuda', but libtorch finds none here; choose 'cpu' or "
-                     "'auto', or build against a libtorch with CUDA");
+    throw InputError(
+        "training: device is 'cuda', but libtorch finds none here; choose 'cpu' or "
+        "'auto', or build against a libtorch with CUDA");
   return at::Device(name != "cpu" && at::hasCUDA() ? at::kCUDA : at::kCPU);
 }
 
