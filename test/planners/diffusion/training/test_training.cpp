@@ -161,9 +161,11 @@ TEST_F(DiffusionTrainingTest, MotionIsLearnedOnFromAModelWithoutIt) {
   const auto measure = [&](const std::string& name, const char* figure) {
     return record(name).at("held_out").at(figure).get<double>();
   };
-  // What the wide one is given more than the narrow one changes nothing yet.
-  EXPECT_FLOAT_EQ(measure("motion", "sample_ade_m"), measure("model", "sample_ade_m"));
-  EXPECT_FLOAT_EQ(measure("motion", "sample_one_image_ade_m"), measure("model", "sample_ade_m"));
+  // What the wide one is given more than the narrow one changes nothing yet, but for the order in
+  // which some processors add up rows of another length: 1e-6 m, where new weights of 0.001 in
+  // place of 0 make 2e-5 m.
+  EXPECT_FLOAT_EQ(measure("motion", "sample_one_image_ade_m"), measure("motion", "sample_ade_m"));
+  EXPECT_NEAR(measure("motion", "sample_ade_m"), measure("model", "sample_ade_m"), 1e-5);
   training_.options.learning_rate = 2e-3;
   training_.options.overwrite = true;
   run("denoiser", 40);
