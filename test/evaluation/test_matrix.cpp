@@ -100,7 +100,7 @@ TEST(ShippedMatrices, HaveTheRunsThatTheyPromise) {
   EXPECT_EQ(planRuns(loadMatrix("cbv_choice"), "").size(), 10U * 3U * 2U * 3U);
   EXPECT_EQ(planRuns(loadMatrix("attack_effect"), "").size(), 10U * 5U * 2U * 2U);
   EXPECT_EQ(planRuns(loadMatrix("realism_matched"), "").size(), 10U * 4U * 2U);
-  EXPECT_EQ(planRuns(loadMatrix("realism_steps"), "").size(), 10U * 5U * 2U);
+  EXPECT_EQ(planRuns(loadMatrix("realism_steps"), "").size(), 10U * 6U * 2U);
 }
 
 TEST(ShippedMatrices, CbvPlannersHasEveryPlannerThatDrivesCbvs) {

@@ -4,7 +4,7 @@
     check_docs.py SOURCE RESULT.xml
 
 No text of the tree spells one of BRITISH. Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
-the files of the row; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
+the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
 """
 import re
 import sys
@@ -152,6 +152,14 @@ def british_words(source):
                 yield f"{name}:{line}: '{found.group(0)}' is British spelling"
 
 
+def unfilled(source):
+    """Marks such as @RATE@ that stand for a figure to come."""
+    for path in documents(source):
+        for line, content in enumerate(path.read_text().splitlines(), 1):
+            for found in re.finditer(r"@+[A-Z][A-Z0-9_]*@+", content):
+                yield f"{path.relative_to(source)}:{line}: '{found.group(0)}' was to be filled in"
+
+
 def self_test():
     """The search finds what is wrong, and nothing else."""
     wrong = []
@@ -171,6 +179,9 @@ def self_test():
         found = list(british_words(source))
         if [line.split("'")[1] for line in found] != ["Colours", "centred", "analysed", "centimetre"]:
             wrong.append(f"finds {found}")
+        page.write_text("@@B2D@@ and @RATE@, a@B.c, @param\n")
+        if len(list(unfilled(source))) != 2:
+            wrong.append("misses @@B2D@@ or @RATE@, or finds others")
         page.write_text("| T | In the code |\n|---|---|\n| a \\| b | `Route`, `src/map/route.h` |\n| c | `Rout`, `src/map/route.h` |\n| d | `src/map/route.h` |\n")
         found = list(wrong_identifiers(source, "docs/a.md"))
         if [line.split(":")[1] for line in found] != ["4", "5"]:
@@ -181,7 +192,7 @@ def self_test():
 def main():
     source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))),
-               ("spelling", list(british_words(source)))]
+               ("spelling", list(british_words(source))), ("unfilled", list(unfilled(source)))]
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
     for _, found in results:
         print("\n".join(found), end="\n" if found else "")
