@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <string_view>
 
 namespace cdiff::inference {
 
@@ -23,8 +24,10 @@ Tag preferredLayout(const dnnl::engine& engine, Precision precision) {
   const dnnl::convolution_forward::desc description(dnnl::prop_kind::forward_inference,
                                                     dnnl::algorithm::convolution_direct, map,
                                                     weights, map, {1, 1}, {1, 1}, {1, 1});
-  const dnnl::memory::desc chosen =
-      dnnl::convolution_forward::primitive_desc(description, engine).dst_desc();
+  dnnl::convolution_forward::primitive_desc kernel(description, engine);
+  while (std::string_view(kernel.impl_info_str()).substr(0, 3) == "brg")
+    if (!kernel.next_impl()) break;
+  const dnnl::memory::desc chosen = kernel.dst_desc();
   for (const Tag tag : {Tag::nChw16c, Tag::nChw8c}) {
     if (chosen == dnnl::memory::desc({1, 64, 24, 40}, type, tag)) return tag;
   }

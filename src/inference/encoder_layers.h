@@ -28,7 +28,9 @@ struct MapShape {
   std::int64_t size() const { return channels * pixels(); }
 };
 
-/// Layout that a 3x3 convolution prefers here: nhwc, nChw8c or nChw16c.
+/// Layout that a 3x3 convolution prefers here: nhwc, nChw8c or nChw16c. In float32 not that of
+/// oneDNN's brgemm kernels (nhwc): they split their sums by the sizes of the caches, so that two
+/// processors of one instruction set would come to other bytes. Sums of bytes are exact.
 dnnl::memory::format_tag preferredLayout(const dnnl::engine& engine,
                                          Precision precision = Precision::kFp32);
 

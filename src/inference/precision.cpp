@@ -109,4 +109,13 @@ std::string oneDnnInstructionSet(const std::string& isa) {
   return rank < 0 ? "isa_" + std::to_string(static_cast<int>(effective)) : kIsas[rank].name;
 }
 
+std::string oneDnnInstructionSet(const std::string& isa, Precision precision) {
+  for (const cpu_isa enough : {cpu_isa::avx512_core_vnni, cpu_isa::avx512_core, cpu_isa::avx2}) {
+    const bool counts = enough != cpu_isa::avx512_core_vnni || precision == Precision::kInt8;
+    if (precision != Precision::kBf16 && counts && atLeast(isa, enough))
+      return kIsas[rankOf(enough)].name;
+  }
+  return oneDnnInstructionSet(isa);
+}
+
 }  // namespace cdiff::inference

@@ -32,7 +32,11 @@ InstructionSet instructionSetNamed(const std::string& isa, const std::string& ke
 /// and for an avx512 that it does not compute with.
 void pinOneDnn(const std::string& isa, const std::string& key);
 
-/// Instruction set that oneDNN computes with under `isa`, for records, as in avx512_core_vnni.
+/// Instruction set that oneDNN computes with under `isa`, as in avx512_core_vnni.
 std::string oneDnnInstructionSet(const std::string& isa);
+
+/// The part of it that the bytes of an encoder depend on, for records: float32 and bytes come to
+/// the same on all processors that have avx512_core and avx512_core_vnni, whatever else they have.
+std::string oneDnnInstructionSet(const std::string& isa, Precision precision);
 
 }  // namespace cdiff::inference

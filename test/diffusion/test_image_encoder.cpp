@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <cpuid.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
@@ -142,6 +147,64 @@ TEST(ImageEncoder, RepeatsItsBytes) {
   EXPECT_EQ(second.encode(image), features);
   ImageEncoder moved(std::move(first));
   EXPECT_EQ(moved.encode(image), features);
+}
+
+/// KiB of the second-level cache, as this process sees it; 0 where the processor does not say.
+unsigned secondLevelCache() {
+  for (unsigned i = 0; i < 8; ++i) {
+    unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
+    if (__get_cpuid_count(4, i, &eax, &ebx, &ecx, &edx) == 0 || (eax & 31U) == 0) break;
+    if (((eax >> 5U) & 7U) == 2)
+      return ((ebx >> 22U) + 1) * (((ebx >> 12U) & 1023U) + 1) * ((ebx & 4095U) + 1) * (ecx + 1) /
+             1024;
+  }
+  return 0;
+}
+
+/// Run by the test below, in processes that see other caches.
+TEST(ImageEncoder, DISABLED_PrintItsBytes) {
+  const Model model = randomModel(160, 96);
+  std::cout << "cache " << secondLevelCache() << "\nbytes";
+  for (const char* name : {"fp32", "auto"}) {
+    const auto precision = inference::precisionNamed(name, "auto", name);
+    const std::vector<float> features = ImageEncoder(model, precision).encode(randomImage(160, 96));
+    const std::string_view bytes(reinterpret_cast<const char*>(features.data()),
+                                 features.size() * sizeof(float));
+    std::cout << " " << core::hashText(bytes);
+  }
+  std::cout << std::endl;
+}
+
+/// The lines "cache" and "bytes" of the test above, where the second-level cache has so many KiB.
+std::array<std::string, 2> bytesWithCache(unsigned kibibytes) {
+  const std::string command = "FAKE_L1_KIB=32 FAKE_L2_KIB=" + std::to_string(kibibytes) +
+                              " LD_PRELOAD=" + FAKE_CACHES + " " +
+                              std::filesystem::read_symlink("/proc/self/exe").string() +
+                              " --gtest_also_run_disabled_tests "
+                              "--gtest_filter=ImageEncoder.DISABLED_PrintItsBytes";
+  const std::unique_ptr<FILE, int (*)(FILE*)> output(::popen(command.c_str(), "r"), ::pclose);
+  std::array<std::string, 2> lines;
+  std::array<char, 256> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), output.get()) != nullptr) {
+    const std::string line = buffer.data();
+    if (line.rfind("cache", 0) == 0) lines[0] = line;
+    if (line.rfind("bytes", 0) == 0) lines[1] = line;
+  }
+  return lines;
+}
+
+// Two processors of one instruction set have other caches.
+TEST(ImageEncoder, ComesToTheSameBytesWhateverTheCaches) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take the signal that this needs";
+#endif
+  const auto small = bytesWithCache(256);
+  if (small[0] != "cache 256\n")
+    GTEST_SKIP() << "no CPUID faulting here: " << small[0] << "cannot be changed";
+  const auto large = bytesWithCache(2048);
+  EXPECT_EQ(large[0], "cache 2048\n");
+  EXPECT_EQ(small[1].size() > 10, true) << small[1];
+  EXPECT_EQ(small[1], large[1]);
 }
 
 TEST(ImageEncoder, EncodersOfTwoThreadsDoNotDisturbEachOther) {

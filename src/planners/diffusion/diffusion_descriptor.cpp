@@ -100,12 +100,13 @@ std::string conditioningText(const DiffusionOptions& options,
 planning::NetworkFacts networkFacts(const planning::PlannerOptionsTable& table,
                                     const guidance::GuidanceOptions& guidance) {
   const auto& options = table.of<DiffusionOptions>();
+  const inference::Precision precision =
+      inference::precisionNamed(options.precision, options.isa, "diffusion.precision");
   return {options.model,
           conditioningText(options, guidance),
           samplingText(options, guidance),
-          {{"encoder_precision", inference::toText(inference::precisionNamed(
-                                     options.precision, options.isa, "diffusion.precision"))},
-           {"encoder_instruction_set", inference::oneDnnInstructionSet(options.isa)},
+          {{"encoder_precision", inference::toText(precision)},
+           {"encoder_instruction_set", inference::oneDnnInstructionSet(options.isa, precision)},
            {"denoiser_instruction_set",
             inference::toText(inference::instructionSetNamed(options.isa, "diffusion.isa"))}}};
 }
