@@ -196,7 +196,8 @@ int evaluate(const EvaluateArguments& arguments) {
     text = routeTable(records, arguments.bench2drive, results) + repeated;
     core::writeFileAtomically(results / "table.md", text);
   }
-  std::cout << text;
+  std::cout << text << std::flush;
+  std::cerr << "report: " << (results / "index.html").string() << "\n";
   return exitCodeOf(records, plan, chosen);
 }
 

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "core/text.h"
+#include "metrics/known_measures.h"
 
 namespace cdiff::cli {
 namespace {
@@ -66,17 +67,21 @@ void BatchProgress::ended(const evaluation::RunRecord& record, bool resumed) {
     ++resumed_;
     return;
   }
-  failed_ += record.failed();
+  broken_ += record.failed();
+  failed_ += record.has(record::Outcome::kFailed);
   simulated_ += record.simulated_seconds;
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   const double per_run = wall / static_cast<double>(done_ - resumed_);
   const double left = per_run * static_cast<double>(total_ - done_);
-  std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << failed_
-            << " failed, " << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1)
-            << " x real time, " << core::formatFixed(left, 0) << " s left: " << record.id << " "
-            << record.status << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
-            << (record.cause.empty() ? "" : " (" + record.cause + ")")
+  const auto cbvs = record.measures.find(metrics::known::kCbvCount.name);
+  const bool none = cbvs != record.measures.end() && cbvs->second == 0.0;
+  std::cerr << (terminal_ ? "\r\033[K" : "") << done_ << "/" << total_ << " done, " << broken_
+            << " broken, " << failed_ << (failed_ == 1 ? " verdict" : " verdicts") << " failed, "
+            << core::formatFixed(wall > 0.0 ? simulated_ / wall : 0.0, 1) << " x real time, "
+            << core::formatFixed(left, 0) << " s left: " << record.id << " " << record.status
+            << (record.complete() ? ", " + record::wordOf(record.verdict) : "")
+            << (none ? ", no CBV" : "") << (record.cause.empty() ? "" : " (" + record.cause + ")")
             << (terminal_ && !record.failed() ? "" : "\n");
   std::cerr.flush();
 }

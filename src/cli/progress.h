@@ -28,8 +28,9 @@ class Progress : public session::SessionObserver {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Progress of a batch on standard error, for `cdiff evaluate`: runs done and failed, pace (x real
-/// time), wall time left. On a terminal it rewrites one line; elsewhere it prints a line per run.
+/// Progress of a batch on standard error, for `cdiff evaluate`: runs done and broken, failed
+/// verdicts, pace (x real time), wall time left, and of each run its verdict, and whether it had no
+/// CBV. On a terminal it rewrites one line; elsewhere it prints a line per run.
 class BatchProgress {
  public:
   explicit BatchProgress(std::size_t total);
@@ -46,7 +47,8 @@ class BatchProgress {
   std::chrono::steady_clock::time_point begin_;
   std::size_t done_ = 0;
   std::size_t resumed_ = 0;
-  std::size_t failed_ = 0;
+  std::size_t broken_ = 0;
+  std::size_t failed_ = 0;  ///< verdicts
   double simulated_ = 0.0;  ///< simulated time of all runs together [s]
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -42,7 +43,13 @@ evaluation::RunSet readBatch(const std::string& folder) {
         "--results DIR), one folder each or as levels of one factor in one folder; two sessions "
         "stand side by side in their report.html");
   }
-  return evaluation::readRunSet(folder);
+  evaluation::RunSet set = evaluation::readRunSet(folder);
+  const auto missing = std::count_if(set.records.begin(), set.records.end(),
+                                     [](const auto& record) { return !record.complete(); });
+  if (missing > 0)
+    std::cerr << "'" << folder << "': " << missing << " of " << set.records.size()
+              << " runs are not complete (not run, running still, or broken) and left out\n";
+  return set;
 }
 
 std::vector<evaluation::Comparison> compare(const ReportArguments& arguments) {

@@ -243,11 +243,12 @@ void addRunCommand(CLI::App& program, int& exit_code) {
   command->add_option("--bench2drive", request.bench2drive,
                       "Bench2Drive route file, instead of a scenario");
   command->add_option("--route", request.route, "Id of a route in that file");
-  command->add_option("--network", request.network, "Network: shipped name, *.net.xml or *.xodr");
+  command->add_option("--network", request.network,
+                      "Network: shipped name, *.net.xml, *.xodr or *.osm");
   command->add_option("--mode", request.mode, "naturalistic or safety_critical");
   command->add_option("--ego-planner", request.ego_planner, "Planner of the ego");
   command->add_option("--cbv-planner", request.cbv_planner, "Planner of the CBVs");
-  command->add_option("--seed", request.seed, "Root seed");
+  command->add_option("--seed", request.seed, "Root seed instead of the scenario's");
   command->add_option("--set", request.set, "Any key of the scenario as key=value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--results", arguments->results,

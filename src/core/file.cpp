@@ -248,6 +248,8 @@ fs::path shippedOrFile(const fs::path& folder, const std::string& name_or_file,
   if (isFile(name_or_file)) return fs::absolute(name_or_file);
   const fs::path shipped = folder / (name_or_file + ".yaml");
   if (isFile(shipped)) return shipped;
+  if (fs::path(name_or_file).has_parent_path() || fs::path(name_or_file).extension() == ".yaml")
+    throw InputError(what + ": the file '" + name_or_file + "' does not exist");
   const std::vector<std::string> known = shippedNames(folder);
   throw InputError(what + " '" + name_or_file + "' is neither a file nor a shipped " + what +
                    "; the nearest shipped one is '" + nearestName(name_or_file, known) +

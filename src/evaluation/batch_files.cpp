@@ -128,7 +128,7 @@ const std::vector<std::string>& tableMeasures() {
 std::string cellsTable(const std::vector<Cell>& cells) {
   const std::vector<std::string> shown = shownFactors(cells);
   std::vector<std::string> head = shown;
-  head.insert(head.end(), {"runs", "failed", "not run"});
+  head.insert(head.end(), {"runs", "broken", "not run"});
   head.insert(head.end(), tableMeasures().begin(), tableMeasures().end());
   std::string text = rowText(head) + rowText(std::vector<std::string>(head.size(), "---"));
   for (const Cell& cell : cells) {
@@ -226,7 +226,7 @@ std::string batchJunitXml(const std::string& name, const std::vector<RunRecord>&
 std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>& records) {
   const Counts counts = countOf(records);
   return "# " + core::markdownText(name) + "\n\n" + std::to_string(records.size()) +
-         " runs: " + std::to_string(counts.failed) + " failed, " + std::to_string(counts.missing) +
+         " runs: " + std::to_string(counts.failed) + " broken, " + std::to_string(counts.missing) +
          " not run or interrupted, " + std::to_string(counts.verdict_failed) +
          " ended with a failed verdict, " + std::to_string(counts.struck) + " were struck, " +
          std::to_string(counts.not_judged) + " were not judged, " + std::to_string(counts.passed) +

@@ -61,7 +61,7 @@ std::string nameOf(const System& system, const std::vector<System>& systems) {
 }
 
 std::vector<std::string> headCells() {
-  std::vector<std::string> head = {"system", "#runs", "#failed", "#not run", "#routes", "#seeds"};
+  std::vector<std::string> head = {"system", "#runs", "#broken", "#not run", "#routes", "#seeds"};
   head.insert(head.end(), shownMeasures().begin(), shownMeasures().end());
   head.emplace_back("note");
   return head;

@@ -40,7 +40,7 @@ class EdgeRow {
   void addLayer(const std::string& edge) {
     const std::vector<LaneIndex> lanes = network_.lanesOfEdge(edge);
     if (lanes.empty()) {
-      throw core::InputError("unknown edge '" + edge + "'; the nearest is '" +
+      throw core::InputError("unknown edge '" + edge + "'; the nearest name in this network is '" +
                              core::nearestName(edge, network_.edgeIds()) + "'");
     }
     std::vector<EdgeLane> layer;

@@ -188,7 +188,12 @@ Route makeRoute(const LaneGraph& graph, const RouteOptions& options) {
   options.validate();
   if (!options.bench2drive_file.empty()) return bench2DriveRoute(graph, options);
   if (!options.points.empty()) return routeThroughPoints(graph, options.points);
-  return routeAlongEdges(graph, options.edges, options.start_offset, options.end_offset);
+  try {
+    return routeAlongEdges(graph, options.edges, options.start_offset, options.end_offset);
+  } catch (const core::InputError& error) {
+    throw core::InputError("group 'route' (edges, start_offset, end_offset): " +
+                           std::string(error.what()));
+  }
 }
 
 std::vector<Eigen::Vector3d> readBench2DriveRoute(const std::string& file, const std::string& id,

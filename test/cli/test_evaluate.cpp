@@ -25,7 +25,7 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const std::vector<std::string> evaluate = {"evaluate", matrix, "--results", results,
                                              "--jobs",   "2",    "--resume"};
   ASSERT_EQ(cdiff(evaluate), 0) << output();
-  expectOutput("4/4 done, 0 failed");
+  expectOutput("4/4 done, 0 broken");
   expectOutput("| scenario | variant | runs |");
   EXPECT_EQ(lines(fs::path(results) / "runs.csv"), 5U);
   for (const char* name : {"matrix.yaml", "summary.json", "summary.md", "junit.xml"})

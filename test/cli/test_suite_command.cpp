@@ -33,7 +33,7 @@ TEST_F(SuiteCommand, MakesASuiteThatAMatrixDrives) {
   std::ofstream(path("matrix.yaml")) << "suite: suite\ncbv_planners: [pdm_lite]\nset: "
                                         "[protocol.time_limit=1, verdict.judge=false]\n";
   ASSERT_EQ(cdiff({"evaluate", path("matrix.yaml"), "--results", path("runs"), "--jobs", "2"}), 0);
-  expectOutput("10/10 done, 0 failed");
+  expectOutput("10/10 done, 0 broken");
   EXPECT_TRUE(fs::exists(path("runs/runs/development_merge_1__seed10/summary.json")));
 }
 

@@ -162,10 +162,10 @@ TEST_F(BatchFiles, MarkdownCountsRunsAndScenariosWithoutACbv) {
 TEST_F(BatchFiles, MarkdownShowsTheFactorsThatVary) {
   const std::string text = batchMarkdown("night", records_);
   expectIn(
-      "6 runs: 1 failed, 1 not run or interrupted, 1 ended with a failed verdict, 1 were struck, 1 "
+      "6 runs: 1 broken, 1 not run or interrupted, 1 ended with a failed verdict, 1 were struck, 1 "
       "were not judged, 1 passed.",
       text);
-  expectIn("| scenario | runs | failed | not run | ego_completion_percent | ego_driving_score |",
+  expectIn("| scenario | runs | broken | not run | ego_completion_percent | ego_driving_score |",
            text);
   expectIn("| s | 3 | 1 | 0 | - | 15.00 \xC2\xB1 7.07 (2) |", text);
   expectIn("| t | 1 | 0 | 1 | - | - |", text);

@@ -71,7 +71,7 @@ TEST_F(RouteSource, FollowsEdgesWithTheFewestLaneChanges) {
 
 TEST_F(RouteSource, NamesWrongEdges) {
   EXPECT_ERROR(routeAlongEdges(graph_, {"a", "lonley"}, 5, 5),
-               "unknown edge 'lonley'; the nearest is 'lonely'");
+               "unknown edge 'lonley'; the nearest name in this network is 'lonely'");
   EXPECT_ERROR(routeAlongEdges(graph_, {"a", "c"}, 5, 5),
                "no connection for cars from edge 'a' to edge 'c'; it leads to 'b'");
   EXPECT_ERROR(routeAlongEdges(graph_, {"a"}, 60, 45),

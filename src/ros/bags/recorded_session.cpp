@@ -236,7 +236,7 @@ void RecordedSession::checkAnswers(const msgs::TrafficSnapshot& snapshot) {
 
 RecordedSession::Snapshot RecordedSession::unrecordedEnd() {
   if (!unanswered_.empty()) find(unanswered_);
-  find("the recording ends at " + tickText(last_->tick) + " (" + core::formatNumber(last_->time) +
+  find("the recording ends at " + tickText(last_->tick) + " (" + core::formatFixed(last_->time, 2) +
        " s) while the session was still running");
   const traffic::TrafficSnapshot end =
       endedAfter(fromMsg(*last_), setup_->options().simulation_step, SessionStatus::kInterrupted,
