@@ -3,15 +3,19 @@
 #include "ros/observers_ros.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 #include "core/program.h"
 #include "core/text.h"
 #include "record/session_text.h"
 #include "ros/bags/replay.h"
+#include "ros/lockstep/node_process.h"
 #include "ros/lockstep/tick_record.h"
 #include "ros/messages/conversions.h"
 #include "ros/messages/display.h"
+#include "ros/node_main.h"
 #include "ros/session_files.h"
 #include "ros/session_graph.h"
 
@@ -21,7 +25,18 @@ namespace {
 constexpr double kReportPatience =
     2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
 
+constexpr const char* kNoMaster = "the ROS master does not answer any more";
+
 std::string resolvedTopic(const std::string& topic) { return ::ros::names::resolve(topic); }
+
+/// A simulator that is stopped while it starts keeps the result folder to itself.
+void endStoppedSimulator() {
+  constexpr double kPatience = 1.0;  // [s] until the process is gone
+  const auto begin = std::chrono::steady_clock::now();
+  killLaunchedProcess(kTrafficSimulatorNode);
+  while (launchedProcess(kTrafficSimulatorNode) && secondsSince(begin) < kPatience)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
 
 }  // namespace
 
@@ -192,17 +207,18 @@ int MetricsRos::concludeUnstarted(Ending ending) {
   if (!parameters.empty() && takeRefusal()) return core::ExitCode::kBadInput;
   if (parameters.empty()) parameters = launchParameters();
   if (parameters.empty()) return core::ExitCode::kRunTimeError;
-  return writeUnstartedResult(
-      parameters, traffic::SessionStatus::kError,
-      {0, kTrafficSimulatorNode,
-       simulatorFault(ending, heartbeatTimeout()) + " before the session began"});
+  if (ending == Ending::kSimulatorSilent) endStoppedSimulator();
+  traffic::Fault fault{0, kTrafficSimulatorNode,
+                       simulatorFault(ending, heartbeatTimeout()) + " before the session began"};
+  if (!masterAnswers()) fault = {0, "rosmaster", kNoMaster};  // roslaunch ends all nodes then
+  return writeUnstartedResult(parameters, traffic::SessionStatus::kError, fault);
 }
 
 int MetricsRos::runWithoutMaster() {
   const Parameters parameters = launchParameters();
   if (parameters.empty()) return core::ExitCode::kRunTimeError;
   return writeUnstartedResult(parameters, traffic::SessionStatus::kError,
-                              {0, "rosmaster", "the ROS master does not answer any more"});
+                              {0, "rosmaster", kNoMaster});
 }
 
 int MetricsRos::finishVideo(int exit_code) {

@@ -81,6 +81,21 @@ TEST(Comparison, TestsCountsExactly) {
                       "0.1 would by chance"),
             std::string::npos)
       << text;
+  EXPECT_NE(text.find("With 5 routes no p of a mean is below 0.0625, so"), std::string::npos)
+      << text;
+}
+
+TEST(Comparison, NamesTheDifferencesThatStay) {
+  const RunSet a = contactsOf("A", {0, 0, 0, 0, 0, 0, 0, 0});
+  const RunSet b = contactsOf("B", {2, 2, 2, 2, 2, 2, 2, 2});
+  auto comparisons =
+      std::vector{compareRuns(a, b, sharedFactors(a, b), {"cbv_ego_collisions", "cbv_distance_m"})};
+  adjustForNumber(comparisons);
+  const std::string text = comparisonMarkdown(comparisons);
+  EXPECT_NE(text.find("1 stay after Holm's correction for their number: cbv_ego_collisions.\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("no p of a mean"), std::string::npos) << text;
 }
 
 TEST(Comparison, OfFewRoutesShowsNoIntervalInAnyColumn) {

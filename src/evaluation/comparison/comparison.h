@@ -107,8 +107,8 @@ void adjustForNumber(std::vector<Comparison>& comparisons);
 /// How many differences the comparisons report, and how many of them are significant.
 struct Multiplicity {
   std::size_t differences = 0;
-  std::size_t apart = 0;          ///< p <= 0.05
-  std::size_t apart_by_holm = 0;  ///< p_holm <= 0.05
+  std::size_t apart = 0;                   ///< p <= 0.05
+  std::vector<std::string> apart_by_holm;  ///< measures with p_holm <= 0.05
 };
 Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <algorithm>
 #include <cmath>
 
 #include "core/markup.h"
@@ -97,13 +98,28 @@ std::string tableOf(const Comparison& comparison) {
   return intervals ? text : text + "\n" + intervalRule(drawn + "s") + "\n";
 }
 
+/// Where no p of a mean, at least 2 / 2^m with m routes, is small enough to stay.
+std::string nothingCanStay(const std::vector<Comparison>& comparisons, const Multiplicity& number) {
+  std::size_t routes = 0;
+  for (const Comparison& comparison : comparisons) routes = std::max(routes, comparison.clusters);
+  const double least = std::ldexp(2.0, -static_cast<int>(std::min<std::size_t>(routes, 14)));
+  if (routes == 0 || least * static_cast<double>(number.differences) <= 0.05) return "";
+  return "With " + countText(routes, "route") + " no p of a mean is below " +
+         core::formatNumber(least) +
+         ", so of so many differences of means none can stay; name the "
+         "ones to test (--figure).\n";
+}
+
 std::string multiplicityText(const std::vector<Comparison>& comparisons) {
   const Multiplicity number = multiplicityOf(comparisons);
   return "Multiplicity: of " + countText(number.differences, "difference") + " tested here, " +
          std::to_string(number.apart) + " have p <= 0.05, where about " +
          core::formatFixed(0.05 * static_cast<double>(number.differences), 1) +
-         " would by chance if A and B were the same; " + std::to_string(number.apart_by_holm) +
-         " stay after Holm's correction for their number.\n";
+         " would by chance if A and B were the same; " +
+         std::to_string(number.apart_by_holm.size()) +
+         " stay after Holm's correction for their number" +
+         (number.apart_by_holm.empty() ? "" : ": " + core::joinText(number.apart_by_holm, ", ")) +
+         ".\n" + nothingCanStay(comparisons, number);
 }
 
 std::vector<std::string> intervalCells(const std::optional<Interval>& interval) {
@@ -196,7 +212,7 @@ Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
     for (const MeasureComparison& measure : comparison.measures) {
       ++result.differences;
       result.apart += measure.p <= kLargest;
-      result.apart_by_holm += measure.p_holm <= kLargest;
+      if (measure.p_holm <= kLargest) result.apart_by_holm.push_back(measure.measure);
     }
   }
   return result;
