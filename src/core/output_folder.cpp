@@ -162,6 +162,8 @@ void FolderLock::takeLock() {
 bool FolderLock::tryLock() {
   std::error_code error;
   fs::create_directories(folder_, error);
+  if (fs::is_regular_file(folder_))
+    throw InputError("'" + folder_.string() + "' is a file; give a folder");
   if (error)
     throw InputError("cannot make the folder '" + folder_.string() + "': " + error.message());
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
