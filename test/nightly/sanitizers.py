@@ -56,6 +56,7 @@ def build(folder):
 def run(program, folder):
     """None when the program passes, else the end of what it wrote."""
     environment = {**environment_of(folder, SOURCE), **OPTIONS}
+    del environment["LD_LIBRARY_PATH"]  # of the caller, whose libraries, without sanitizer, would come before those that the program names
     suppressions = folder / "suppressions.txt"
     suppressions.write_text(SUPPRESSIONS)
     environment["TSAN_OPTIONS"] += f":suppressions={suppressions}"

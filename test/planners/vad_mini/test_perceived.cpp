@@ -88,6 +88,7 @@ TEST(Perceived, LinesAreOfTheirLikeliestKind) {
 
 TEST(Perceived, NumbersThatAreNotFiniteAreFound) {
   VadMiniOutput output;
+  for (auto& plan : output.plans) plan.fill({0.0, 0.0});  // Eigen leaves them as they are
   output.agents = {agent(0.0F)};
   EXPECT_TRUE(output.finite());
   output.plans[3][2].y() = std::nan("");
