@@ -230,8 +230,10 @@ TEST(SessionMetricsOnABridge, MeasuresVehiclesOnTheirOwnLevel) {
           .edge("bridge", {"50,-50,8 50,50,8"}, "c", "d", {3.2, 10.0, ""})
           .network();
   const map::DrivableArea area(network);
+  const SessionMetricsOptions options;
+  const map::Route route;
   const auto observed = [&](double x, double elevation) {
-    SessionMetrics metrics({}, area, {});
+    SessionMetrics metrics(options, area, route);
     std::vector<traffic::Vehicle> vehicles = {ego(x, 30, 5), cbv("a", x, 30, 5)};
     for (traffic::Vehicle& vehicle : vehicles) {
       vehicle.state.elevation = elevation;
