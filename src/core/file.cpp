@@ -249,7 +249,7 @@ fs::path shippedOrFile(const fs::path& folder, const std::string& name_or_file,
   const fs::path shipped = folder / (name_or_file + ".yaml");
   if (isFile(shipped)) return shipped;
   if (fs::path(name_or_file).has_parent_path() || fs::path(name_or_file).extension() == ".yaml")
-    throw InputError(what + ": the file '" + name_or_file + "' does not exist");
+    throw InputError(what + " '" + name_or_file + "': there is no such file");
   const std::vector<std::string> known = shippedNames(folder);
   throw InputError(what + " '" + name_or_file + "' is neither a file nor a shipped " + what +
                    "; the nearest shipped one is '" + nearestName(name_or_file, known) +

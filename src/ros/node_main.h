@@ -30,4 +30,7 @@ int runReplayNode(int argc, char** argv);
 /// Whether the ROS master answers within two seconds.
 bool masterAnswers();
 
+/// The fault of a session whose master does not.
+inline constexpr const char* kNoMaster = "the ROS master does not answer any more";
+
 }  // namespace cdiff::ros

@@ -25,8 +25,6 @@ namespace {
 constexpr double kReportPatience =
     2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
 
-constexpr const char* kNoMaster = "the ROS master does not answer any more";
-
 std::string resolvedTopic(const std::string& topic) { return ::ros::names::resolve(topic); }
 
 /// A simulator that is stopped while it starts keeps the result folder to itself.

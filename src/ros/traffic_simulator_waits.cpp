@@ -24,7 +24,7 @@ constexpr double kInterruptedPatience =
 std::optional<TrafficSimulatorRos::Ending> TrafficSimulatorRos::disturbance() {
   if (stop_.raised()) {
     if (masterAnswers()) return ending(SessionStatus::kInterrupted, "user", "interrupted");
-    return ending(SessionStatus::kError, "rosmaster", "the ROS master does not answer any more");
+    return ending(SessionStatus::kError, "rosmaster", kNoMaster);
   }
   if (book_.error()) return ending(SessionStatus::kError, book_.error()->node, book_.error()->text);
   if (!connections_.left().empty()) {

@@ -11,6 +11,8 @@
 #include <iostream>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include "diffusion/network/image_encoder.h"
@@ -203,7 +205,7 @@ TEST(ImageEncoder, ComesToTheSameBytesWhateverTheCaches) {
     GTEST_SKIP() << "no CPUID faulting here: " << small[0] << "cannot be changed";
   const auto large = bytesWithCache(2048);
   EXPECT_EQ(large[0], "cache 2048\n");
-  EXPECT_EQ(small[1].size() > 10, true) << small[1];
+  EXPECT_GT(small[1].size(), 10U) << small[1];
   EXPECT_EQ(small[1], large[1]);
 }
 

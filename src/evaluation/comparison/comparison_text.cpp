@@ -6,6 +6,7 @@
 #include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/intervals/intervals.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/metric_registry.h"
 
@@ -98,11 +99,11 @@ std::string tableOf(const Comparison& comparison) {
   return intervals ? text : text + "\n" + intervalRule(drawn + "s") + "\n";
 }
 
-/// Where no p of a mean, at least 2 / 2^m with m routes, is small enough to stay.
+/// Where no p of a mean can be small enough to stay.
 std::string nothingCanStay(const std::vector<Comparison>& comparisons, const Multiplicity& number) {
   std::size_t routes = 0;
   for (const Comparison& comparison : comparisons) routes = std::max(routes, comparison.clusters);
-  const double least = std::ldexp(2.0, -static_cast<int>(std::min<std::size_t>(routes, 14)));
+  const double least = leastExchangeP(routes);
   if (routes == 0 || least * static_cast<double>(number.differences) <= 0.05) return "";
   return "With " + countText(routes, "route") + " no p of a mean is below " +
          core::formatNumber(least) +

@@ -216,4 +216,9 @@ double exchangeTest(const RouteSums& a, const RouteSums& b) {
   return static_cast<double>(as_large) / static_cast<double>(all ? patterns : patterns + 1);
 }
 
+double leastExchangeP(std::size_t routes) {
+  if (routes > kExhaustiveRoutes) return 1.0 / static_cast<double>(kDrawnExchanges + 1);
+  return std::ldexp(2.0, -static_cast<int>(routes));
+}
+
 }  // namespace cdiff::evaluation

@@ -94,4 +94,7 @@ class RouteBootstrap {
 /// one) whose difference is at least as large (Fisher's randomization test by routes).
 double exchangeTest(const RouteSums& a, const RouteSums& b);
 
+/// The smallest p that exchangeTest can give on so many routes.
+double leastExchangeP(std::size_t routes);
+
 }  // namespace cdiff::evaluation
