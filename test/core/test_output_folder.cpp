@@ -65,6 +65,13 @@ class OutputFolder : public testing::Test {
   test::TemporaryFolder scratch_;
 };
 
+TEST_F(OutputFolder, AFileInItsPlaceIsNamedAsOne) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "results";
+  writeFileAtomically(file, "");
+  EXPECT_EQ(lockError(file), "'" + file.string() + "' is a file; give a folder");
+}
+
 TEST_F(OutputFolder, LockIsAFileThatGoesWithTheObject) {
   {
     const FolderLock lock(folder(), "first");

@@ -201,6 +201,12 @@ TEST(File, AShippedNameOrAFileIsFoundOrTheNearestNamed) {
                  "matrix 'smok' is neither a file nor a shipped matrix; the nearest shipped one is "
                  "'smoke' (all: paper, smoke)");
   }
+  try {
+    shippedOrFile(folder.path(), "mine/smok.yaml", "matrix");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "matrix 'mine/smok.yaml': there is no such file");
+  }
 }
 
 TEST(File, ATemporaryFolderThatCannotBeWrittenToIsRefused) {

@@ -96,6 +96,10 @@ class Scripts(unittest.TestCase):
         with tempfile.TemporaryDirectory() as results:
             self.assertEqual(targets_of(calls_of("demo", results)), [["e2e_cdiff_session_programs"]])
 
+    def test_demo_builds_nothing_for_help_or_bad_arguments(self):
+        for arguments in (["--help"], ["--bogus"], ["one", "two"]):
+            self.assertEqual(calls_of("demo", *arguments), [], arguments)
+
     def test_those_targets_need_no_file_of_a_test(self):
         for targets in (["cdiff_benchmark", "e2e_cdiff_nodes"], ["e2e_cdiff_programs"], ["e2e_cdiff_session_programs"]):
             inputs = subprocess.run(["ninja", "-C", BUILD, "-t", "inputs", *targets], check=True, capture_output=True, text=True).stdout
