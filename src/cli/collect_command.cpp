@@ -27,6 +27,8 @@ using collection::CollectRequest;
 
 constexpr const char* kSessionCommand = "collect_session";
 constexpr const char* kLockedBy = "cdiff collect";
+/// What describes the data set.
+const std::vector<std::string> kDatasetFiles = {"statistics.json", "samples.html"};
 
 struct CollectArguments {
   CollectRequest request;
@@ -129,20 +131,21 @@ int exitCode(const std::vector<SessionJob>& jobs) {
   return code;
 }
 
-/// What an earlier collection that was killed left half written.
+/// Removes what an earlier collection that was killed left half written.
 void removeHalves(const fs::path& results) {
-  for (const char* name : {"bags", "shards", "scenes", "sessions"})
-    core::removeTemporaries(results / name);
-  std::error_code ignored;
-  std::vector<fs::path> halves;
-  for (const auto& entry : fs::directory_iterator(results / "bags", ignored)) {
-    if (entry.path().extension() == ".active") halves.push_back(entry.path());
+  for (const char* name : {"bags", "shards", "scenes", "sessions"}) {
+    if (!fs::exists(fs::symlink_status(results / name))) continue;
+    core::OutputFolder folder(results / name);
+    folder.removeUnfinished();
+    for (const auto& entry : fs::directory_iterator(folder.path())) {
+      if (entry.path().extension() == ".active") folder.remove(entry.path().filename().string());
+    }
   }
-  for (const fs::path& half : halves) fs::remove(half, ignored);
 }
 
 int convertBags(const CollectArguments& arguments) {
-  const core::FolderLock lock(arguments.request.results, kLockedBy);
+  const core::OutputFolder output(arguments.request.results, kLockedBy);
+  core::OutputFolder::requireFree(output.path(), kDatasetFiles);
   ros::BagRequest request = arguments.bags;
   request.results = arguments.request.results;
   const auto statistics = ros::collectBags(request);
@@ -210,9 +213,10 @@ int collect(const CollectArguments& arguments) {
   if (!arguments.bags.bags.empty()) return convertBags(arguments);
   const std::vector<CollectRequest> sessions = planSessions(arguments);
   core::temporaryFolder();  // without one each session would fail
-  const core::FolderLock lock(arguments.request.results, kLockedBy);
-  removeHalves(arguments.request.results);
+  const core::OutputFolder output(arguments.request.results, kLockedBy);
+  if (arguments.request.images) core::OutputFolder::requireFree(output.path(), kDatasetFiles);
   std::vector<SessionJob> jobs = jobsOf(sessions);
+  removeHalves(arguments.request.results);
   const std::atomic<bool>& stop = core::catchStopSignals();
   driveSessions(jobs, arguments.jobs, stop);
   const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);

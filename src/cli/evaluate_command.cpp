@@ -44,6 +44,11 @@ struct EvaluateArguments {
 };
 
 constexpr const char* kMatrixFile = "matrix.yaml";
+/// What a batch writes beside its runs, and what --overwrite replaces.
+const std::vector<std::string> kBatchFiles = {"runs.csv",    "summary.json", "summary.md",
+                                              "junit.xml",   "index.html",   "table.md",
+                                              "compare.csv", kMatrixFile};
+const std::vector<std::string> kBatchFolders = {"runs", "tables", "figures"};
 
 /// The Bench2Drive routes of the arguments.
 evaluation::Bench2DriveOptions routesOf(const EvaluateArguments& arguments) {
@@ -97,42 +102,35 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
     throw InputError("'" + folder.string() +
                      "' holds the result of a session (session.yaml); give another --results");
   }
+  std::vector<std::string> names = kBatchFiles;
+  if (!arguments.open_sealed.empty()) names.emplace_back("opened.log");
+  core::OutputFolder::requireFree(folder, names);
   if (arguments.resume || arguments.overwrite || !fs::exists(folder / kMatrixFile, error)) return;
   throw InputError("'" + folder.string() + "' holds the results of a batch (" + kMatrixFile +
                    "); go on with it (--resume), replace it (--overwrite), or give another "
                    "--results");
 }
 
-/// All that a batch writes.
-void removeBatch(const fs::path& folder) {
-  for (const char* name : {"runs", "tables", "figures", "runs.csv", "summary.json", "summary.md",
-                           "junit.xml", "index.html", "table.md", "compare.csv", kMatrixFile}) {
-    std::error_code error;
-    fs::remove_all(folder / name, error);
-    if (error)
-      throw InputError("cannot replace '" + (folder / name).string() + "': " + error.message());
-  }
-}
-
 /// Makes what a batch needs in a folder that is ours, and keeps the matrix in it; on resumption
 /// that of another matrix is refused.
-void prepareFolder(const fs::path& folder, const MatrixOptions& matrix, bool overwrite) {
-  if (overwrite) removeBatch(folder);
-  const fs::path file = folder / kMatrixFile;
+void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool overwrite) {
+  if (overwrite) {
+    for (const auto* names : {&kBatchFiles, &kBatchFolders}) {
+      for (const std::string& name : *names) output.remove(name);
+    }
+  }
+  const fs::path file = output.path() / kMatrixFile;
   if (fs::exists(file)) {
     MatrixOptions earlier;
     core::loadOptions({file.string(), core::readFile(file, "evaluation")}, earlier);
     if (evaluation::identityOf(earlier) != evaluation::identityOf(matrix)) {
-      throw InputError("'" + folder.string() + "' holds the results of another matrix ('" +
+      throw InputError("'" + output.path().string() + "' holds the results of another matrix ('" +
                        earlier.name + "', see " + file.string() + "); give another --results");
     }
   }
-  std::error_code error;
-  fs::create_directories(folder / "runs", error);
-  if (error)
-    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
-  core::removeTemporaries(folder);
-  core::writeFileAtomically(file, core::dumpOptions(matrix));
+  output.removeUnfinished();
+  output.subfolder("runs");
+  output.write(kMatrixFile, core::dumpOptions(matrix));
 }
 
 /// Of the runs that were to be run.
@@ -184,9 +182,9 @@ int evaluate(const EvaluateArguments& arguments) {
   const auto plan =
       evaluation::planRuns(matrix, arguments.matrix.empty() ? "evaluate" : arguments.matrix);
   const evaluation::ChosenLevels chosen = evaluation::chosenLevels(arguments.only, plan);
-  const core::FolderLock lock(results, "cdiff evaluate");
+  core::OutputFolder output(results, "cdiff evaluate");
   requireFolder(results, arguments);
-  prepareFolder(results, matrix, arguments.overwrite);
+  prepareFolder(output, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   const auto records = execute(plan, matrix, results, arguments, chosen);
   evaluation::writeBatchFiles(results, matrix.name, records);
@@ -194,7 +192,7 @@ int evaluate(const EvaluateArguments& arguments) {
   std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;
   if (arguments.matrix.empty() && !arguments.bench2drive.empty()) {
     text = routeTable(records, arguments.bench2drive, results) + repeated;
-    core::writeFileAtomically(results / "table.md", text);
+    output.write("table.md", text);
   }
   std::cout << text << std::flush;
   std::cerr << "report: " << (results / "index.html").string() << "\n";

@@ -50,19 +50,21 @@ struct PooledArguments {
 
 constexpr const char* kSumoDriver = "sumo";
 constexpr const char* kResultFile = "realism.json";
+const std::vector<std::string> kResultFiles = {kResultFile, "realism.md", "realism.html"};
 
-void writeResult(const fs::path& folder, const std::string& json, const std::string& markdown,
+void writeResult(core::OutputFolder& folder, const std::string& json, const std::string& markdown,
                  const std::string& page) {
-  core::writeFileAtomically(folder / kResultFile, json);
-  core::writeFileAtomically(folder / "realism.md", markdown);
-  core::writeFileAtomically(folder / "realism.html", page);
-  std::cout << markdown << "\npage: " << (folder / "realism.html").string() << "\n";
+  folder.write(kResultFile, json);
+  folder.write("realism.md", markdown);
+  folder.write("realism.html", page);
+  std::cout << markdown << "\npage: " << (folder.path() / "realism.html").string() << "\n";
 }
 
 void requireMatchedFolder(const fs::path& folder, bool resume) {
   if (core::isFile(folder / "matrix.yaml") || core::isFile(folder / "session.yaml"))
     throw InputError("'" + folder.string() +
                      "' holds the results of a batch or session; give another --results");
+  core::OutputFolder::requireFree(folder, kResultFiles);
   if (resume || !fs::exists(folder / "runs")) return;
   throw InputError("'" + folder.string() +
                    "' holds earlier results; go on with them (--resume) or give another --results");
@@ -75,7 +77,7 @@ int matched(const MatchedArguments& arguments) {
   const fs::path folder = fs::absolute(arguments.results);
   requireMatchedFolder(folder, arguments.resume);
   const auto jobs = realism::planMatched(evaluation::planRuns(matrix, arguments.matrix));
-  const core::FolderLock lock(folder, "cdiff realism matched");
+  core::OutputFolder output(folder, "cdiff realism matched");
   realism::MatchedExecution execution;
   execution.results = folder;
   execution.options = arguments.options;
@@ -89,7 +91,7 @@ int matched(const MatchedArguments& arguments) {
   std::cerr << evaluation::recordOpening(matrix, folder);
   const auto ends = realism::runMatched(jobs, execution, core::catchStopSignals());
   const auto rows = realism::matchedRows(jobs, ends);
-  writeResult(folder, realism::matchedJson(rows, arguments.options),
+  writeResult(output, realism::matchedJson(rows, arguments.options),
               realism::matchedMarkdown(rows, arguments.options),
               realism::matchedPage(rows, arguments.options));
   if (core::stopRequested()) return ExitCode::kInterrupted;
@@ -112,6 +114,7 @@ int continueScenario(const ContinueArguments& arguments) {
 
 /// Refuses to replace an earlier comparison unless asked to.
 void requirePooledFolder(const fs::path& folder, bool overwrite) {
+  core::OutputFolder::requireFree(folder, kResultFiles);
   if (overwrite || !core::isFile(folder / kResultFile)) return;
   throw InputError("'" + folder.string() + "' holds an earlier comparison (" + kResultFile +
                    "); replace it (--overwrite) or give another --out");
@@ -124,8 +127,8 @@ int pooled(const PooledArguments& arguments) {
   const auto drivers = pooledDrivers({arguments.results.begin(), arguments.results.end()});
   const auto result = realism::comparePooled(log, drivers, arguments.site);
   const fs::path folder = fs::absolute(arguments.out);
-  const core::FolderLock lock(folder, "cdiff realism pooled");
-  writeResult(folder, realism::pooledJson(result), realism::pooledMarkdown(result),
+  core::OutputFolder output(folder, "cdiff realism pooled");
+  writeResult(output, realism::pooledJson(result), realism::pooledMarkdown(result),
               realism::pooledPage(result));
   return ExitCode::kPassed;
 }

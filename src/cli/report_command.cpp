@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
@@ -121,9 +122,12 @@ int report(const ReportArguments& arguments) {
   requirePairs(comparisons, arguments);
   evaluation::adjustForNumber(comparisons);
   std::cout << evaluation::comparisonMarkdown(comparisons);
-  const fs::path csv = arguments.csv.empty() ? fs::path(arguments.folders.back()) / "compare.csv"
-                                             : fs::path(arguments.csv);
-  core::writeFileAtomically(csv, evaluation::comparisonCsv(comparisons));
+  const std::string csv = evaluation::comparisonCsv(comparisons);
+  if (arguments.csv.empty()) {
+    core::writeOwnFile(fs::path(arguments.folders.back()) / "compare.csv", csv);
+  } else {
+    core::writeFileAtomically(arguments.csv, csv);
+  }
   return ExitCode::kPassed;
 }
 
@@ -140,7 +144,7 @@ fs::path writeTrainingPage(const fs::path& folder) {
       page::readTrainingCurves(core::readFile(curves, "training curves"), curves.string());
   const fs::path page = folder / "training.html";
   const std::string title = fs::weakly_canonical(folder).filename().string();
-  core::writeFileAtomically(
+  core::writeOwnFile(
       page, page::trainingReport(title, stages,
                                  fs::exists(card) ? core::readFile(card, "model card") : ""));
   return page;

@@ -147,8 +147,14 @@ class VideoRecord {
 /// The session's table, and what it was asked to record.
 void printTable(const page::ResultWriter& writer, const RunOutput& output) {
   if (output.quiet) return;
-  std::cout << writer.table() << record::fileRow("bag", output.folder / "session.bag")
-            << record::fileRow("video", output.folder / video::kVideoFile) << std::flush;
+  const fs::path folder = writer.folder();
+  std::cout << writer.table() << record::fileRow("bag", folder / "session.bag")
+            << record::fileRow("video", folder / video::kVideoFile) << std::flush;
+  std::error_code gone;
+  if (!fs::equivalent(folder, output.folder, gone))
+    std::cerr << "cdiff: the result folder '" << output.folder.string()
+              << "' was renamed while the session ran; the result is in '" << folder.string()
+              << "'\n";
 }
 
 void finishResult(page::ResultWriter& writer, double wall_seconds) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
@@ -188,7 +189,7 @@ void requireSamples(const StatisticsByName& statistics, const std::string& kind,
 }
 
 void describeDataset(const fs::path& folder, const DatasetStatistics& statistics) {
-  core::writeFileAtomically(folder / "statistics.json", toJson(statistics));
+  core::writeOwnFile(folder / "statistics.json", toJson(statistics));
   const std::vector<CountRow> rows = rowsOf(statistics);
   std::cout << "| | number | % |\n|---|---|---|\n";
   for (const CountRow& row : rows)
@@ -199,7 +200,7 @@ void describeDataset(const fs::path& folder, const DatasetStatistics& statistics
   const std::string title = fs::weakly_canonical(folder).filename().string();
   const learning::Dataset stored(folder / "shards", 0.0);
   const learning::DrivingDataset dataset(stored);
-  core::writeFileAtomically(page, page::sampleSheet(title, rows, dataset, kSamplesAKind));
+  core::writeOwnFile(page, page::sampleSheet(title, rows, dataset, kSamplesAKind));
   std::cerr << "pictures: " << page.string() << "\n";
 }
 

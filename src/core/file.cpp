@@ -5,8 +5,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <openssl/evp.h>
-#include <signal.h>
-#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,10 +43,6 @@ fs::path libraryFolder() {
                    "; check that the folder exists, is writable and has room");
 }
 
-fs::path temporaryFor(const fs::path& path) {
-  return path.string() + ".tmp." + std::to_string(::getpid());
-}
-
 /// Whether all of it was written and reached the disk; errno says why not.
 bool writeAll(int descriptor, std::string_view content) {
   while (!content.empty()) {
@@ -59,19 +54,48 @@ bool writeAll(int descriptor, std::string_view content) {
   return ::fsync(descriptor) == 0 || errno == EINVAL;
 }
 
-constexpr const char* kTemporaryMark = ".tmp.";
+/// Whether an existing path names an open stream: /dev/stdout, /dev/fd/3.
+bool isOpenStream(const fs::path& path) {
+  const fs::path folder = fs::canonical(fs::absolute(path).parent_path());
+  if (folder.filename() == "fd" && folder.string().rfind("/proc/", 0) == 0) return true;
+  return fs::is_symlink(path) && isOpenStream(folder / fs::read_symlink(path));
+}
 
-template <class Wanted>
-void removeTemporariesIf(const fs::path& folder, const Wanted& wanted) {
-  std::error_code ignored;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const std::size_t mark = name.rfind(kTemporaryMark);
-    if (mark != std::string::npos && wanted(name.substr(mark + std::strlen(kTemporaryMark))))
-      files.push_back(entry.path());
+/// Where an output of this name goes: through a link only to what lies beside it, or is no file.
+fs::path outputPlace(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  const fs::path target = fs::canonical(path, error);
+  if (!error && !fs::is_regular_file(target)) return path;
+  if (!error && target.parent_path() == fs::canonical(fs::absolute(path).parent_path()))
+    return target;
+  throw InputError("'" + path.string() + "' is a symbolic link to '" +
+                   fs::read_symlink(path, error).string() +
+                   "', a file of another folder; give that file itself, or remove the link");
+}
+
+/// Opens a device or pipe for writing.
+int openThrough(const fs::path& path, const struct stat& status) {
+  if (S_ISBLK(status.st_mode))
+    throw InputError("'" + path.string() + "' is a disk; a file was expected");
+  constexpr int kFlags = O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+  const int descriptor = ::open(path.c_str(), kFlags);
+  if (descriptor < 0 && errno == ENXIO)
+    throw InputError("'" + path.string() + "' is a pipe that nobody reads; a file was expected");
+  if (descriptor < 0) failWriting(path, errno);
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  return descriptor;
+}
+
+/// Makes a new file beside `path` and puts its name into `temporary`.
+int openBeside(const fs::path& path, fs::path& temporary) {
+  for (int i = 0;; ++i) {
+    temporary = path.string() + ".tmp." + std::to_string(::getpid()) + "." + std::to_string(i);
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    const int descriptor = ::open(temporary.c_str(), kFlags, 0644);
+    if (descriptor >= 0) return descriptor;
+    if (errno != EEXIST) failWriting(path, errno);
   }
-  for (const fs::path& file : files) fs::remove(file, ignored);
 }
 
 fs::file_type statusOf(const fs::path& path) {
@@ -128,62 +152,21 @@ std::string readFile(const fs::path& path, const std::string& what) {
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view content) {
-  const fs::path temporary = temporaryFor(path);
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) failWriting(path, errno);
-  const bool written = writeAll(descriptor, content);
-  int reason = written ? 0 : errno;
+  struct stat status {};
+  const bool stream = ::stat(path.c_str(), &status) == 0 && isOpenStream(path);
+  const fs::path place = stream ? path : outputPlace(path);
+  const bool there = ::stat(place.c_str(), &status) == 0;
+  if (there && S_ISDIR(status.st_mode))
+    throw InputError("'" + path.string() + "' is a folder; a file was expected");
+  fs::path temporary;
+  const bool through = stream || (there && !S_ISREG(status.st_mode));
+  const int descriptor = through ? openThrough(place, status) : openBeside(place, temporary);
+  int reason = writeAll(descriptor, content) ? 0 : errno;
   if (::close(descriptor) != 0 && reason == 0) reason = errno;
-  if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) reason = errno;
+  if (reason == 0 && !through && ::rename(temporary.c_str(), place.c_str()) != 0) reason = errno;
   if (reason == 0) return;
-  ::unlink(temporary.c_str());
+  if (!through) ::unlink(temporary.c_str());
   failWriting(path, reason);
-}
-
-ReservedFile::ReservedFile(fs::path path, std::size_t size)
-    : path_(std::move(path)), temporary_(temporaryFor(path_)) {
-  rlimit limit{};
-  ::getrlimit(RLIMIT_FSIZE, &limit);
-  const auto room = static_cast<off_t>(std::min<rlim_t>(size, limit.rlim_cur));
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) failWriting(path_, errno);
-  const bool taken = room == 0 || ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, room) == 0 ||
-                     errno == EOPNOTSUPP || errno == ENOSYS;
-  if (taken) return;
-  const int reason = errno;
-  ::close(descriptor_);
-  ::unlink(temporary_.c_str());
-  failWriting(path_, reason);
-}
-
-ReservedFile::~ReservedFile() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
-  ::unlink(temporary_.c_str());
-}
-
-void ReservedFile::write(std::string_view content) {
-  const bool written = writeAll(descriptor_, content);
-  int reason = written ? 0 : errno;
-  // The room that was not needed is given back.
-  if (written && ::ftruncate(descriptor_, static_cast<off_t>(content.size())) != 0) reason = errno;
-  if (::close(std::exchange(descriptor_, -1)) != 0 && written) reason = errno;
-  if (reason == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) reason = errno;
-  if (reason == 0) return;
-  ::unlink(temporary_.c_str());
-  failWriting(path_, reason);
-}
-
-void removeTemporaries(const fs::path& folder) {
-  removeTemporariesIf(folder, [](const std::string&) { return true; });
-}
-
-void removeDeadTemporaries(const fs::path& folder) {
-  removeTemporariesIf(folder, [](const std::string& process) {
-    const bool number = !process.empty() && process.size() < 10 &&
-                        process.find_first_not_of("0123456789") == std::string::npos;
-    return number && ::kill(std::stoi(process), 0) != 0 && errno == ESRCH;
-  });
 }
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) {

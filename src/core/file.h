@@ -22,34 +22,10 @@ bool isFolder(const std::filesystem::path& path);
 /// than 2 GiB.
 std::string readFile(const std::filesystem::path& path, const std::string& what);
 
-/// Writes to a temporary file beside `path`, flushes it to the disk and renames it: the file is
-/// whole or as it was before, and nothing else is left behind. Throws InputError naming the path.
+/// Writes a file that the user named as an output. A regular file is replaced: it is whole or as it
+/// was before. A device or pipe is written through. Throws InputError naming the path; also for a
+/// link to a file of another folder, a folder, a disk, and a pipe that nobody reads.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view content);
-
-/// A file whose room on the disk is taken when it is opened, so that it can be written when the
-/// disk has filled up since: under a temporary name beside `path` until it is written.
-class ReservedFile {
- public:
-  /// Takes `size` bytes. Throws InputError naming the path.
-  ReservedFile(std::filesystem::path path, std::size_t size);
-  /// Gives the room back.
-  ~ReservedFile();
-  ReservedFile(const ReservedFile&) = delete;
-  ReservedFile& operator=(const ReservedFile&) = delete;
-  /// Writes the content and gives the file its name. Call once. Throws InputError naming the path.
-  void write(std::string_view content);
-
- private:
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;
-  int descriptor_ = -1;
-};
-
-/// Removes what writes that were cut off left in a folder that no one writes into
-/// (NAME.tmp.PROCESS).
-void removeTemporaries(const std::filesystem::path& folder);
-/// The same in a folder that others may write into: only that of processes that are gone.
-void removeDeadTemporaries(const std::filesystem::path& folder);
 
 /// Length of a SHA-256 in hexadecimal digits.
 inline constexpr std::size_t kSha256Digits = 64;

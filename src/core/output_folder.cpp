@@ -3,10 +3,13 @@
 #include "core/output_folder.h"
 
 #include <fcntl.h>
+#include <stdio.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -14,7 +17,9 @@
 #include <ctime>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/file.h"
@@ -30,6 +35,8 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kPatience{1};
 constexpr std::chrono::milliseconds kPeriod{20};
 constexpr const char* kScratchPrefix = "e2e_cdiff_scratch_";
+/// In a scratch folder, which so is known to be the program's.
+constexpr const char* kScratchMark = ".cdiff_scratch";
 /// A scratch folder is unlocked for a moment after it is made.
 constexpr std::chrono::minutes kOldEnough{1};
 
@@ -52,11 +59,16 @@ std::map<std::string, std::string> contentOf(int descriptor) {
   return content;
 }
 
-bool isSameFile(int descriptor, const fs::path& file) {
+bool isSame(const struct stat& left, const struct stat& right) {
+  return left.st_dev == right.st_dev && left.st_ino == right.st_ino;
+}
+
+/// Whether `name` in a folder is the file that is open, and no link to it.
+bool isSameFile(int descriptor, int directory, const char* name) {
   struct stat held {};
   struct stat named {};
-  return ::fstat(descriptor, &held) == 0 && ::stat(file.c_str(), &named) == 0 &&
-         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+  return ::fstat(descriptor, &held) == 0 &&
+         ::fstatat(directory, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && isSame(held, named);
 }
 
 std::string holderText(int descriptor) {
@@ -65,9 +77,11 @@ std::string holderText(int descriptor) {
          content["host"] + ", since " + content["since"];
 }
 
-InputError heldBy(const fs::path& folder, int descriptor) {
-  return InputError("'" + folder.string() + "' is being written by " + holderText(descriptor) +
-                    "; wait until it has ended, or give another folder");
+bool isLock(int descriptor) {
+  struct stat status {};
+  const auto content = contentOf(descriptor);
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+         content.count("host") + content.count("process") + content.count("program") == 3;
 }
 
 [[noreturn]] void failOn(const fs::path& path, const std::string& what, int error) {
@@ -90,7 +104,9 @@ void removeOrphans(const fs::path& parent) {
     const int descriptor = ::open(orphan.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (descriptor < 0) continue;
     std::error_code ignored;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(orphan, ignored);
+    struct stat mark {};
+    const bool ours = ::fstatat(descriptor, kScratchMark, &mark, AT_SYMLINK_NOFOLLOW) == 0;
+    if (ours && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(orphan, ignored);
     ::close(descriptor);
   }
 }
@@ -106,37 +122,71 @@ std::vector<fs::path> missingFolders(const fs::path& folder) {
   return missing;
 }
 
+/// Gives a file another name unless something has it. Answers 0 or why not.
+int placeUnlessThere(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;  // a file system that cannot do that
+}
+
+fs::path withoutSlash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+/// Opens a folder that is no link. Throws InputError naming what is there.
+int openFolder(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+  const int descriptor = ::open(folder.c_str(), kFlags);
+  if (descriptor >= 0) return descriptor;
+  const int reason = errno;
+  std::error_code none;
+  if (fs::is_symlink(folder, none)) {
+    throw InputError("'" + folder.string() + "' is a symbolic link to '" +
+                     fs::read_symlink(folder, none).string() + "'; give the folder itself");
+  }
+  if (fs::exists(folder, none) && !fs::is_directory(folder, none))
+    throw InputError("'" + folder.string() + "' is a file; give a folder");
+  failOn(folder, "open the folder", reason);
+}
+
+int makeFolder(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_symlink(folder, error)) fs::create_directories(folder, error);
+  if (error && (!fs::exists(folder) || fs::is_directory(folder)))
+    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
+  return openFolder(folder);
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder, const std::string& program)
-    : folder_(folder), file_(folder / kFile), made_(missingFolders(folder)) {
+    : folder_(withoutSlash(folder)), program_(program), made_(missingFolders(folder_)) {
   try {
     takeLock();
   } catch (...) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (directory_ >= 0) ::close(directory_);
     removeMade();
-    throw;
-  }
-  try {
-    requireOwnHost();
-    sign(program);
-  } catch (...) {
-    ::close(descriptor_);
     throw;
   }
 }
 
 void FolderLock::requireUnlocked(const fs::path& folder) {
-  const int descriptor = ::open((folder / kFile).c_str(), O_RDWR | O_CLOEXEC);
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const int descriptor = ::open((folder / kFile).c_str(), kFlags);
   if (descriptor < 0) return;
-  const bool held = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  const InputError error = heldBy(folder, descriptor);
+  const bool held =
+      isLock(descriptor) && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const InputError error("'" + folder.string() + "' is being written by " + holderText(descriptor) +
+                         "; wait until it has ended, or give another folder");
   ::close(descriptor);
   if (held) throw error;
 }
 
 FolderLock::~FolderLock() {
-  ::unlink(file_.c_str());
+  if (isSameFile(descriptor_, directory_, kFile)) ::unlinkat(directory_, kFile, 0);
   ::close(descriptor_);
+  ::close(directory_);
   removeMade();
 }
 
@@ -144,53 +194,364 @@ void FolderLock::removeMade() const {
   for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // refused where it holds anything
 }
 
+InputError FolderLock::heldBy() const {
+  return InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
+                    "; wait until it has ended, or give another folder");
+}
+
 void FolderLock::takeLock() {
   const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   while (!tryLock()) {
-    if (std::chrono::steady_clock::now() - begin > kPatience) {
-      const InputError error = heldBy(folder_, descriptor_);
-      ::close(descriptor_);
-      throw error;
-    }
-    ::close(descriptor_);
+    if (std::chrono::steady_clock::now() - begin > kPatience) throw heldBy();
     std::this_thread::sleep_for(kPeriod);
   }
 }
 
-/// Makes the folder, opens the file and locks it, unless another process has it locked or removes
-/// it just now.
+/// Whether the lock is ours. It is not where another process has it or removes it just now.
 bool FolderLock::tryLock() {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (fs::is_regular_file(folder_))
-    throw InputError("'" + folder_.string() + "' is a file; give a folder");
-  if (error)
-    throw InputError("cannot make the folder '" + folder_.string() + "': " + error.message());
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) failOn(file_, "write", errno);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return isSameFile(descriptor_, file_);
-  if (errno == EWOULDBLOCK || errno == EINTR) return false;
-  const int reason = errno;
-  ::close(descriptor_);
-  failOn(file_, "lock", reason);
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (directory_ >= 0) ::close(std::exchange(directory_, -1));
+  directory_ = makeFolder(folder_);
+  return placeSigned() || takeOver();
 }
 
-/// The kernel of another host may not have announced its lock to ours.
-void FolderLock::requireOwnHost() const {
-  const auto content = contentOf(descriptor_);
-  const auto host = content.find("host");
-  if (host == content.end() || host->second == hostName()) return;
-  throw InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
-                   "; if that process is gone, delete '" + file_.string() + "'");
-}
-
-void FolderLock::sign(const std::string& program) {
-  const std::string text = "host: " + hostName() + "\nprocess: " + std::to_string(::getpid()) +
-                           "\nprogram: " + program + "\nsince: " + timeText() + "\n";
+/// Places a lock that is locked and signed before anybody can see it, where there is none.
+bool FolderLock::placeSigned() {
+  const fs::path file = folder_ / kFile;
+  std::string draft = file.string() + ".XXXXXX";
+  const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
+  if (descriptor < 0) failOn(file, "write", errno);
+  const std::string text = signature();
   const bool written =
-      ::ftruncate(descriptor_, 0) == 0 &&
-      ::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  if (!written) failOn(file_, "write", errno);
+      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor, 0644) == 0 &&
+      ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  const int reason = written ? placeUnlessThere(draft, file) : errno;
+  const bool placed = isSameFile(descriptor, directory_, kFile);
+  if (placed) {
+    descriptor_ = descriptor;
+  } else {
+    ::close(descriptor);
+  }
+  ::unlink(draft.c_str());
+  if (!placed && reason != EEXIST) failOn(file, "write", reason);
+  return placed;
+}
+
+/// Takes the lock of a process of this host that is gone.
+bool FolderLock::takeOver() {
+  const fs::path file = folder_ / kFile;
+  descriptor_ = ::openat(directory_, kFile, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0 && errno == ENOENT) return false;
+  if (descriptor_ < 0 && errno != ELOOP && errno != ENXIO && errno != EISDIR)
+    failOn(file, "write", errno);
+  if (descriptor_ < 0 || !isLock(descriptor_)) {
+    throw InputError("'" + file.string() +
+                     "' is no lock of this program; move it away, or give another folder");
+  }
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK || errno == EINTR) return false;
+    failOn(file, "lock", errno);
+  }
+  if (!isSameFile(descriptor_, directory_, kFile)) return false;
+  // The kernel of another host may not have announced its lock to ours.
+  if (contentOf(descriptor_)["host"] != hostName()) {
+    throw InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
+                     "; if that process is gone, delete '" + file.string() + "'");
+  }
+  const std::string text = signature();
+  if (::ftruncate(descriptor_, 0) != 0 ||
+      ::pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
+    failOn(file, "write", errno);
+  return true;
+}
+
+std::string FolderLock::signature() const {
+  return "host: " + hostName() + "\nprocess: " + std::to_string(::getpid()) +
+         "\nprogram: " + program_ + "\nsince: " + timeText() + "\n";
+}
+
+namespace {
+
+constexpr const char* kRecordHead =
+    "# What e2e_cdiff made in this folder and may replace. Delete this file to keep all of it.";
+constexpr off_t kLargestRecord = off_t{1} << 26;  // [bytes]
+constexpr const char* kPart = ".part";
+
+InputError noRecord(const fs::path& folder) {
+  return InputError("'" + (folder / OutputFolder::kRecord).string() +
+                    "' is no record of this program; move it away, or give another folder");
+}
+
+/// Text of the record; empty without one.
+std::string recordText(int directory, const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const int descriptor = ::openat(directory, OutputFolder::kRecord, kFlags);
+  if (descriptor < 0 && errno == ENOENT) return "";
+  struct stat status {};
+  std::string text;
+  if (descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+      status.st_size <= kLargestRecord) {
+    text.resize(static_cast<std::size_t>(status.st_size));
+    const ssize_t count = ::pread(descriptor, text.data(), text.size(), 0);
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  if (text.rfind(kRecordHead, 0) != 0) throw noRecord(folder);
+  return text;
+}
+
+/// Names in the record. A line is a sign, + or -, and a name; one with a slash was cut off.
+std::set<std::string> namesIn(const std::string& record) {
+  std::set<std::string> names;
+  std::vector<std::string> lines = splitText(record, '\n');
+  if (!record.empty() && record.back() != '\n') lines.pop_back();  // cut off
+  for (const std::string& line : lines) {
+    if (line.size() < 2 || line.find('/') != std::string::npos) continue;
+    if (line[0] == '+') names.insert(line.substr(1));
+    if (line[0] == '-') names.erase(line.substr(1));
+  }
+  names.erase(".");
+  names.erase("..");
+  return names;
+}
+
+/// Adds a line to the record with one write, so that several processes may.
+void appendToRecord(int directory, const fs::path& folder, const std::string& line) {
+  const std::string before = recordText(directory, folder);
+  std::string text = before.empty() ? std::string(kRecordHead) + "\n" : "";
+  if (!before.empty() && before.back() != '\n') text = "/\n";  // ends a line that was cut off
+  text += line + "\n";
+  const int descriptor = ::openat(directory, OutputFolder::kRecord,
+                                  O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+  if (descriptor < 0) failOn(folder / OutputFolder::kRecord, "write", errno);
+  const ssize_t written = ::write(descriptor, text.data(), text.size());
+  const int reason = errno;
+  ::close(descriptor);
+  if (written != static_cast<ssize_t>(text.size()))
+    failOn(folder / OutputFolder::kRecord, "write", written < 0 ? reason : ENOSPC);
+}
+
+bool isThere(int directory, const std::string& name, struct stat& status) {
+  return ::fstatat(directory, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+/// Throws InputError where something is there under this name that is not the program's.
+void requireOwn(int directory, const fs::path& folder, const std::string& name,
+                const std::set<std::string>& listed) {
+  struct stat status {};
+  if (!isThere(directory, name, status)) return;
+  const std::string place = "'" + (folder / name).string() + "'";
+  if (listed.count(name) == 0) {
+    throw InputError(place +
+                     " would be replaced, but this program has no record of having made it (" +
+                     OutputFolder::kRecord + "); move it away, or give another folder");
+  }
+  if (!S_ISREG(status.st_mode)) {
+    throw InputError(place + " is no regular file any more; move it away, or give another folder");
+  }
+}
+
+}  // namespace
+
+void OutputFolder::requireFree(const fs::path& folder, const std::vector<std::string>& names) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none) && !fs::exists(fs::symlink_status(folder, none))) return;
+  const int directory = openFolder(withoutSlash(folder));
+  try {
+    const std::set<std::string> listed = namesIn(recordText(directory, folder));
+    for (const std::string& name : names) {
+      requireOwn(directory, folder, name, listed);
+      requireOwn(directory, folder, name + kPart, listed);
+    }
+  } catch (...) {
+    ::close(directory);
+    throw;
+  }
+  ::close(directory);
+}
+
+bool OutputFolder::lists(const fs::path& folder, const std::string& name) {
+  const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return false;
+  const std::string text = recordText(directory, folder);
+  ::close(directory);
+  return namesIn(text).count(name) != 0;
+}
+
+OutputFolder::OutputFolder(const fs::path& folder)
+    : path_(withoutSlash(fs::absolute(folder).lexically_normal())),
+      descriptor_(makeFolder(path_)) {}
+
+OutputFolder::OutputFolder(const fs::path& folder, const std::string& program)
+    : lock_(std::make_unique<FolderLock>(folder, program)),
+      path_(withoutSlash(fs::absolute(folder).lexically_normal())),
+      descriptor_(openFolder(path_)) {}
+
+OutputFolder::~OutputFolder() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+fs::path OutputFolder::path() const {
+  struct stat held {};
+  struct stat named {};
+  if (::fstat(descriptor_, &held) != 0) failOn(path_, "find", errno);
+  if (::stat(path_.c_str(), &named) == 0 && isSame(held, named)) return path_;
+  std::error_code error;
+  const fs::path now = fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor_), error);
+  if (!error && ::stat(now.c_str(), &named) == 0 && isSame(held, named)) return now;
+  makeAgain();
+  return path_;
+}
+
+void OutputFolder::makeAgain() const {
+  const int descriptor = makeFolder(path_);
+  ::close(std::exchange(descriptor_, descriptor));
+  deleted_ = true;
+}
+
+void OutputFolder::enter(const std::string& name) {
+  const fs::path folder = path();
+  if (namesIn(recordText(descriptor_, folder)).count(name) == 0)
+    appendToRecord(descriptor_, folder, "+" + name);
+}
+
+fs::path OutputFolder::claim(const std::string& name) {
+  const fs::path folder = path();
+  requireOwn(descriptor_, folder, name, namesIn(recordText(descriptor_, folder)));
+  enter(name);
+  return folder / name;
+}
+
+void OutputFolder::write(const std::string& name, std::string_view content) {
+  PendingFile file(*this, name);
+  file.append(content);
+  file.finish();
+}
+
+void OutputFolder::remove(const std::string& name) {
+  const fs::path folder = path();
+  std::set<std::string> listed = namesIn(recordText(descriptor_, folder));
+  if (listed.erase(name) == 0) return;
+  struct stat status {};
+  const bool there = isThere(descriptor_, name, status);
+  if (there && S_ISREG(status.st_mode) && ::unlinkat(descriptor_, name.c_str(), 0) != 0)
+    failOn(folder / name, "replace", errno);
+  if (there && S_ISDIR(status.st_mode)) {
+    OutputFolder(folder / name).clear();
+    // Refused where a file of the user's is in it: then it stays, and stays on the record.
+    if (::unlinkat(descriptor_, name.c_str(), AT_REMOVEDIR) != 0) return;
+  }
+  if (listed.empty()) {
+    forget();
+  } else {
+    appendToRecord(descriptor_, folder, "-" + name);
+  }
+}
+
+void OutputFolder::clear() {
+  const fs::path folder = path();
+  for (const std::string& name : namesIn(recordText(descriptor_, folder))) remove(name);
+}
+
+void OutputFolder::removeUnfinished() {
+  const fs::path folder = path();
+  for (const std::string& name : namesIn(recordText(descriptor_, folder)))
+    if (endsWith(name, kPart)) remove(name);
+}
+
+void OutputFolder::forget() {
+  if (!recordText(descriptor_, path()).empty()) ::unlinkat(descriptor_, kRecord, 0);
+}
+
+fs::path OutputFolder::subfolder(const std::string& name) {
+  const fs::path folder = path();
+  struct stat status {};
+  if (isThere(descriptor_, name, status)) {
+    ::close(openFolder(folder / name));
+    return folder / name;
+  }
+  enter(name);
+  ::close(makeFolder(folder / name));
+  return folder / name;
+}
+
+PendingFile::PendingFile(OutputFolder& folder, const std::string& name, std::size_t room)
+    : folder_(folder), name_(name), part_(name + kPart) {
+  OutputFolder::requireFree(folder_.path(), {name_});
+  open();
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  const auto size = static_cast<off_t>(std::min<rlim_t>(room, limit.rlim_cur));
+  const bool taken = size == 0 || ::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, size) == 0 ||
+                     errno == EOPNOTSUPP || errno == ENOSYS;
+  if (!taken) fail(errno);
+}
+
+PendingFile::~PendingFile() {
+  try {
+    discard();
+  } catch (const std::exception&) {
+    // What cannot be removed stays on the record.
+  }
+}
+
+/// Opens a new file of the temporary name.
+void PendingFile::open() {
+  folder_.remove(part_);  // of a write that was cut off
+  folder_.claim(part_);
+  constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  descriptor_ = ::openat(folder_.descriptor_, part_.c_str(), kFlags, 0644);
+  if (descriptor_ < 0) fail(errno);
+}
+
+void PendingFile::append(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    written_ += written;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void PendingFile::finish() {
+  // The room that was not needed is given back.
+  if (::ftruncate(descriptor_, written_) != 0) fail(errno);
+  folder_.path();  // looks where the folder is
+  if (!isSameFile(descriptor_, folder_.descriptor_, part_.c_str())) restore();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  folder_.claim(name_);
+  const int directory = folder_.descriptor_;
+  if (::renameat(directory, part_.c_str(), directory, name_.c_str()) != 0) fail(errno);
+  folder_.remove(part_);
+}
+
+/// Writes what was written so far into a new file: the old one was deleted with its folder.
+void PendingFile::restore() {
+  const int deleted = std::exchange(descriptor_, -1);
+  std::string content(static_cast<std::size_t>(std::exchange(written_, 0)), '\0');
+  const ssize_t count = ::pread(deleted, content.data(), content.size(), 0);
+  ::close(deleted);
+  if (count != static_cast<ssize_t>(content.size())) fail(EIO);
+  open();
+  append(content);
+}
+
+void PendingFile::discard() {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  folder_.remove(part_);
+}
+
+void PendingFile::fail(int reason) {
+  const fs::path path = folder_.path() / name_;
+  discard();
+  throw InputError("cannot write '" + path.string() + "': " + writeErrorText(reason) +
+                   "; check that the folder exists, is writable and has room");
+}
+
+void writeOwnFile(const fs::path& path, std::string_view content) {
+  OutputFolder(path.parent_path()).write(path.filename().string(), content);
 }
 
 ScratchFolder::ScratchFolder() {
@@ -201,7 +562,9 @@ ScratchFolder::ScratchFolder() {
   if (::mkdtemp(name.data()) == nullptr) failOn(parent, "make a temporary folder in", errno);
   path_ = name;
   descriptor_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ >= 0) ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  if (descriptor_ < 0) return;
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  ::close(::openat(descriptor_, kScratchMark, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -2,14 +2,21 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
 
-// Folders that one process at a time writes into, and temporary folders that a later run removes
-// when ours is killed.
+// Folders that the program writes into. Nothing that it did not make itself is ever replaced or
+// removed there: each folder keeps a record of the files that are the program's.
 
 /// An output folder that is locked as long as the object exists, by the file kFile in it, which
 /// names host, process, program and time. The kernel ends the lock with its process, so one that
@@ -23,8 +30,8 @@ class FolderLock {
   static void requireUnlocked(const std::filesystem::path& folder);
 
   /// Makes the folder and its parents. `program` names this writer to a second one ("cdiff run").
-  /// Throws InputError naming host and process of the writer that holds it, or why the folder or
-  /// the file cannot be made.
+  /// Throws InputError naming host and process of the writer that holds it, why the folder or the
+  /// file cannot be made, or that the folder is a link or the file no lock of this program.
   FolderLock(const std::filesystem::path& folder, const std::string& program);
   /// Removes the file, and the folders that it made where they are still empty.
   ~FolderLock();
@@ -34,15 +41,112 @@ class FolderLock {
  private:
   void takeLock();
   bool tryLock();
+  bool placeSigned();
+  bool takeOver();
   void removeMade() const;
-  void requireOwnHost() const;
-  void sign(const std::string& program);
+  InputError heldBy() const;
+  std::string signature() const;
 
   std::filesystem::path folder_;
-  std::filesystem::path file_;
+  std::string program_;
   std::vector<std::filesystem::path> made_;  ///< innermost first
+  int directory_ = -1;
+  int descriptor_ = -1;  ///< of the lock file
+};
+
+/// A folder that the program writes files into. Its record (the hidden file kRecord) lists by name
+/// what the program made there; only that may be replaced or removed. Everything else that is found
+/// is left alone, and refused where it has the name of a file that is to be written. Several
+/// processes may write into one folder, each with an object of its own; at most one of them holds
+/// its lock. Names are those of entries of the folder itself, without slashes.
+class OutputFolder {
+ public:
+  /// Name of the record.
+  static constexpr const char* kRecord = ".cdiff_files";
+
+  /// Throws InputError when `folder` holds an entry of one of these names that its record does not
+  /// list. A folder that is absent is free.
+  static void requireFree(const std::filesystem::path& folder,
+                          const std::vector<std::string>& names);
+  /// Whether its record lists the name; makes nothing.
+  static bool lists(const std::filesystem::path& folder, const std::string& name);
+
+  /// Makes the folder and its parents where they are missing. Throws InputError when it cannot be
+  /// made, is a file, or is a symbolic link.
+  explicit OutputFolder(const std::filesystem::path& folder);
+  /// The same, and locks it for `program` ("cdiff run") as long as the object exists.
+  OutputFolder(const std::filesystem::path& folder, const std::string& program);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Where the folder lies now: a folder that was renamed meanwhile is followed; one that was
+  /// deleted is made again at its old place, and wasDeleted() is true from then on.
+  std::filesystem::path path() const;
+  bool wasDeleted() const { return deleted_; }
+
+  /// Enters a file's name into the record, before the file is made, and returns its path. Throws
+  /// InputError when an entry of that name is there that the record does not list, or that is no
+  /// regular file.
+  std::filesystem::path claim(const std::string& name);
+  /// Writes a whole file: it is whole or as it was before. Throws InputError naming the path.
+  void write(const std::string& name, std::string_view content);
+  /// Removes a file that the record lists, and takes it off the record; nothing where it lists none
+  /// of that name.
+  void remove(const std::string& name);
+  /// The same for every file of the record, and for folders of it that are empty then.
+  void clear();
+  /// Takes away what writes that were cut off left.
+  void removeUnfinished();
+  /// Ends the record: from now on the files are the user's.
+  void forget();
+  /// Makes a folder in it and returns its path. Throws InputError when something else has that
+  /// name.
+  std::filesystem::path subfolder(const std::string& name);
+
+ private:
+  friend class PendingFile;
+  void enter(const std::string& name);
+  void makeAgain() const;
+
+  std::unique_ptr<FolderLock> lock_;
+  std::filesystem::path path_;
+  mutable int descriptor_ = -1;  ///< stays with the folder when it is renamed
+  mutable bool deleted_ = false;
+};
+
+/// A file of an output folder that gets its name when it is whole. Until then it is NAME.part.
+class PendingFile {
+ public:
+  /// Claims the name and takes `room` bytes on the disk, so that as much can be written when the
+  /// disk has filled up since. `folder` must outlive the object. Throws InputError naming the path.
+  PendingFile(OutputFolder& folder, const std::string& name, std::size_t room = 0);
+  /// Removes what was written, unless `finish` was called.
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  /// Throws InputError naming the path.
+  void append(std::string_view text);
+  /// Flushes it to the disk and gives it its name; also where the folder was deleted meanwhile.
+  /// Call once. Throws InputError naming the path; nothing of the file stays then.
+  void finish();
+
+ private:
+  void open();
+  void restore();
+  void discard();
+  [[noreturn]] void fail(int reason);
+
+  OutputFolder& folder_;
+  std::string name_;
+  std::string part_;
+  off_t written_ = 0;
   int descriptor_ = -1;
 };
+
+/// OutputFolder::write for a file given by its path.
+void writeOwnFile(const std::filesystem::path& path, std::string_view content);
 
 /// A temporary folder of this process below TMPDIR, removed with the object. The first one of a
 /// process also removes those of processes that are gone.

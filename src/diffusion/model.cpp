@@ -131,11 +131,6 @@ void saveModel(const Model& model, const fs::path& folder, inference::TensorType
     if (!isReservedKey(fact.first)) continue;
     throw core::InputError("training fact '" + fact.first + "' has the name of a reserved key");
   }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw core::InputError("cannot make the folder '" + folder.string() + "': " + error.message());
-  }
   Metadata& metadata = files.denoiser.metadata;
   metadata.insert(training_facts.begin(), training_facts.end());
   metadata[kEncoderKey] = inference::writeSafetensors(folder / kEncoderFile, files.encoder, type);

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/markup.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/system_summary.h"
@@ -238,10 +239,10 @@ std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>&
 
 void writeBatchFiles(const std::filesystem::path& results, const std::string& name,
                      const std::vector<RunRecord>& records) {
-  core::writeFileAtomically(results / "runs.csv", runsCsv(records));
-  core::writeFileAtomically(results / "summary.json", batchSummaryJson(name, records));
-  core::writeFileAtomically(results / "junit.xml", batchJunitXml(name, records));
-  core::writeFileAtomically(results / "summary.md", batchMarkdown(name, records));
+  core::writeOwnFile(results / "runs.csv", runsCsv(records));
+  core::writeOwnFile(results / "summary.json", batchSummaryJson(name, records));
+  core::writeOwnFile(results / "junit.xml", batchJunitXml(name, records));
+  core::writeOwnFile(results / "summary.md", batchMarkdown(name, records));
 }
 
 }  // namespace cdiff::evaluation

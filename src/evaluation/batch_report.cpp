@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/intervals/pooled_estimate.h"
@@ -169,15 +170,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void makeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw core::InputError("cannot make the folder '" + folder.string() + "': " + error.message());
-  }
-  core::removeTemporaries(folder);
-}
-
 /// Tables and figures pool runs over scenarios and seeds, never over variants: of several, the runs
 /// without one count, else those of the first. Rows that name a variant have its runs.
 std::string pooledVariant(const std::vector<BatchRun>& runs) {
@@ -258,18 +250,17 @@ void writeBatchReport(const fs::path& results, const std::string& name) {
   for (const TrailsOf who : {TrailsOf::kCbvs, TrailsOf::kEgo}) {
     if (auto trails = trailFigure(runs, who)) figures.push_back(std::move(*trails));
   }
-  makeFolder(results / "tables");
-  for (const Table& table : tables) {
-    core::writeFileAtomically(results / "tables" / (table.definition.id + ".csv"), tableCsv(table));
-  }
-  core::writeFileAtomically(results / "tables" / "tables.md", tablesMarkdown(tables));
-  makeFolder(results / "figures");
+  core::OutputFolder output(results);
+  core::OutputFolder table_files(output.subfolder("tables"));
+  for (const Table& table : tables)
+    table_files.write(table.definition.id + ".csv", tableCsv(table));
+  table_files.write("tables.md", tablesMarkdown(tables));
+  core::OutputFolder figure_files(output.subfolder("figures"));
   for (const Figure& figure : figures) {
-    core::writeFileAtomically(results / "figures" / (figure.id + ".csv"), figure.csv);
-    core::writeFileAtomically(results / "figures" / (figure.id + ".svg"),
-                              page::sheetFile(figure.sheet));
+    figure_files.write(figure.id + ".csv", figure.csv);
+    figure_files.write(figure.id + ".svg", page::sheetFile(figure.sheet));
   }
-  core::writeFileAtomically(results / "index.html", batchPage(name, runs, tables, figures));
+  output.write("index.html", batchPage(name, runs, tables, figures));
 }
 
 }  // namespace cdiff::evaluation

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/process.h"
 #include "core/program.h"
 #include "core/text.h"
@@ -98,24 +99,21 @@ class Executor {
   }
 
   void writeRecord(std::size_t index) const {
-    const fs::path folder = folderOf(index);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::InputError("cannot make '" + folder.string() + "': " + error.message());
-    core::writeFileAtomically(folder / "record.json", recordJson(records_[index]));
+    core::OutputFolder runs(core::OutputFolder(options_.results).subfolder("runs"));
+    core::writeOwnFile(runs.subfolder(plan_[index].id) / "record.json",
+                       recordJson(records_[index]));
   }
 
   core::ProcessJob start(std::size_t index) {
     const fs::path folder = folderOf(index);
-    std::error_code ignored;
-    fs::remove(folder / "summary.json", ignored);
-    core::removeTemporaries(folder);
-    core::writeFileAtomically(folder / "scenario.yaml", plan_[index].scenario_text);
+    core::OutputFolder output(folder);
+    output.remove("summary.json");
+    output.write("scenario.yaml", plan_[index].scenario_text);
     ++records_[index].attempts;
     return {options_.program,
             {"run", (folder / "scenario.yaml").string(), "--quiet", "--results", folder.string(),
              "--overwrite"},
-            folder / "log.txt"};
+            output.claim("log.txt")};
   }
 
   /// Takes the end of an attempt; returns whether the run gets another.
@@ -127,7 +125,7 @@ class Executor {
     const bool died = end.exit_code == ExitCode::kRunTimeError || end.exit_code > ExitCode::kSignal;
     if (record.failed() && died && !end.timed_out && !stop_ && record.attempts <= options_.retries)
       return true;
-    core::writeFileAtomically(folderOf(end.job) / "record.json", recordJson(record));
+    core::writeOwnFile(folderOf(end.job) / "record.json", recordJson(record));
     if (options_.ended) options_.ended(record, false);
     return false;
   }

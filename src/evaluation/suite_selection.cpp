@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/bench2drive_file.h"
@@ -149,7 +150,7 @@ std::string recordOpening(const MatrixOptions& matrix, const fs::path& results) 
              matrix.open_sealed + "\n";
   }
   if (lines.empty()) return "";
-  const fs::path file = results / "opened.log";
+  const fs::path file = core::OutputFolder(results).claim("opened.log");
   std::ofstream log(file, std::ios::app);
   log << lines << std::flush;
   if (!log) throw InputError("cannot write '" + file.string() + "'");

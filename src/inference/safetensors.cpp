@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "inference/safetensors_header.h"
@@ -246,7 +247,7 @@ std::string writeSafetensors(const fs::path& file, const SafetensorsFile& conten
   std::string bytes(reinterpret_cast<const char*>(&length), kLengthBytes);
   bytes += text;
   bytes += data;
-  core::writeFileAtomically(file, bytes);
+  core::writeOwnFile(file, bytes);
   return checksum;
 }
 

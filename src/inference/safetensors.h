@@ -47,9 +47,9 @@ SafetensorsFile readSafetensors(
 /// The type in which floating-point tensors are stored: 16 or 32 bits.
 enum class TensorType { kF16, kF32 };
 
-/// Writes atomically, tensors by name, with metadata "sha256" of the data section added, which is
-/// returned. F16 rounds to nearest even; a value out of its range throws InputError naming the
-/// tensor.
+/// Writes a file of the program's own (core::OutputFolder), tensors by name, with metadata "sha256"
+/// of the data section added, which is returned. F16 rounds to nearest even; a value out of its
+/// range throws InputError naming the tensor.
 std::string writeSafetensors(const std::filesystem::path& file, const SafetensorsFile& content,
                              TensorType type);
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
@@ -37,7 +38,7 @@ std::string rowsKept(const std::filesystem::path& path, const std::string& stage
 
 CurveLog::CurveLog(const std::string& output, std::string stage, std::int64_t step)
     : path_(std::filesystem::path(output) / "curves.csv"), stage_(std::move(stage)) {
-  core::writeFileAtomically(path_, kHeader + rowsKept(path_, stage_, step));
+  core::writeOwnFile(path_, kHeader + rowsKept(path_, stage_, step));
   file_.open(path_, std::ios::app);
 }
 

@@ -116,8 +116,8 @@ void writeModel(const TrainingRun& run, const TrainedModel& model,
         inference::writeSafetensors(folder / file.name, content, inference::TensorType::kF16);
     if (!file.hash_key.empty()) hashes[file.hash_key] = hash;
   }
-  core::writeFileAtomically(folder / "training.json", record.dump(2) + "\n");
-  core::writeFileAtomically(folder / "model_card.md", modelCard(record, model));
+  core::writeOwnFile(folder / "training.json", record.dump(2) + "\n");
+  core::writeOwnFile(folder / "model_card.md", modelCard(record, model));
 }
 
 namespace {
@@ -243,10 +243,10 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   training.validate();
   const TrainingOptions& options = training.options;
   at::set_num_threads(static_cast<int>(options.threads));
-  const core::FolderLock lock(options.output, "cdiff train");
+  core::OutputFolder output(options.output, "cdiff train");
   requireFreeOutput(training);
   requireSources(training);
-  core::removeTemporaries(options.output);
+  output.removeUnfinished();
   if (!training.needsSamples()) {
     const Dataset none;
     Trainer(training, none, stop, log).run();

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/field.h"
 
@@ -55,7 +56,7 @@ void writeCheckpoint(const fs::path& path, const Checkpoint& checkpoint) {
                    static_cast<std::size_t>(plain.numel()) * sizeof(float));
   }
   content += core::sha256(content);
-  core::writeFileAtomically(path, content);
+  core::writeOwnFile(path, content);
 }
 
 Checkpoint readCheckpoint(const fs::path& path) {
@@ -108,10 +109,14 @@ Names trainedStages(const Training& training) {
   return stage == "export" ? Names{} : Names{stage};
 }
 
-void removeFile(const fs::path& file) {
-  std::error_code error;
-  fs::remove(file, error);
-  if (error) throw InputError("cannot replace '" + file.string() + "': " + error.message());
+/// What a training of this task may write.
+Names ownFiles(const Task& task) {
+  Names names = kRecords;
+  for (const Names& files : {task.weightFiles(), task.otherFiles()})
+    names.insert(names.end(), files.begin(), files.end());
+  for (const std::string& stage : allStages(task))
+    names.push_back(checkpointPath("", stage).string());
+  return names;
 }
 
 }  // namespace
@@ -140,6 +145,7 @@ void requireSources(const Training& training) {
 
 void requireFreeOutput(const Training& training) {
   const TrainingOptions& options = training.options;
+  core::OutputFolder::requireFree(options.output, ownFiles(*training.task));
   if (options.overwrite) return;
   const std::string folder = "'" + options.output + "'";
   for (const std::string& stage : trainedStages(training)) {
@@ -160,12 +166,11 @@ void requireFreeOutput(const Training& training) {
 void removeEarlier(const Training& training) {
   const TrainingOptions& options = training.options;
   if (!options.overwrite) return;
+  core::OutputFolder output(options.output);
   for (const std::string& stage : trainedStages(training))
-    removeFile(checkpointPath(options.output, stage));
+    output.remove(checkpointPath("", stage).string());
   if (options.stage != "all") return;
-  for (const Names& files : {training.task->weightFiles(), training.task->otherFiles(), kRecords}) {
-    for (const std::string& file : files) removeFile(fs::path(options.output) / file);
-  }
+  for (const std::string& name : ownFiles(*training.task)) output.remove(name);
 }
 
 }  // namespace cdiff::learning

@@ -4,9 +4,8 @@
 
 #include <functional>
 #include <optional>
-#include <system_error>
 
-#include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/session_metrics.h"
 #include "page/html_report.h"
@@ -27,43 +26,26 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSummaryRoom = 1 << 16;
 constexpr std::size_t kJunitRoom = 1 << 14;
 
-/// Makes the folder and takes away the files of an earlier session, so that none can be mistaken
-/// for this one's.
-fs::path preparedFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw core::InputError("cannot make the result folder '" + folder.string() +
-                           "': " + error.message());
-  }
-  for (const char* name :
-       {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"}) {
-    fs::remove(folder / name, error);
-    if (error) {
-      throw core::InputError("cannot replace '" + (folder / name).string() +
-                             "': " + error.message());
-    }
-  }
-  return folder;
-}
-
 }  // namespace
 
 /// What is gathered while the session runs.
 class ResultWriter::Record {
  public:
   Record(const session::SessionSetup& setup, const record::RunFacts& facts, const fs::path& folder)
-      : folder_(preparedFolder(folder)),
-        summary_(folder_ / "summary.json", kSummaryRoom),
-        junit_(folder_ / "junit.xml", kJunitRoom),
-        trace_(std::make_unique<record::TraceWriter>(folder_ / "trace.csv")),
+      : folder_(folder),
+        summary_(folder_, "summary.json", kSummaryRoom),
+        junit_(folder_, "junit.xml", kJunitRoom),
+        trace_(std::make_unique<record::TraceWriter>(folder_)),
         metrics_(setup.metricsOptions(), setup.drivableArea(), setup.egoRoute()),
         timeline_(setup.options().simulation_step),
         plans_(setup.options().simulation_step),
         front_views_(setup),
         result_{setup,     timeline_,    cbv_,     approaches_, plans_,
                 guidance_, front_views_, driving_, facts} {
-    core::writeFileAtomically(folder_ / "session.yaml", record::sessionYaml(setup, facts));
+    for (const char* name :
+         {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"})
+      folder_.remove(name);
+    folder_.write("session.yaml", record::sessionYaml(setup, facts));
   }
 
   void observe(const session::TickRecord& record) {
@@ -98,11 +80,16 @@ class ResultWriter::Record {
     attempt([&] {
       if (trace_) result_.trace_sha256 = trace_->finish();
     });
+    attempt([&] { saveFromDeletion(); });
     completeResult();
-    attempt([&] { core::writeFileAtomically(folder_ / "plans.csv", record::plansCsv(plans_)); });
-    attempt([&] { core::writeFileAtomically(folder_ / "report.html", htmlReport(result_)); });
-    attempt([&] { junit_.write(record::junitXml(result_)); });
-    summary_.write(record::summaryJson(result_));
+    attempt([&] { folder_.write("plans.csv", record::plansCsv(plans_)); });
+    attempt([&] { folder_.write("report.html", htmlReport(result_)); });
+    attempt([&] {
+      junit_.append(record::junitXml(result_));
+      junit_.finish();
+    });
+    summary_.append(record::summaryJson(result_));
+    summary_.finish();
     return result_.verdict;
   }
 
@@ -120,7 +107,7 @@ class ResultWriter::Record {
     result_.faults.insert(result_.faults.begin(), fault);
   }
 
-  const fs::path& folder() const { return folder_; }
+  fs::path folder() const { return folder_.path(); }
   const record::SessionResult& result() const { return result_; }
 
  private:
@@ -134,6 +121,16 @@ class ResultWriter::Record {
       fail(error.what());
       throw core::Error(error.what());
     }
+  }
+
+  /// Writes again what was written before the folder was deleted, and says that it was.
+  void saveFromDeletion() {
+    const fs::path folder = folder_.path();
+    if (!folder_.wasDeleted()) return;
+    folder_.write("session.yaml", record::sessionYaml(result_.setup, result_.facts));
+    throw core::InputError("the result folder '" + folder.string() +
+                           "' was deleted while the session ran; it was made again with what "
+                           "could be saved");
   }
 
   void attempt(const std::function<void()>& writing) {
@@ -164,9 +161,9 @@ class ResultWriter::Record {
         record::judge(result_.setup.options(), result_.status, result_.measures, result_.faults);
   }
 
-  fs::path folder_;
-  core::ReservedFile summary_;
-  core::ReservedFile junit_;
+  core::OutputFolder folder_;
+  core::PendingFile summary_;
+  core::PendingFile junit_;
   std::unique_ptr<record::TraceWriter> trace_;  ///< null once it could not be written
   metrics::SessionMetrics metrics_;
   record::Timeline timeline_;
@@ -199,6 +196,8 @@ void ResultWriter::recordFault(const traffic::Fault& fault) { record_->recordFau
 const std::string& ResultWriter::failure() const { return record_->failure(); }
 
 std::string ResultWriter::table() const { return table(record_->folder()); }
+
+fs::path ResultWriter::folder() const { return record_->folder(); }
 
 std::string ResultWriter::table(const fs::path& folder) const {
   return record::sessionTable(record_->result(), folder);

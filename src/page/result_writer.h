@@ -17,9 +17,9 @@ namespace cdiff::page {
 /// session gives the same trace in every deployment.
 class ResultWriter : public session::SessionObserver {
  public:
-  /// Makes the folder (and its parents), removes what an earlier session left there, writes
-  /// session.yaml and opens the trace. `setup` must outlive the writer. Throws InputError naming a
-  /// path that cannot be written.
+  /// Makes the folder (and its parents), removes the files that an earlier session made there,
+  /// writes session.yaml and opens the trace. `setup` must outlive the writer. Throws InputError
+  /// naming a path that cannot be written, or a file there that this program did not make.
   ResultWriter(const session::SessionSetup& setup, const record::RunFacts& facts,
                const std::filesystem::path& folder);
   ~ResultWriter() override;
@@ -36,6 +36,8 @@ class ResultWriter : public session::SessionObserver {
   void recordFault(const traffic::Fault& fault);
   /// Why the result is not whole; empty when it is.
   const std::string& failure() const;
+  /// Where the result lies now: a folder that was renamed while the session ran is followed.
+  std::filesystem::path folder() const;
   /// The table that a terminal shows: the main measures, the verdict, the paths.
   std::string table() const;
   /// The same where the files lie in another folder by now.

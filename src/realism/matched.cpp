@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/process.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -102,21 +103,20 @@ class MatchedRunner {
   }
 
   core::ProcessJob start(std::size_t job) {
-    const fs::path folder = folderOf(job);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw InputError("cannot make '" + folder.string() + "': " + error.message());
-    fs::remove(folder / kScoreFile, error);
-    core::writeFileAtomically(folder / "scenario.yaml", jobs_[job].run.scenario_text);
-    core::writeFileAtomically(folder / kJobFile, jobText(jobs_[job], execution_.options));
+    core::OutputFolder runs(core::OutputFolder(execution_.results).subfolder("runs"));
+    core::OutputFolder output(runs.subfolder(jobs_[job].id));
+    const fs::path folder = output.path();
+    output.remove(kScoreFile);
+    output.write("scenario.yaml", jobs_[job].run.scenario_text);
+    output.write(kJobFile, jobText(jobs_[job], execution_.options));
     const std::string& planner = jobs_[job].planner;
-    return {
-        execution_.program,
-        {"realism", "continue", (folder / "scenario.yaml").string(), "--driver",
-         planner.empty() ? kSumo : planner, "--rollouts",
-         std::to_string(execution_.options.rollouts), "--seconds",
-         core::formatNumber(execution_.options.seconds), "--out", (folder / kScoreFile).string()},
-        folder / "log.txt"};
+    return {execution_.program,
+            {"realism", "continue", (folder / "scenario.yaml").string(), "--driver",
+             planner.empty() ? kSumo : planner, "--rollouts",
+             std::to_string(execution_.options.rollouts), "--seconds",
+             core::formatNumber(execution_.options.seconds), "--out",
+             output.claim(kScoreFile).string()},
+            output.claim("log.txt")};
   }
 
   bool finish(const core::ProcessEnd& end) {

@@ -20,20 +20,6 @@ namespace {
 
 constexpr std::size_t kBufferSize = 1 << 16;  // [bytes]
 
-[[noreturn]] void failWriting(const std::filesystem::path& path) {
-  throw core::InputError("cannot write '" + path.string() + "': " + core::writeErrorText(errno) +
-                         "; check that the folder exists, is writable and has room");
-}
-
-void writeAll(int descriptor, std::string_view content, const std::filesystem::path& path) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) failWriting(path);
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
 void appendNumber(std::string& row, double value) {
   row += ',';
   row += core::formatNumber(value);
@@ -41,18 +27,9 @@ void appendNumber(std::string& row, double value) {
 
 }  // namespace
 
-TraceWriter::TraceWriter(std::filesystem::path file) : file_(std::move(file)) {
-  temporary_ = file_.string() + ".tmp." + std::to_string(::getpid());
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) failWriting(file_);
+TraceWriter::TraceWriter(core::OutputFolder& folder) : file_(folder, "trace.csv") {
   buffer_.reserve(2 * kBufferSize);
   buffer_ = kTraceHeader;
-}
-
-TraceWriter::~TraceWriter() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
-  ::unlink(temporary_.c_str());
 }
 
 void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
@@ -63,14 +40,7 @@ void TraceWriter::write(const traffic::TrafficSnapshot& snapshot) {
 
 std::string TraceWriter::finish() {
   flush();
-  if (::fsync(descriptor_) != 0 && errno != EINVAL) failWriting(file_);
-  const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0 || ::rename(temporary_.c_str(), file_.c_str()) != 0) {
-    const int reason = errno;
-    ::unlink(temporary_.c_str());
-    errno = reason;
-    failWriting(file_);
-  }
+  file_.finish();
   return hash_.finish();
 }
 
@@ -96,7 +66,7 @@ void TraceWriter::writeRow(const std::string& tick, const traffic::Vehicle& vehi
 
 void TraceWriter::flush() {
   hash_.update(buffer_);
-  writeAll(descriptor_, buffer_, file_);
+  file_.append(buffer_);
   buffer_.clear();
 }
 
@@ -170,27 +140,19 @@ constexpr std::array<const char*, 9> kSessionFiles = {
     "session.yaml", "trace.csv",   "plans.csv",   "summary.json",      "junit.xml",
     "report.html",  "session.bag", "session.mp4", "session.bag.active"};
 /// What the node graph leaves besides.
-constexpr std::array<const char*, 2> kOtherFiles = {"exit_code", ".reserve"};
+constexpr const char* kExitCodeFile = "exit_code";
+constexpr const char* kReserveFolder = ".reserve";
 constexpr const char* kBatchFile = "matrix.yaml";
 
-void clear(const fs::path& file) {
-  std::error_code error;
-  fs::remove_all(file, error);
-  if (error) throw core::InputError("cannot replace '" + file.string() + "': " + error.message());
-}
-
-void removeSession(const fs::path& folder) {
-  for (const char* name : kSessionFiles) clear(folder / name);
-  for (const char* name : kOtherFiles) clear(folder / name);
-  core::removeTemporaries(folder);
-}
-
-void requireNoResult(const fs::path& folder, bool overwrite) {
+void requireFree(const fs::path& folder, bool overwrite) {
   std::error_code error;
   if (fs::exists(folder / kBatchFile, error)) {
     throw core::InputError("'" + folder.string() + "' holds the results of a batch (" + kBatchFile +
                            "); give another folder");
   }
+  std::vector<std::string> names(kSessionFiles.begin(), kSessionFiles.end());
+  names.emplace_back(kExitCodeFile);
+  core::OutputFolder::requireFree(folder, names);
   if (overwrite) return;
   for (const char* name : kSessionFiles) {
     if (!fs::exists(folder / name, error)) continue;
@@ -204,13 +166,16 @@ void requireNoResult(const fs::path& folder, bool overwrite) {
 
 void requireFreeFolder(const fs::path& folder, bool overwrite) {
   core::FolderLock::requireUnlocked(folder);
-  requireNoResult(folder, overwrite);
+  requireFree(folder, overwrite);
 }
 
-ResultFolder::ResultFolder(fs::path folder, const std::string& program, bool overwrite)
-    : path_(std::move(folder)), lock_(path_, program) {
-  requireNoResult(path_, overwrite);
-  removeSession(path_);
+ResultFolder::ResultFolder(const fs::path& folder, const std::string& program, bool overwrite)
+    : folder_(folder, program) {
+  requireFree(folder, overwrite);
+  for (const char* name : kSessionFiles) folder_.remove(name);
+  folder_.remove(kExitCodeFile);
+  folder_.remove(kReserveFolder);
+  folder_.removeUnfinished();
 }
 
 }  // namespace cdiff::record

@@ -20,15 +20,11 @@ namespace cdiff::record {
 inline constexpr const char* kTraceHeader = "tick,id,role,x,y,heading,speed,throttle,steer,brake\n";
 
 /// Writes trace.csv: a row per tick and vehicle (map frame, SI units, shortest decimals that read
-/// back to the same number), streamed to a temporary file that gets its name when it is whole.
+/// back to the same number), streamed to the disk; it gets its name when it is whole.
 class TraceWriter {
  public:
-  /// Opens the temporary file beside `file`. Throws InputError naming the path.
-  explicit TraceWriter(std::filesystem::path file);
-  /// Removes the temporary file when `finish` was not called.
-  ~TraceWriter();
-  TraceWriter(const TraceWriter&) = delete;
-  TraceWriter& operator=(const TraceWriter&) = delete;
+  /// Opens the file. `folder` must outlive the object. Throws InputError naming the path.
+  explicit TraceWriter(core::OutputFolder& folder);
 
   /// Appends the rows of one tick in the snapshot's order. Command cells of vehicles that SUMO
   /// drives stay empty.
@@ -40,9 +36,7 @@ class TraceWriter {
   void writeRow(const std::string& tick, const traffic::Vehicle& vehicle);
   void flush();
 
-  std::filesystem::path file_;
-  std::filesystem::path temporary_;
-  int descriptor_ = -1;
+  core::PendingFile file_;
   std::string buffer_;
   core::Sha256 hash_;
 };
@@ -64,24 +58,23 @@ struct TraceRow {
 /// and line for anything that is not a trace.
 std::vector<TraceRow> readTrace(const std::filesystem::path& file);
 
-/// Throws InputError when another process writes into the folder, or when it holds anything of a
-/// session or a batch, naming it, unless earlier sessions are to be overwritten; a batch never is.
-/// A folder that is absent is free.
+/// Throws InputError when another process writes into the folder, when it holds anything of a
+/// session or a batch, unless earlier sessions are to be overwritten (a batch never is), or when it
+/// holds a file of a session's names that this program did not make. Names what it found. A folder
+/// that is absent is free.
 void requireFreeFolder(const std::filesystem::path& folder, bool overwrite);
 
 /// The result folder of a session, claimed by the one process that writes it: locked against a
 /// second one, and without what an earlier session left.
 class ResultFolder {
  public:
-  /// Makes and locks the folder, checks it as requireFreeFolder does, and removes the files of an
-  /// earlier session and what writes that were cut off left. `program` names this writer to a
-  /// second one ("cdiff run"). Throws InputError; nothing is removed then.
-  ResultFolder(std::filesystem::path folder, const std::string& program, bool overwrite);
-  const std::filesystem::path& path() const { return path_; }
+  /// Makes and locks the folder, checks it as requireFreeFolder does, and removes the files that an
+  /// earlier session made. `program` names this writer to a second one ("cdiff run"). Throws
+  /// InputError; nothing is removed then.
+  ResultFolder(const std::filesystem::path& folder, const std::string& program, bool overwrite);
 
  private:
-  std::filesystem::path path_;
-  core::FolderLock lock_;
+  core::OutputFolder folder_;
 };
 
 }  // namespace cdiff::record

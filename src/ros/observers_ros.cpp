@@ -194,9 +194,10 @@ int MetricsRos::conclude(Ending ending) {
   }
   writer_->finish(wallSeconds());
   const int exit_code = finishVideo(writer_->exitCode());
-  std::cout << writer_->table() << bagRow(graph(), results_)
-            << record::fileRow("video", results_ / video::kVideoFile) << std::flush;
-  writeExitCode(results_, exit_code);
+  const std::filesystem::path results = writer_->folder();
+  std::cout << writer_->table() << bagRow(graph(), results)
+            << record::fileRow("video", results / video::kVideoFile) << std::flush;
+  writeExitCode(results, exit_code);
   return exit_code;
 }
 

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -144,6 +145,8 @@ fs::path ownFolder(const session::ScenarioOptions& options) {
           core::timeForFileName());
 }
 
+constexpr const char* kReserve = ".reserve";
+
 /// Whether a file is there that is younger than the launch of this session.
 bool writtenByThisLaunch(const fs::path& path) {
   struct stat file {};
@@ -215,7 +218,7 @@ void writeExitCode(const fs::path& folder, int exit_code) {
   const std::string text = std::to_string(exit_code) + "\n";
   const char* also = std::getenv(kExitCodeVariable);
   if (also != nullptr && *also != '\0') core::writeFileAtomically(also, text);
-  if (!folder.empty()) core::writeFileAtomically(folder / "exit_code", text);
+  if (!folder.empty()) core::writeOwnFile(folder / "exit_code", text);
 }
 
 void writeRefusal(const fs::path& folder) {
@@ -233,13 +236,15 @@ void writeRefusal(const fs::path& folder) {
 ReserveResult::ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
                              const fs::path& results)
     : results_(results),
-      folder_(results / ".reserve"),
-      writer_(std::make_unique<page::ResultWriter>(setup, facts, folder_)) {}
+      writer_(std::make_unique<page::ResultWriter>(setup, facts, results_.subfolder(kReserve))) {}
 
 ReserveResult::~ReserveResult() {
   writer_.reset();
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  try {
+    results_.remove(kReserve);
+  } catch (const core::InputError&) {
+    // It stays on the record, and goes with the next session.
+  }
 }
 
 void ReserveResult::observe(const session::TickRecord& record) {
@@ -251,14 +256,16 @@ void ReserveResult::observe(const session::TickRecord& record) {
 }
 
 void ReserveResult::adopt(double wall_seconds) {
-  if (fs::exists(results_ / "exit_code")) return;
+  const fs::path results = results_.path();
+  if (fs::exists(results / "exit_code")) return;
   writer_->finish(wall_seconds);
-  core::removeTemporaries(results_);
-  for (const auto& entry : fs::directory_iterator(folder_)) {
-    fs::rename(entry.path(), results_ / entry.path().filename());
+  results_.removeUnfinished();
+  for (const auto& entry : fs::directory_iterator(results / kReserve)) {
+    const std::string name = entry.path().filename().string();
+    if (name != core::OutputFolder::kRecord) fs::rename(entry.path(), results_.claim(name));
   }
-  std::cout << writer_->table(results_) << std::flush;
-  writeExitCode(results_, writer_->exitCode());
+  std::cout << writer_->table(results) << std::flush;
+  writeExitCode(results, writer_->exitCode());
 }
 
 }  // namespace cdiff::ros

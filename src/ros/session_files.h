@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/output_folder.h"
 #include "page/result_writer.h"
 #include "record/result_folder.h"
 #include "session/session_request.h"
@@ -98,7 +99,7 @@ class ReserveResult {
   /// `setup` must outlive the object.
   ReserveResult(const session::SessionSetup& setup, const record::RunFacts& facts,
                 const std::filesystem::path& results);
-  /// Takes the folder away.
+  /// Takes RESULTS/.reserve away.
   ~ReserveResult();
   ReserveResult(const ReserveResult&) = delete;
   ReserveResult& operator=(const ReserveResult&) = delete;
@@ -110,8 +111,7 @@ class ReserveResult {
   void adopt(double wall_seconds);
 
  private:
-  std::filesystem::path results_;
-  std::filesystem::path folder_;
+  core::OutputFolder results_;
   std::unique_ptr<page::ResultWriter> writer_;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/geometry/shapes.h"
@@ -200,14 +201,14 @@ std::string withoutComment(const std::string& text) {
 void addSource(const fs::path& file, const char* option, const std::string& text,
                std::vector<std::string>& command) {
   if (text.empty()) return;
-  core::writeFileAtomically(file, text);
+  core::writeOwnFile(file, text);
   command.insert(command.end(), {option, file.string()});
 }
 
 }  // namespace
 
 std::string buildNetwork(const RoadPlan& plan, const fs::path& folder) {
-  fs::create_directories(folder);
+  core::OutputFolder output(folder);
   const std::string base = (folder / plan.name).string();
   const fs::path raw = base + ".raw.net.xml";
   std::vector<std::string> command = {
@@ -215,11 +216,12 @@ std::string buildNetwork(const RoadPlan& plan, const fs::path& folder) {
   addSource(base + ".nod.xml", "--node-files", nodesXml(plan), command);
   addSource(base + ".edg.xml", "--edge-files", edgesXml(plan), command);
   addSource(base + ".con.xml", "--connection-files", connectionsXml(plan), command);
+  output.claim(raw.filename().string());
   command.insert(command.end(), {"--output-file", raw.string()});
   map::runNetconvert(command, "network '" + plan.name + "'");
   const std::string text = withoutComment(core::readFile(raw, "network"));
-  core::writeFileAtomically(base + ".net.xml", text);
-  fs::remove(raw);
+  core::writeOwnFile(base + ".net.xml", text);
+  output.remove(raw.filename().string());
   return text;
 }
 

@@ -130,7 +130,8 @@ class Generator {
     for (std::size_t i = 0; i < specs.size(); ++i) {
       Draws draws(random_, static_cast<std::uint32_t>(i));
       const RoadPlan plan = drawNetwork(specs[i], draws);
-      const std::string text = buildNetwork(plan, folder_ / "networks" / plan.name);
+      core::OutputFolder networks(core::OutputFolder(folder_).subfolder("networks"));
+      const std::string text = buildNetwork(plan, networks.subfolder(plan.name));
       networks_.push_back({plan, map::RoadNetwork::fromText(text, plan.name)});
     }
     for (const RouteWish& wish : routeWishes(kind_)) addRoute(wish);
@@ -190,10 +191,10 @@ class Generator {
   }
 
   void writeFiles() const {
-    fs::create_directories(folder_ / "scenarios");
+    core::OutputFolder(folder_).subfolder("scenarios");
     for (const SuiteRoute& route : suite_.routes)
-      core::writeFileAtomically(suite_.scenarioFile(route), scenarioText(route));
-    core::writeFileAtomically(folder_ / "suite.yaml", manifestText(suite_));
+      core::writeOwnFile(suite_.scenarioFile(route), scenarioText(route));
+    core::writeOwnFile(folder_ / "suite.yaml", manifestText(suite_));
   }
 
   std::string kind_;
@@ -207,18 +208,30 @@ class Generator {
 };
 
 void requireEmpty(const fs::path& folder) {
-  if (!fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder))) return;
+  const fs::file_status status = fs::symlink_status(folder);
+  if (!fs::exists(status) || (fs::is_directory(status) && fs::is_empty(folder))) return;
   throw InputError("'" + folder.string() +
                    "' is there already; give --results a folder that is new or empty");
 }
 
-/// What an earlier run that was killed left, but for our lock.
-void removeContent(const fs::path& folder) {
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename() != core::FolderLock::kFile) paths.push_back(entry.path());
+/// Removes what an earlier run that was killed left. Throws InputError for anything else.
+void requireOwnContent(core::OutputFolder& work) {
+  work.clear();
+  for (const auto& entry : fs::directory_iterator(work.path())) {
+    if (entry.path().filename() == core::FolderLock::kFile) continue;
+    throw InputError("'" + entry.path().string() +
+                     "' is in the folder that the suite is made in, and not this program's; move "
+                     "it away, or give another --results");
   }
-  for (const fs::path& path : paths) fs::remove_all(path);
+}
+
+/// A suite is complete or not there; its files are the user's from now on.
+void endRecords(const fs::path& folder) {
+  std::vector<fs::path> folders = {folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) folders.push_back(entry.path());
+  }
+  for (const fs::path& place : folders) core::OutputFolder(place).forget();
 }
 
 }  // namespace
@@ -227,10 +240,11 @@ Suite generateSuite(const std::string& kind, std::int64_t seed, const fs::path& 
   const fs::path target = fs::absolute(folder).lexically_normal();
   requireEmpty(target);
   const fs::path work = target.string() + ".part";
-  auto lock = std::make_unique<core::FolderLock>(work, "cdiff suite");
-  removeContent(work);
+  auto output = std::make_unique<core::OutputFolder>(work, "cdiff suite");
+  requireOwnContent(*output);
   Suite suite = Generator(kind, seed, work).generate();
-  lock.reset();
+  endRecords(work);
+  output.reset();
   fs::remove(target);
   fs::rename(work, target);
   suite.folder = target;

@@ -59,11 +59,12 @@ std::string lastWords(const core::ProcessOutput& output) {
 
 }  // namespace
 
-VideoEncoder::VideoEncoder(fs::path file, const VideoFormat& format)
-    : file_(std::move(file)), temporary_(file_.string() + ".tmp." + std::to_string(::getpid())) {
-  std::error_code ignored;
-  fs::remove(file_, ignored);
+VideoEncoder::VideoEncoder(const fs::path& file, const VideoFormat& format)
+    : folder_(fs::absolute(file).parent_path()), name_(file.filename().string()), file_(file) {
   try {
+    core::OutputFolder::requireFree(folder_.path(), {name_});
+    folder_.remove(name_);
+    folder_.remove(partName());
     start(format);
   } catch (...) {
     stop();
@@ -83,7 +84,7 @@ void VideoEncoder::start(const VideoFormat& format) {
   ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &kLongestPause, sizeof(kLongestPause));
   try {
     process_ = std::make_unique<core::GuardedProcess>(
-        program, commandLine(format, temporary_),
+        program, commandLine(format, folder_.claim(partName())),
         core::environmentWith("AV_LOG_FORCE_NOCOLOR", "1"),
         core::ProcessStreams{{}, ends[1], messages_.descriptor()});
   } catch (...) {
@@ -108,16 +109,18 @@ void VideoEncoder::write(const std::vector<std::uint8_t>& frame) {
 void VideoEncoder::finish() {
   closeInput();
   const int code = wait();
-  std::error_code error;
   if (code != 0) fail("exit code " + std::to_string(code));
   // It exits with 0 when the disk filled up at the very end.
   if (!lastWords(messages_).empty()) fail("it complained");
-  const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  const fs::path part = folder_.path() / partName();
+  const int descriptor = ::open(part.c_str(), O_RDONLY | O_CLOEXEC);
   const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
   if (descriptor >= 0) ::close(descriptor);
   if (!on_disk) fail(std::strerror(errno));
-  fs::rename(temporary_, file_, error);
+  std::error_code error;
+  fs::rename(part, folder_.claim(name_), error);
   if (error) fail(error.message());
+  folder_.remove(partName());
 }
 
 void VideoEncoder::closeInput() {
@@ -133,8 +136,11 @@ int VideoEncoder::wait() {
 void VideoEncoder::stop() {
   closeInput();
   process_.reset();
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  try {
+    folder_.remove(partName());
+  } catch (const core::InputError&) {
+    // It stays on the record, and goes with the next video.
+  }
 }
 
 void VideoEncoder::fail(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/output_folder.h"
 #include "core/process.h"
 #include "record/session_result.h"
 #include "session/session_observer.h"
@@ -26,9 +27,10 @@ struct VideoFormat {
 /// with us.
 class VideoEncoder {
  public:
-  /// Removes `file`, starts the program and has it write to a temporary file beside. Throws
-  /// InputError when the program is not there, SimulatorError when no process can be made.
-  VideoEncoder(std::filesystem::path file, const VideoFormat& format);
+  /// Removes an earlier video of this name, starts the program and has it write to a temporary file
+  /// beside. Throws InputError when the program is not there or `file` is there and not ours,
+  /// SimulatorError when no process can be made.
+  VideoEncoder(const std::filesystem::path& file, const VideoFormat& format);
   /// Ends the program and removes the temporary file when `finish` was not called.
   ~VideoEncoder();
   VideoEncoder(const VideoEncoder&) = delete;
@@ -49,8 +51,11 @@ class VideoEncoder {
   void stop();
   [[noreturn]] void fail(const std::string& text);
 
+  std::string partName() const { return name_ + ".part"; }
+
+  core::OutputFolder folder_;
+  std::string name_;
   std::filesystem::path file_;
-  std::filesystem::path temporary_;
   std::unique_ptr<core::GuardedProcess> process_;
   int input_ = -1;                ///< our end of the socket
   core::ProcessOutput messages_;  ///< error output of the program

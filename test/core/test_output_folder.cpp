@@ -10,6 +10,8 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "core/file.h"
 #include "core/output_folder.h"
@@ -28,6 +30,13 @@ std::string lockError(const fs::path& folder) {
   } catch (const InputError& error) {
     return error.what();
   }
+}
+
+std::set<std::string> namesOf(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
 }
 
 /// A process that runs `body` and waits until it is killed with the object.
@@ -57,22 +66,22 @@ class Child {
   pid_t id_ = 0;
 };
 
-class OutputFolder : public testing::Test {
+class OutputFolderTest : public testing::Test {
  protected:
-  ~OutputFolder() override { ::unsetenv("TMPDIR"); }
+  ~OutputFolderTest() override { ::unsetenv("TMPDIR"); }
   fs::path folder() const { return scratch_.path() / "made" / "results"; }
   fs::path lockFile() const { return folder() / FolderLock::kFile; }
   test::TemporaryFolder scratch_;
 };
 
-TEST_F(OutputFolder, AFileInItsPlaceIsNamedAsOne) {
+TEST_F(OutputFolderTest, AFileInItsPlaceIsNamedAsOne) {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "results";
   writeFileAtomically(file, "");
   EXPECT_EQ(lockError(file), "'" + file.string() + "' is a file; give a folder");
 }
 
-TEST_F(OutputFolder, LockIsAFileThatGoesWithTheObject) {
+TEST_F(OutputFolderTest, LockIsAFileThatGoesWithTheObject) {
   {
     const FolderLock lock(folder(), "first");
     EXPECT_TRUE(fs::exists(lockFile()));
@@ -81,7 +90,7 @@ TEST_F(OutputFolder, LockIsAFileThatGoesWithTheObject) {
   EXPECT_EQ(lockError(folder()), "");
 }
 
-TEST_F(OutputFolder, FoldersMadeForNothingGoWithTheLockAndOthersStay) {
+TEST_F(OutputFolderTest, FoldersMadeForNothingGoWithTheLockAndOthersStay) {
   { const FolderLock lock(folder(), "first"); }
   EXPECT_FALSE(fs::exists(folder().parent_path()));
   fs::create_directories(folder().parent_path());
@@ -95,7 +104,7 @@ TEST_F(OutputFolder, FoldersMadeForNothingGoWithTheLockAndOthersStay) {
   EXPECT_TRUE(fs::exists(folder() / "result"));
 }
 
-TEST_F(OutputFolder, ASecondWriterLearnsHostProcessAndProgramOfTheFirst) {
+TEST_F(OutputFolderTest, ASecondWriterLearnsHostProcessAndProgramOfTheFirst) {
   std::optional<FolderLock> lock;
   const Child first([&] { lock.emplace(folder(), "cdiff run"); });
   const std::string error = lockError(folder());
@@ -107,7 +116,7 @@ TEST_F(OutputFolder, ASecondWriterLearnsHostProcessAndProgramOfTheFirst) {
       << error;
 }
 
-TEST_F(OutputFolder, ALockOfAKilledProcessIsTakenOver) {
+TEST_F(OutputFolderTest, ALockOfAKilledProcessIsTakenOver) {
   std::optional<FolderLock> lock;
   {
     const Child first([&] { lock.emplace(folder(), "cdiff run"); });
@@ -117,7 +126,7 @@ TEST_F(OutputFolder, ALockOfAKilledProcessIsTakenOver) {
   EXPECT_FALSE(fs::exists(lockFile()));
 }
 
-TEST_F(OutputFolder, ALockOfAnotherHostSaysWhatToDelete) {
+TEST_F(OutputFolderTest, ALockOfAnotherHostSaysWhatToDelete) {
   fs::create_directories(folder());
   std::ofstream(lockFile()) << "host: far.away\nprocess: 12\nprogram: cdiff run\nsince: then\n";
   const std::string error = lockError(folder());
@@ -128,7 +137,7 @@ TEST_F(OutputFolder, ALockOfAnotherHostSaysWhatToDelete) {
   EXPECT_TRUE(fs::exists(lockFile()));
 }
 
-TEST_F(OutputFolder, ScratchFoldersOfKilledProcessesAreRemovedAndOthersStay) {
+TEST_F(OutputFolderTest, ScratchFoldersOfKilledProcessesAreRemovedAndOthersStay) {
   ::setenv("TMPDIR", scratch_.path().c_str(), 1);
   const auto makeScratch = [] { new ScratchFolder(); };  // not removed by the child
   const Child alive(makeScratch);
@@ -145,35 +154,165 @@ TEST_F(OutputFolder, ScratchFoldersOfKilledProcessesAreRemovedAndOthersStay) {
   EXPECT_EQ(count(), 2);  // that of `alive` and that of `next`
 }
 
-TEST_F(OutputFolder, AReservedFileIsThereWhenWrittenOnly) {
-  const fs::path file = scratch_.path() / "summary.json";
-  {
-    ReservedFile reserved(file, 1 << 16);
-    struct stat status {};
-    ASSERT_EQ(::stat((file.string() + ".tmp." + std::to_string(::getpid())).c_str(), &status), 0);
-    EXPECT_GE(status.st_blocks * 512, 1 << 16);  // its room is taken
-    EXPECT_FALSE(fs::exists(file));
-    reserved.write("content");
-    EXPECT_EQ(readFile(file, "file"), "content");
-  }
-  { const ReservedFile unused(scratch_.path() / "other", 1 << 16); }
-  EXPECT_EQ(std::distance(fs::directory_iterator(scratch_.path()), fs::directory_iterator()), 1);
+TEST_F(OutputFolderTest, AScratchFolderOfAUserStays) {
+  ::setenv("TMPDIR", scratch_.path().c_str(), 1);
+  const fs::path mine = scratch_.path() / "e2e_cdiff_scratch_mine";
+  fs::create_directory(mine);
+  std::ofstream(mine / "thesis") << "mine";
+  const timespec times[2] = {{0, UTIME_OMIT}, {::time(nullptr) - 3600, 0}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, mine.c_str(), times, 0), 0);
+  const Child next([] { new ScratchFolder(); });  // the first scratch folder of its process
+  EXPECT_EQ(readFile(mine / "thesis", "file"), "mine");
 }
 
-TEST_F(OutputFolder, HalvesOfDeadWritersGoAndThoseOfLivingStay) {
-  pid_t dead = 0;
-  {
-    const Child child([] {});
-    dead = child.id();
+TEST_F(OutputFolderTest, ALockThatIsALinkOrNotOursIsRefusedAndStays) {
+  const fs::path notes = scratch_.path() / "notes";
+  std::ofstream(notes) << "mine";
+  fs::create_directories(folder());
+  fs::create_symlink(notes, lockFile());
+  EXPECT_NE(lockError(folder()).find(lockFile().string()), std::string::npos);
+  EXPECT_EQ(readFile(notes, "notes"), "mine");
+  fs::remove(lockFile());
+  for (const char* content : {"", "my own lock\n"}) {
+    std::ofstream(lockFile()) << content;
+    EXPECT_NE(lockError(folder()).find(lockFile().string()), std::string::npos);
+    EXPECT_EQ(readFile(lockFile(), "lock"), content);
   }
-  const fs::path alive = scratch_.path() / ("a.tmp." + std::to_string(::getpid()));
-  const fs::path half = scratch_.path() / ("a.tmp." + std::to_string(dead));
-  const fs::path other = scratch_.path() / "a.tmp.mine";
-  for (const fs::path& file : {alive, half, other}) std::ofstream(file) << "half";
-  removeDeadTemporaries(scratch_.path());
-  EXPECT_TRUE(fs::exists(alive));
-  EXPECT_FALSE(fs::exists(half));
-  EXPECT_TRUE(fs::exists(other));
+  fs::remove(lockFile());
+  ASSERT_EQ(::mkfifo(lockFile().c_str(), 0644), 0);
+  EXPECT_NE(lockError(folder()).find(lockFile().string()), std::string::npos);
+  EXPECT_EQ(namesOf(folder()), (std::set<std::string>{".lock"}));
+}
+
+TEST_F(OutputFolderTest, AFolderThatIsALinkIsRefused) {
+  fs::create_directories(scratch_.path() / "elsewhere");
+  const fs::path link = scratch_.path() / "link";
+  fs::create_directory_symlink(scratch_.path() / "elsewhere", link);
+  EXPECT_NE(lockError(link).find("elsewhere"), std::string::npos);
+  EXPECT_NE(lockError(link / "").find("elsewhere"), std::string::npos);
+  EXPECT_THROW(OutputFolder{link}, InputError);
+  EXPECT_THROW(OutputFolder::requireFree(link, {"a"}), InputError);
+  EXPECT_TRUE(fs::is_empty(scratch_.path() / "elsewhere"));
+}
+
+TEST_F(OutputFolderTest, ReplacesAndRemovesOnlyWhatItsRecordLists) {
+  fs::create_directories(folder());
+  std::ofstream(folder() / "mine") << "mine";
+  std::ofstream(folder() / "half.part") << "mine";
+  OutputFolder output(folder());
+  EXPECT_THROW(output.write("mine", "ours"), InputError);
+  EXPECT_THROW(output.write("half", "ours"), InputError);
+  EXPECT_THROW(output.claim("mine"), InputError);
+  EXPECT_THROW(OutputFolder::requireFree(folder(), {"ours", "mine"}), InputError);
+  output.write("ours", "first");
+  output.write("ours", "second");
+  EXPECT_EQ(readFile(folder() / "ours", "file"), "second");
+  EXPECT_TRUE(OutputFolder::lists(folder(), "ours"));
+  OutputFolder::requireFree(folder(), {"ours"});
+  output.remove("mine");
+  output.clear();
+  EXPECT_EQ(readFile(folder() / "mine", "file"), "mine");
+  EXPECT_EQ(namesOf(folder()), (std::set<std::string>{"half.part", "mine"}));
+}
+
+TEST_F(OutputFolderTest, WhatTookTheNameOfARemovedFileIsTheUsers) {
+  OutputFolder output(folder());
+  output.write("a", "ours");
+  output.write("b", "ours");
+  output.remove("a");
+  std::ofstream(folder() / "a") << "mine";
+  EXPECT_THROW(output.write("a", "ours"), InputError);
+  fs::remove(folder() / "b");
+  fs::create_symlink(folder() / "a", folder() / "b");
+  EXPECT_THROW(output.write("b", "ours"), InputError) << "a link is never the program's";
+  output.clear();
+  EXPECT_TRUE(fs::is_symlink(folder() / "b"));
+  EXPECT_EQ(readFile(folder() / "a", "file"), "mine");
+}
+
+TEST_F(OutputFolderTest, ARecordThatIsNotOursOrCutOffHarmsNothing) {
+  fs::create_directories(folder());
+  const fs::path record = folder() / OutputFolder::kRecord;
+  std::ofstream(record) << "my list\n";
+  EXPECT_THROW(OutputFolder(folder()).write("a", "ours"), InputError);
+  EXPECT_EQ(readFile(record, "record"), "my list\n");
+  fs::remove(record);
+  OutputFolder output(folder());
+  output.write("a", "ours");
+  std::ofstream(record, std::ios::app) << "+notes";  // a write of "+notes.txt" that was cut off
+  std::ofstream(folder() / "notes") << "mine";
+  output.write("b", "ours");
+  EXPECT_THROW(output.write("notes", "ours"), InputError);
+  std::ofstream(record, std::ios::app) << "+../outside\n+..\n";
+  std::ofstream(folder().parent_path() / "outside") << "mine";
+  output.clear();
+  EXPECT_EQ(readFile(folder().parent_path() / "outside", "file"), "mine");
+  EXPECT_EQ(namesOf(folder()), (std::set<std::string>{"notes"}));
+}
+
+TEST_F(OutputFolderTest, SubfoldersAreClearedAndStayWithFilesOfTheUsers) {
+  OutputFolder output(folder());
+  OutputFolder(output.subfolder("full")).write("ours", "");
+  OutputFolder(output.subfolder("ours")).write("ours", "");
+  std::ofstream(folder() / "full" / "mine") << "mine";
+  fs::create_directory(folder() / "theirs");
+  OutputFolder(output.subfolder("theirs")).write("ours", "");
+  fs::create_directory_symlink(folder() / "theirs", folder() / "link");
+  EXPECT_THROW(output.subfolder("link"), InputError);
+  output.clear();
+  EXPECT_FALSE(fs::exists(folder() / "ours"));
+  EXPECT_EQ(namesOf(folder() / "full"), (std::set<std::string>{"mine"}));
+  EXPECT_TRUE(fs::exists(folder() / "theirs" / "ours")) << "that folder is not on the record";
+}
+
+TEST_F(OutputFolderTest, ARenamedFolderIsFollowedAndADeletedOneMadeAgain) {
+  OutputFolder output(folder());
+  PendingFile first(output, "first");
+  first.append("whole");
+  const fs::path moved = folder().parent_path() / "moved";
+  fs::rename(folder(), moved);
+  EXPECT_EQ(output.path(), moved);
+  first.finish();
+  EXPECT_EQ(readFile(moved / "first", "file"), "whole");
+  EXPECT_FALSE(fs::exists(folder()));
+  PendingFile second(output, "second", 1 << 16);
+  second.append("saved");
+  fs::remove_all(moved);
+  EXPECT_FALSE(output.wasDeleted());
+  second.finish();
+  EXPECT_TRUE(output.wasDeleted());
+  EXPECT_EQ(readFile(folder() / "second", "file"), "saved");
+}
+
+TEST_F(OutputFolderTest, APendingFileIsThereWhenFinishedOnlyAndTakesItsRoom) {
+  OutputFolder output(folder());
+  {
+    PendingFile file(output, "summary.json", 1 << 16);
+    struct stat status {};
+    ASSERT_EQ(::stat((folder() / "summary.json.part").c_str(), &status), 0);
+    EXPECT_GE(status.st_blocks * 512, 1 << 16);  // its room is taken
+    EXPECT_FALSE(fs::exists(folder() / "summary.json"));
+    file.append("con");
+    file.append("tent");
+    file.finish();
+    EXPECT_EQ(readFile(folder() / "summary.json", "file"), "content");
+  }
+  { const PendingFile unused(output, "other"); }
+  EXPECT_EQ(namesOf(folder()), (std::set<std::string>{".cdiff_files", "summary.json"}));
+}
+
+TEST_F(OutputFolderTest, HalvesOfKilledWritersAreRemovedByTheNext) {
+  {
+    const Child killed([this] {
+      static OutputFolder output(folder());
+      static PendingFile file(output, "trace.csv");
+    });
+  }
+  EXPECT_TRUE(fs::exists(folder() / "trace.csv.part"));
+  std::ofstream(folder() / "mine.part") << "mine";
+  OutputFolder output(folder());
+  output.removeUnfinished();
+  EXPECT_EQ(namesOf(folder()), (std::set<std::string>{"mine.part"}));
 }
 
 }  // namespace

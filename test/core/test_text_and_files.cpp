@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -178,11 +180,46 @@ TEST(File, AtomicWriteThatFailsLeavesNothingBehind) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder),
                           std::filesystem::directory_iterator()),
             1);
-  writeFileAtomically(folder / "b.txt.tmp.17", "left by a process that was killed");
-  removeTemporaries(folder);
-  EXPECT_FALSE(std::filesystem::exists(folder / "b.txt.tmp.17"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "a.txt"));
   std::filesystem::remove_all(folder);
+}
+
+TEST(File, AnOutputIsWrittenThroughDevicesAndPipesAndReplacesNone) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0644), 0);
+  EXPECT_THROW(writeFileAtomically(pipe, "text"), InputError) << "nobody reads";
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  writeFileAtomically(pipe, "text");
+  char read[8] = {};
+  EXPECT_EQ(::read(reader, read, sizeof(read)), 4);
+  EXPECT_STREQ(read, "text");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  writeFileAtomically("/dev/null", "text");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  const int open = ::open((folder.path() / "stream").c_str(), O_RDWR | O_CREAT, 0644);
+  ASSERT_EQ(::write(open, "first ", 6), 6);
+  writeFileAtomically("/dev/fd/" + std::to_string(open), "second");
+  ::close(open);
+  EXPECT_EQ(readFile(folder.path() / "stream", "file"), "first second");
+}
+
+TEST(File, AnOutputFollowsNoLinkOutOfItsFolder) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  const test::TemporaryFolder other;
+  writeFileAtomically(other.path() / "theirs", "theirs");
+  fs::create_symlink(other.path() / "theirs", folder.path() / "out");
+  fs::create_symlink(folder.path() / "nothing", folder.path() / "dangling");
+  writeFileAtomically(folder.path() / "here", "before");
+  fs::create_symlink("here", folder.path() / "inside");
+  EXPECT_THROW(writeFileAtomically(folder.path() / "out", "text"), InputError);
+  EXPECT_THROW(writeFileAtomically(folder.path() / "dangling", "text"), InputError);
+  EXPECT_EQ(readFile(other.path() / "theirs", "file"), "theirs");
+  writeFileAtomically(folder.path() / "inside", "text");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "inside"));
+  EXPECT_EQ(readFile(folder.path() / "here", "file"), "text");
 }
 
 TEST(File, AShippedNameOrAFileIsFoundOrTheNearestNamed) {

@@ -26,7 +26,8 @@ std::string errorOf(const std::string& text) {
 
 TEST(TraceFile, ReadsBackWhatTheWriterWrote) {
   const test::TemporaryFolder scratch;
-  TraceWriter writer(scratch.path() / "trace.csv");
+  core::OutputFolder output(scratch.path());
+  TraceWriter writer(output);
   traffic::TrafficSnapshot snapshot = test::sampleSnapshot(53);
   snapshot.vehicles[2].id = "a,\"b\"\nc";
   writer.write(snapshot);

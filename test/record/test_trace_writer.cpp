@@ -23,7 +23,8 @@ traffic::Vehicle vehicle(const std::string& id, traffic::VehicleRole role, doubl
 
 TEST(TraceWriter, WritesRowsInOrderWithShortestDecimals) {
   const test::TemporaryFolder scratch;
-  TraceWriter writer(scratch.path() / "trace.csv");
+  core::OutputFolder output(scratch.path());
+  TraceWriter writer(output);
   traffic::TrafficSnapshot snapshot;
   snapshot.tick = 12;
   snapshot.vehicles = {vehicle("ego", traffic::VehicleRole::kEgo, 1e-7),
@@ -40,7 +41,8 @@ TEST(TraceWriter, WritesRowsInOrderWithShortestDecimals) {
 TEST(TraceWriter, HashIsThatOfTheFileBeyondOneBuffer) {
   const test::TemporaryFolder scratch;
   const auto file = scratch.path() / "trace.csv";
-  TraceWriter writer(file);
+  core::OutputFolder output(scratch.path());
+  TraceWriter writer(output);
   traffic::TrafficSnapshot snapshot;
   for (int i = 0; i < 50; ++i) {
     snapshot.vehicles.push_back(
@@ -57,22 +59,26 @@ TEST(TraceWriter, HashIsThatOfTheFileBeyondOneBuffer) {
 TEST(TraceWriter, LeavesNothingBehindWhenNotFinished) {
   const test::TemporaryFolder scratch;
   {
-    TraceWriter writer(scratch.path() / "trace.csv");
+    core::OutputFolder output(scratch.path());
+    TraceWriter writer(output);
     EXPECT_FALSE(std::filesystem::exists(scratch.path() / "trace.csv"));
     EXPECT_FALSE(std::filesystem::is_empty(scratch.path()));
   }
   EXPECT_TRUE(std::filesystem::is_empty(scratch.path()));
 }
 
-TEST(TraceWriter, NamesAPathThatCannotBeWritten) {
+TEST(TraceWriter, ATraceThatIsNotOursIsNamedAndStays) {
   const test::TemporaryFolder scratch;
+  const auto file = scratch.path() / "trace.csv";
+  core::writeFileAtomically(file, "mine");
+  core::OutputFolder output(scratch.path());
   try {
-    TraceWriter writer(scratch.path() / "missing" / "trace.csv");
-    FAIL() << "a missing folder was accepted";
+    TraceWriter writer(output);
+    FAIL() << "a file of the user's was accepted";
   } catch (const core::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("missing/trace.csv"), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
   }
+  EXPECT_EQ(core::readFile(file, "trace"), "mine");
 }
 
 }  // namespace

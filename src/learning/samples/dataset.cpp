@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
 #include "learning/samples/driving_sample.h"
@@ -72,7 +73,7 @@ std::string ShardWriter::take(const std::map<std::string, std::string>& facts) {
 }
 
 void ShardWriter::write(const fs::path& path, const std::map<std::string, std::string>& facts) {
-  core::writeFileAtomically(path, take(facts));
+  core::writeOwnFile(path, take(facts));
 }
 
 ShardReader::ShardReader(const fs::path& path, const ShardKind& kind)

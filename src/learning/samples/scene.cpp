@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/dataset.h"
@@ -86,7 +87,7 @@ Scene sceneOf(std::string bytes, const std::string& source) {
 }
 
 void writeScene(const std::filesystem::path& path, const Scene& scene) {
-  core::writeFileAtomically(path, sceneBytes(scene));
+  core::writeOwnFile(path, sceneBytes(scene));
 }
 
 Scene readScene(const std::filesystem::path& path) {

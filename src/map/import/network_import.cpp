@@ -83,7 +83,6 @@ fs::path cachedFile(const std::string& content) {
     throw core::InputError("cannot make the cache folder '" + folder.string() +
                            "': " + error.message());
   }
-  core::removeDeadTemporaries(folder);
   const std::string key = core::sha256(content + "\n" + kImporterVersion);
   return folder / (key + ".net.xml");
 }

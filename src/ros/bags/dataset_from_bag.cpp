@@ -13,6 +13,7 @@
 #include "collection/scene_recorder.h"
 #include "collection/training_samples.h"
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
@@ -188,7 +189,6 @@ void record(const collection::CollectRequest& request, const collection::Collect
   if (bag) bag->finish();
   if (!scene) return;
   const fs::path file = collection::sceneFile(request, name);
-  fs::create_directories(file.parent_path());
   learning::writeScene(file, scene->take());
 }
 
@@ -204,9 +204,8 @@ collection::DatasetStatistics writeShard(const collection::CollectRequest& reque
   learning::DrivingShardWriter writer(collection::schemaOf(options.architecture));
   for (const learning::DrivingSample& sample : samplesFromBag(bag, options, statistics))
     writer.append(sample);
-  fs::create_directories(shard.parent_path());
   if (statistics.samples == 0) {
-    fs::remove(shard);
+    core::OutputFolder(shard.parent_path()).remove(shard.filename().string());
     return statistics;
   }
   writer.write(shard, {{"made_by", "cdiff collect"},
@@ -247,10 +246,9 @@ void collectSession(const collection::CollectRequest& request, const std::atomic
   if (!request.images) return;
   const collection::DatasetStatistics statistics =
       writeShard(request, settings, bag, collection::shardFile(request, name));
-  if (!request.keep_bag) fs::remove(bag);
+  if (!request.keep_bag) core::OutputFolder(bag.parent_path()).remove(bag.filename().string());
   const fs::path file = collection::statisticsFile(request, name);
-  fs::create_directories(file.parent_path());
-  core::writeFileAtomically(file, collection::toJson(statistics));
+  core::writeOwnFile(file, collection::toJson(statistics));
 }
 
 collection::StatisticsByName collectBags(const BagRequest& request) {
@@ -267,7 +265,6 @@ collection::StatisticsByName collectBags(const BagRequest& request) {
     const fs::path shard = request.results / "shards" / (bag.stem().string() + ".shard");
     std::cerr << bag.string() << ": " << statistics.samples << " samples\n";
     if (statistics.samples == 0) continue;
-    fs::create_directories(shard.parent_path());
     writer.write(shard, {{"made_by", "cdiff collect --bags"},
                          {"bag", bag.filename().string()},
                          {"topics", core::dumpOptions(topics)}});

@@ -21,14 +21,16 @@ namespace fs = std::filesystem;
 }  // namespace
 
 BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, Naming naming)
-    : file_(file),
+    : folder_(fs::absolute(file).parent_path()),
+      name_(file.filename().string()),
       max_cbv_(static_cast<int>(options.max_cbv)),
       reading_{session::VehicleRigs(options), options.simulation_step},
       naming_(std::move(naming)),
       bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
-    if (file_.has_parent_path()) fs::create_directories(file_.parent_path());
-    bag_->open(file_.string() + ".active", rosbag::bagmode::Write);
+    core::OutputFolder::requireFree(folder_.path(), {name_});
+    folder_.remove(activeName());
+    bag_->open(folder_.claim(activeName()).string(), rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
   });
 }
@@ -40,8 +42,12 @@ BagFile::~BagFile() {
     // On a full disk. Its destructor would try once more and end the program, so it gets none.
     static_cast<void>(bag_.release());
   }
-  std::error_code ignored;
-  if (failed_) fs::remove(file_.string() + ".active", ignored);
+  if (!failed_) return;
+  try {
+    folder_.remove(activeName());
+  } catch (const core::InputError&) {
+    // It stays on the record, and goes with the next session.
+  }
 }
 
 void BagFile::discard() { failed_ = true; }
@@ -54,8 +60,9 @@ void BagFile::guard(const std::function<void()>& writing) {
   } catch (const std::exception& error) {
     const std::string reason = errno == 0 ? "" : " (" + core::writeErrorText(errno) + ")";
     failed_ = true;
-    throw core::InputError("cannot write the bag '" + file_.string() + "': " + error.what() +
-                           reason + "; check that the folder exists, is writable and has room");
+    throw core::InputError("cannot write the bag '" + (folder_.path() / name_).string() +
+                           "': " + error.what() + reason +
+                           "; check that the folder exists, is writable and has room");
   }
 }
 
@@ -93,7 +100,8 @@ void BagFile::writeTick(const TickMessages& tick) {
 void BagFile::finish() {
   guard([&] {
     bag_->close();
-    fs::rename(file_.string() + ".active", file_);
+    fs::rename(folder_.path() / activeName(), folder_.claim(name_));
+    folder_.remove(activeName());
   });
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/output_folder.h"
 #include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/rendering/camera_options.h"
 #include "nav_msgs/Path.h"
@@ -27,7 +28,8 @@ class BagFile {
   /// Name in the bag of a topic whose name is relative.
   using Naming = std::function<std::string(const std::string& topic)>;
 
-  /// Makes the file's folder. Throws InputError naming the file when it cannot be written.
+  /// Makes the file's folder. Throws InputError naming the file when it cannot be written, or when
+  /// this program did not make the one that is there.
   BagFile(const std::filesystem::path& file, const session::ScenarioOptions& options,
           Naming naming);
   ~BagFile();
@@ -50,7 +52,10 @@ class BagFile {
   void writeTick(const TickMessages& tick);
   void put(const Topic& topic, const ::ros::Time& stamp, const AnyMessage& message);
 
-  std::filesystem::path file_;
+  std::string activeName() const { return name_ + ".active"; }
+
+  core::OutputFolder folder_;
+  std::string name_;
   int max_cbv_;  ///< slots
   TickReading reading_;
   Naming naming_;
