@@ -102,13 +102,14 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
     throw InputError("'" + folder.string() +
                      "' holds the result of a session (session.yaml); give another --results");
   }
+  if (!arguments.resume && !arguments.overwrite && fs::exists(folder / kMatrixFile, error)) {
+    throw InputError("'" + folder.string() + "' holds the results of a batch (" + kMatrixFile +
+                     "); go on with it (--resume), replace it (--overwrite), or give another "
+                     "--results");
+  }
   std::vector<std::string> names = kBatchFiles;
   if (!arguments.open_sealed.empty()) names.emplace_back("opened.log");
   core::OutputFolder::requireFree(folder, names);
-  if (arguments.resume || arguments.overwrite || !fs::exists(folder / kMatrixFile, error)) return;
-  throw InputError("'" + folder.string() + "' holds the results of a batch (" + kMatrixFile +
-                   "); go on with it (--resume), replace it (--overwrite), or give another "
-                   "--results");
 }
 
 /// Makes what a batch needs in a folder that is ours, and keeps the matrix in it; on resumption

@@ -138,9 +138,10 @@ int openFolder(const fs::path& folder) {
   constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
   const int descriptor = ::open(folder.c_str(), kFlags);
   if (descriptor >= 0) return descriptor;
-  const int reason = errno;
+  int reason = errno;
   std::error_code none;
-  if (fs::is_symlink(folder, none)) {
+  if (fs::is_symlink(folder, none) && ::access(folder.c_str(), F_OK) != 0) reason = errno;
+  if (fs::is_symlink(folder, none) && fs::is_directory(folder, none)) {
     throw InputError("'" + folder.string() + "' is a symbolic link to '" +
                      fs::read_symlink(folder, none).string() + "'; give the folder itself");
   }
@@ -277,59 +278,128 @@ constexpr const char* kRecordHead =
 constexpr off_t kLargestRecord = off_t{1} << 26;  // [bytes]
 constexpr const char* kPart = ".part";
 
-InputError noRecord(const fs::path& folder) {
-  return InputError("'" + (folder / OutputFolder::kRecord).string() +
-                    "' is no record of this program; move it away, or give another folder");
-}
-
-/// Text of the record; empty without one.
-std::string recordText(int directory, const fs::path& folder) {
-  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  const int descriptor = ::openat(directory, OutputFolder::kRecord, kFlags);
-  if (descriptor < 0 && errno == ENOENT) return "";
-  struct stat status {};
-  std::string text;
-  if (descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
-      status.st_size <= kLargestRecord) {
-    text.resize(static_cast<std::size_t>(status.st_size));
-    const ssize_t count = ::pread(descriptor, text.data(), text.size(), 0);
-    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+/// The record of a folder, open and locked against other processes.
+class Record {
+ public:
+  /// Opens the record, and makes it where there is none and it `must` be there.
+  Record(int directory, const fs::path& folder, bool must)
+      : directory_(directory), folder_(folder) {
+    do {
+      close();
+      descriptor_ = open();
+      if (descriptor_ < 0 && errno == ENOENT) {
+        if (!must) return;
+        make();
+        continue;
+      }
+      if (descriptor_ < 0 && errno != ELOOP && errno != EISDIR && errno != ENXIO)
+        failOn(folder / OutputFolder::kRecord, "write", errno);
+      if (descriptor_ < 0 || !readNames()) {
+        close();
+        throw InputError("'" + (folder / OutputFolder::kRecord).string() +
+                         "' is no record of this program; move it away, or give another folder");
+      }
+    } while (!isSameFile(descriptor_, directory, OutputFolder::kRecord));  // removed meanwhile
   }
-  if (descriptor >= 0) ::close(descriptor);
-  if (text.rfind(kRecordHead, 0) != 0) throw noRecord(folder);
-  return text;
-}
+  ~Record() { close(); }
+  Record(const Record&) = delete;
+  Record& operator=(const Record&) = delete;
 
-/// Names in the record. A line is a sign, + or -, and a name; one with a slash was cut off.
-std::set<std::string> namesIn(const std::string& record) {
-  std::set<std::string> names;
-  std::vector<std::string> lines = splitText(record, '\n');
-  if (!record.empty() && record.back() != '\n') lines.pop_back();  // cut off
-  for (const std::string& line : lines) {
-    if (line.size() < 2 || line.find('/') != std::string::npos) continue;
-    if (line[0] == '+') names.insert(line.substr(1));
-    if (line[0] == '-') names.erase(line.substr(1));
+  const std::set<std::string>& names() const { return names_; }
+  bool lists(const std::string& name) const { return names_.count(name) != 0; }
+
+  void add(const std::string& name) {
+    if (names_.insert(name).second) store();
   }
-  names.erase(".");
-  names.erase("..");
-  return names;
-}
+  /// A record without names is removed.
+  void erase(const std::string& name) {
+    if (names_.erase(name) == 0) return;
+    if (names_.empty()) {
+      remove();
+    } else {
+      store();
+    }
+  }
+  void remove() const {
+    if (descriptor_ >= 0) ::unlinkat(directory_, OutputFolder::kRecord, 0);
+  }
 
-/// Adds a line to the record with one write, so that several processes may.
-void appendToRecord(int directory, const fs::path& folder, const std::string& line) {
-  const std::string before = recordText(directory, folder);
-  std::string text = before.empty() ? std::string(kRecordHead) + "\n" : "";
-  if (!before.empty() && before.back() != '\n') text = "/\n";  // ends a line that was cut off
-  text += line + "\n";
-  const int descriptor = ::openat(directory, OutputFolder::kRecord,
-                                  O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
-  if (descriptor < 0) failOn(folder / OutputFolder::kRecord, "write", errno);
-  const ssize_t written = ::write(descriptor, text.data(), text.size());
-  const int reason = errno;
-  ::close(descriptor);
-  if (written != static_cast<ssize_t>(text.size()))
-    failOn(folder / OutputFolder::kRecord, "write", written < 0 ? reason : ENOSPC);
-}
+ private:
+  void close() {
+    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  }
+
+  int open() const {
+    constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+    const int descriptor = ::openat(directory_, OutputFolder::kRecord, O_RDWR | kFlags);
+    if (descriptor >= 0 || (errno != EACCES && errno != EROFS)) return descriptor;
+    return ::openat(directory_, OutputFolder::kRecord, O_RDONLY | kFlags);
+  }
+
+  /// Makes an empty one that is whole before anybody can see it.
+  void make() const {
+    const std::string text = std::string(kRecordHead) + "\n";
+    const fs::path file = folder_ / OutputFolder::kRecord;
+    std::string draft = file.string() + ".XXXXXX";
+    const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
+    if (descriptor < 0) failOn(file, "write", errno);
+    errno = ENOSPC;  // where less than all is written
+    const bool written =
+        ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
+        ::fchmod(descriptor, 0644) == 0;
+    const int reason = written ? placeUnlessThere(draft, file) : errno;
+    ::close(descriptor);
+    ::unlink(draft.c_str());
+    if (reason != 0 && reason != EEXIST) failOn(file, "write", reason);
+  }
+
+  /// Whether it is a record.
+  bool readNames() {
+    struct stat status {};
+    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) ||
+        status.st_size > kLargestRecord)
+      return false;
+    text_.assign(static_cast<std::size_t>(status.st_size), '\0');
+    const ssize_t count = ::pread(descriptor_, text_.data(), text_.size(), 0);
+    text_.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    names_.clear();
+    if (text_.rfind(kRecordHead, 0) != 0) return false;
+    std::vector<std::string> lines = splitText(text_, '\n');
+    if (text_.back() != '\n') lines.pop_back();  // cut off
+    for (const std::string& line : lines) {
+      const bool name = !line.empty() && line.find('/') == std::string::npos && line != "." &&
+                        line != ".." && line != kRecordHead;
+      if (name) names_.insert(line);
+    }
+    return true;
+  }
+
+  /// Writes it in place, in the order of the names; on a full disk it is as it was before.
+  void store() {
+    std::string text = std::string(kRecordHead) + "\n";
+    for (const std::string& name : names_) text += name + "\n";
+    const auto write = [this](const std::string& content) {
+      return ::pwrite(descriptor_, content.data(), content.size(), 0) ==
+                 static_cast<ssize_t>(content.size()) &&
+             ::ftruncate(descriptor_, static_cast<off_t>(content.size())) == 0;
+    };
+    errno = ENOSPC;  // where less than all is written
+    if (write(text)) {
+      text_ = text;
+      return;
+    }
+    const int reason = errno;
+    (void)write(text_);
+    failOn(folder_ / OutputFolder::kRecord, "write", reason);
+  }
+
+  int directory_;
+  fs::path folder_;
+  int descriptor_ = -1;
+  std::string text_;
+  std::set<std::string> names_;
+};
 
 bool isThere(int directory, const std::string& name, struct stat& status) {
   return ::fstatat(directory, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
@@ -337,11 +407,11 @@ bool isThere(int directory, const std::string& name, struct stat& status) {
 
 /// Throws InputError where something is there under this name that is not the program's.
 void requireOwn(int directory, const fs::path& folder, const std::string& name,
-                const std::set<std::string>& listed) {
+                const Record& record) {
   struct stat status {};
   if (!isThere(directory, name, status)) return;
   const std::string place = "'" + (folder / name).string() + "'";
-  if (listed.count(name) == 0) {
+  if (!record.lists(name)) {
     throw InputError(place +
                      " would be replaced, but this program has no record of having made it (" +
                      OutputFolder::kRecord + "); move it away, or give another folder");
@@ -358,10 +428,10 @@ void OutputFolder::requireFree(const fs::path& folder, const std::vector<std::st
   if (!fs::is_directory(folder, none) && !fs::exists(fs::symlink_status(folder, none))) return;
   const int directory = openFolder(withoutSlash(folder));
   try {
-    const std::set<std::string> listed = namesIn(recordText(directory, folder));
+    const Record record(directory, folder, false);
     for (const std::string& name : names) {
-      requireOwn(directory, folder, name, listed);
-      requireOwn(directory, folder, name + kPart, listed);
+      requireOwn(directory, folder, name, record);
+      requireOwn(directory, folder, name + kPart, record);
     }
   } catch (...) {
     ::close(directory);
@@ -373,9 +443,9 @@ void OutputFolder::requireFree(const fs::path& folder, const std::vector<std::st
 bool OutputFolder::lists(const fs::path& folder, const std::string& name) {
   const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory < 0) return false;
-  const std::string text = recordText(directory, folder);
+  const bool listed = Record(directory, folder, false).lists(name);
   ::close(directory);
-  return namesIn(text).count(name) != 0;
+  return listed;
 }
 
 OutputFolder::OutputFolder(const fs::path& folder)
@@ -409,16 +479,11 @@ void OutputFolder::makeAgain() const {
   deleted_ = true;
 }
 
-void OutputFolder::enter(const std::string& name) {
-  const fs::path folder = path();
-  if (namesIn(recordText(descriptor_, folder)).count(name) == 0)
-    appendToRecord(descriptor_, folder, "+" + name);
-}
-
 fs::path OutputFolder::claim(const std::string& name) {
   const fs::path folder = path();
-  requireOwn(descriptor_, folder, name, namesIn(recordText(descriptor_, folder)));
-  enter(name);
+  Record record(descriptor_, folder, true);
+  requireOwn(descriptor_, folder, name, record);
+  record.add(name);
   return folder / name;
 }
 
@@ -430,8 +495,8 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
 
 void OutputFolder::remove(const std::string& name) {
   const fs::path folder = path();
-  std::set<std::string> listed = namesIn(recordText(descriptor_, folder));
-  if (listed.erase(name) == 0) return;
+  Record record(descriptor_, folder, false);
+  if (!record.lists(name)) return;
   struct stat status {};
   const bool there = isThere(descriptor_, name, status);
   if (there && S_ISREG(status.st_mode) && ::unlinkat(descriptor_, name.c_str(), 0) != 0)
@@ -441,36 +506,32 @@ void OutputFolder::remove(const std::string& name) {
     // Refused where a file of the user's is in it: then it stays, and stays on the record.
     if (::unlinkat(descriptor_, name.c_str(), AT_REMOVEDIR) != 0) return;
   }
-  if (listed.empty()) {
-    forget();
-  } else {
-    appendToRecord(descriptor_, folder, "-" + name);
-  }
+  record.erase(name);
+}
+
+std::set<std::string> OutputFolder::names() const {
+  const fs::path folder = path();
+  return Record(descriptor_, folder, false).names();
 }
 
 void OutputFolder::clear() {
-  const fs::path folder = path();
-  for (const std::string& name : namesIn(recordText(descriptor_, folder))) remove(name);
+  for (const std::string& name : names()) remove(name);
 }
 
 void OutputFolder::removeUnfinished() {
-  const fs::path folder = path();
-  for (const std::string& name : namesIn(recordText(descriptor_, folder)))
+  for (const std::string& name : names())
     if (endsWith(name, kPart)) remove(name);
 }
 
 void OutputFolder::forget() {
-  if (!recordText(descriptor_, path()).empty()) ::unlinkat(descriptor_, kRecord, 0);
+  const fs::path folder = path();
+  Record(descriptor_, folder, false).remove();
 }
 
 fs::path OutputFolder::subfolder(const std::string& name) {
   const fs::path folder = path();
   struct stat status {};
-  if (isThere(descriptor_, name, status)) {
-    ::close(openFolder(folder / name));
-    return folder / name;
-  }
-  enter(name);
+  if (!isThere(descriptor_, name, status)) claim(name);
   ::close(makeFolder(folder / name));
   return folder / name;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,6 +92,8 @@ class OutputFolder {
   std::filesystem::path claim(const std::string& name);
   /// Writes a whole file: it is whole or as it was before. Throws InputError naming the path.
   void write(const std::string& name, std::string_view content);
+  /// What the record lists.
+  std::set<std::string> names() const;
   /// Removes a file that the record lists, and takes it off the record; nothing where it lists none
   /// of that name.
   void remove(const std::string& name);
@@ -106,7 +109,6 @@ class OutputFolder {
 
  private:
   friend class PendingFile;
-  void enter(const std::string& name);
   void makeAgain() const;
 
   std::unique_ptr<FolderLock> lock_;

@@ -108,6 +108,7 @@ class Executor {
     const fs::path folder = folderOf(index);
     core::OutputFolder output(folder);
     output.remove("summary.json");
+    output.removeUnfinished();
     output.write("scenario.yaml", plan_[index].scenario_text);
     ++records_[index].attempts;
     return {options_.program,

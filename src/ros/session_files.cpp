@@ -196,7 +196,8 @@ int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus st
   try {
     enterFolder(parameters.text("folder"));
     folder = askedFolder(parameters);
-    if (!folder.empty() && writtenByThisLaunch(folder / "exit_code"))
+    const bool replaces = status == traffic::SessionStatus::kInterrupted;
+    if (!folder.empty() && !replaces && writtenByThisLaunch(folder / "exit_code"))
       return core::ExitCode::kRunTimeError;
     requireKnownLaunchArguments();  // else it would be the result of another session than was meant
     const auto options = requestedScenario(parameters);

@@ -88,7 +88,8 @@ void enterFolder(const std::string& folder);
 
 /// Writes the result of a session that ended before its first snapshot, which its simulator was to
 /// run with these parameters, and returns the exit code of `cdiff`. A result (file exit_code) that
-/// this launch has already written stays. Bad input is reported in one line, with exit code 3.
+/// this launch has already written stays, unless the session was interrupted. Bad input is reported
+/// in one line, with exit code 3.
 int writeUnstartedResult(const Parameters& parameters, traffic::SessionStatus status,
                          const traffic::Fault& fault);
 

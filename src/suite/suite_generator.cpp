@@ -208,8 +208,8 @@ class Generator {
 };
 
 void requireEmpty(const fs::path& folder) {
-  const fs::file_status status = fs::symlink_status(folder);
-  if (!fs::exists(status) || (fs::is_directory(status) && fs::is_empty(folder))) return;
+  core::OutputFolder::requireFree(folder, {});  // no file, no link
+  if (!fs::exists(folder) || fs::is_empty(folder)) return;
   throw InputError("'" + folder.string() +
                    "' is there already; give --results a folder that is new or empty");
 }

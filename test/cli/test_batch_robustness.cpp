@@ -198,7 +198,7 @@ TEST_F(BatchRobustness, SaysThatTheDiskIsFullAndLeavesNothingHalfWritten) {
   int exit_code = -1;
   const bool mounted = inOwnMounts(std::string(CDIFF_PROGRAM) + " evaluate " + matrix +
                                        " --results " + results + "; code=$?; find " + results +
-                                       " -name '*.tmp.*' -printf 'remains: %f\\n'; cat " + results +
+                                       " -name '*.part' -printf 'remains: %f\\n'; cat " + results +
                                        "/runs/*/record.json; ls " + results + "/runs/*; exit $code",
                                    exit_code);
   if (!mounted) GTEST_SKIP() << "no mounts of one's own on this machine";

@@ -4,6 +4,7 @@
 
 #include "cli/evaluate_command.h"
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {
@@ -73,6 +74,7 @@ TEST_F(EvaluateCommand, RunsAMatrixResumesItAndComparesIt) {
   const std::string other = folder("other");
   fs::copy(results, other, fs::copy_options::recursive);
   for (const auto& entry : fs::directory_iterator(fs::path(other) / "runs")) {
+    if (!entry.is_directory()) continue;
     std::string text = core::readFile(entry.path() / "scenario.yaml", "scenario");
     const std::string limit = "\n  time_limit: 3\n";
     const std::size_t place = text.find(limit);
@@ -169,8 +171,7 @@ TEST_F(EvaluateCommand, RefusesTheFolderOfASession) {
 }
 
 TEST_F(EvaluateCommand, RefusesTheFolderOfAnotherMatrix) {
-  fs::create_directories(folder("results"));
-  write("results/matrix.yaml", "name: other\nscenarios: [bends_oncoming]\n");
+  core::writeOwnFile(folder("results/matrix.yaml"), "name: other\nscenarios: [bends_oncoming]\n");
   EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results")}), 3);
   expectOutput("holds the results of a batch");
   EXPECT_EQ(cdiff({"evaluate", "smoke", "--results", folder("results"), "--resume"}), 3);

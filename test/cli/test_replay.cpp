@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "support/program_run.h"
 #include "support/temporary_folder.h"
 
@@ -168,7 +169,7 @@ TEST_F(ReplayCommand, AFullDiskIsAClearErrorAndNoFileIsHalfWritten) {
     for (const auto& entry : fs::directory_iterator(replayed())) {
       const std::string name = entry.path().filename();
       EXPECT_TRUE(name == "session.yaml" || name == "plans.csv" || name == "summary.json" ||
-                  name == "junit.xml")
+                  name == "junit.xml" || name == core::OutputFolder::kRecord)
           << name;
     }
     EXPECT_EQ(summary()["status"], "error");

@@ -7,6 +7,7 @@
 
 #include "cli/evaluate_command.h"
 #include "cli/processes.h"
+#include "core/output_folder.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -99,8 +100,9 @@ TEST_F(ResultFolder, ClosedStandardStreamsDoNotReachTheTrace) {
 
 TEST_F(ResultFolder, AnEarlierResultIsReplacedOnlyWhenAsked) {
   ASSERT_LE(cdiff(run(seconds(1))), kVerdict) << output();
-  for (const char* name : {"session.bag", "session.mp4", "notes.txt"})
-    std::ofstream(fs::path(results()) / name) << name;
+  for (const char* name : {"session.bag", "session.mp4"})
+    core::writeOwnFile(fs::path(results()) / name, name);
+  std::ofstream(fs::path(results()) / "notes.txt") << "mine";
   const auto before = contentsOf(results());
   EXPECT_EQ(cdiff(run(seconds(1))), 3);
   expectOutput("holds an earlier result (session.yaml)");
@@ -145,21 +147,21 @@ TEST_F(ResultFolder, WhatAKilledSessionLeavesEndsWithItOrIsRemovedByTheNext) {
   words.push_back("--video");
   {
     test::ProgramRun process(CDIFF_PROGRAM, words, scratch_.path() / "output");
-    ASSERT_TRUE(waitUntil([&] { return holds("ffmpeg_process") && holds("trace.csv.tmp."); }));
+    ASSERT_TRUE(waitUntil([&] { return holds("ffmpeg_process") && holds("trace.csv.part"); }));
     process.signal(SIGKILL);
     EXPECT_EQ(process.wait(), 128 + SIGKILL);
   }
   const pid_t encoder = std::stoi(core::readFile(folder("ffmpeg_process"), "process"));
   EXPECT_TRUE(waitUntil([&] { return !isAlive(encoder); })) << "ffmpeg outlives the session";
   std::ofstream(results() + "/session.bag.active") << "half";
-  ASSERT_TRUE(holds(".tmp."));
+  ASSERT_TRUE(holds(".part"));
   ASSERT_TRUE(holds("e2e_cdiff_scratch_"));  // SUMO's log
   for (const auto& entry : fs::directory_iterator(folder("temporary")))
     fs::last_write_time(entry.path(), fs::file_time_type::clock::now() - std::chrono::hours(1));
   std::vector<std::string> next = run(seconds(1));
   next.push_back("--overwrite");
   ASSERT_LE(cdiff(next), kVerdict) << output();
-  for (const char* part : {".tmp.", ".active", "e2e_cdiff_scratch_", ".lock"})
+  for (const char* part : {".part", ".active", "e2e_cdiff_scratch_", ".lock"})
     EXPECT_FALSE(holds(part)) << part;
 }
 
@@ -180,7 +182,7 @@ TEST_F(ResultFolder, OnAFullDiskThereIsASummaryAndRoomAgain) {
   expectOutput("\"status\": \"error\"");
   expectOutput("No space left on device");
   expectOutput("has summary.json");
-  for (const char* part : {".tmp.", "has trace.csv", "has session.bag", "has .lock"})
+  for (const char* part : {".part", "has trace.csv", "has session.bag", "has .lock"})
     EXPECT_EQ(output().find(part), std::string::npos) << part << "\nin\n" << output();
 }
 
@@ -191,7 +193,7 @@ TEST_F(ResultFolder, AFileBeyondTheLimitOfTheShellIsNamedWithTheLimit) {
   EXPECT_EQ(summary()["status"], "error");
   EXPECT_NE(summary()["faults"].back()["text"].get<std::string>().find("ulimit -f"),
             std::string::npos);
-  EXPECT_FALSE(holds(".tmp."));
+  EXPECT_FALSE(holds(".part"));
 }
 
 TEST_F(ResultFolder, NetconvertEndsWithUsWhateverEndsUs) {

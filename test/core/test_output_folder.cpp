@@ -239,11 +239,11 @@ TEST_F(OutputFolderTest, ARecordThatIsNotOursOrCutOffHarmsNothing) {
   fs::remove(record);
   OutputFolder output(folder());
   output.write("a", "ours");
-  std::ofstream(record, std::ios::app) << "+notes";  // a write of "+notes.txt" that was cut off
+  std::ofstream(record, std::ios::app) << "notes";  // a write of "notes.txt" that was cut off
   std::ofstream(folder() / "notes") << "mine";
   output.write("b", "ours");
   EXPECT_THROW(output.write("notes", "ours"), InputError);
-  std::ofstream(record, std::ios::app) << "+../outside\n+..\n";
+  std::ofstream(record, std::ios::app) << "../outside\n..\n";
   std::ofstream(folder().parent_path() / "outside") << "mine";
   output.clear();
   EXPECT_EQ(readFile(folder().parent_path() / "outside", "file"), "mine");

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
@@ -256,9 +257,13 @@ TEST_F(ExecutorTest, RefusesADamagedRecordBeforeAnythingRuns) {
 TEST_F(ExecutorTest, ClearsAwayWhatACutOffRunLeft) {
   const auto runs = plan({"good"});
   execute(runs);
-  std::ofstream(file("good0", "trace.csv.tmp.123")) << "half";
+  const fs::path half = file("good0", "trace.csv.part");
+  const fs::path mine = file("good0", "notes.part");
+  std::ofstream(core::OutputFolder(half.parent_path()).claim("trace.csv.part")) << "half";
+  std::ofstream(mine) << "mine";
   execute(runs);
-  EXPECT_FALSE(fs::exists(file("good0", "trace.csv.tmp.123")));
+  EXPECT_FALSE(fs::exists(half));
+  EXPECT_TRUE(fs::exists(mine));
 }
 
 TEST_F(ExecutorTest, StopsWithARecordOfWhatIsDone) {

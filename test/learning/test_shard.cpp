@@ -173,7 +173,8 @@ TEST_F(ShardTest, WriterNamesWhatDoesNotFit) {
   sample.rollout(3, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(writer.append(sample), InputError);
   EXPECT_EQ(writer.size(), 0U);
-  EXPECT_THROW(writer.write(folder_.path() / "no such folder" / "a.shard"), InputError);
+  core::writeFileAtomically(folder_.path() / "file", "");
+  EXPECT_THROW(writer.write(folder_.path() / "file" / "a.shard"), InputError);
 }
 
 /// A shard of version 1: its header names sizes, its samples are those of version 2.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/metric_registry.h"
 #include "page/result_writer.h"
@@ -472,7 +473,7 @@ TEST(ResultWriter, TheSameTickAgainChangesTheStatusOnly) {
 
 TEST(ResultWriter, TakesAwayWhatAnEarlierSessionLeft) {
   const test::TemporaryFolder scratch;
-  core::writeFileAtomically(scratch.path() / "summary.json", "old");
+  core::writeOwnFile(scratch.path() / "summary.json", "old");
   core::writeFileAtomically(scratch.path() / "notes.txt", "mine");
   {
     const test::SampleSetup sample;

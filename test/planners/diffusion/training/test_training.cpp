@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "core/output_folder.h"
 #include "diffusion/model.h"
 #include "learning/small_samples.h"
 #include "learning/training_fixture.h"
@@ -232,7 +233,13 @@ TEST_F(DiffusionTrainingTest, AStageThatIsReplacedLeavesTheOthersAndAllReplacesE
 
 TEST_F(DiffusionTrainingTest, AModelWithoutCheckpointsIsNotReplacedUnasked) {
   std::filesystem::create_directories(training_.options.output);
-  core::writeFileAtomically(output("encoder.safetensors"), "weights");
+  core::writeFileAtomically(output("encoder.safetensors"), "mine");
+  training_.options.overwrite = true;
+  EXPECT_TRUE(holds(refusal("encoder"), "encoder.safetensors"));
+  EXPECT_EQ(core::readFile(output("encoder.safetensors"), "weights"), "mine");
+  std::filesystem::remove(output("encoder.safetensors"));
+  core::writeOwnFile(output("encoder.safetensors"), "weights");
+  training_.options.overwrite = false;
   EXPECT_TRUE(holds(refusal("encoder"), "holds a model (encoder.safetensors) without"));
   training_.options.overwrite = true;
   EXPECT_EQ(refusal("encoder"), "trained");
