@@ -121,7 +121,8 @@ void prepareFolder(const fs::path& folder, const MatrixOptions& matrix, bool ove
   const fs::path file = folder / kMatrixFile;
   if (fs::exists(file)) {
     MatrixOptions earlier;
-    core::loadOptions({file.string(), core::readFile(file, "evaluation")}, earlier);
+    core::loadOptions(
+        {file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)}, earlier);
     if (evaluation::identityOf(earlier) != evaluation::identityOf(matrix)) {
       throw InputError("'" + folder.string() + "' holds the results of another matrix ('" +
                        earlier.name + "', see " + file.string() + "); give another --results");

@@ -14,8 +14,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -27,8 +25,6 @@ namespace cdiff::core {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;  // [bytes]
 
 EVP_MD_CTX* digestContext(void* context) { return static_cast<EVP_MD_CTX*>(context); }
 
@@ -106,25 +102,6 @@ fs::path temporaryFolder() {
                      "', which is no folder that can be written to; set it to one, or unset it");
   }
   throw InputError("no temporary folder can be written to; set TMPDIR to one");
-}
-
-std::string readFile(const fs::path& path, const std::string& what) {
-  if (isFolder(path)) {
-    throw InputError(what + " '" + path.string() + "' is a folder; a file was expected");
-  }
-  std::error_code unknown_size;
-  const std::uintmax_t size = fs::file_size(path, unknown_size);
-  if (!unknown_size && size > kLargestFile) {
-    throw InputError(what + " '" + path.string() + "' has " + std::to_string(size) +
-                     " bytes; at most " + std::to_string(kLargestFile) + " were expected");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    throw InputError("cannot read " + what + " '" + path.string() + "': " + std::strerror(errno));
-  }
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view content) {
