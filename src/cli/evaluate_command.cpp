@@ -123,7 +123,8 @@ void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool
   const fs::path file = output.path() / kMatrixFile;
   if (fs::exists(file)) {
     MatrixOptions earlier;
-    core::loadOptions({file.string(), core::readFile(file, "evaluation")}, earlier);
+    core::loadOptions(
+        {file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)}, earlier);
     if (evaluation::identityOf(earlier) != evaluation::identityOf(matrix)) {
       throw InputError("'" + output.path().string() + "' holds the results of another matrix ('" +
                        earlier.name + "', see " + file.string() + "); give another --results");

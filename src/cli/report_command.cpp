@@ -96,7 +96,8 @@ int makeTables(const fs::path& results) {
                      "' is no result folder of `cdiff evaluate`: it has no matrix.yaml");
   }
   evaluation::MatrixOptions matrix;
-  core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
+  core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
+                    matrix);
   evaluation::writeBatchReport(results, matrix.name);
   std::cout << "tables, figures and page: " << (results / "index.html").string() << "\n";
   return ExitCode::kPassed;

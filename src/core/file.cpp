@@ -13,8 +13,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -26,8 +24,6 @@ namespace cdiff::core {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;  // [bytes]
 
 EVP_MD_CTX* digestContext(void* context) { return static_cast<EVP_MD_CTX*>(context); }
 
@@ -98,6 +94,63 @@ int openBeside(const fs::path& path, fs::path& temporary) {
   }
 }
 
+/// `name` is what the file is and its path, for errors.
+void requireRegular(mode_t mode, const std::string& name) {
+  if (S_ISREG(mode)) return;
+  const char* kind = S_ISDIR(mode)                    ? "folder"
+                     : S_ISFIFO(mode)                 ? "pipe"
+                     : S_ISSOCK(mode)                 ? "socket"
+                     : S_ISCHR(mode) || S_ISBLK(mode) ? "device"
+                                                      : "special file";
+  throw InputError(name + " is a " + kind + "; a file was expected");
+}
+
+[[noreturn]] void failReading(const std::string& name) {
+  throw InputError("cannot read " + name + ": " + std::strerror(errno));
+}
+
+[[noreturn]] void refuseSize(const std::string& name, std::uintmax_t size, std::uintmax_t most) {
+  throw InputError(name + " has " + std::to_string(size) + " bytes; at most " +
+                   std::to_string(most) + " were expected");
+}
+
+/// A descriptor that is closed with its object.
+class OpenedFile {
+ public:
+  /// Opens a regular file. Does not wait for the other end of a pipe that took its place meanwhile.
+  OpenedFile(const fs::path& path, const std::string& name)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {
+    if (descriptor_ < 0) failReading(name);
+  }
+  ~OpenedFile() { ::close(descriptor_); }
+  OpenedFile(const OpenedFile&) = delete;
+  OpenedFile& operator=(const OpenedFile&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+/// Bytes of an opened file that has about `expected` of them; a file that grows beyond `most` while
+/// it is read is refused.
+std::string contentWithin(int descriptor, std::uintmax_t expected, std::uintmax_t most,
+                          const std::string& name) {
+  std::string content(expected + 1, '\0');  // the one more shows the end
+  std::size_t filled = 0;
+  while (true) {
+    const ssize_t count = ::read(descriptor, &content[filled], content.size() - filled);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) failReading(name);
+    if (count == 0) break;
+    filled += static_cast<std::size_t>(count);
+    if (filled > most) refuseSize(name, filled, most);
+    if (filled == content.size())
+      content.resize(std::min<std::uintmax_t>(2 * filled + 4096, most + 1));
+  }
+  content.resize(filled);
+  return content;
+}
+
 fs::file_type statusOf(const fs::path& path) {
   std::error_code error;
   const fs::file_type type = fs::status(path, error).type();
@@ -132,23 +185,23 @@ fs::path temporaryFolder() {
   throw InputError("no temporary folder can be written to; set TMPDIR to one");
 }
 
-std::string readFile(const fs::path& path, const std::string& what) {
-  if (isFolder(path)) {
-    throw InputError(what + " '" + path.string() + "' is a folder; a file was expected");
-  }
-  std::error_code unknown_size;
-  const std::uintmax_t size = fs::file_size(path, unknown_size);
-  if (!unknown_size && size > kLargestFile) {
-    throw InputError(what + " '" + path.string() + "' has " + std::to_string(size) +
-                     " bytes; at most " + std::to_string(kLargestFile) + " were expected");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    throw InputError("cannot read " + what + " '" + path.string() + "': " + std::strerror(errno));
-  }
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
+void requireRegularFile(const fs::path& path, const std::string& what) {
+  const std::string name = what + " '" + path.string() + "'";
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) failReading(name);
+  requireRegular(status.st_mode, name);
+}
+
+std::string readFile(const fs::path& path, const std::string& what, std::uintmax_t most) {
+  requireRegularFile(path, what);  // to open a device may already have an effect
+  const std::string name = what + " '" + path.string() + "'";
+  const OpenedFile file(path, name);
+  struct stat status {};
+  if (::fstat(file.descriptor(), &status) != 0) failReading(name);
+  requireRegular(status.st_mode, name);
+  const auto size = static_cast<std::uintmax_t>(status.st_size);
+  if (size > most) refuseSize(name, size, most);
+  return contentWithin(file.descriptor(), size, most, name);
 }
 
 void writeFileAtomically(const fs::path& path, std::string_view content) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,9 +19,18 @@ namespace cdiff::core {
 bool isFile(const std::filesystem::path& path);
 bool isFolder(const std::filesystem::path& path);
 
-/// The whole file. Throws InputError naming `what` and the path when it cannot be read or is larger
-/// than 2 GiB.
-std::string readFile(const std::filesystem::path& path, const std::string& what);
+/// Largest file that is read, and largest file of options (scenario, evaluation, preset) [bytes].
+inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{2} << 30;
+inline constexpr std::uintmax_t kLargestOptionsFile = std::uintmax_t{64} << 20;
+
+/// The whole file. Throws InputError naming `what` and the path when it cannot be read, is no
+/// regular file (nor a link to one), or is larger than `most` bytes or becomes so meanwhile. Pipes
+/// and devices are refused without waiting.
+std::string readFile(const std::filesystem::path& path, const std::string& what,
+                     std::uintmax_t most = kLargestFile);
+
+/// For files that another library or program opens: throws as readFile does, without reading.
+void requireRegularFile(const std::filesystem::path& path, const std::string& what);
 
 /// Writes a file that the user named as an output. A regular file is replaced: it is whole or as it
 /// was before. A device or pipe is written through. Throws InputError naming the path; also for a

@@ -74,7 +74,8 @@ MatrixOptions loadMatrix(const std::string& name_or_file) {
   const fs::path file = core::shippedOrFile(matrixFolder(), name_or_file, "evaluation");
   MatrixOptions matrix;
   matrix.name = file.stem().string();
-  core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
+  core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
+                    matrix);
   const fs::path folder = file.parent_path();
   for (std::string& scenario : matrix.scenarios) resolveAgainst(folder, scenario);
   for (std::string& profile : matrix.guidance_profiles) resolveAgainst(folder, profile);

@@ -35,7 +35,8 @@ struct RunScenario {
 
 RunScenario readScenario(const fs::path& file) {
   session::ScenarioOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
+  core::loadOptions({file.string(), core::readFile(file, "scenario", core::kLargestOptionsFile)},
+                    options);
   return {protocolOf(options.protocol),
           std::make_shared<const Settings>(core::flatOptions(options))};
 }
@@ -119,7 +120,8 @@ BatchConditions readConditions(const fs::path& results, const std::vector<RunRec
   BatchConditions conditions;
   MatrixOptions matrix;
   const fs::path file = results / "matrix.yaml";
-  core::loadOptions({file.string(), core::readFile(file, "evaluation")}, matrix);
+  core::loadOptions({file.string(), core::readFile(file, "evaluation", core::kLargestOptionsFile)},
+                    matrix);
   conditions.suite = fs::path(matrix.suite).filename().string();
   std::map<std::string, RunScenario> known;  // repetitions have the same scenario text
   for (const RunRecord& record : records) {

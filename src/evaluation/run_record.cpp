@@ -258,7 +258,8 @@ std::optional<double> BatchRun::number(const std::string& pointer) const {
 session::ScenarioOptions scenarioOf(const BatchRun& run) {
   const auto file = run.folder / "scenario.yaml";
   session::ScenarioOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
+  core::loadOptions({file.string(), core::readFile(file, "scenario", core::kLargestOptionsFile)},
+                    options);
   return options;
 }
 

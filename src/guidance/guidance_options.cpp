@@ -196,7 +196,9 @@ void GuidanceOptions::validateWindows(int diffusion_steps, const std::vector<int
 GuidanceOptions loadProfile(const std::string& name_or_file) {
   const fs::path file = core::shippedOrFile(profileFolder(), name_or_file, "guidance profile");
   GuidanceOptions options;
-  core::loadOptions({file.string(), core::readFile(file, "guidance profile")}, options);
+  core::loadOptions(
+      {file.string(), core::readFile(file, "guidance profile", core::kLargestOptionsFile)},
+      options);
   try {
     options.validate();
   } catch (const InputError& error) {

@@ -24,7 +24,8 @@ using core::InputError;
 double simulationStep(const fs::path& folder) {
   const fs::path file = folder / "session.yaml";
   try {
-    return YAML::Load(core::readFile(file, "session record"))["scenario"]["simulation_step"]
+    return YAML::Load(core::readFile(file, "session record",
+                                     core::kLargestOptionsFile))["scenario"]["simulation_step"]
         .as<double>();
   } catch (const YAML::Exception& error) {
     throw InputError(

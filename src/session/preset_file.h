@@ -27,7 +27,8 @@ Options loadPreset(const std::filesystem::path& folder, const std::string& name,
   }
   const std::filesystem::path file = folder / (name + ".yaml");
   Options options;
-  core::loadOptions({file.string(), core::readFile(file, "preset")}, options);
+  core::loadOptions({file.string(), core::readFile(file, "preset", core::kLargestOptionsFile)},
+                    options);
   return options;
 }
 

@@ -12,6 +12,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/planner_by_slot.h"
+#include "simulation/sumo_input_rules.h"
 
 namespace cdiff::session {
 namespace {
@@ -67,6 +68,8 @@ void checkDemandFile(const std::string& file) {
   }
   const pugi::xml_node routes = document.child("routes");
   if (!routes) throw InputError("demand file '" + file + "': no <routes> element");
+  simulation::requirePlainPath(file, "demand file '" + file + "'");
+  simulation::requireHarmlessDemand(text, "demand file '" + file + "'");
   requireFinite(routes, file);
   for (const pugi::xml_node& element : routes.children()) {
     if (std::string(element.attribute("id").value()) != traffic::kEgoId) continue;
@@ -277,7 +280,8 @@ ScenarioOptions loadScenario(const std::string& name_or_file, const ScenarioOpti
   const fs::path file = core::shippedOrFile(scenarioFolder(), name_or_file, "scenario");
   ScenarioOptions options = base;
   options.name = file.stem().string();
-  core::loadOptions({file.string(), core::readFile(file, "scenario")}, options);
+  core::loadOptions({file.string(), core::readFile(file, "scenario", core::kLargestOptionsFile)},
+                    options);
   const bool file_network = looksLikeFile(options.network);
   if (file_network) options.network = resolveFile(options.network, file.parent_path(), "");
   if (options.demand != "generated" && options.demand != "none") {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "simulation/sumo_input_rules.h"
 
 namespace cdiff::session {
 namespace {
@@ -14,12 +15,21 @@ const ScenarioOptions& validated(const ScenarioOptions& options) {
   return options;
 }
 
+/// As importNetwork, and refused where SUMO would write or read other files over it.
+map::ImportedNetwork imported(const std::string& source) {
+  map::ImportedNetwork network = map::importNetwork(source);
+  const std::string name = "network '" + network.source.string() + "'";
+  simulation::requirePlainPath(network.file, name);
+  simulation::requireHarmlessNetwork(network.text, name);
+  return network;
+}
+
 }  // namespace
 
 SessionSetup::SessionSetup(const ScenarioOptions& options)
     : options_(validated(options)),
       rigs_(options_),
-      import_(map::importNetwork(options.network)),
+      import_(imported(options.network)),
       network_(map::RoadNetwork::fromText(import_.text, import_.source.string())),
       graph_(network_),
       drivable_area_(network_),

@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "simulation/sumo_input_rules.h"
 #include "simulation/sumo_link.h"
 
 namespace cdiff::simulation {
@@ -20,8 +21,6 @@ void requireFile(const std::filesystem::path& file, const char* what) {
 std::string sumoSeed(std::uint64_t seed) { return std::to_string(seed % 2147483647ULL); }
 
 SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
-  requireFile(session.network_file, "the network for SUMO");
-  if (!session.demand_file.empty()) requireFile(session.demand_file, "the demand for SUMO");
   SumoCommand command;
   command.binary = options.binary;
   command.log_folder = session.log_folder;
@@ -58,6 +57,25 @@ SumoCommand commandFor(const SumoOptions& options, const SumoSession& session) {
                              {"--route-files", session.demand_file.string(), "--route-steps", "0"});
   }
   return command;
+}
+
+/// The network as the user knows it.
+std::string sourceOf(const SumoSession& session) {
+  const std::filesystem::path& source = session.network_source;
+  return (source.empty() ? session.network_file : source).string();
+}
+
+/// Once more before SUMO reads them, however the session was made.
+void requireHarmless(const SumoSession& session) {
+  requireFile(session.network_file, "the network for SUMO");
+  const std::string network = "network '" + sourceOf(session) + "'";
+  requirePlainPath(session.network_file, network);
+  requireHarmlessNetwork(core::readFile(session.network_file, "network"), network);
+  if (session.demand_file.empty()) return;
+  requireFile(session.demand_file, "the demand for SUMO");
+  const std::string demand = "demand file '" + session.demand_file.string() + "'";
+  requirePlainPath(session.demand_file, demand);
+  requireHarmlessDemand(core::readFile(session.demand_file, "demand"), demand);
 }
 
 /// Whether SUMO refuses the network even without a demand.
@@ -98,14 +116,13 @@ void refuseDemand(const SumoSession& session, const std::string& sentence) {
 }
 
 std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session) {
+  requireHarmless(session);
   try {
     return std::make_unique<SumoLink>(commandFor(options, session), options.step_timeout);
   } catch (const SumoRefusal& refusal) {
     if (!session.demand_file.empty() && !refusesNetwork(options, session))
       refuseDemand(session, refusal.what());
-    const std::filesystem::path& source = session.network_source;
-    throw core::InputError("SUMO refuses the network '" +
-                           (source.empty() ? session.network_file : source).string() +
+    throw core::InputError("SUMO refuses the network '" + sourceOf(session) +
                            "': " + refusal.what());
   }
 }

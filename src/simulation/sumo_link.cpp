@@ -59,6 +59,7 @@ bool holdsSocket(int process_id, const std::string& inode) {
 /// What follows `mark` on the first line that holds it, with the lines that continue it (indented,
 /// or after a semicolon); empty when no line does.
 std::string sentenceAfter(const std::string& mark, const fs::path& path) {
+  if (!core::isFile(path)) return "";
   std::ifstream file(path);
   std::string line;
   while (std::getline(file, line)) {
@@ -74,6 +75,7 @@ std::string sentenceAfter(const std::string& mark, const fs::path& path) {
 /// The last lines of a text file in one line; empty when there are none.
 std::string lastLines(const fs::path& path) {
   constexpr std::size_t kLines = 4;
+  if (!core::isFile(path)) return "";
   std::ifstream file(path);
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) {

@@ -121,7 +121,7 @@ void requireFile(const fs::path& manifest, const SuiteRoute& route, const char* 
 
 YAML::Node parse(const fs::path& file) {
   try {
-    return YAML::Load(core::readFile(file, "suite"));
+    return YAML::Load(core::readFile(file, "suite", core::kLargestOptionsFile));
   } catch (const YAML::Exception& error) {
     throw InputError("suite '" + file.string() + "', line " + std::to_string(error.mark.line + 1) +
                      ": " + error.msg);

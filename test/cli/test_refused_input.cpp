@@ -84,6 +84,15 @@ class RefusedInput : public test::EvaluateCommand {
     EXPECT_EQ(code, 3) << "seed " << seed << "\n" << output();
     expectOutput("mutant.");
   }
+  /// A command ended with `code`: bad input, named with its file and `part` of it; a user's file
+  /// "notes" is as it was.
+  void expectUnwritten(int code, const std::string& file, const std::string& part) const {
+    EXPECT_EQ(code, 3) << output();
+    expectOutput(file);
+    expectOutput(part);
+    EXPECT_EQ(core::readFile(folder("notes"), "notes"), "mine") << part;
+    EXPECT_FALSE(fs::exists(folder("results")));
+  }
 };
 
 TEST_F(RefusedInput, MutantsEndInOrder) {
@@ -102,6 +111,42 @@ TEST_F(RefusedInput, ANetworkThatSumoCrashesOverIsNamed) {
   EXPECT_EQ(drive(write("crash.net.xml", text), shipped(".rou.xml")), 3);
   expectOutput("SUMO refuses the network '" + folder("crash.net.xml"));
   expectOutput("it crashed, signal 6 (Aborted)");
+}
+
+/// `text` with `insertion` before the last `mark`.
+std::string withBefore(std::string text, const std::string& mark, const std::string& insertion) {
+  return text.insert(text.rfind(mark), insertion);
+}
+
+// The demand and the network run as they are, and SUMO would write over the notes.
+TEST_F(RefusedInput, WhatMakesSumoWriteAFileIsNamedAndTheFileIsKept) {
+  const std::string notes = write("notes", "mine");
+  const std::string parameters =
+      "\n<vType id=\"spy\"><param key=\"has.ssm.device\" value=\"true\"/>\n<param "
+      "key=\"device.ssm.file\" value=\"" +
+      notes + "\"/></vType>";
+  const std::string demand = core::readFile(shipped(".rou.xml"), "demand");
+  const std::string network = core::readFile(shipped(".net.xml"), "network");
+  const std::string detector =
+      "<inductionLoop id=\"d\" lane=\"a1_a2_0\" pos=\"1\" period=\"1\" file=\"" + notes + "\"/>";
+  write("types.xml", "<routes>" + parameters + "</routes>");
+  const std::string included = "<include href=\"" + folder("types.xml") + "\"/>";
+  for (const auto& [insertion, part] :
+       std::map<std::string, std::string>{{parameters, "has.ssm.device"},
+                                          {included, "<include>"},
+                                          {detector, "<inductionLoop>"}}) {
+    const std::string bad_demand = write("bad.rou.xml", withBefore(demand, "</routes>", insertion));
+    const std::string bad_network = write("bad.net.xml", withBefore(network, "</net>", insertion));
+    expectUnwritten(drive(shipped(".net.xml"), bad_demand), bad_demand, part);
+    expectUnwritten(drive(bad_network, shipped(".rou.xml")), bad_network,
+                    part == "has.ssm.device" ? "<vType>" : part);
+    const std::string scenario =
+        write("scenario.yaml", "network: " + bad_network + "\nroute: {edges: [a2_b2, b2_c2]}\n");
+    expectUnwritten(cdiff({"validate", scenario}), bad_network, "line ");
+    write("scenario.yaml", "network: crossing_district\nroute: {edges: [a2_b2, b2_c2]}\ndemand: " +
+                               bad_demand + "\n");
+    expectUnwritten(cdiff({"validate", scenario}), bad_demand, "line ");
+  }
 }
 
 TEST_F(RefusedInput, APlannerInARoleThatItDoesNotHave) {

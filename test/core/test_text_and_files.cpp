@@ -2,12 +2,17 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <new>
 #include <vector>
@@ -117,6 +122,73 @@ TEST(File, WhatTheSystemRefusesIsNamed) {
   writeFileAtomically(folder.path() / "sparse", "");
   std::filesystem::resize_file(folder.path() / "sparse", std::uintmax_t{3} << 30);
   EXPECT_NE(errorOf([&] { readFile(folder.path() / "sparse", "text"); }).find("3221225472 bytes"),
+            std::string::npos);
+}
+
+/// Whether readFile refuses a file by name and says `part`; in a process of its own, which is ended
+/// when it waits or reads without end.
+bool isRefused(const std::filesystem::path& file, const std::string& part) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit processor{3, 3};  // [s]
+    ::setrlimit(RLIMIT_CPU, &processor);
+    ::alarm(60);
+    const std::string text = errorOf([&] { readFile(file, "text"); });
+    const bool named = text.find("text '" + file.string() + "'") != std::string::npos;
+    ::_exit(named && text.find(part) != std::string::npos ? 0 : 1);
+  }
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(File, OnlyRegularFilesAreRead) {
+  const test::TemporaryFolder folder;
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", folder.path() / "zeros");
+  std::filesystem::create_symlink(pipe, folder.path() / "link");
+  const int handle = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string place = (folder.path() / "socket").string();
+  ASSERT_LT(place.size(), sizeof(address.sun_path));
+  place.copy(address.sun_path, place.size());
+  ASSERT_EQ(::bind(handle, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  EXPECT_TRUE(isRefused(pipe, "pipe"));
+  EXPECT_TRUE(isRefused(folder.path() / "link", "pipe"));
+  EXPECT_TRUE(isRefused(folder.path() / "zeros", "device"));
+  EXPECT_TRUE(isRefused("/dev/zero", "device"));
+  EXPECT_TRUE(isRefused(folder.path() / "socket", "socket"));
+  EXPECT_TRUE(isRefused(folder.path(), "folder"));
+  ::close(handle);
+  EXPECT_NE(errorOf([&] { requireRegularFile(pipe, "bag"); }).find("bag '" + pipe.string() + "'"),
+            std::string::npos);
+}
+
+TEST(File, ReadsLinksAndFilesWhoseSizeIsNotKnownBeforehand) {
+  const test::TemporaryFolder folder;
+  const std::string text(10000, 'x');
+  writeFileAtomically(folder.path() / "a", text);
+  std::filesystem::create_symlink("a", folder.path() / "link");
+  EXPECT_EQ(readFile(folder.path() / "link", "text"), text);
+  EXPECT_NO_THROW(requireRegularFile(folder.path() / "link", "text"));
+  writeFileAtomically(folder.path() / "empty", "");
+  EXPECT_EQ(readFile(folder.path() / "empty", "text"), "");
+  // The kernel says 0 bytes of it.
+  ASSERT_EQ(std::filesystem::file_size("/proc/self/maps"), 0U);
+  EXPECT_GT(readFile("/proc/self/maps", "text").size(), 1000U);
+}
+
+// 10000 bytes are read with a limit of 10000 and refused with one of 9999; /proc tells no size
+// before.
+TEST(File, MoreBytesThanTheLimitAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "a";
+  writeFileAtomically(file, std::string(10000, 'x'));
+  EXPECT_EQ(readFile(file, "text", 10000).size(), 10000U);
+  EXPECT_NE(errorOf([&] { readFile(file, "text", 9999); }).find("at most 9999"), std::string::npos);
+  EXPECT_NE(errorOf([] { readFile("/proc/self/maps", "text", 100); }).find("at most 100"),
             std::string::npos);
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <functional>
+#include <vector>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -116,6 +119,7 @@ TEST_F(NetworkImport, NamesWhatIsWrong) {
   expectError(write("text.net.xml", "hello"), "no <net> element");
   expectError(write("packed.net.xml", "\x1f\x8b\x08 <net"), "is compressed");
   expectError(write("empty.xodr", "<a/>"), "no <OpenDRIVE> element");
+  expectError(write("typed.xodr", "<!DOCTYPE a SYSTEM \"/dev/zero\"><OpenDRIVE/>"), "<!DOCTYPE>");
   expectError(folder_.string(), "is a folder");
 }
 
@@ -141,6 +145,77 @@ TEST_F(NetworkImport, ConvertsOpenDrive) {
   const auto written = fs::last_write_time(network.file);
   EXPECT_EQ(importNetwork((folder_ / "road.xodr").string()).text, network.text);
   EXPECT_EQ(fs::last_write_time(network.file), written);
+}
+
+/// Changes that a cache may suffer; each gets the file of a converted network.
+const std::vector<std::function<void(const fs::path&)>> kDamages = {
+    [](const fs::path& file) { core::writeFileAtomically(file, ""); },
+    [](const fs::path& file) { core::writeFileAtomically(file, "<net/>"); },
+    [](const fs::path& file) { fs::resize_file(file, fs::file_size(file) - 1); },
+    [](const fs::path& file) {
+      std::string other = core::readFile(file, "network");
+      other.replace(other.find("speed="), 6, "Speed=");
+      core::writeFileAtomically(file, other);
+    },
+    [](const fs::path& file) { fs::remove(file.string() + ".sha256"); },
+    [](const fs::path& file) { core::writeFileAtomically(file.string() + ".sha256", ""); },
+    [](const fs::path& file) {
+      fs::remove(file);
+      EXPECT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    }};
+
+TEST_F(NetworkImport, ADamagedCacheIsMadeAgain) {
+  const std::string source = write("road.xodr", kStraightRoad);
+  const ImportedNetwork first = importNetwork(source);
+  ASSERT_FALSE(first.text.empty());
+  for (std::size_t i = 0; i < kDamages.size(); ++i) {
+    kDamages[i](first.file);
+    const ImportedNetwork again = importNetwork(source);
+    EXPECT_EQ(again.text, first.text) << i;
+    EXPECT_EQ(again.file, first.file) << i;
+    EXPECT_EQ(core::readFile(again.file, "cached network"), first.text) << i;
+    const auto written = fs::last_write_time(again.file);
+    EXPECT_EQ(importNetwork(source).text, first.text) << i;
+    EXPECT_EQ(fs::last_write_time(again.file), written) << i << ": it is trusted again";
+  }
+}
+
+TEST_F(NetworkImport, ALinkInTheCacheIsNotWrittenThrough) {
+  const std::string source = write("road.xodr", kStraightRoad);
+  const ImportedNetwork first = importNetwork(source);
+  const std::string notes = write("notes", "mine");
+  fs::remove(first.file);
+  fs::create_symlink(notes, first.file);
+  EXPECT_EQ(importNetwork(source).text, first.text);
+  EXPECT_EQ(core::readFile(notes, "notes"), "mine");
+  EXPECT_FALSE(fs::is_symlink(first.file));
+}
+
+TEST_F(NetworkImport, ProcessesThatConvertAtOnceAllGetTheNetwork) {
+  const std::string source = write("road.xodr", kStraightRoad);
+  constexpr int kProcesses = 4;
+  std::vector<pid_t> children;
+  for (int i = 0; i < kProcesses; ++i) {
+    children.push_back(::fork());
+    if (children.back() != 0) continue;
+    ::alarm(60);
+    int wrong = 0;
+    try {
+      const ImportedNetwork network = importNetwork(source);
+      wrong = core::readFile(network.file, "network") == network.text ? 0 : 1;
+    } catch (const std::exception&) {
+      wrong = 2;
+    }
+    ::_exit(wrong);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  const ImportedNetwork network = importNetwork(source);
+  EXPECT_EQ(core::readFile(network.file.string() + ".sha256", "checksum"),
+            core::sha256(network.text) + "\n");
 }
 
 // Three nodes 215 m apart on a road, and one from the middle.

@@ -140,7 +140,7 @@ TEST_F(DamagedBags, NothingToEvaluateIsAnErrorThatWritesNothing) {
     EXPECT_TRUE(says(outcome, part)) << outcome.text << "\nlacks " << part;
     EXPECT_TRUE(says(outcome, "damaged.bag") || says(outcome, "none.bag")) << outcome.text;
   };
-  expect(replay(folder_->path() / "none.bag"), "no such file");
+  expect(replay(folder_->path() / "none.bag"), "No such file");
   expect(replayText(""), "is empty");
   expect(replayText("not a bag, but a text of some length"), "no ROS bag of format 2.0");
   expect(replayText(bytes_.substr(0, 13)), "holds no session");

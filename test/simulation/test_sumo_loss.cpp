@@ -167,7 +167,7 @@ TEST(SumoStart, NamesTheNetworkOrDemandThatSumoRefusesAndQuotesIt) {
   SumoSession session;
   session.network_file = folder.path() / "broken.net.xml";
   session.demand_file = folder.path() / "bad.rou.xml";
-  std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"";
+  std::ofstream(session.network_file) << "<net><edge id=\"a\" from=\"x\"/></net>";
   std::ofstream(session.demand_file) << "<routes/>";
   std::string error = startError<core::InputError>({}, session, made.network);
   EXPECT_NE(error.find("SUMO refuses the network '" + session.network_file.string() + "': "),

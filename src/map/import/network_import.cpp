@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "core/file.h"
 #include "core/output_folder.h"
@@ -87,9 +88,43 @@ fs::path cachedFile(const std::string& content) {
   return folder / (key + ".net.xml");
 }
 
-void storeUnlessThere(const fs::path& file, const std::string& text) {
-  if (fs::exists(file) && core::readFile(file, "cached network") == text) return;
+/// Content of a file of the cache; nothing where there is none, or none that can be read.
+std::optional<std::string> contentInCache(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  try {
+    return core::readFile(file, "cached network");
+  } catch (const core::InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Replaces whatever has the name but a folder that holds something.
+void store(const fs::path& file, const std::string& text) {
+  std::error_code error;
+  if (fs::symlink_status(file, error).type() != fs::file_type::regular) fs::remove(file, error);
   core::writeFileAtomically(file, text);
+}
+
+/// Beside a converted network: its SHA-256.
+fs::path checksumFile(const fs::path& file) { return file.string() + ".sha256"; }
+
+/// The converted network as it was stored; nothing where the cache lacks it or it is another now.
+std::optional<std::string> convertedInCache(const fs::path& file) {
+  std::optional<std::string> text = contentInCache(file);
+  const std::optional<std::string> checksum = contentInCache(checksumFile(file));
+  if (text && checksum && *checksum == core::sha256(*text) + "\n") return text;
+  return std::nullopt;
+}
+
+/// Several processes may do so at once: all write the same, and either file is whole at any time.
+void storeConverted(const fs::path& file, const std::string& text) {
+  store(file, text);
+  store(checksumFile(file), core::sha256(text) + "\n");
+}
+
+void storeUnlessThere(const fs::path& file, const std::string& text) {
+  if (contentInCache(file) != text) store(file, text);
 }
 
 bool isOpenDrive(const std::string& source, const std::string& content) {
@@ -114,12 +149,17 @@ void importConverted(const Format& format, const std::string& content, ImportedN
     throw core::InputError("network '" + network.source.string() + "': no " + format.element +
                            "> element; an " + format.name + " file was expected");
   }
+  if (content.find("<!DOCTYPE") != std::string::npos) {
+    throw core::InputError("network '" + network.source.string() +
+                           "' holds <!DOCTYPE>, for which netconvert would read further files; "
+                           "delete it");
+  }
   network.file = cachedFile(content);
-  if (fs::exists(network.file)) {
-    network.text = core::readFile(network.file, "cached network");
+  if (auto text = convertedInCache(network.file)) {
+    network.text = std::move(*text);
   } else {
     network.text = format.convert(network.source);
-    core::writeFileAtomically(network.file, network.text);
+    storeConverted(network.file, network.text);
   }
   network.changes.push_back(std::string("converted from ") + format.name + " with netconvert");
 }

@@ -62,7 +62,8 @@ std::filesystem::path networkFile(const std::string& source);
 
 /// Imports a network: *.net.xml of any SUMO version (not compressed), *.xodr, *.osm, or the name of
 /// a network shipped in networks/. Drops vehicle classes that SUMO 1.15 does not know, converts
-/// OpenDRIVE and OpenStreetMap with netconvert, and caches the result by the hash of the input.
+/// OpenDRIVE and OpenStreetMap with netconvert, and caches the result by the hash of the input; a
+/// file of the cache that is not as it was stored is made again.
 /// Called when a session is set up and by `cdiff import`. Throws InputError naming the file and
 /// what is wrong (missing, not a network, netconvert's own message).
 ImportedNetwork importNetwork(const std::string& source);

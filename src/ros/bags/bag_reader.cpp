@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <boost/interprocess/file_mapping.hpp>
 #include <boost/interprocess/mapped_region.hpp>
-#include <fstream>
 
+#include "core/file.h"
 #include "ros/bags/bag_records.h"
 
 namespace cdiff::ros {
@@ -47,8 +47,7 @@ struct BagReader::Chunk {
 BagReader::BagReader(const fs::path& file) : file_(file) {
   const std::string name = "bag '" + file.string() + "'";
   std::error_code error;
-  if (fs::is_directory(file, error)) throw InputError(name + " is a folder; a file was expected");
-  if (!std::ifstream(file)) throw InputError("cannot read " + name + ": no such file, or no right");
+  core::requireRegularFile(file, "bag");  // to map a pipe waits for its other end
   if (fs::file_size(file, error) == 0) throw InputError(name + " is empty");
   try {
     bytes_ = std::make_unique<Bytes>(file);

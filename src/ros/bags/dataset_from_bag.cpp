@@ -222,7 +222,7 @@ collection::DriveOptions loadTopics(const std::string& file) {
                      core::dumpOptions(collection::DriveOptions{}, true));
   }
   collection::DriveOptions topics;
-  core::loadOptions({file, core::readFile(file, "topics")}, topics);
+  core::loadOptions({file, core::readFile(file, "topics", core::kLargestOptionsFile)}, topics);
   topics.validate();
   return topics;
 }
