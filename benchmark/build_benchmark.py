@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-TOUCHED = ["src/core/text.cpp", "src/planners/pdm_lite/pdm_lite.cpp", "src/ros/messages/traffic_conversions.cpp"]
+TOUCHED = ["src/core/text.cpp", "src/planners/pdm_lite/pdm_lite.cpp", "src/node_graph/messages/traffic_conversions.cpp"]
 ENVIRONMENT = {**os.environ, "CCACHE_DISABLE": "1", "PATH": "/usr/bin:" + os.environ["PATH"]}
 
 

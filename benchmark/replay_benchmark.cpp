@@ -8,9 +8,9 @@
 #include "benchmark.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/session_metrics.h"
-#include "ros/bags/bag_reader.h"
-#include "ros/bags/replay.h"
-#include "ros/bags/session_bag_writer.h"
+#include "node_graph/bags/bag_reader.h"
+#include "node_graph/bags/replay.h"
+#include "node_graph/bags/session_bag_writer.h"
 #include "session/closed_loop.h"
 #include "session/session_request.h"
 
@@ -47,7 +47,7 @@ session::ScenarioOptions roundabout() {
 double record(const session::ScenarioOptions& options, const fs::path& bag_file) {
   const session::SessionSetup setup(options);
   session::ClosedLoop loop(setup);
-  ros::SessionBagWriter bag(setup, bag_file, {"benchmark", loop.world().simulatorVersion()});
+  node_graph::SessionBagWriter bag(setup, bag_file, {"benchmark", loop.world().simulatorVersion()});
   loop.addObserver(bag);
   const std::atomic<bool> stop{false};
   loop.run(stop);
@@ -70,15 +70,15 @@ class Metrics : public session::SessionObserver {
 };
 
 void readBytes(const fs::path& bag) {
-  ros::BagReader reader(bag);
-  ros::BagMessage message;
+  node_graph::BagReader reader(bag);
+  node_graph::BagMessage message;
   while (reader.next(message)) {
   }
 }
 
-void measureOnly(ros::RecordedSession& session) {
+void measureOnly(node_graph::RecordedSession& session) {
   Metrics metrics(session.setup());
-  ros::showTicks(session, {&metrics});
+  node_graph::showTicks(session, {&metrics});
   metrics.finish();
 }
 
@@ -92,15 +92,16 @@ MetricsTime metricsTime(const fs::path& bag) {
   std::vector<double> set_up;
   std::vector<double> ticks;
   for (int i = 0; i < kRepetitions; ++i) {
-    std::unique_ptr<ros::RecordedSession> session;
-    set_up.push_back(secondsOf([&] { session = std::make_unique<ros::RecordedSession>(bag); }));
+    std::unique_ptr<node_graph::RecordedSession> session;
+    set_up.push_back(
+        secondsOf([&] { session = std::make_unique<node_graph::RecordedSession>(bag); }));
     ticks.push_back(secondsOf([&] { measureOnly(*session); }));
   }
   return {median(set_up), median(ticks)};
 }
 
 void requireWhole(const fs::path& bag, const fs::path& results) {
-  const auto findings = ros::replayBag(bag, results, true).findings;
+  const auto findings = node_graph::replayBag(bag, results, true).findings;
   if (!findings.empty()) throw core::Error("the recorded bag is damaged: " + findings.front());
 }
 

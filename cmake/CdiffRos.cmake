@@ -1,4 +1,4 @@
-# Messages and the ROS packages that only the layers ros, nodes and cli use; sets where catkin puts
+# Messages and the ROS packages that only the layers node_graph, nodes and cli use; sets where catkin puts
 # programs, so it is included before any target. The devel space is <build>/devel.
 find_package(catkin REQUIRED COMPONENTS
   diagnostic_msgs diagnostic_updater geometry_msgs message_generation nav_msgs rosbag roscpp
@@ -25,7 +25,7 @@ catkin_package(INCLUDE_DIRS include
                CATKIN_DEPENDS geometry_msgs message_runtime std_msgs)
 install(DIRECTORY include/e2e_cdiff/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 
-# The interface that ros, nodes, cli and their tests link to see ROS and our messages.
+# The interface that node_graph, nodes, cli and their tests link to see ROS and our messages.
 add_library(e2e_cdiff_messages INTERFACE)
 target_include_directories(e2e_cdiff_messages SYSTEM INTERFACE
   ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
@@ -35,14 +35,14 @@ add_dependencies(e2e_cdiff_messages ${PROJECT_NAME}_generate_messages_cpp)
 add_dependencies(e2e_cdiff_programs ${PROJECT_NAME}_generate_messages)
 add_dependencies(e2e_cdiff_session_programs ${PROJECT_NAME}_generate_messages)
 
-# Images as messages, for the layer ros alone.
+# Images as messages, for the layer node_graph alone.
 add_library(e2e_cdiff_images INTERFACE)
 target_include_directories(e2e_cdiff_images SYSTEM INTERFACE
   ${cv_bridge_INCLUDE_DIRS} ${image_transport_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_images INTERFACE
   ${CDIFF_CV_BRIDGE_LIBRARY} ${CDIFF_IMAGE_TRANSPORT_LIBRARY} opencv_core)
 
-# Transforms, for the layer ros alone.
+# Transforms, for the layer node_graph alone.
 add_library(e2e_cdiff_transforms INTERFACE)
 target_include_directories(e2e_cdiff_transforms SYSTEM INTERFACE ${tf2_ros_INCLUDE_DIRS})
 target_link_libraries(e2e_cdiff_transforms INTERFACE ${CDIFF_TF2_ROS_LIBRARY} ${CDIFF_TF2_LIBRARY})

@@ -15,7 +15,7 @@
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "ros/bags/dataset_from_bag.h"
+#include "node_graph/bags/dataset_from_bag.h"
 #include "suite/seal.h"
 #include "suite/suite.h"
 
@@ -34,7 +34,7 @@ struct CollectArguments {
   CollectRequest request;
   std::vector<std::string> scenarios;
   std::string suite;  ///< name or folder
-  ros::BagRequest bags;
+  node_graph::BagRequest bags;
   int seeds = 1;
   int first_seed = 1;
   int jobs = 1;
@@ -146,9 +146,9 @@ void removeHalves(const fs::path& results) {
 int convertBags(const CollectArguments& arguments) {
   const core::OutputFolder output(arguments.request.results, kLockedBy);
   core::OutputFolder::requireFree(output.path(), kDatasetFiles);
-  ros::BagRequest request = arguments.bags;
+  node_graph::BagRequest request = arguments.bags;
   request.results = arguments.request.results;
-  const auto statistics = ros::collectBags(request);
+  const auto statistics = node_graph::collectBags(request);
   collection::describeDataset(request.results, collection::sumOf(statistics));
   collection::requireSamples(statistics, "bag", "longer bags");
   return ExitCode::kPassed;
@@ -246,7 +246,7 @@ void addCommonOptions(CLI::App& command, CollectRequest& request) {
 }
 
 /// Bags are converted as they are: what says how to drive is refused beside them.
-void addBagOptions(CLI::App& command, ros::BagRequest& request) {
+void addBagOptions(CLI::App& command, node_graph::BagRequest& request) {
   CLI::Option* bags =
       command.add_option("--bags", request.bags, "Instead of driving: bags of a vehicle of yours")
           ->delimiter(',');
@@ -290,7 +290,7 @@ void addCollectCommand(CLI::App& program, int& exit_code) {
   session->add_option("--seed", request->seed)->required();
   addCommonOptions(*session, *request);
   session->callback([request, &exit_code] {
-    ros::collectSession(*request, core::catchStopSignals());
+    node_graph::collectSession(*request, core::catchStopSignals());
     exit_code = ExitCode::kPassed;
   });
 }

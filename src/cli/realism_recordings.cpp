@@ -11,8 +11,8 @@
 #include "evaluation/executor.h"
 #include "realism/recording.h"
 #ifdef E2E_CDIFF_WITH_ROS
+#include "node_graph/bags/replay.h"
 #include "realism/course_recorder.h"
-#include "ros/bags/replay.h"
 #endif
 
 namespace cdiff::cli {
@@ -24,9 +24,9 @@ using realism::Recording;
 
 Recording readBag(const fs::path& file) {
 #ifdef E2E_CDIFF_WITH_ROS
-  ros::RecordedSession session(file);
+  node_graph::RecordedSession session(file);
   realism::SessionRecorder recorder;
-  ros::showTicks(session, {&recorder});
+  node_graph::showTicks(session, {&recorder});
   Recording recording = recorder.take();
   recording.name = recording.site = file.stem().string();
   return recording;

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "ros/bags/replay.h"
+#include "node_graph/bags/replay.h"
 
 namespace cdiff::cli {
 namespace {
@@ -17,8 +17,8 @@ struct ReplayArguments {
 };
 
 int replay(const ReplayArguments& arguments) {
-  const ros::ReplayResult result =
-      ros::replayBag(arguments.bag, arguments.results, arguments.overwrite);
+  const node_graph::ReplayResult result =
+      node_graph::replayBag(arguments.bag, arguments.results, arguments.overwrite);
   for (const std::string& finding : result.findings)
     std::cerr << "cdiff: bag '" << arguments.bag << "': " << finding << "\n";
   if (!result.findings.empty())

@@ -20,7 +20,7 @@
 #include "suite/seal.h"
 #include "video/session_video.h"
 #ifdef E2E_CDIFF_WITH_ROS
-#include "ros/bags/session_bag_writer.h"
+#include "node_graph/bags/session_bag_writer.h"
 #endif
 
 namespace cdiff::cli {
@@ -66,9 +66,10 @@ class BagRecording : public session::SessionObserver {
                session::ClosedLoop& loop) {
     if (!output.record) return;
 #ifdef E2E_CDIFF_WITH_ROS
-    const ros::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
+    const node_graph::BagOrigin origin{"cdiff run", loop.world().simulatorVersion()};
     attempt([&] {
-      bag_ = std::make_unique<ros::SessionBagWriter>(setup, output.folder / "session.bag", origin);
+      bag_ = std::make_unique<node_graph::SessionBagWriter>(setup, output.folder / "session.bag",
+                                                            origin);
     });
     loop.addObserver(*this);
 #else
@@ -109,7 +110,7 @@ class BagRecording : public session::SessionObserver {
       bag_.reset();
     }
   }
-  std::unique_ptr<ros::SessionBagWriter> bag_;
+  std::unique_ptr<node_graph::SessionBagWriter> bag_;
 #endif
   std::string error_;
 };

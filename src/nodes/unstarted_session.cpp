@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/program.h"
-#include "ros/session_files.h"
+#include "node_graph/session_files.h"
 
 int main(int argc, char** argv) {
   constexpr int kFirstArgument = 4;
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   }
   using cdiff::traffic::SessionStatus;
   const bool interrupted = std::string(argv[1]) == "interrupted";
-  return cdiff::ros::writeUnstartedResult(
-      cdiff::ros::Parameters(arguments),
+  return cdiffros::writeUnstartedResult(
+      cdiffros::Parameters(arguments),
       interrupted ? SessionStatus::kInterrupted : SessionStatus::kError, {0, argv[2], argv[3]});
 }

@@ -16,16 +16,16 @@ import junit  # noqa: E402
 # Headers that only some layers may read: pattern -> layers that may.
 RESTRICTED = {
     "ROS": (r"^/usr/include/(ros|rosbag|tf2|tf2_ros|roscpp|xmlrpcpp|rosconsole|message_filters|diagnostic_updater|image_transport|cv_bridge|"
-            r"[a-z_]+_msgs)/|/devel/include/", {"ros", "nodes", "cli", "examples"}),
+            r"[a-z_]+_msgs)/|/devel/include/", {"node_graph", "nodes", "cli", "examples"}),
     "torch": (r"^/usr/include/(torch|ATen|c10)/", {"learning", "planner_training"}),
     "planner training": (r"/src/planners/[a-z_0-9]+/training/", {"planner_training"}),
     "oneDNN": (r"^/usr/include/(oneapi/)?dnnl", {"inference", "diffusion"}),
     "libsumo": (r"^/usr/include/libsumo/", {"simulation"}),
-    "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "ros"}),
+    "OpenCV": (r"^/usr/include/opencv4/", {"rendering", "record", "page", "video", "node_graph"}),
 }
 # Layers from the lowest up: a layer reads headers of its own row and of rows above it in this list.
 ORDER = ["core", "geometry", "map traffic", "dynamics", "cbv", "metrics guidance inference rendering simulation", "diffusion learning", "planning",
-         "planners", "session", "plugins suite record", "planner_training", "page", "video", "collection", "evaluation ros", "realism", "nodes cli"]
+         "planners", "session", "plugins suite record", "planner_training", "page", "video", "collection", "evaluation node_graph", "realism", "nodes cli"]
 RANK = {name: rank for rank, row in enumerate(ORDER) for name in row.split()}
 
 

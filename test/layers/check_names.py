@@ -70,7 +70,7 @@ OTHER_MEANINGS = {"rift": {"src/cbv/candidates.cpp", "src/cbv/candidates.h", "sr
 
 # "own": the folder whose files may spell the names.
 SECTIONS = {
-    "topics": {"table": "src/ros/messages/channels.cpp", "search": ["src"], "names": topic_names, "patterns": topic_patterns, "calls": topic_calls},
+    "topics": {"table": "src/node_graph/messages/channels.cpp", "search": ["src"], "names": topic_names, "patterns": topic_patterns, "calls": topic_calls},
     "planners": {"table": "src/planners/CMakeLists.txt", "search": ["src"], "own": "src/planners", "names": planner_names,
                  "patterns": planner_patterns, "calls": no_calls},
 }

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "ros/callback_queue.h"
+#include "ros/ros.h"
+
+namespace cdiff::node_graph {
+
+/// SIGINT, SIGTERM and SIGHUP without a handler: they are blocked from here on, in every thread
+/// made later, and asked for when it suits. So a session can end in order, whatever it is doing.
+class StopSignal {
+ public:
+  /// Make it before any other thread exists, hence before node_graph::init.
+  StopSignal();
+  /// Whether one of them has arrived, now or before.
+  bool raised();
+
+ private:
+  bool raised_ = false;
+};
+
+// Wall-clock helpers of the traffic simulator's single thread.
+
+/// [s] of wall time between looks at signals and limits.
+constexpr double kSpinPeriod = 0.05;
+
+inline double secondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Handles what has arrived; waits at most `seconds` for it.
+inline void spin(double seconds) {
+  node_graph::getGlobalCallbackQueue()->callAvailable(node_graph::WallDuration(seconds));
+}
+
+// The other nodes of a session as processes: those that the same roslaunch has started on this
+// machine, and the command line it was given. Read from /proc; where a node was started otherwise
+// (rosrun, another machine) there is nothing to find.
+
+/// The process of a node (name without namespace) that the parent of this process has started for
+/// the same ROS master and namespace; nothing when there is none or it has ended.
+std::optional<pid_t> launchedProcess(const std::string& node);
+
+/// Ends that process with SIGKILL, the only signal that ends a stopped one. Returns whether there
+/// was one.
+bool killLaunchedProcess(const std::string& node);
+
+/// [s] since the epoch at which the parent of this process started.
+std::optional<double> launchTime();
+
+/// What roslaunch was requested to start.
+struct LaunchCommand {
+  std::filesystem::path file;                    ///< absolute
+  std::filesystem::path folder;                  ///< where it runs
+  std::map<std::string, std::string> arguments;  ///< NAME:=VALUE of the command line
+};
+
+/// The command line of the roslaunch that started this process, where it names one of this
+/// package's own launch files and no other.
+std::optional<LaunchCommand> launchCommand();
+
+/// Throws InputError for an argument on that command line that its launch file does not declare:
+/// roslaunch itself ignores it and runs another session than the user meant.
+void requireKnownLaunchArguments();
+
+}  // namespace cdiff::node_graph

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/program.h"
+#include "e2e_cdiff/Heartbeat.h"
+#include "e2e_cdiff/SessionInfo.h"
+#include "e2e_cdiff/TickAck.h"
+#include "e2e_cdiff/TrafficSnapshot.h"
+#include "node_graph/lockstep/message_gate.h"
+#include "node_graph/lockstep/node_process.h"
+#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/tick_answers.h"
+#include "node_graph/messages/topics.h"
+#include "ros/ros.h"
+#include "session/scenario_options.h"
+
+namespace cdiff::node_graph {
+
+/// How a node's session came to its end.
+enum class Ending { kFinalSnapshot, kSimulatorGone, kSimulatorSilent, kStopped };
+
+/// What a result says about a traffic simulator that left, or fell silent for `timeout` [s].
+std::string simulatorFault(Ending ending, double timeout);
+
+/// What every node but the traffic simulator has in common: it waits for the session, reports when
+/// it is connected both ways, handles snapshots tick by tick in one thread, and leaves in order
+/// with the last one, whoever ends the session.
+class Participant {
+ public:
+  explicit Participant(StopSignal& stop);
+  virtual ~Participant() = default;
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// Runs the session to its end and returns the exit code.
+  int run();
+
+ protected:
+  using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
+
+  /// The session is known: make what it needs, advertise and listen.
+  virtual void startSession(const ::e2e_cdiff::SessionInfo& info) = 0;
+  /// What is missing besides connections before the first tick; empty when nothing is.
+  virtual std::string waitingFor() const { return {}; }
+  /// Handles the oldest snapshot; false when it needs more messages. `superseded`: a later snapshot
+  /// is there, nothing more will come.
+  virtual bool handle(const Snapshot& snapshot, bool superseded) = 0;
+  /// Whether all that this decision needs is here; asked where decisions may be left out.
+  virtual bool ready(const ::e2e_cdiff::TrafficSnapshot&) const { return true; }
+  /// Whether the node leaves decisions out when it falls behind the wall clock.
+  virtual bool leavesOut() const { return false; }
+  /// The session is over; returns the exit code.
+  virtual int conclude(Ending ending) = 0;
+  /// The traffic simulator has ended, or hangs, before it published a session; returns the exit
+  /// code.
+  virtual int concludeUnstarted(Ending) { return core::ExitCode::kPassed; }
+
+  /// Throws std::logic_error unless the topic's messages are of that type, as `listen` does.
+  template <class Message>
+  node_graph::Publisher advertise(const Topic& topic) {
+    requireType(topic.id, typeid(Message));
+    return connections_.advertise<Message>(node_, topic.name(), listeners(topic, graph_),
+                                           topic.row().latched);
+  }
+  node_graph::Publisher advertise(const Topic& topic);
+  /// Takes what the topic's publisher sends; see MessageGate::subscribe.
+  template <class Message, class Callback>
+  void listen(const Topic& topic, Callback callback) {
+    requireType(topic.id, typeid(Message));
+    inputs_.push_back(gate_.subscribe<Message>(
+        node_, topic.name(), siblingNodes(publishersOf(topic, graph_)), callback));
+  }
+  void listen(const Topic& topic, const TakeMessage& take);
+  /// Acknowledges a tick to the traffic simulator: this node has processed it.
+  void acknowledge(std::uint64_t tick) { publishAck(::e2e_cdiff::TickAck::ACKNOWLEDGED, tick); }
+  const SessionGraph& graph() const { return graph_; }
+  /// Whether no message will come any more.
+  bool over() const { return over_; }
+  /// For publishers that advertise() does not make.
+  Connections& connections() { return connections_; }
+  node_graph::NodeHandle& node() { return node_; }
+  /// [s] of silence that the traffic simulator has promised not to exceed.
+  double heartbeatTimeout() const { return heartbeat_.timeout(); }
+
+ private:
+  std::optional<Ending> waitForSession();
+  std::optional<Ending> unstartedEnding();
+  int standBy();
+  int runSession();
+  std::optional<Ending> unexpectedEnding();
+  void endSilentSimulator();
+  int leave(Ending ending);
+  int fail(const std::string& text);
+  void queue(const Snapshot& snapshot);
+  bool handleQueue();
+  void leaveOutdatedOut();
+  void report();
+  std::string missing() const;
+  bool simulatorSilent();
+  bool simulatorGone() const { return connections_.hasLeft(kTrafficSimulatorNode); }
+  void publishAck(std::uint8_t kind, std::uint64_t tick, const std::string& text = {});
+  std::uint64_t lastTick() const { return next_tick_ == 0 ? 0 : next_tick_ - 1; }
+
+  StopSignal& stop_;
+  Connections connections_;
+  MessageGate gate_;
+  node_graph::NodeHandle node_;
+  std::string name_;
+  SessionGraph graph_;
+  node_graph::Publisher acks_;
+  SilenceWatch heartbeat_;
+  node_graph::Subscriber heartbeat_input_;
+  node_graph::Subscriber session_input_;
+  node_graph::Subscriber traffic_input_;
+  std::vector<node_graph::Subscriber> inputs_;
+  ::e2e_cdiff::SessionInfo::ConstPtr session_;
+  std::deque<Snapshot> snapshots_;
+  std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
+  double simulation_step_ = 0.05;  ///< [s]
+  std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
+  node_graph::WallTime began_ = node_graph::WallTime::now();
+  node_graph::WallTime stopped_at_;   ///< when the stop signal was seen
+  node_graph::WallTime reported_at_;  ///< when this node last said how it stands
+  bool final_handled_ = false;
+  bool over_ = false;
+};
+
+/// What metrics and recorder have in common: they listen to all answers of a tick and take it when
+/// they are complete.
+class Observer : public Participant {
+ public:
+  using Participant::Participant;
+
+ protected:
+  /// Listens to all that the table of channels lists as answers and reports for an observer of this
+  /// part; from now on a decision is complete with all that the table asks for.
+  void listenToAnswers(Party party, const session::ScenarioOptions& options);
+  /// Whether all answers to a tick are here, or nothing more of it will come: in lockstep when it
+  /// is `superseded` by a later one.
+  bool complete(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
+  const TickAnswers& answers() const { return answers_; }
+  /// Drops the answers to a tick and to those before it.
+  void forgetUntil(std::uint64_t tick) { answers_.forgetBefore(tick + 1); }
+
+ private:
+  TickAnswers answers_;
+  node_graph::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
+};
+
+}  // namespace cdiff::node_graph

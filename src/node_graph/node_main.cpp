@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/node_main.h"
+
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "core/program.h"
+#include "node_graph/lockstep/node_process.h"
+#include "node_graph/messages/topics.h"
+#include "node_graph/nodes/observer_nodes.h"
+#include "node_graph/nodes/perception_nodes.h"
+#include "node_graph/nodes/planner_node.h"
+#include "node_graph/nodes/replay_node.h"
+#include "node_graph/nodes/traffic_simulator_node.h"
+#include "plugins/plugin_loader.h"
+#include "ros/ros.h"
+
+namespace cdiff::node_graph {
+namespace {
+
+constexpr double kMasterPatience = 5.0;  // [s] of wall time for a master that does not answer
+
+int runGuarded(const std::function<int(StopSignal&)>& body, StopSignal& stop) {
+  try {
+    plugins::loadPlugins();
+    return body(stop);
+  } catch (const std::exception& error) {
+    const core::Failure failure = core::failureOf(error);
+    ROS_FATAL("%s", failure.text.c_str());
+    return failure.exit_code;
+  }
+}
+
+/// `without_master`, where given, gives the exit code when no ROS master answers.
+int runNode(int argc, char** argv, const char* name, const std::function<int(StopSignal&)>& body,
+            const std::function<int()>& without_master = {}) {
+  core::prepareProgram();
+  StopSignal stop;
+  node_graph::init(argc, argv, name, node_graph::init_options::NoSigintHandler);
+  if (!node_graph::master::check()) {
+    ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
+              node_graph::master::getURI().c_str());
+    return without_master ? without_master() : core::ExitCode::kRunTimeError;
+  }
+  node_graph::master::setRetryTimeout(node_graph::WallDuration(kMasterPatience));
+  node_graph::start();  // else ROS would end with the last node handle, and an error after that
+                        // would not be logged
+  const int exit_code = runGuarded(body, stop);
+  node_graph::shutdown();
+  return exit_code;
+}
+
+template <class Node>
+int runNode(int argc, char** argv, const char* name) {
+  return runNode(argc, argv, name, [](StopSignal& stop) { return Node(stop).run(); });
+}
+
+}  // namespace
+
+bool masterAnswers() {
+  auto promise = std::make_shared<std::promise<bool>>();
+  std::future<bool> answer = promise->get_future();
+  std::thread([promise] { promise->set_value(node_graph::master::check()); }).detach();
+  return answer.wait_for(std::chrono::seconds(2)) == std::future_status::ready && answer.get();
+}
+
+int runTrafficSimulatorNode(int argc, char** argv) {
+  return runNode(argc, argv, kTrafficSimulatorNode, runTrafficSimulator);
+}
+
+int runCbvIdentificationNode(int argc, char** argv) {
+  return runNode<CbvIdentificationNode>(argc, argv, kCbvIdentificationNode);
+}
+
+int runCameraNode(int argc, char** argv) { return runNode<CameraNode>(argc, argv, kCameraNode); }
+
+int runEgoPlannerNode(int argc, char** argv) {
+  return runNode<EgoPlannerNode>(argc, argv, kEgoPlannerNode);
+}
+
+int runCbvPlannerNode(int argc, char** argv) {
+  return runNode<CbvPlannerNode>(argc, argv, kCbvPlannerNode);
+}
+
+int runDiffusionPlannerNode(int argc, char** argv) {
+  return runNode<CbvPlannerNode>(argc, argv, kDiffusionPlannerNode);
+}
+
+int runMetricsNode(int argc, char** argv) {
+  return runNode(
+      argc, argv, kMetricsNode, [](StopSignal& stop) { return MetricsNode(stop).run(); },
+      MetricsNode::runWithoutMaster);
+}
+
+int runRecorderNode(int argc, char** argv) {
+  return runNode<RecorderNode>(argc, argv, kRecorderNode);
+}
+
+int runReplayNode(int argc, char** argv) {
+  return runNode(argc, argv, kTrafficSimulatorNode,
+                 [](StopSignal& stop) { return runReplay(stop); });
+}
+
+}  // namespace cdiff::node_graph
