@@ -60,7 +60,7 @@ DenoiserTimes denoiserTimes(CpuDenoiser& denoiser, std::size_t samples) {
   std::vector<double> pull_back;
   for (int k = static_cast<int>(architecture.diffusion_steps); k > 0; --k) {
     forward.push_back(secondsOf([&] { denoiser.predictActions(noisy.data(), k, actions.data()); }));
-    pull_back.push_back(secondsOf([&] { denoiser.pullBackActions(actions.data(), noisy.data()); }));
+    pull_back.push_back(secondsOf([&] { denoiser.backwardActions(actions.data(), noisy.data()); }));
   }
   return {median(forward), median(forward) + median(pull_back)};
 }

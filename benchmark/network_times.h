@@ -18,12 +18,12 @@ double encoderOperations(const diffusion::Architecture& sizes);
 
 struct DenoiserTimes {
   double forward = 0.0;  ///< [s]
-  double both = 0.0;     ///< [s], with the pull-back
+  double both = 0.0;     ///< [s], with the backward pass
 };
 
 /// Of a batch of `samples`, medians over the diffusion steps.
 DenoiserTimes denoiserTimes(diffusion::CpuDenoiser& denoiser, std::size_t samples);
-/// Of the U-Net's convolutions for one sample; its pull-back has as many.
+/// Of the U-Net's convolutions for one sample; its backward pass has as many.
 double unetOperations(const diffusion::Model& model);
 
 }  // namespace cdiff::benchmark

@@ -27,8 +27,8 @@ void LearnedStateBranch::predict(const float* actions, int k, float* states) {
   denoiser_.predictStates(actions, k, states);
 }
 
-void LearnedStateBranch::pullBack(const float* state_gradient, float* action_gradient) {
-  denoiser_.pullBackStates(state_gradient, action_gradient);
+void LearnedStateBranch::backward(const float* state_gradient, float* action_gradient) {
+  denoiser_.backwardStates(state_gradient, action_gradient);
 }
 
 /// `values` of the contexts with their routes become the mix with other_.
@@ -55,10 +55,10 @@ void RouteScaledDenoiser::predictActions(const float* noisy, int k, float* actio
   mixInto(actions);
 }
 
-void RouteScaledDenoiser::pullBackActions(const float* action_gradient, float* noisy_gradient) {
+void RouteScaledDenoiser::backwardActions(const float* action_gradient, float* noisy_gradient) {
   other_.resize(rows_ * kRolloutColumns);
-  with_route_.pullBackActions(action_gradient, noisy_gradient);
-  without_route_.pullBackActions(action_gradient, other_.data());
+  with_route_.backwardActions(action_gradient, noisy_gradient);
+  without_route_.backwardActions(action_gradient, other_.data());
   mixInto(noisy_gradient);
 }
 
@@ -66,8 +66,8 @@ void RouteScaledDenoiser::predictStates(const float* actions, int k, float* stat
   with_route_.predictStates(actions, k, states);
 }
 
-void RouteScaledDenoiser::pullBackStates(const float* state_gradient, float* action_gradient) {
-  with_route_.pullBackStates(state_gradient, action_gradient);
+void RouteScaledDenoiser::backwardStates(const float* state_gradient, float* action_gradient) {
+  with_route_.backwardStates(state_gradient, action_gradient);
 }
 
 ExactStateBranch::ExactStateBranch(const dynamics::BicycleModelOptions& vehicle,
@@ -102,7 +102,7 @@ void ExactStateBranch::predict(const float* actions, int, float* states) {
   }
 }
 
-void ExactStateBranch::pullBack(const float* state_gradient, float* action_gradient) {
+void ExactStateBranch::backward(const float* state_gradient, float* action_gradient) {
   const Eigen::Index horizon = normalizer_.mean.rows();
   for (std::size_t b = 0; b < speeds_.size(); ++b) {
     traffic::Rollout gradient = traffic::Rollout::Zero(horizon, kRolloutColumns);
@@ -113,7 +113,7 @@ void ExactStateBranch::pullBack(const float* state_gradient, float* action_gradi
             normalizer_.scale(t, c);
       }
     }
-    rollout_.pullBack(speeds_[b], last_[b], gradient);
+    rollout_.backward(speeds_[b], last_[b], gradient);
     for (Eigen::Index t = 0; t < horizon; ++t) {
       for (int c = 0; c < kActionColumns; ++c) {
         const int column = kStateColumns + c;

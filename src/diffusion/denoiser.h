@@ -34,12 +34,12 @@ class Denoiser {
   virtual void predictActions(const float* noisy, int k, float* actions) = 0;
   /// noisy_gradient [B, T, 7] = (d actions / d tau^k)^T action_gradient [B, T, 3], at the last
   /// predictActions.
-  virtual void pullBackActions(const float* action_gradient, float* noisy_gradient) = 0;
+  virtual void backwardActions(const float* action_gradient, float* noisy_gradient) = 0;
   /// states [B, T, 4] = f_state(actions [B, T, 3], k, c).
   virtual void predictStates(const float* actions, int k, float* states) = 0;
   /// action_gradient [B, T, 3] = (d states / d actions)^T state_gradient [B, T, 4], at the last
   /// predictStates.
-  virtual void pullBackStates(const float* state_gradient, float* action_gradient) = 0;
+  virtual void backwardStates(const float* state_gradient, float* action_gradient) = 0;
 };
 
 /// States from actions: the learned state head (paper) or the exact rollout of the vehicle
@@ -51,7 +51,7 @@ class StateBranch {
   virtual void predict(const float* actions, int k, float* states) = 0;
   /// action_gradient [B, T, 3] = (d states / d actions)^T state_gradient [B, T, 4], at the last
   /// predict.
-  virtual void pullBack(const float* state_gradient, float* action_gradient) = 0;
+  virtual void backward(const float* state_gradient, float* action_gradient) = 0;
 };
 
 /// The denoiser's state head.
@@ -59,7 +59,7 @@ class LearnedStateBranch : public StateBranch {
  public:
   explicit LearnedStateBranch(Denoiser& denoiser) : denoiser_(denoiser) {}
   void predict(const float* actions, int k, float* states) override;
-  void pullBack(const float* state_gradient, float* action_gradient) override;
+  void backward(const float* state_gradient, float* action_gradient) override;
 
  private:
   Denoiser& denoiser_;
@@ -78,9 +78,9 @@ class RouteScaledDenoiser : public Denoiser {
   const Architecture& architecture() const override { return with_route_.architecture(); }
   void setContexts(const std::vector<Context>& contexts) override;
   void predictActions(const float* noisy, int k, float* actions) override;
-  void pullBackActions(const float* action_gradient, float* noisy_gradient) override;
+  void backwardActions(const float* action_gradient, float* noisy_gradient) override;
   void predictStates(const float* actions, int k, float* states) override;
-  void pullBackStates(const float* state_gradient, float* action_gradient) override;
+  void backwardStates(const float* state_gradient, float* action_gradient) override;
 
  private:
   void mixInto(float* values);
@@ -101,7 +101,7 @@ class ExactStateBranch : public StateBranch {
                    std::vector<double> speeds,
                    dynamics::ThrottleResponse response = dynamics::ThrottleResponse::kFitted);
   void predict(const float* actions, int k, float* states) override;
-  void pullBack(const float* state_gradient, float* action_gradient) override;
+  void backward(const float* state_gradient, float* action_gradient) override;
 
  private:
   dynamics::ActionRollout rollout_;

@@ -72,14 +72,14 @@ std::vector<double> SamplingBatch::evaluate(CleanObjective& objective, int k) {
 }
 
 const std::vector<float>& SamplingBatch::actionGradient(StateBranch& branch) {
-  branch.pullBack(state_gradient_.data(), action_gradient_.data());
+  branch.backward(state_gradient_.data(), action_gradient_.data());
   for (std::size_t i = 0; i < action_gradient_.size(); ++i)
     action_gradient_[i] += direct_gradient_[i];
   return action_gradient_;
 }
 
 const std::vector<float>& SamplingBatch::noisyGradient(Denoiser& denoiser, StateBranch& branch) {
-  denoiser.pullBackActions(actionGradient(branch).data(), noisy_gradient_.data());
+  denoiser.backwardActions(actionGradient(branch).data(), noisy_gradient_.data());
   return noisy_gradient_;
 }
 

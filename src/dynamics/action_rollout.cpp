@@ -85,7 +85,7 @@ struct TickAdjoint {
   double grip;  ///< cos(slip)
   double rear_length;
 
-  void pullBack(double heading, double speed, const SpeedResponse& response, StateAdjoint& state,
+  void backward(double heading, double speed, const SpeedResponse& response, StateAdjoint& state,
                 ActionAdjoint& action) const {
     const double distance = speed * BicycleModel::kTick;
     const double cosine = std::cos(heading + slip);
@@ -102,7 +102,7 @@ struct TickAdjoint {
 };
 
 /// Takes dJ/d(state) from the end of a row to its start; gives what the row's action adds.
-ActionAdjoint pullBackRow(const BicycleModel& model, const State& start,
+ActionAdjoint backwardRow(const BicycleModel& model, const State& start,
                           const ControlAction& action, double slip, StateAdjoint& adjoint) {
   const double rear_length = model.options().rear_length;
   const TickAdjoint tick{slip, std::sin(slip), std::cos(slip), rear_length};
@@ -111,8 +111,8 @@ ActionAdjoint pullBackRow(const BicycleModel& model, const State& start,
   const SpeedResponse first = model.speedResponse(start.speed, action);
   const SpeedResponse second = model.speedResponse(first.speed, action);
   ActionAdjoint sum;
-  tick.pullBack(middle_heading, first.speed, second, adjoint, sum);
-  tick.pullBack(start.heading, start.speed, first, adjoint, sum);
+  tick.backward(middle_heading, first.speed, second, adjoint, sum);
+  tick.backward(start.heading, start.speed, first, adjoint, sum);
   return sum;
 }
 
@@ -145,7 +145,7 @@ void ActionRollout::rollOut(double initial_speed, Rollout& rollout) const {
   }
 }
 
-void ActionRollout::pullBack(double initial_speed, const Rollout& rollout,
+void ActionRollout::backward(double initial_speed, const Rollout& rollout,
                              Rollout& gradient) const {
   using traffic::kRolloutBrake, traffic::kRolloutSteer, traffic::kRolloutThrottle;
   StateAdjoint adjoint;
@@ -157,7 +157,7 @@ void ActionRollout::pullBack(double initial_speed, const Rollout& rollout,
     const State start = stateBefore(initial_speed, rollout, row);
     const ControlAction action = commanded(start.speed, clampedAction(rollout, row));
     const SlipResponse slip = model_.slipResponse(action.steer);
-    const ActionAdjoint sum = pullBackRow(model_, start, action, slip.slip, adjoint);
+    const ActionAdjoint sum = backwardRow(model_, start, action, slip.slip, adjoint);
     gradient(row, kRolloutThrottle) +=
         within(sum.throttle, rollout(row, kRolloutThrottle), 0.0, 1.0);
     gradient(row, kRolloutSteer) +=

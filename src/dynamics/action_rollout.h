@@ -34,7 +34,7 @@ class ActionRollout {
   /// beyond a bound that descent (along -dJ/da) points out of; beyond a bound that it points into,
   /// the derivative at the bound. Zero for throttle below 0.3, and with the monotone response below
   /// u_0(v) (the response is flat there).
-  void pullBack(double initial_speed, const traffic::Rollout& rollout,
+  void backward(double initial_speed, const traffic::Rollout& rollout,
                 traffic::Rollout& gradient) const;
 
   /// What is commanded at `speed` [m/s] for an action, by the response of this rollout.

@@ -125,7 +125,7 @@ struct Spacing {
 
 /// A convolution over time with its weights packed for the kernels: gathering, output[s] = bias +
 /// sum over k of W_k input[stride s + k - padding], or spreading (a transposed convolution),
-/// output[stride s + k - padding] += W_k input[s]. One is the pull-back of the other.
+/// output[stride s + k - padding] += W_k input[s]. One is the backward pass of the other.
 class Convolution {
  public:
   /// Without `bias` it is zero.

@@ -68,7 +68,7 @@ struct DenoiserKernels {
   std::int64_t block = 0;  ///< outputs of a full block of packed weights
   void (*convolve)(const ConvolutionCall& call);
   void (*normalize)(const NormalizationCall& call);
-  void (*pullBackNormalize)(const NormalizationGradientCall& call);
+  void (*backwardNormalize)(const NormalizationGradientCall& call);
   /// output = Mish(input), slope = Mish'(input); `count` is a multiple of kChannelMultiple.
   void (*mish)(const float* input, std::int64_t count, float* output, float* slope);
 };

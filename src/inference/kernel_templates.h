@@ -143,7 +143,7 @@ void mish(const float* input, std::int64_t count, float* output, float* slope) {
 
 }  // namespace
 
-// Group normalization with Mish, and its pull-back, for one vector type V (linkage as
+// Group normalization with Mish, and its backward pass, for one vector type V (linkage as
 // above).
 
 namespace {
@@ -228,7 +228,7 @@ void normalize(const NormalizationCall& call) {
 
 /// With h = output_gradient x slope: input_gradient = (h - mean(h) - n mean(h n)) / deviation.
 template <class V>
-void pullBackNormalize(const NormalizationGradientCall& call) {
+void backwardNormalize(const NormalizationGradientCall& call) {
   const NormalizationShape& shape = call.shape;
   const float* n = call.normalized.data;
   const float* slope = call.slope.data;
@@ -261,7 +261,7 @@ void pullBackNormalize(const NormalizationGradientCall& call) {
 
 template <class V>
 constexpr DenoiserKernels kernelsOf() {
-  return {2 * V::kWidth, convolve<V>, normalize<V>, pullBackNormalize<V>, mish<V>};
+  return {2 * V::kWidth, convolve<V>, normalize<V>, backwardNormalize<V>, mish<V>};
 }
 
 }  // namespace

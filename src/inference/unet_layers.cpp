@@ -70,19 +70,18 @@ void NormalizedConvolution::forward(std::int64_t sample, const View& input, cons
                        inverse_deviation_.row(sample), added, output});
 }
 
-void NormalizedConvolution::pullBack(std::int64_t sample, const View& output_gradient,
+void NormalizedConvolution::backward(std::int64_t sample, const View& output_gradient,
                                      const View& input_gradient, bool accumulate) {
-  kernels_->pullBackNormalize({shape(), normalized_.view(sample), slope_.view(sample),
+  kernels_->backwardNormalize({shape(), normalized_.view(sample), slope_.view(sample),
                                inverse_deviation_.row(sample), output_gradient, gradient_.view()});
   reversed_->apply(gradient_.view(), input_gradient, rows_, accumulate);
 }
 
 ResidualBlock::ResidualBlock(const LayerSource& source, const std::string& name,
-                             const ChannelLayout& inputs, const Connection& connection,
-                             std::int64_t injection)
-    : Layer(connection),
+                             const ChannelLayout& inputs, const Edge& edge, std::int64_t injection)
+    : Layer(edge),
       injection_(injection),
-      rows_(connection.output.signal->value.rows()),
+      rows_(edge.output.variable->value.rows()),
       first_(source, name + ".block1", inputs, rows_),
       second_(source, name + ".block2", first_.outputs(), rows_),
       hidden_(first_.outputs(), rows_, source.halo) {
@@ -116,8 +115,8 @@ void ResidualBlock::resize(std::int64_t samples) {
 }
 
 void ResidualBlock::forward(std::int64_t sample, const float* injection) {
-  const View input = connection_.input.value(sample);
-  const View output = connection_.output.value(sample);
+  const View input = edge_.input.value(sample);
+  const View output = edge_.output.value(sample);
   const View hidden = hidden_.value.view();
   // Rows of stride 0: the same injection at every time step.
   first_.forward(sample, input, {const_cast<float*>(injection) + injection_, 0}, hidden);
@@ -125,12 +124,12 @@ void ResidualBlock::forward(std::int64_t sample, const float* injection) {
   second_.forward(sample, hidden, skip_ ? output : input, output);
 }
 
-void ResidualBlock::pullBack(std::int64_t sample) {
-  const View input = connection_.input.gradient(sample);
-  const View output = connection_.output.gradient(sample);
+void ResidualBlock::backward(std::int64_t sample) {
+  const View input = edge_.input.gradient(sample);
+  const View output = edge_.output.gradient(sample);
   const View hidden = hidden_.gradient.view();
-  second_.pullBack(sample, output, hidden, false);
-  first_.pullBack(sample, hidden, input, connection_.shared_input);
+  second_.backward(sample, output, hidden, false);
+  first_.backward(sample, hidden, input, edge_.shared_input);
   if (skip_reversed_) {
     skip_reversed_->apply(output, input, rows_, true);
   } else {
@@ -139,8 +138,8 @@ void ResidualBlock::pullBack(std::int64_t sample) {
 }
 
 PlainConvolution::PlainConvolution(const LayerSource& source, const std::string& name,
-                                   const Spacing& spacing, const Connection& connection)
-    : Layer(connection) {
+                                   const Spacing& spacing, const Edge& edge)
+    : Layer(edge) {
   const Tensor& weight = tensorNamed(source.tensors, name + ".weight");
   const Filter filter =
       spacing.spread ? Filter::ofTransposedConvolution(weight) : Filter::ofConvolution(weight);
@@ -150,31 +149,29 @@ PlainConvolution::PlainConvolution(const LayerSource& source, const std::string&
 }
 
 void PlainConvolution::forward(std::int64_t sample, const float*) {
-  convolution_->apply(connection_.input.value(sample), connection_.output.value(sample),
-                      connection_.output.signal->value.rows());
+  convolution_->apply(edge_.input.value(sample), edge_.output.value(sample),
+                      edge_.output.variable->value.rows());
 }
 
-void PlainConvolution::pullBack(std::int64_t sample) {
-  reversed_->apply(connection_.output.gradient(sample), connection_.input.gradient(sample),
-                   connection_.input.signal->value.rows(), connection_.shared_input);
+void PlainConvolution::backward(std::int64_t sample) {
+  reversed_->apply(edge_.output.gradient(sample), edge_.input.gradient(sample),
+                   edge_.input.variable->value.rows(), edge_.shared_input);
 }
 
 HeadBlock::HeadBlock(const LayerSource& source, const std::string& name,
-                     const ChannelLayout& inputs, const Connection& connection)
-    : Layer(connection),
-      block_(source, name, inputs, connection.output.signal->value.rows()),
+                     const ChannelLayout& inputs, const Edge& edge)
+    : Layer(edge),
+      block_(source, name, inputs, edge.output.variable->value.rows()),
       zeros_(block_.outputs().padded()) {}
 
 void HeadBlock::resize(std::int64_t samples) { block_.resize(samples); }
 
 void HeadBlock::forward(std::int64_t sample, const float*) {
-  block_.forward(sample, connection_.input.value(sample), {zeros_.data(), 0},
-                 connection_.output.value(sample));
+  block_.forward(sample, edge_.input.value(sample), {zeros_.data(), 0}, edge_.output.value(sample));
 }
 
-void HeadBlock::pullBack(std::int64_t sample) {
-  block_.pullBack(sample, connection_.output.gradient(sample), connection_.input.gradient(sample),
-                  false);
+void HeadBlock::backward(std::int64_t sample) {
+  block_.backward(sample, edge_.output.gradient(sample), edge_.input.gradient(sample), false);
 }
 
 }  // namespace cdiff::inference

@@ -10,8 +10,8 @@
 
 namespace cdiff::inference {
 
-// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its pull-back
-// (the product of its transposed Jacobian with a gradient). Layers are joined by signals.
+// Layers of the denoiser's U-Net (docs/network.md), each with its forward pass and its backward
+// pass (the product of its transposed Jacobian with a gradient). Layers are joined by variables.
 
 using Tensors = std::map<std::string, Tensor>;
 
@@ -19,12 +19,12 @@ using Tensors = std::map<std::string, Tensor>;
 const Tensor& tensorNamed(const Tensors& tensors, const std::string& name);
 
 /// What goes from layer to layer, with the gradient that comes back.
-struct Signal {
+struct Variable {
   Activation value;
   Activation gradient;
 
-  Signal() = default;
-  Signal(const ChannelLayout& layout, std::int64_t rows, std::int64_t halo)
+  Variable() = default;
+  Variable(const ChannelLayout& layout, std::int64_t rows, std::int64_t halo)
       : value(layout, rows, halo), gradient(layout, rows, halo) {}
   void resize(std::int64_t samples) {
     value.resize(samples);
@@ -32,13 +32,13 @@ struct Signal {
   }
 };
 
-/// A signal from a channel on.
-struct Port {
-  const Signal* signal = nullptr;
+/// A variable from a channel on.
+struct Slice {
+  const Variable* variable = nullptr;
   std::int64_t channel = 0;
 
-  View value(std::int64_t sample) const { return signal->value.view(sample, channel); }
-  View gradient(std::int64_t sample) const { return signal->gradient.view(sample, channel); }
+  View value(std::int64_t sample) const { return variable->value.view(sample, channel); }
+  View gradient(std::int64_t sample) const { return variable->gradient.view(sample, channel); }
 };
 
 /// What all layers are built from.
@@ -49,29 +49,29 @@ struct LayerSource {
   std::int64_t halo;
 };
 
-/// The signals that a layer reads and writes.
-struct Connection {
-  Port input;
-  Port output;
+/// The variables that a layer reads and writes.
+struct Edge {
+  Slice input;
+  Slice output;
   /// A later layer reads the input, too: gradients are added to the input's.
   bool shared_input = false;
 };
 
-/// A layer of the U-Net that works on one sample of a batch at a time and keeps what its pull-back
-/// needs.
+/// A layer of the U-Net that works on one sample of a batch at a time and keeps what its backward
+/// pass needs.
 class Layer {
  public:
-  explicit Layer(const Connection& connection) : connection_(connection) {}
+  explicit Layer(const Edge& edge) : edge_(edge) {}
   virtual ~Layer() = default;
   /// Makes room for a batch, where a layer keeps anything.
   virtual void resize(std::int64_t /*samples*/) {}
   /// `injection`: the sample's row of injections.
   virtual void forward(std::int64_t sample, const float* injection) = 0;
   /// From the gradient at the output to that at the input, at the last forward.
-  virtual void pullBack(std::int64_t sample) = 0;
+  virtual void backward(std::int64_t sample) = 0;
 
  protected:
-  Connection connection_;
+  Edge edge_;
 };
 
 /// Mish(GN(convolution(input))) + added.
@@ -82,7 +82,7 @@ class NormalizedConvolution {
 
   void resize(std::int64_t samples);
   void forward(std::int64_t sample, const View& input, const View& added, const View& output);
-  void pullBack(std::int64_t sample, const View& output_gradient, const View& input_gradient,
+  void backward(std::int64_t sample, const View& output_gradient, const View& input_gradient,
                 bool accumulate);
   const ChannelLayout& outputs() const { return outputs_; }
 
@@ -109,11 +109,11 @@ class ResidualBlock : public Layer {
  public:
   /// `injection`: its first channel in a row of injections.
   ResidualBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,
-                const Connection& connection, std::int64_t injection);
+                const Edge& edge, std::int64_t injection);
 
   void resize(std::int64_t samples) override;
   void forward(std::int64_t sample, const float* injection) override;
-  void pullBack(std::int64_t sample) override;
+  void backward(std::int64_t sample) override;
 
  private:
   void buildSkip(const LayerSource& source, const std::string& name, const ChannelLayout& inputs);
@@ -124,17 +124,17 @@ class ResidualBlock : public Layer {
   NormalizedConvolution second_;
   std::optional<Convolution> skip_;
   std::optional<Convolution> skip_reversed_;
-  Signal hidden_;  ///< of one sample
+  Variable hidden_;  ///< of one sample
 };
 
 /// A convolution alone: changes of resolution and the head's output.
 class PlainConvolution : public Layer {
  public:
   PlainConvolution(const LayerSource& source, const std::string& name, const Spacing& spacing,
-                   const Connection& connection);
+                   const Edge& edge);
 
   void forward(std::int64_t sample, const float* injection) override;
-  void pullBack(std::int64_t sample) override;
+  void backward(std::int64_t sample) override;
 
  private:
   std::optional<Convolution> convolution_;
@@ -145,11 +145,11 @@ class PlainConvolution : public Layer {
 class HeadBlock : public Layer {
  public:
   HeadBlock(const LayerSource& source, const std::string& name, const ChannelLayout& inputs,
-            const Connection& connection);
+            const Edge& edge);
 
   void resize(std::int64_t samples) override;
   void forward(std::int64_t sample, const float* injection) override;
-  void pullBack(std::int64_t sample) override;
+  void backward(std::int64_t sample) override;
 
  private:
   NormalizedConvolution block_;
@@ -164,7 +164,7 @@ inline Convolution linearNamed(const DenoiserKernels& kernels, const Tensors& te
                      &tensorNamed(tensors, name + ".bias"));
 }
 
-/// The pull-back of a linear layer, or of some of its columns.
+/// The backward pass of a linear layer, or of some of its columns.
 inline Convolution reversedLinear(const DenoiserKernels& kernels, const Filter& filter) {
   return Convolution(kernels, filter.transposed(), Spacing{});
 }

@@ -70,10 +70,10 @@ StageResult StageRunner::run() {
     }
     stepOrStop();
     if (betweenPeriods() && now() - last_checkpoint_ >= options_.checkpoint_every) save(false);
-    if (result_.steps % options_.validation_every == 0 && !finished()) judge();
+    if (result_.steps % options_.validation_every == 0 && !finished()) measureHeldOut();
   }
   if (!done) {
-    judge();
+    measureHeldOut();
     save(true);
     result_.seconds = seconds();
   }
@@ -206,9 +206,9 @@ void StageRunner::logProgress(const Loss& loss, double norm) {
   last_report_step_ = result_.steps;
 }
 
-void StageRunner::judge() {
+void StageRunner::measureHeldOut() {
   optimizer_.swapAverage();
-  result_.held_out = stage_.judge();
+  result_.held_out = stage_.measureHeldOut();
   optimizer_.swapAverage();
   log_ << stage_.name() << " step " << result_.steps << " held out:";
   for (const auto& [name, value] : result_.held_out)

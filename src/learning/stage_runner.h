@@ -55,7 +55,7 @@ class StageRunner {
   void checkFinite(double value);
   void logProgress(const Loss& loss, double norm);
   void record(const Loss& loss, double norm, double samples_per_second);
-  void judge();
+  void measureHeldOut();
   double progress() const;
   std::string progressText() const;
   double rate() const;

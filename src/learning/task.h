@@ -65,7 +65,7 @@ class Stage {
   /// Samples of a step, for messages.
   virtual std::vector<std::size_t> samplesOf(std::int64_t step) = 0;
   /// Measures on held-out samples.
-  virtual Measures judge() = 0;
+  virtual Measures measureHeldOut() = 0;
   /// The learning rate of a step where the stage has a course of its own; nullopt: warm-up and
   /// cosine of the options.
   virtual std::optional<double> learningRate(std::int64_t) const { return std::nullopt; }

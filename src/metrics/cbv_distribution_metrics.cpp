@@ -4,9 +4,9 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/distributions.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/distributions.h"
-#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

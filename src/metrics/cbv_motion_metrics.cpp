@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures/body_motion.h"
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/body_motion.h"
+#include "metrics/formulas/sample_statistics.h"
 
 namespace cdiff::metrics {
 

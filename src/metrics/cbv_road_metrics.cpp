@@ -5,8 +5,8 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/free_road.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/free_road.h"
-#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

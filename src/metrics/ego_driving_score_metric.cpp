@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/driving_score.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/driving_score.h"
-#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

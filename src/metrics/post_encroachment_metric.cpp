@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures/post_encroachment.h"
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/post_encroachment.h"
+#include "metrics/formulas/sample_statistics.h"
 
 namespace cdiff::metrics {
 

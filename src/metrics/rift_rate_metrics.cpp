@@ -5,10 +5,10 @@
 #include <set>
 
 #include "e2e_cdiff/metrics/metric.h"
+#include "metrics/formulas/body_motion.h"
+#include "metrics/formulas/rift_histogram.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/known_measures.h"
-#include "metrics/measures/body_motion.h"
-#include "metrics/measures/rift_histogram.h"
-#include "metrics/measures/sample_statistics.h"
 
 namespace cdiff::metrics {
 

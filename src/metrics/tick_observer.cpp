@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 
 namespace cdiff::metrics {
 namespace {

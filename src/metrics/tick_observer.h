@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures/contacts.h"
+#include "metrics/formulas/contacts.h"
 
 namespace cdiff::metrics {
 

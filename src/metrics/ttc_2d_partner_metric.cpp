@@ -6,7 +6,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/sample_statistics.h"
 
 namespace cdiff::metrics {
 

@@ -227,9 +227,9 @@ void addVehicles(Json& data, const record::SessionResult& result) {
 }
 
 /// Three whole numbers per line: indices of driver and vehicle, weight [%].
-Json gazeNumbers(const record::TimelineFrame& frame) {
+Json attentionNumbers(const record::TimelineFrame& frame) {
   Json numbers = Json::array();
-  for (const record::TimelineGaze& gaze : frame.gazes) {
+  for (const record::TimelineAttention& gaze : frame.gazes) {
     numbers.push_back(gaze.driver);
     numbers.push_back(gaze.vehicle);
     numbers.push_back(rounded(100.0 * static_cast<double>(gaze.weight)));
@@ -252,14 +252,14 @@ void addFrames(Json& data, const record::SessionResult& result, const MapCanvas&
   const std::vector<std::size_t> cbv_styles = cbvStyles(result);
   const auto& frames = result.timeline.frames();
   const std::size_t stride = 1 + poseCount(result.timeline) / kMostPoses;
-  const bool gazes = showsGazes(result.timeline);
+  const bool gazes = showsAttention(result.timeline);
   const bool perception = showsPerception(result.timeline);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (i % stride != 0 && i + 1 != frames.size()) continue;
     data["times"].push_back(hundredths(frames[i].time));
     data["frames"].push_back(frameNumbers(frames[i], canvas, cbv_styles));
     data["moments"].push_back(momentNumbers(frames[i]));
-    if (gazes) data["gazes"].push_back(gazeNumbers(frames[i]));
+    if (gazes) data["gazes"].push_back(attentionNumbers(frames[i]));
     if (perception) data["perceived"].push_back(perceivedTexts(frames[i], canvas));
   }
 }

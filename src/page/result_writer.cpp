@@ -61,7 +61,7 @@ class ResultWriter::Record {
     metrics_.observe(snapshot, record.selection);
     timeline_.observe(snapshot);
     if (record.actions != nullptr) {
-      timeline_.observeGazes(snapshot, *record.actions);
+      timeline_.observeAttention(snapshot, *record.actions);
       timeline_.observePerception(snapshot, *record.actions);
     }
     if (record.selection != nullptr) cbv_.observe(snapshot, *record.selection);

@@ -43,7 +43,7 @@ class NetworkTask : public learning::OneStageTask {
                     {networkMetadata(texts_.kind, settings.architecture), parameters().values()},
                     true,
                     ""}};
-    model.held_out = makeStage(texts_.stage)->judge();
+    model.held_out = makeStage(texts_.stage)->measureHeldOut();
     model.settings = {{"architecture", core::dumpOptions(settings.architecture)},
                       {"settings", core::dumpOptions(settings)}};
     model.title = texts_.title;

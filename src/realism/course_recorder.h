@@ -13,7 +13,7 @@
 
 #include "cbv/cbv_selector.h"
 #include "core/file.h"
-#include "metrics/measures/driving_score.h"
+#include "metrics/formulas/driving_score.h"
 #include "realism/continuation.h"
 #include "realism/recording.h"
 #include "session/session_observer.h"

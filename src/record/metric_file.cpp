@@ -11,8 +11,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/measures/distributions.h"
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/distributions.h"
+#include "metrics/formulas/ttc_2d.h"
 #include "metrics/metric_registry.h"
 
 namespace cdiff::record {

@@ -57,10 +57,10 @@ std::string struckText(const std::vector<std::string>& contacts) {
 }
 
 /// Adds a check for each rule that the scenario sets.
-class RuleBook {
+class VerdictRules {
  public:
-  RuleBook(const session::ScenarioOptions& options, SessionStatus status,
-           const metrics::SessionMeasures& measures)
+  VerdictRules(const session::ScenarioOptions& options, SessionStatus status,
+               const metrics::SessionMeasures& measures)
       : rules_(options.verdict), mode_(options.mode), status_(status), measures_(measures) {}
 
   std::vector<Check> checks() {
@@ -239,7 +239,7 @@ Verdict judge(const session::ScenarioOptions& options, SessionStatus status,
               const metrics::SessionMeasures& measures, const std::vector<traffic::Fault>& faults) {
   Verdict verdict;
   verdict.checks = {sessionCheck(status, faults)};
-  for (Check& check : RuleBook(options, status, measures).checks()) {
+  for (Check& check : VerdictRules(options, status, measures).checks()) {
     if (!endedByItself(status)) {
       check.outcome = CheckOutcome::kSkipped;
       check.text = "not judged: the session ended with status " + quotedStatus(status);

@@ -47,7 +47,7 @@ struct RigRenderer::Parts {
   Samples samples;
   std::vector<Canvas> canvases;
   std::vector<View> views;
-  std::vector<SeenVehicle> vehicles;
+  std::vector<VisibleVehicle> vehicles;
 };
 
 void RigRenderer::Parts::look(const traffic::TrafficSnapshot& snapshot,
@@ -73,7 +73,7 @@ void RigRenderer::Parts::draw(std::size_t camera, Labels labels) {
   canvas.clear(labels == Labels::kClassesAndInstances);
   scene->road.draw(camera, view, canvas);
   scene->signals.drawStopLines(camera, view, canvas);
-  for (const SeenVehicle& seen : vehicles) {
+  for (const VisibleVehicle& seen : vehicles) {
     if (view.maySee(seen.bound.center, seen.bound.radius)) drawBody(seen.body, view, canvas);
   }
   scene->signals.drawLamps(camera, view, canvas);

@@ -85,7 +85,7 @@ using VehicleBody = std::vector<BodyFace>;
 VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance);
 
 /// A vehicle that a camera may see: the ball around it and its faces.
-struct SeenVehicle {
+struct VisibleVehicle {
   Bound bound;
   VehicleBody body;
 };

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/text.h"
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 #include "record/session_text.h"
 #include "video/video_ink.h"
 

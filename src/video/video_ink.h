@@ -7,7 +7,7 @@
 #include <string>
 
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "metrics/measures/contacts.h"
+#include "metrics/formulas/contacts.h"
 #include "session/session_setup.h"
 
 namespace cdiff::video {

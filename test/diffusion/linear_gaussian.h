@@ -32,7 +32,7 @@ class GaussianDenoiser : public Denoiser {
       for (std::size_t c = 0; c < 3; ++c) actions[row * 3 + c] = gain_ * noisy[row * 7 + 4 + c];
     }
   }
-  void pullBackActions(const float* action_gradient, float* noisy_gradient) override {
+  void backwardActions(const float* action_gradient, float* noisy_gradient) override {
     std::fill(noisy_gradient, noisy_gradient + count_ * kHorizon * 7, 0.0F);
     for (std::size_t row = 0; row < count_ * kHorizon; ++row) {
       for (std::size_t c = 0; c < 3; ++c)
@@ -42,7 +42,7 @@ class GaussianDenoiser : public Denoiser {
   void predictStates(const float*, int, float* states) override {
     std::fill(states, states + count_ * kHorizon * 4, 0.0F);
   }
-  void pullBackStates(const float*, float* action_gradient) override {
+  void backwardStates(const float*, float* action_gradient) override {
     std::fill(action_gradient, action_gradient + count_ * kHorizon * 3, 0.0F);
   }
 

@@ -55,9 +55,9 @@ Results resultsOf(CpuDenoiser& denoiser, const Case& given, int k) {
   results.action_gradient.resize(values * 3);
   denoiser.setContexts(given.contexts);
   denoiser.predictActions(given.noisy.data(), k, results.actions.data());
-  denoiser.pullBackActions(given.action_gradient.data(), results.noisy_gradient.data());
+  denoiser.backwardActions(given.action_gradient.data(), results.noisy_gradient.data());
   denoiser.predictStates(given.actions.data(), k, results.states.data());
-  denoiser.pullBackStates(given.state_gradient.data(), results.action_gradient.data());
+  denoiser.backwardStates(given.state_gradient.data(), results.action_gradient.data());
   return results;
 }
 
@@ -129,7 +129,7 @@ TEST_P(CpuDenoiserOf, NetworkWhoseChannelsHalveAgreesWithTheReference) {
   expectForward(Case(architecture, 2), GetParam(), 2);
 }
 
-TEST_P(CpuDenoiserOf, PullBacksAgreeWithCentralDifferences) {
+TEST_P(CpuDenoiserOf, BackwardPassAgreesWithCentralDifferences) {
   const int k = 3;
   for (const std::vector<std::int64_t>& channels :
        {smallArchitecture().channels, std::vector<std::int64_t>{8, 4}}) {
@@ -154,7 +154,7 @@ TEST_P(CpuDenoiserOf, PullBacksAgreeWithCentralDifferences) {
   }
 }
 
-TEST_P(CpuDenoiserOf, PullBacksAreAdjointToTheJacobians) {
+TEST_P(CpuDenoiserOf, BackwardPassIsAdjointToTheJacobians) {
   const int k = 40;
   const Case given(Architecture(), 1);
   CpuDenoiser denoiser(given.model, GetParam());
@@ -208,10 +208,10 @@ TEST_P(CpuDenoiserOf, RepeatedCallsGiveTheSame) {
   CpuDenoiser denoiser(given.model, GetParam());
   const Results first = resultsOf(denoiser, given, 3);
   std::vector<float> gradient(first.noisy_gradient.size());
-  denoiser.pullBackActions(given.action_gradient.data(), gradient.data());
+  denoiser.backwardActions(given.action_gradient.data(), gradient.data());
   EXPECT_EQ(gradient, first.noisy_gradient);
   gradient.resize(first.action_gradient.size());
-  denoiser.pullBackStates(given.state_gradient.data(), gradient.data());
+  denoiser.backwardStates(given.state_gradient.data(), gradient.data());
   EXPECT_EQ(gradient, first.action_gradient);
 }
 
@@ -274,8 +274,8 @@ TEST(CpuDenoiser, RefusesCallsOutOfOrderAndUnknownSteps) {
   CpuDenoiser denoiser(given.model);
   EXPECT_THROW(denoiser.predictActions(given.noisy.data(), 1, room.data()), std::logic_error);
   denoiser.setContexts(given.contexts);
-  EXPECT_THROW(denoiser.pullBackActions(given.noisy.data(), room.data()), std::logic_error);
-  EXPECT_THROW(denoiser.pullBackStates(given.noisy.data(), room.data()), std::logic_error);
+  EXPECT_THROW(denoiser.backwardActions(given.noisy.data(), room.data()), std::logic_error);
+  EXPECT_THROW(denoiser.backwardStates(given.noisy.data(), room.data()), std::logic_error);
   EXPECT_THROW(denoiser.predictActions(given.noisy.data(), 0, room.data()), std::invalid_argument);
   EXPECT_THROW(denoiser.predictStates(given.noisy.data(), 6, room.data()), std::invalid_argument);
 }

@@ -185,7 +185,7 @@ TEST_P(DenoiserLayers, NormalizedConvolutionAgreesWithTheReference) {
 
   const Grid gradient = randomGrid(12, rows, 7);
   inference::Activation pulled = emptyActivation(inputs, rows);
-  block.pullBack(0, activationOf(gradient, outputs).view(), pulled.view(), false);
+  block.backward(0, activationOf(gradient, outputs).view(), pulled.view(), false);
   Doubles expected;
   for (std::size_t i = 0; i < x.values.size(); ++i) {
     Grid ahead = x;

@@ -88,7 +88,7 @@ TEST_F(ExactStates, GradientsGoBackThroughTheDynamics) {
     gradient[i] = 0.1F * static_cast<float>(i % 5) - 0.15F;
   branch_.predict(normalizedActions().data(), 1, states.data());
   std::vector<float> found(2 * kHorizon * kActionColumns, 99.0F);
-  branch_.pullBack(gradient.data(), found.data());
+  branch_.backward(gradient.data(), found.data());
   for (std::size_t sample = 0; sample < 2; ++sample) {
     traffic::Rollout pulled = traffic::Rollout::Zero(kHorizon, kRolloutColumns);
     for (Eigen::Index row = 0; row < kHorizon; ++row) {
@@ -99,7 +99,7 @@ TEST_F(ExactStates, GradientsGoBackThroughTheDynamics) {
                          static_cast<std::size_t>(c)]) /
             normalizer_.scale(row, c);
     }
-    dynamics_.pullBack(kSpeeds[sample], driven(sample, false), pulled);
+    dynamics_.backward(kSpeeds[sample], driven(sample, false), pulled);
     for (Eigen::Index row = 0; row < kHorizon; ++row) {
       for (int c = 0; c < kActionColumns; ++c) {
         const int column = kStateColumns + c;

@@ -32,7 +32,7 @@ class RouteScale : public testing::Test {
     Results results{std::vector<float>(rows * 3), std::vector<float>(rows * 7),
                     std::vector<float>(rows * 4)};
     denoiser.predictActions(values(7, 1).data(), kStep, results.actions.data());
-    denoiser.pullBackActions(values(3, 2).data(), results.noisy_gradient.data());
+    denoiser.backwardActions(values(3, 2).data(), results.noisy_gradient.data());
     denoiser.predictStates(values(3, 3).data(), kStep, results.states.data());
     return results;
   }

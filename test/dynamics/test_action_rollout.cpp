@@ -67,13 +67,13 @@ double centralDifference(const ActionRollout& model, double speed, const Rollout
 
 /// Truncation: h^2 / 6 x J''' below 1e3 (lever of 50 m x (0.4 rad per unit of steer)^3 x 32 rows)
 /// = 2e-8; rounding: J of 1e2 x 32 terms x 2e-16 / h = 6e-8.
-void expectPullBack(double speed, const Rollout& actions, std::uint32_t trial) {
+void expectBackward(double speed, const Rollout& actions, std::uint32_t trial) {
   const ActionRollout model;
   Rollout rollout = actions;
   model.rollOut(speed, rollout);
   const Rollout weights = stateWeights(trial, rollout.rows());
   Rollout gradient = weights;
-  model.pullBack(speed, rollout, gradient);
+  model.backward(speed, rollout, gradient);
   EXPECT_EQ(gradient.leftCols(traffic::kStateColumns), weights.leftCols(traffic::kStateColumns));
   for (Eigen::Index row = 0; row < rollout.rows(); ++row) {
     for (const int column : {kRolloutThrottle, kRolloutSteer, kRolloutBrake}) {
@@ -130,15 +130,15 @@ TEST(ActionRollout, ActionsOutOfRangeCountAsClamped) {
   EXPECT_EQ(beyond.leftCols(traffic::kStateColumns), at.leftCols(traffic::kStateColumns));
 }
 
-TEST(ActionRollout, PullBackIsTheDerivative) {
+TEST(ActionRollout, BackwardPassIsTheDerivative) {
   for (std::uint32_t trial = 0; trial < 4; ++trial) {
     for (const double speed : {0.5, 4.0, 9.0, 16.0}) {
-      expectPullBack(speed, randomActions(trial), trial);
+      expectBackward(speed, randomActions(trial), trial);
     }
   }
 }
 
-TEST(ActionRollout, PullBackKnowsTheCapOfTheBrake) {
+TEST(ActionRollout, BackwardPassKnowsTheCapOfTheBrake) {
   // 20 km/h and more: the fit asks for more than 8 m/s^2, so the brake's strength does not depend
   // on the speed; below about 1 m/s, reached in the last rows, it does.
   Rollout actions = randomActions(9, 20);
@@ -149,7 +149,7 @@ TEST(ActionRollout, PullBackKnowsTheCapOfTheBrake) {
   ASSERT_GT(check(0, kRolloutSpeed), 6.0);
   ASSERT_LT(check(19, kRolloutSpeed), 1.0);
   ASSERT_GT(check(19, kRolloutSpeed), 0.05);
-  expectPullBack(9.0, actions, 9);
+  expectBackward(9.0, actions, 9);
 }
 
 TEST(ActionRollout, FlatThrottleHasNoDerivative) {
@@ -158,7 +158,7 @@ TEST(ActionRollout, FlatThrottleHasNoDerivative) {
   ActionRollout().rollOut(5.0, rollout);
   Rollout gradient = Rollout::Zero(3, traffic::kRolloutColumns);
   gradient.col(kRolloutSpeed).setConstant(-1.0);  // faster is better
-  ActionRollout().pullBack(5.0, rollout, gradient);
+  ActionRollout().backward(5.0, rollout, gradient);
   EXPECT_EQ(gradient(0, kRolloutThrottle), 0.0);
   EXPECT_LT(gradient(1, kRolloutThrottle), 0.0);
   EXPECT_EQ(gradient(2, kRolloutThrottle), 0.0);
@@ -172,22 +172,22 @@ TEST(ActionRollout, BoundsBlockOnlyDescentOutOfThem) {
   Rollout faster = Rollout::Zero(1, traffic::kRolloutColumns);
   faster(0, kRolloutSpeed) = -1.0;
   Rollout slower = -faster;
-  model.pullBack(8.0, rollout, faster);
-  model.pullBack(8.0, rollout, slower);
+  model.backward(8.0, rollout, faster);
+  model.backward(8.0, rollout, slower);
   EXPECT_EQ(faster(0, kRolloutThrottle), 0.0);  // it would have to exceed 1
   EXPECT_GT(slower(0, kRolloutThrottle), 0.0);
   EXPECT_EQ(faster(0, kRolloutBrake), 0.0);  // and the brake to fall below 0
   EXPECT_LT(slower(0, kRolloutBrake), 0.0);
 }
 
-TEST(ActionRollout, PullBackAddsToTheActionGradient) {
+TEST(ActionRollout, BackwardPassAddsToTheActionGradient) {
   Rollout rollout = randomActions(2, 6);
   ActionRollout().rollOut(6.0, rollout);
   Rollout alone = stateWeights(2, 6);
-  ActionRollout().pullBack(6.0, rollout, alone);
+  ActionRollout().backward(6.0, rollout, alone);
   Rollout added = stateWeights(2, 6);
   added.rightCols(traffic::kActionColumns).setConstant(0.25);
-  ActionRollout().pullBack(6.0, rollout, added);
+  ActionRollout().backward(6.0, rollout, added);
   const auto difference = added - alone;
   EXPECT_LT((difference.rightCols(traffic::kActionColumns).array() - 0.25).abs().maxCoeff(), 1e-14);
 }

@@ -119,7 +119,7 @@ TEST(ThrottleResponse, TheGradientIsThatOfTheResponse) {
       model.rollOut(8.0, rollout);
       Rollout gradient = Rollout::Zero(8, traffic::kRolloutColumns);
       gradient(7, kRolloutSpeed) = 1.0;
-      model.pullBack(8.0, rollout, gradient);
+      model.backward(8.0, rollout, gradient);
       for (Eigen::Index row = 0; row < 8; ++row) {
         Rollout above = throttled(throttle);
         Rollout below = above;

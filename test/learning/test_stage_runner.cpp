@@ -38,7 +38,7 @@ class ToyStage : public Stage {
   }
   StageRules rules() const override { return stage_rules; }
   Measures news() override { return news_now; }
-  Measures judge() override {
+  Measures measureHeldOut() override {
     return {{"distance", std::abs(parameters_("weight").mean().item<double>() - 3.0)}};
   }
   std::vector<float> weight() const { return toVector(parameters_("weight")); }
@@ -80,7 +80,7 @@ TEST_F(StageRunnerTest, LearnsAndLeavesTheAverage) {
   const StageResult result = run(stage);
   EXPECT_EQ(result.steps, 40);
   ToyStage untrained;
-  EXPECT_LT(result.held_out.at("distance"), 0.7 * untrained.judge().at("distance"));
+  EXPECT_LT(result.held_out.at("distance"), 0.7 * untrained.measureHeldOut().at("distance"));
   EXPECT_EQ(toVector(stored().tensors.at("average/toy/weight")), stage.weight());
   EXPECT_NE(toVector(stored().tensors.at("weight/toy/weight")), stage.weight());
 }

@@ -42,7 +42,7 @@ class ToyStage : public learning::EvenStage {
     const at::Tensor error = squaredError(samplesOf(step));
     return {error, {{"square", error}}};
   }
-  learning::Measures judge() override {
+  learning::Measures measureHeldOut() override {
     const at::NoGradGuard no_gradient;
     return {{"square", squaredError(run_.held_out).item<double>()}};
   }
@@ -82,7 +82,7 @@ class ToyTask : public learning::OneStageTask {
   learning::TrainedModel finish() override {
     learning::TrainedModel model;
     model.files = {{"line.safetensors", {{{"format", "toy"}}, weights_->values()}, true, ""}};
-    model.held_out = ToyStage(*run_, *weights_).judge();
+    model.held_out = ToyStage(*run_, *weights_).measureHeldOut();
     model.settings = {{"slope", slope}};
     model.title = "A line";
     model.measures = "Squared error.\n";

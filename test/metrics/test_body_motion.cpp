@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/measures/body_motion.h"
+#include "metrics/formulas/body_motion.h"
 #include "metrics/metric_under_test.h"
 
 namespace cdiff::metrics {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/sample_statistics.h"
 #include "metrics/session_metrics.h"
 #include "metrics/straight_road.h"
 

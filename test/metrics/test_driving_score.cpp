@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "metrics/measures/driving_score.h"
+#include "metrics/formulas/driving_score.h"
 
 namespace cdiff::metrics {
 namespace {

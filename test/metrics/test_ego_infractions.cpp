@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/driving_score.h"
+#include "metrics/formulas/driving_score.h"
 #include "metrics/metric_under_test.h"
 #include "support/network_text.h"
 

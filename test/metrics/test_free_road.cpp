@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "metrics/measures/free_road.h"
+#include "metrics/formulas/free_road.h"
 #include "metrics/straight_road.h"
 #include "support/network_text.h"
 

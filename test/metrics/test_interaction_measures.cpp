@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/sample_statistics.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/post_encroachment.h"
+#include "metrics/formulas/post_encroachment.h"
 #include "metrics/metric_under_test.h"
 
 namespace cdiff::metrics {

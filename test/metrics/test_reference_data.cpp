@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "core/text.h"
-#include "metrics/measures/distributions.h"
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/distributions.h"
+#include "metrics/formulas/ttc_2d.h"
 #include "metrics/reference_data.h"
 
 #define SKIP_WITHOUT(path) \

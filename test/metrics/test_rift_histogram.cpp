@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/measures/distributions.h"
-#include "metrics/measures/rift_histogram.h"
+#include "metrics/formulas/distributions.h"
+#include "metrics/formulas/rift_histogram.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "metrics/measures/distributions.h"
+#include "metrics/formulas/distributions.h"
 #include "metrics/metric_under_test.h"
 
 namespace cdiff::metrics {

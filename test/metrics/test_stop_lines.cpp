@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/driving_score.h"
+#include "metrics/formulas/driving_score.h"
 #include "metrics/straight_road.h"
 #include "support/network_text.h"
 

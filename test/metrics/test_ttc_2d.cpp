@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "metrics/measures/distributions.h"
+#include "metrics/formulas/distributions.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "node_graph/lockstep/message_gate.h"
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/channel_conversions.h"
 #include "node_graph/messages/conversions.h"
@@ -185,8 +185,8 @@ msgs::TickAck ackOf(const std::string& node, std::uint8_t kind, std::uint64_t ti
   return ack;
 }
 
-TEST(ParticipantBook, FollowsNodesFromWaitingToFinished) {
-  ParticipantBook book({kMetricsNode, kEgoPlannerNode});
+TEST(ParticipantTracker, FollowsNodesFromWaitingToFinished) {
+  ParticipantTracker book({kMetricsNode, kEgoPlannerNode});
   EXPECT_EQ(book.notReady(),
             (Texts{"ego_planner_node has not started", "metrics_node has not started"}));
   book.note(ackOf(kMetricsNode, msgs::TickAck::WAITING, 0, "no node publishes /ego/control yet"));
@@ -205,8 +205,8 @@ TEST(ParticipantBook, FollowsNodesFromWaitingToFinished) {
   EXPECT_TRUE(book.finished(kMetricsNode));
 }
 
-TEST(ParticipantBook, KeepsTheFirstErrorAndIgnoresStrangers) {
-  ParticipantBook book({kMetricsNode});
+TEST(ParticipantTracker, KeepsTheFirstErrorAndIgnoresStrangers) {
+  ParticipantTracker book({kMetricsNode});
   book.note(ackOf("stranger", msgs::TickAck::ERROR, 0, "not ours"));
   EXPECT_FALSE(book.error().has_value());
   book.note(ackOf(kMetricsNode, msgs::TickAck::ERROR, 3, "disk full"));

@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "node_graph/lockstep/message_gate.h"
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/messages/message_checks.h"
 #include "node_graph/messages/topics.h"
 
@@ -101,10 +101,10 @@ msgs::TickAck ackFrom(const std::string& node, std::uint8_t kind) {
   return message;
 }
 
-TEST(ParticipantBook, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
+TEST(ParticipantTracker, WhoSaysNothingAtAllIsSilentAndWhoWaitsIsNot) {
   using namespace std::chrono_literals;
-  const ParticipantBook::Clock::time_point begin;
-  ParticipantBook book({kCameraNode, kCbvPlannerNode, kMetricsNode});
+  const ParticipantTracker::Clock::time_point begin;
+  ParticipantTracker book({kCameraNode, kCbvPlannerNode, kMetricsNode});
   book.note(ackFrom(kCameraNode, msgs::TickAck::READY), begin);
   book.note(ackFrom(kCbvPlannerNode, msgs::TickAck::READY), begin);
   book.note(ackFrom(kCbvPlannerNode, msgs::TickAck::ALIVE), begin + 3s);

@@ -77,11 +77,11 @@ void CpuDenoiser::predictActions(const float* noisy, int k, float* actions) {
   network_->actions_predicted = true;
 }
 
-void CpuDenoiser::pullBackActions(const float* action_gradient, float* noisy_gradient) {
+void CpuDenoiser::backwardActions(const float* action_gradient, float* noisy_gradient) {
   if (!network_->actions_predicted) {
-    throw std::logic_error("pullBackActions was called before predictActions");
+    throw std::logic_error("backwardActions was called before predictActions");
   }
-  network_->unet.pullBack(action_gradient, noisy_gradient);
+  network_->unet.backward(action_gradient, noisy_gradient);
 }
 
 void CpuDenoiser::predictStates(const float* actions, int k, float* states) {
@@ -90,11 +90,11 @@ void CpuDenoiser::predictStates(const float* actions, int k, float* states) {
   network_->states_predicted = true;
 }
 
-void CpuDenoiser::pullBackStates(const float* state_gradient, float* action_gradient) {
+void CpuDenoiser::backwardStates(const float* state_gradient, float* action_gradient) {
   if (!network_->states_predicted) {
-    throw std::logic_error("pullBackStates was called before predictStates");
+    throw std::logic_error("backwardStates was called before predictStates");
   }
-  network_->state_head.pullBack(state_gradient, action_gradient);
+  network_->state_head.backward(state_gradient, action_gradient);
 }
 
 }  // namespace cdiff::diffusion

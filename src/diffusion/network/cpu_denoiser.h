@@ -26,9 +26,9 @@ class CpuDenoiser : public Denoiser {
   const Architecture& architecture() const override;
   void setContexts(const std::vector<Context>& contexts) override;
   void predictActions(const float* noisy, int k, float* actions) override;
-  void pullBackActions(const float* action_gradient, float* noisy_gradient) override;
+  void backwardActions(const float* action_gradient, float* noisy_gradient) override;
   void predictStates(const float* actions, int k, float* states) override;
-  void pullBackStates(const float* state_gradient, float* action_gradient) override;
+  void backwardStates(const float* state_gradient, float* action_gradient) override;
 
  private:
   struct Network;

@@ -10,7 +10,7 @@
 
 namespace cdiff::diffusion {
 
-/// Joins layers and signals as docs/network.md draws them.
+/// Joins layers and variables as docs/network.md draws them.
 class UNetBuilder {
  public:
   UNetBuilder(const inference::DenoiserKernels& kernels, const Architecture& architecture,
@@ -24,31 +24,31 @@ class UNetBuilder {
   UNet::Parts take() { return std::move(parts_); }
 
  private:
-  const inference::Signal* addSignal(const inference::ChannelLayout& layout, std::int64_t rows);
+  const inference::Variable* addVariable(const inference::ChannelLayout& layout, std::int64_t rows);
   void addBlock(const std::string& name, const inference::ChannelLayout& inputs,
-                const inference::Connection& connection);
-  /// R(inputs -> channels) from `connection.input`, R(channels -> channels) to `connection.output`.
+                const inference::Edge& edge);
+  /// R(inputs -> channels) from `edge.input`, R(channels -> channels) to `edge.output`.
   void addBlockPair(const std::string& name, const inference::ChannelLayout& inputs,
-                    const inference::Connection& connection);
+                    const inference::Edge& edge);
   void addLevels(const Architecture& architecture);
   /// Sampling down after a level, or up.
-  void addSampling(const std::string& name, const inference::Connection& connection, bool up);
+  void addSampling(const std::string& name, const inference::Edge& edge, bool up);
   void addHead(const inference::ChannelLayout& layout);
 
   inference::LayerSource source_;
   std::int64_t horizon_;
-  const inference::Signal* head_input_ = nullptr;
+  const inference::Variable* head_input_ = nullptr;
   UNet::Parts parts_;
 };
 
-const inference::Signal* UNetBuilder::addSignal(const inference::ChannelLayout& layout,
-                                                std::int64_t rows) {
-  parts_.signals.push_back(std::make_unique<inference::Signal>(layout, rows, source_.halo));
-  return parts_.signals.back().get();
+const inference::Variable* UNetBuilder::addVariable(const inference::ChannelLayout& layout,
+                                                    std::int64_t rows) {
+  parts_.variables.push_back(std::make_unique<inference::Variable>(layout, rows, source_.halo));
+  return parts_.variables.back().get();
 }
 
 void UNetBuilder::addBlock(const std::string& name, const inference::ChannelLayout& inputs,
-                           const inference::Connection& connection) {
+                           const inference::Edge& edge) {
   const inference::Tensor& bias = inference::tensorNamed(source_.tensors, name + ".inject.bias");
   const inference::ChannelLayout layout{bias.shape[0]};
   const std::int64_t first =
@@ -57,22 +57,21 @@ void UNetBuilder::addBlock(const std::string& name, const inference::ChannelLayo
           : parts_.injections.back().first + parts_.injections.back().layout.padded();
   parts_.injections.push_back({name + ".inject", layout, first});
   parts_.layers.push_back(
-      std::make_unique<inference::ResidualBlock>(source_, name, inputs, connection, first));
+      std::make_unique<inference::ResidualBlock>(source_, name, inputs, edge, first));
 }
 
 void UNetBuilder::addBlockPair(const std::string& name, const inference::ChannelLayout& inputs,
-                               const inference::Connection& connection) {
+                               const inference::Edge& edge) {
   const inference::ChannelLayout layout{
       inference::tensorNamed(source_.tensors, name + ".a.inject.bias").shape[0]};
-  const inference::Port between{addSignal(layout, connection.output.signal->value.rows())};
-  addBlock(name + ".a", inputs, {connection.input, between, connection.shared_input});
-  addBlock(name + ".b", layout, {between, connection.output});
+  const inference::Slice between{addVariable(layout, edge.output.variable->value.rows())};
+  addBlock(name + ".a", inputs, {edge.input, between, edge.shared_input});
+  addBlock(name + ".b", layout, {between, edge.output});
 }
 
-void UNetBuilder::addSampling(const std::string& name, const inference::Connection& connection,
-                              bool up) {
+void UNetBuilder::addSampling(const std::string& name, const inference::Edge& edge, bool up) {
   parts_.layers.push_back(std::make_unique<inference::PlainConvolution>(
-      source_, name, inference::Spacing{2, 1, up}, connection));
+      source_, name, inference::Spacing{2, 1, up}, edge));
 }
 
 /// The output of level l > 0 lies in the right half of the input of the up level that joins it, so
@@ -80,40 +79,40 @@ void UNetBuilder::addSampling(const std::string& name, const inference::Connecti
 void UNetBuilder::addLevels(const Architecture& architecture) {
   const std::vector<std::int64_t>& channels = architecture.channels;
   const std::size_t levels = channels.size();
-  std::vector<inference::Port> level_outputs(levels);
+  std::vector<inference::Slice> level_outputs(levels);
   inference::ChannelLayout inputs{traffic::kRolloutColumns};
-  inference::Port input{parts_.noisy = addSignal(inputs, horizon_)};
+  inference::Slice input{parts_.noisy = addVariable(inputs, horizon_)};
   for (std::size_t l = 0; l < levels; ++l) {
     const std::string name = "down." + std::to_string(l);
     const std::int64_t rows = horizon_ >> l;
     const inference::ChannelLayout layout{channels[l]};
     const inference::ChannelLayout joined{2 * channels[l], 2};
-    level_outputs[l] = l == 0 ? inference::Port{addSignal(layout, rows)}
-                              : inference::Port{addSignal(joined, rows), layout.padded()};
+    level_outputs[l] = l == 0 ? inference::Slice{addVariable(layout, rows)}
+                              : inference::Slice{addVariable(joined, rows), layout.padded()};
     addBlockPair(name, inputs, {input, level_outputs[l]});
     inputs = layout;
     if (l + 1 == levels) break;
-    input = inference::Port{addSignal(layout, rows / 2)};
+    input = inference::Slice{addVariable(layout, rows / 2)};
     addSampling(name + ".sample", {level_outputs[l], input, l > 0}, false);
   }
-  addBlockPair("middle", inputs, {level_outputs.back(), {level_outputs.back().signal}, true});
+  addBlockPair("middle", inputs, {level_outputs.back(), {level_outputs.back().variable}, true});
   for (std::size_t l = levels - 1; l > 0; --l) {
     const std::string name = "up." + std::to_string(levels - 1 - l);
     const inference::ChannelLayout layout{channels[l - 1]};
-    const inference::Port output{addSignal(layout, horizon_ >> l)};
-    addBlockPair(name, {2 * channels[l], 2}, {{level_outputs[l].signal}, output});
-    head_input_ = l > 1 ? level_outputs[l - 1].signal : addSignal(layout, horizon_);
+    const inference::Slice output{addVariable(layout, horizon_ >> l)};
+    addBlockPair(name, {2 * channels[l], 2}, {{level_outputs[l].variable}, output});
+    head_input_ = l > 1 ? level_outputs[l - 1].variable : addVariable(layout, horizon_);
     addSampling(name + ".sample", {output, {head_input_}}, true);
   }
 }
 
 void UNetBuilder::addHead(const inference::ChannelLayout& layout) {
-  const inference::Signal* block = addSignal(layout, horizon_);
-  parts_.actions = addSignal({traffic::kActionColumns}, horizon_);
+  const inference::Variable* block = addVariable(layout, horizon_);
+  parts_.actions = addVariable({traffic::kActionColumns}, horizon_);
   parts_.layers.push_back(std::make_unique<inference::HeadBlock>(
-      source_, "head.block", layout, inference::Connection{{head_input_}, {block}}));
+      source_, "head.block", layout, inference::Edge{{head_input_}, {block}}));
   parts_.layers.push_back(std::make_unique<inference::PlainConvolution>(
-      source_, "head.out", inference::Spacing{}, inference::Connection{{block}, {parts_.actions}}));
+      source_, "head.out", inference::Spacing{}, inference::Edge{{block}, {parts_.actions}}));
 }
 
 UNet::UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,
@@ -122,7 +121,7 @@ UNet::UNet(const inference::DenoiserKernels& kernels, const Architecture& archit
 
 void UNet::resize(std::int64_t samples) {
   samples_ = samples;
-  for (const auto& signal : parts_.signals) signal->resize(samples);
+  for (const auto& variable : parts_.variables) variable->resize(samples);
   for (const auto& layer : parts_.layers) layer->resize(samples);
 }
 
@@ -143,14 +142,14 @@ void UNet::forward(const float* noisy, const inference::Activation& injection, f
   }
 }
 
-void UNet::pullBack(const float* action_gradient, float* noisy_gradient) {
+void UNet::backward(const float* action_gradient, float* noisy_gradient) {
   const std::int64_t columns = traffic::kActionColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
     inference::copyIn(action_gradient + b * horizon_ * columns, horizon_, columns,
                       parts_.actions->gradient.view(b));
   }
   for (auto layer = parts_.layers.rbegin(); layer != parts_.layers.rend(); ++layer) {
-    for (std::int64_t b = 0; b < samples_; ++b) (*layer)->pullBack(b);
+    for (std::int64_t b = 0; b < samples_; ++b) (*layer)->backward(b);
   }
   const std::int64_t results = traffic::kRolloutColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
@@ -242,7 +241,7 @@ void StateHead::forward(const float* actions, int k, float* states) {
   inference::copyOut(state_rows_.view(), rows, state_values_, states);
 }
 
-void StateHead::pullBack(const float* state_gradient, float* action_gradient) {
+void StateHead::backward(const float* state_gradient, float* action_gradient) {
   const std::int64_t rows = action_rows_.rows();
   inference::copyIn(state_gradient, rows, state_values_, state_rows_.view());
   out_reversed_.applyToRows(state_rows_, hidden_[1].gradient);

@@ -20,7 +20,7 @@ struct Injection {
   std::int64_t first = 0;  ///< its first channel in a row of injections
 };
 
-/// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its pull-back
+/// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its backward pass
 /// (docs/network.md).
 class UNet {
  public:
@@ -32,16 +32,16 @@ class UNet {
   void resize(std::int64_t samples);
   /// `injection`: a row of injections for each sample.
   void forward(const float* noisy, const inference::Activation& injection, float* actions);
-  void pullBack(const float* action_gradient, float* noisy_gradient);
+  void backward(const float* action_gradient, float* noisy_gradient);
 
  private:
   friend class UNetBuilder;
   struct Parts {
-    std::vector<std::unique_ptr<inference::Signal>> signals;
+    std::vector<std::unique_ptr<inference::Variable>> variables;
     std::vector<std::unique_ptr<inference::Layer>> layers;  ///< in the order of the forward pass
     std::vector<Injection> injections;
-    const inference::Signal* noisy = nullptr;
-    const inference::Signal* actions = nullptr;
+    const inference::Variable* noisy = nullptr;
+    const inference::Variable* actions = nullptr;
   };
 
   std::int64_t horizon_;
@@ -50,8 +50,8 @@ class UNet {
 };
 
 /// The state head (docs/network.md): [actions; v / 10; time embedding] -> states [B, T, 4], and its
-/// pull-back to the actions. The first layer's time columns are tabulated at load, its speed column
-/// is added once per set of contexts.
+/// backward pass to the actions. The first layer's time columns are tabulated at load, its speed
+/// column is added once per set of contexts.
 class StateHead {
  public:
   /// `time_embeddings`: [K + 1, time_width].
@@ -60,7 +60,7 @@ class StateHead {
 
   void setContexts(const std::vector<Context>& contexts);
   void forward(const float* actions, int k, float* states);
-  void pullBack(const float* state_gradient, float* action_gradient);
+  void backward(const float* state_gradient, float* action_gradient);
 
  private:
   /// A hidden layer: value before Mish, after it, and Mish'; the gradient overwrites none of them.

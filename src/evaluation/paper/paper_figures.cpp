@@ -11,7 +11,7 @@
 #include "core/text.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/paper/published_figures.h"
-#include "metrics/measures/distributions.h"
+#include "metrics/formulas/distributions.h"
 #include "page/pictures/charts.h"
 #include "record/logs/driving_log.h"
 #include "record/result_folder.h"

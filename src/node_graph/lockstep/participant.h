@@ -15,7 +15,7 @@
 #include "e2e_cdiff/TrafficSnapshot.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/lockstep/node_process.h"
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/topics.h"
 #include "ros/ros.h"

@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/bags/replay.h"
-#include "node_graph/lockstep/decision_book.h"
+#include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/conversions.h"

@@ -13,7 +13,7 @@
 #include "node_graph/bags/recorded_session.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/lockstep/node_process.h"
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/session_files.h"
 #include "record/result_folder.h"
@@ -61,7 +61,7 @@ class ReplayNode {
   std::unique_ptr<record::ResultFolder> folder_;  ///< holds it for us and the metrics node
   RecordedSession session_;
   SessionGraph graph_;  ///< of the replay: without recorder
-  ParticipantBook book_;
+  ParticipantTracker book_;
   MessageGate gate_;
   Connections connections_;
   node_graph::NodeHandle node_;

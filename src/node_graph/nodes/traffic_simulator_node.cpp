@@ -45,7 +45,7 @@ TrafficSimulatorNode::TrafficSimulatorNode(const Parameters& parameters, StopSig
   const GraphRequest request{parameters.flag("record", false), parameters.flag("camera", false)};
   graph_ = graphOf(options, request, core::splitText(parameters.text("participants"), ' '));
   if (graph_.has(kCameraNode)) display_.showCameras(setup_->rigs());
-  book_ = ParticipantBook(graph_.participants);
+  book_ = ParticipantTracker(graph_.participants);
   answers_ = TickAnswers(options.simulation_step);
   paced_answers_ = PacedAnswers(options.simulation_step, setup_->ticksPerDecision());
   decisions_.emplace(options);
@@ -130,7 +130,7 @@ std::string TrafficSimulatorNode::takeAnswer(const Topic& topic, const AnyMessag
   if (ego) ego_heard_at_ = Clock::now();
   const std::uint64_t tick =
       answers_.add(topic, message, ego && paced() ? world_->snapshot().tick : 0);
-  if (topic.id == ChannelId::kSelection) noteArrival(DecisionBook::kSelection, tick);
+  if (topic.id == ChannelId::kSelection) noteArrival(DecisionTracker::kSelection, tick);
   if (ego || topic.id == ChannelId::kCbvControl) noteArrival(topic.slot, tick);
   const auto early = early_controls_.find(topic.slot);
   if (topic.id != ChannelId::kCbvRollout || early == early_controls_.end()) return wrong;

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "node_graph/lockstep/decision_book.h"
+#include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/lockstep/message_gate.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/paced_answers.h"
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/display.h"
 #include "node_graph/messages/topics.h"
@@ -112,11 +112,11 @@ class TrafficSimulatorNode {
   std::unique_ptr<record::ResultFolder> folder_;  ///< holds it for us and the metrics node
   std::unique_ptr<session::SessionSetup> setup_;
   SessionGraph graph_;
-  ParticipantBook book_;
+  ParticipantTracker book_;
   TickAnswers answers_;
   PacedAnswers paced_answers_;
   std::map<int, AnyMessage> early_controls_;  ///< by slot: come before their rollouts
-  std::optional<DecisionBook>
+  std::optional<DecisionTracker>
       decisions_;         ///< set by the constructor; used where answers may be late
   bool recorded_ = true;  ///< whether the record of the current decision was published
   std::set<std::string> late_planners_;  ///< whose first late answer is recorded as a fault

@@ -121,7 +121,7 @@
       if (numbers[i] === index) return `${numbers[i + 2] / 10} ${numbers[i + 3] / 10}`;
     return null;
   };
-  const drawGazes = function (frame) {
+  const drawAttention = function (frame) {
     const lines = document.getElementById("gazes");
     if (lines === null) return;
     lines.replaceChildren();
@@ -146,7 +146,7 @@
   const draw = function (frame) {
     const numbers = data.frames[frame], seen = new Set();
     drawPerceived(frame);
-    drawGazes(frame);
+    drawAttention(frame);
     let text = data.times[frame].toFixed(1) + " s of " + data.times[last].toFixed(1) + " s";
     for (let i = 0; i < numbers.length; i += 6) {
       const index = numbers[i], box = boxOf(index);

@@ -19,17 +19,17 @@ const record::TimelinePose* poseOfVehicle(const record::TimelineFrame& frame,
 
 }  // namespace
 
-bool showsGazes(const record::Timeline& timeline) {
+bool showsAttention(const record::Timeline& timeline) {
   const auto& frames = timeline.frames();
   return std::any_of(frames.begin(), frames.end(),
                      [](const record::TimelineFrame& frame) { return !frame.gazes.empty(); });
 }
 
-core::Markup gazesSvg(const record::Timeline& timeline, const MapCanvas& canvas) {
-  if (!showsGazes(timeline)) return {};
+core::Markup attentionSvg(const record::Timeline& timeline, const MapCanvas& canvas) {
+  if (!showsAttention(timeline)) return {};
   core::Markup lines;
   const record::TimelineFrame& frame = timeline.frames().back();
-  for (const record::TimelineGaze& gaze : frame.gazes) {
+  for (const record::TimelineAttention& gaze : frame.gazes) {
     const record::TimelinePose* from = poseOfVehicle(frame, gaze.driver);
     const record::TimelinePose* to = poseOfVehicle(frame, gaze.vehicle);
     if (from == nullptr || to == nullptr) continue;

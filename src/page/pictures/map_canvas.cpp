@@ -178,7 +178,7 @@ Markup boxItem(const std::string& style, const std::string& text) {
 /// Of what planners say about themselves.
 Markup plannerLegend(const record::Timeline& timeline) {
   Markup html;
-  if (showsGazes(timeline))
+  if (showsAttention(timeline))
     html += legendLine("gaze", "attention of the planner to a vehicle, by its share");
   if (!showsPerception(timeline)) return html;
   return html + legendLine("perceived vehicle-seen", "vehicle that the planner believes to see") +

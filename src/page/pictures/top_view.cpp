@@ -277,14 +277,14 @@ Markup scaleBarSvg(const MapCanvas& canvas) {
 }
 
 Markup topViewSvg(const record::SessionResult& result, const MapCanvas& canvas) {
-  const Markup content = roadSvg(result.setup, canvas) + egoRoute(result, canvas) +
-                         conflictRoutes(result, canvas) +
-                         trailPaths(result, canvas, VehicleRole::kBackground) +
-                         trailPaths(result, canvas, VehicleRole::kCbv) +
-                         trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
-                         perceivedSvg(result.timeline, canvas) + gazesSvg(result.timeline, canvas) +
-                         finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
-                         conflictPoints(result, canvas) + scaleBarSvg(canvas);
+  const Markup content =
+      roadSvg(result.setup, canvas) + egoRoute(result, canvas) + conflictRoutes(result, canvas) +
+      trailPaths(result, canvas, VehicleRole::kBackground) +
+      trailPaths(result, canvas, VehicleRole::kCbv) +
+      trailPaths(result, canvas, VehicleRole::kEgo) + startBox(result, canvas) +
+      perceivedSvg(result.timeline, canvas) + attentionSvg(result.timeline, canvas) +
+      finalBoxes(result, canvas) + contactMarks(result.timeline, canvas) +
+      conflictPoints(result, canvas) + scaleBarSvg(canvas);
   const double magnification = canvas.scale() * vehicleMagnification(canvas);
   return svgPicture(
              "The session from above", {canvas.width(), canvas.height()},

@@ -85,16 +85,16 @@ core::Markup vehicleSvg(const record::TimelineVehicle& vehicle, const geometry::
 /// A bar of a round length and the direction of north, in the lower corners and at the top right.
 core::Markup scaleBarSvg(const MapCanvas& canvas);
 
-/// Its legend, as HTML, with the lines of gazesSvg and what perceivedSvg draws where `timeline` has
-/// any.
+/// Its legend, as HTML, with the lines of attentionSvg and what perceivedSvg draws where `timeline`
+/// has any.
 core::Markup topViewLegend(const MapCanvas& canvas, const record::Timeline* timeline = nullptr);
 
 /// Whether any planner of the session said what it looked at.
-bool showsGazes(const record::Timeline& timeline);
+bool showsAttention(const record::Timeline& timeline);
 
 /// Lines from drivers to the vehicles that they look at in the last frame, as thick and dark as
 /// they do; empty where no planner of the session says so.
-core::Markup gazesSvg(const record::Timeline& timeline, const MapCanvas& canvas);
+core::Markup attentionSvg(const record::Timeline& timeline, const MapCanvas& canvas);
 
 /// One thing that the ego's planner believes to see, as a path of a CSS class and an opacity.
 struct PerceivedPath {

@@ -13,14 +13,15 @@ constexpr double kNearest = 0.5;  // depth in front of a camera at which it sees
 constexpr float kNowhere = -1e4F;
 
 /// A cell's pillar in an image: (column, row) in cells for each height, and whether any lies in it.
-struct SeenPillar {
+struct VisiblePillar {
   Eigen::Vector2f places[kPillarPoints];
   bool seen = false;
 };
 
-SeenPillar pillarIn(const rendering::RigCamera& camera, const Eigen::Matrix<double, 3, 4>& matrix,
-                    const Eigen::Vector2d& center, std::int64_t stride) {
-  SeenPillar pillar;
+VisiblePillar pillarIn(const rendering::RigCamera& camera,
+                       const Eigen::Matrix<double, 3, 4>& matrix, const Eigen::Vector2d& center,
+                       std::int64_t stride) {
+  VisiblePillar pillar;
   const auto step = static_cast<double>(stride);
   for (std::int64_t i = 0; i < kPillarPoints; ++i) {
     const Eigen::Vector3d pixel =
@@ -101,7 +102,7 @@ inference::SamplingPlan cameraPlan(const BevGrid& grid, const rendering::CameraR
   for (std::int64_t index = 0; index < grid.cells(); ++index) {
     for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
       const rendering::RigCamera& one = rig.cameras[camera];
-      const SeenPillar pillar =
+      const VisiblePillar pillar =
           pillarIn(one, rendering::projectionOf(one), grid.center(index), stride);
       if (!pillar.seen) continue;
       plan.visit(index, static_cast<std::int64_t>(camera));

@@ -81,8 +81,7 @@ class Assignment {
 
 }  // namespace
 
-std::vector<int> matchCheapest(const std::vector<double>& cost, std::size_t rows,
-                               std::size_t columns) {
+std::vector<int> hungarian(const std::vector<double>& cost, std::size_t rows, std::size_t columns) {
   if (rows > columns || cost.size() != rows * columns) {
     throw std::invalid_argument(
         "matching: " + std::to_string(rows) + " rows, " + std::to_string(columns) + " columns, " +

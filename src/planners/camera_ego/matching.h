@@ -10,7 +10,6 @@ namespace cdiff::planners {
 /// Jonker and Volgenant 1987): `cost` [rows, columns] row-major, no more rows than columns. The
 /// column of each row; every column is taken at most once. Deterministic: of equal costs the lowest
 /// column is tried first. Throws std::invalid_argument where there are more rows than columns.
-std::vector<int> matchCheapest(const std::vector<double>& cost, std::size_t rows,
-                               std::size_t columns);
+std::vector<int> hungarian(const std::vector<double>& cost, std::size_t rows, std::size_t columns);
 
 }  // namespace cdiff::planners

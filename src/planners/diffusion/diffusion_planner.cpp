@@ -57,8 +57,7 @@ void requireInputs(const DiffusionOptions& options, const diffusion::Model& mode
 
 }  // namespace
 
-NetworkLane::NetworkLane(const DiffusionOptions& options, const diffusion::Model& model,
-                         bool scaled_route)
+Worker::Worker(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route)
     : encoder_(encoderFor(options, model)), denoiser_(model, instructionSetOf(options)) {
   if (!scaled_route) return;
   routeless_ = std::make_unique<diffusion::CpuDenoiser>(model, instructionSetOf(options));
@@ -66,7 +65,7 @@ NetworkLane::NetworkLane(const DiffusionOptions& options, const diffusion::Model
       std::make_unique<diffusion::RouteScaledDenoiser>(denoiser_, *routeless_, options.route_scale);
 }
 
-diffusion::Denoiser& NetworkLane::denoiser() {
+diffusion::Denoiser& Worker::denoiser() {
   if (scaled_) return *scaled_;
   return denoiser_;
 }
@@ -91,7 +90,7 @@ DiffusionPlanner::DiffusionPlanner(const DiffusionOptions& options,
   requireInputs(options, model_);
   const bool scaled = conditions_on_route_ && options.route_scale != 1.0;
   for (std::int64_t i = 0; i < options.threads; ++i)
-    lanes_.push_back(std::make_unique<NetworkLane>(options, model_, scaled));
+    workers_.push_back(std::make_unique<Worker>(options, model_, scaled));
   if (options.sampler.mode != "unguided") {
     guidance_.validateWindows(schedule_.steps(), sampler_.visitedSteps(false), guidance_group);
   }
@@ -123,28 +122,29 @@ std::unique_ptr<diffusion::StateBranch> DiffusionPlanner::stateBranch(
       vehicle_, model_.normalizer, speeds, dynamics::throttleResponse(options_.response));
 }
 
-void DiffusionPlanner::inLanes(std::size_t count, const LanePart& part) {
-  const std::size_t lanes = std::min(lanes_.size(), count);
+void DiffusionPlanner::forEachWorker(std::size_t count, const WorkerPart& part) {
+  const std::size_t workers = std::min(workers_.size(), count);
   std::vector<std::future<void>> others;
-  for (std::size_t lane = 1; lane < lanes; ++lane) {
-    others.push_back(std::async(std::launch::async, [&, lane] {
-      part(*lanes_[lane], lane * count / lanes, (lane + 1) * count / lanes);
+  for (std::size_t i = 1; i < workers; ++i) {
+    others.push_back(std::async(std::launch::async, [&, i] {
+      part(*workers_[i], i * count / workers, (i + 1) * count / workers);
     }));
   }
-  if (lanes > 0) part(*lanes_[0], 0, count / lanes);
+  if (workers > 0) part(*workers_[0], 0, count / workers);
   for (std::future<void>& other : others) other.get();
 }
 
-void DiffusionPlanner::solveInLanes(std::uint64_t tick, const std::vector<Situation*>& situations) {
-  inLanes(situations.size(), [&](NetworkLane& lane, std::size_t begin, std::size_t end) {
-    solve(tick, lane,
+void DiffusionPlanner::solveByWorkers(std::uint64_t tick,
+                                      const std::vector<Situation*>& situations) {
+  forEachWorker(situations.size(), [&](Worker& worker, std::size_t begin, std::size_t end) {
+    solve(tick, worker,
           {situations.begin() + static_cast<long>(begin),
            situations.begin() + static_cast<long>(end)});
   });
 }
 
 /// Samples one batch: all candidates of all `situations`.
-void DiffusionPlanner::solve(std::uint64_t tick, NetworkLane& lane,
+void DiffusionPlanner::solve(std::uint64_t tick, Worker& worker,
                              const std::vector<Situation*>& situations) {
   std::vector<diffusion::Context> contexts;
   std::vector<diffusion::SampleRequest> requests;
@@ -161,7 +161,7 @@ void DiffusionPlanner::solve(std::uint64_t tick, NetworkLane& lane,
       objectives.push_back(situation->objectives[candidate].get());
     }
   }
-  diffusion::Denoiser& denoiser = lane.denoiser();
+  diffusion::Denoiser& denoiser = worker.denoiser();
   denoiser.setContexts(contexts);
   const auto branch = stateBranch(denoiser, contexts);
   GuidedBatch guided(model_.normalizer, objectives);
@@ -283,8 +283,8 @@ std::vector<planning::PlannedAction> DiffusionPlanner::plan(
     situation = situationOf(snapshot, *task, *memory);
     (situation->warm ? warm : cold).push_back(situation.get());
   }
-  solveInLanes(snapshot.tick, cold);
-  solveInLanes(snapshot.tick, warm);
+  solveByWorkers(snapshot.tick, cold);
+  solveByWorkers(snapshot.tick, warm);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (situations[i]) conclude(snapshot.tick, *situations[i], actions[i]);
   }

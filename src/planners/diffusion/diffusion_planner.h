@@ -55,10 +55,10 @@ struct DiffusionOptions {
 };
 
 /// Encoder and denoiser of a model for one thread.
-class NetworkLane {
+class Worker {
  public:
   /// `scaled_route`: the denoiser mixes predictions with and without the route (route_scale).
-  NetworkLane(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route);
+  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route);
 
   diffusion::ImageEncoder& encoder() { return encoder_; }
   diffusion::Denoiser& denoiser();
@@ -113,10 +113,10 @@ class DiffusionPlanner : public planning::Planner {
   void rememberOnly(const std::vector<planning::PlanningTask>& tasks);
   std::optional<std::string> faultOf(const planning::PlanningTask& task, std::uint64_t tick,
                                      Memory& memory);
-  /// Calls `part` for every lane with the range of `count` items that is its share, each in a
+  /// Calls `part` for every worker with the range of `count` items that is its share, each in a
   /// thread of its own.
-  using LanePart = std::function<void(NetworkLane& lane, std::size_t begin, std::size_t end)>;
-  void inLanes(std::size_t count, const LanePart& part);
+  using WorkerPart = std::function<void(Worker& worker, std::size_t begin, std::size_t end)>;
+  void forEachWorker(std::size_t count, const WorkerPart& part);
   void encodeImages(const std::vector<std::pair<const planning::PlanningTask*, Memory*>>& seen);
   void rememberFeatures(
       std::uint64_t tick,
@@ -137,8 +137,8 @@ class DiffusionPlanner : public planning::Planner {
   void setWarmStart(std::uint64_t tick, Situation& situation) const;
   std::unique_ptr<diffusion::StateBranch> stateBranch(
       diffusion::Denoiser& denoiser, const std::vector<diffusion::Context>& contexts) const;
-  void solve(std::uint64_t tick, NetworkLane& lane, const std::vector<Situation*>& situations);
-  void solveInLanes(std::uint64_t tick, const std::vector<Situation*>& situations);
+  void solve(std::uint64_t tick, Worker& worker, const std::vector<Situation*>& situations);
+  void solveByWorkers(std::uint64_t tick, const std::vector<Situation*>& situations);
   void choose(Situation& situation, const std::vector<diffusion::SampledTrajectory>& samples,
               std::size_t first) const;
   /// What the vehicle does when a plan's actions are executed to its end (body frame, [T, 7]).
@@ -154,7 +154,7 @@ class DiffusionPlanner : public planning::Planner {
   planning::PlanningContext context_;
   diffusion::Model model_;
   diffusion::NoiseSchedule schedule_;
-  std::vector<std::unique_ptr<NetworkLane>> lanes_;  ///< one a thread
+  std::vector<std::unique_ptr<Worker>> workers_;  ///< one a thread
   diffusion::Sampler sampler_;
   dynamics::ActionRollout exact_;
   planning::RouteFollower ego_follower_;

@@ -208,9 +208,9 @@ void DiffusionPlanner::encodeImages(
     memory->features_hash = hash;
     changed.emplace_back(task, memory);
   }
-  inLanes(changed.size(), [&](NetworkLane& lane, std::size_t begin, std::size_t end) {
+  forEachWorker(changed.size(), [&](Worker& worker, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      changed[i].second->features = lane.encoder().encode(*changed[i].first->image);
+      changed[i].second->features = worker.encoder().encode(*changed[i].first->image);
   });
 }
 

@@ -30,7 +30,8 @@ void UniadMiniOptions::describe(core::OptionsVisitor& visitor) {
                  no_throttle_above, 0.0, 100.0);
 }
 
-OccupiedPlaces occupiedPlaces(const BevGrid& bev, const SeenOccupancy& occupancy, double least) {
+OccupiedPlaces occupiedPlaces(const BevGrid& bev, const PredictedOccupancy& occupancy,
+                              double least) {
   OccupiedPlaces places;
   for (std::size_t step = 0; step < places.size(); ++step)
     places[step] = occupiedPlaces(bev, occupancy.probability(step), least);
@@ -38,7 +39,7 @@ OccupiedPlaces occupiedPlaces(const BevGrid& bev, const SeenOccupancy& occupancy
 }
 
 std::vector<planning::PerceivedOccupancy> perceivedOccupancy(const BevGrid& bev,
-                                                             const SeenOccupancy& occupancy,
+                                                             const PredictedOccupancy& occupancy,
                                                              const traffic::VehicleState& ego) {
   std::vector<planning::PerceivedOccupancy> perceived;
   for (std::size_t step = 0; step < occupancy.logits.size(); ++step) {

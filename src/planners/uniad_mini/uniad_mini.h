@@ -71,11 +71,12 @@ class UniadMiniPlanner : public planning::Planner {
 };
 
 /// Occupied cells of each step, by the answer of the network.
-OccupiedPlaces occupiedPlaces(const BevGrid& bev, const SeenOccupancy& occupancy, double least);
+OccupiedPlaces occupiedPlaces(const BevGrid& bev, const PredictedOccupancy& occupancy,
+                              double least);
 
 /// Occupancy of all steps, for people who look.
 std::vector<planning::PerceivedOccupancy> perceivedOccupancy(const BevGrid& bev,
-                                                             const SeenOccupancy& occupancy,
+                                                             const PredictedOccupancy& occupancy,
                                                              const traffic::VehicleState& ego);
 
 }  // namespace cdiff::planners

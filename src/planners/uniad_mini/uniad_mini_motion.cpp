@@ -21,18 +21,18 @@ void copyAll(const Rows& from, std::int64_t channels, const Rows& to, std::int64
 }
 
 /// Unit vector of a box's heading, from its sine and cosine as they were answered.
-Eigen::Vector2d headingOf(const SeenAgent& agent) {
+Eigen::Vector2d headingOf(const DetectedAgent& agent) {
   const auto sine = static_cast<double>(agent.box[6]), cosine = static_cast<double>(agent.box[7]);
   return Eigen::Vector2d(cosine, sine) / std::sqrt(cosine * cosine + sine * sine + 1e-6);
 }
 
-MotionGroup groupOf(const SeenAgent& agent) {
+MotionGroup groupOf(const DetectedAgent& agent) {
   return motionGroupOf(std::exp(static_cast<double>(agent.box[3])),
                        std::exp(static_cast<double>(agent.box[2])));
 }
 
-/// Softmax as logits of each mode by itself, as SeenAgent has them.
-void toModeLogits(const std::array<float, kMotionModes>& scores, SeenAgent& agent) {
+/// Softmax as logits of each mode by itself, as DetectedAgent has them.
+void toModeLogits(const std::array<float, kMotionModes>& scores, DetectedAgent& agent) {
   for (std::size_t mode = 0; mode < scores.size(); ++mode) {
     double others = 0.0;
     for (std::size_t i = 0; i < scores.size(); ++i) {
@@ -66,7 +66,7 @@ MotionDecoder::MotionDecoder(const UniadMiniArchitecture& architecture,
 }
 
 /// Anchors at the places and headings of the tracks; numbers_ of what they are embedded from.
-void MotionDecoder::turnAnchors(const SeenTracks& seen) {
+void MotionDecoder::turnAnchors(const DetectedTracks& seen) {
   turned_.clear();
   numbers_.resize(architecture_.rows() * kMotionModes, kAnchorNumbers);
   for (std::size_t row = 0; row < seen.centers.size(); ++row) {
@@ -90,7 +90,7 @@ void MotionDecoder::turnAnchors(const SeenTracks& seen) {
   }
 }
 
-void MotionDecoder::start(UniadMemory& memory, const SeenTracks& seen) {
+void MotionDecoder::start(UniadMemory& memory, const DetectedTracks& seen) {
   const std::int64_t width = architecture_.ego.width;
   turnAnchors(seen);
   ways_ = turned_;
@@ -121,7 +121,7 @@ void MotionDecoder::readBev(const Layer& layer, const Rows& bev, UniadMemory& me
 }
 
 void MotionDecoder::run(const Layer& layer, const Rows& bev, const Rows& map, UniadMemory& memory,
-                        const SeenTracks& seen) {
+                        const DetectedTracks& seen) {
   const std::int64_t width = architecture_.ego.width, rows = x_.rows();
   of_agents_.resize(rows, width);
   of_map_.resize(rows, width);
@@ -159,7 +159,7 @@ void MotionDecoder::addOffsets(const Layer& layer, UniadMemory& memory) {
   }
 }
 
-void MotionDecoder::readScores(UniadMemory& memory, const Rows& modes, SeenTracks& seen) const {
+void MotionDecoder::readScores(UniadMemory& memory, const Rows& modes, DetectedTracks& seen) const {
   memory.head.resize(modes.rows(), 1);
   layers_.back().score.apply(modes.view(), memory.head.view(), modes.rows(),
                              memory.transformer.hidden);
@@ -174,10 +174,10 @@ void MotionDecoder::readScores(UniadMemory& memory, const Rows& modes, SeenTrack
   }
 }
 
-SeenMotion MotionDecoder::see(const Rows& bev, const Rows& map, UniadMemory& memory,
-                              SeenTracks& seen) {
+PredictedMotion MotionDecoder::see(const Rows& bev, const Rows& map, UniadMemory& memory,
+                                   DetectedTracks& seen) {
   const std::int64_t width = architecture_.ego.width;
-  SeenMotion motion;
+  PredictedMotion motion;
   place_.apply(seen.centers, memory, motion.places);
   context_.resize(architecture_.rows(), width);
   copyAll(seen.features, width, context_);

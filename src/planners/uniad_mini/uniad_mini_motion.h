@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "planners/uniad_mini/motion_anchors.h"
-#include "planners/uniad_mini/uniad_mini_seen.h"
+#include "planners/uniad_mini/uniad_mini_tracks.h"
 
 namespace cdiff::planners {
 
 /// Features of the modes of track queries: row = query x modes + mode, the ego's last.
-struct SeenMotion {
+struct PredictedMotion {
   inference::Rows modes;   ///< normalized
   inference::Rows places;  ///< embedded places of the queries, by query
 };
@@ -24,8 +24,8 @@ class MotionDecoder {
   MotionDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
                 inference::InstructionSet set);
   /// Writes ways and their scores to seen.agents. `map`: features of lines.
-  SeenMotion see(const inference::Rows& bev, const inference::Rows& map, UniadMemory& memory,
-                 SeenTracks& seen);
+  PredictedMotion see(const inference::Rows& bev, const inference::Rows& map, UniadMemory& memory,
+                      DetectedTracks& seen);
 
  private:
   struct Layer {
@@ -38,13 +38,13 @@ class MotionDecoder {
     inference::Mlp offset;
     inference::Mlp score;
   };
-  void start(UniadMemory& memory, const SeenTracks& seen);
-  void turnAnchors(const SeenTracks& seen);
+  void start(UniadMemory& memory, const DetectedTracks& seen);
+  void turnAnchors(const DetectedTracks& seen);
   void run(const Layer& layer, const inference::Rows& bev, const inference::Rows& map,
-           UniadMemory& memory, const SeenTracks& seen);
+           UniadMemory& memory, const DetectedTracks& seen);
   void addOffsets(const Layer& layer, UniadMemory& memory);
   void readBev(const Layer& layer, const inference::Rows& bev, UniadMemory& memory);
-  void readScores(UniadMemory& memory, const inference::Rows& modes, SeenTracks& seen) const;
+  void readScores(UniadMemory& memory, const inference::Rows& modes, DetectedTracks& seen) const;
 
   UniadMiniArchitecture architecture_;
   std::array<MotionAnchors, kMotionGroups> anchors_;

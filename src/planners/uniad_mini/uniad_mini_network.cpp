@@ -19,7 +19,7 @@ bool isFinite(const EgoWaypoints& way) {
   return std::all_of(way.begin(), way.end(), [](const auto& place) { return isFinite(place); });
 }
 
-bool isFinite(const SeenAgent& agent) {
+bool isFinite(const DetectedAgent& agent) {
   return std::isfinite(agent.score) &&
          std::all_of(agent.box.begin(), agent.box.end(),
                      [](float n) { return std::isfinite(n); }) &&
@@ -29,7 +29,7 @@ bool isFinite(const SeenAgent& agent) {
                       [](float score) { return std::isnan(score); });
 }
 
-bool isFinite(const SeenLine& line) {
+bool isFinite(const DetectedLine& line) {
   return std::all_of(line.scores.begin(), line.scores.end(),
                      [](float n) { return std::isfinite(n); }) &&
          std::all_of(line.points.begin(), line.points.end(),
@@ -41,9 +41,9 @@ bool isFinite(const SeenLine& line) {
 bool UniadMiniOutput::finite() const {
   return isFinite(plan) && occupancy.finite() &&
          std::all_of(agents.begin(), agents.end(),
-                     [](const SeenAgent& agent) { return isFinite(agent); }) &&
+                     [](const DetectedAgent& agent) { return isFinite(agent); }) &&
          std::all_of(lines.begin(), lines.end(),
-                     [](const SeenLine& line) { return isFinite(line); });
+                     [](const DetectedLine& line) { return isFinite(line); });
 }
 
 PlanDecoder::PlanDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
@@ -82,8 +82,8 @@ void PlanDecoder::adapt(const Rows& bev) {
 }
 
 /// x_ = the planner's query.
-void PlanDecoder::ask(const SeenTracks& tracks, const SeenMotion& motion, RoadCommand command,
-                      UniadMemory& memory) {
+void PlanDecoder::ask(const DetectedTracks& tracks, const PredictedMotion& motion,
+                      RoadCommand command, UniadMemory& memory) {
   const std::int64_t width = architecture_.ego.width, ego = architecture_.tracks;
   joined_.resize(kMotionModes, 3 * width);
   for (std::int64_t mode = 0; mode < kMotionModes; ++mode) {
@@ -102,8 +102,9 @@ void PlanDecoder::ask(const SeenTracks& tracks, const SeenMotion& motion, RoadCo
   }
 }
 
-EgoWaypoints PlanDecoder::plan(const Rows& bev, const SeenTracks& tracks, const SeenMotion& motion,
-                               RoadCommand command, UniadMemory& memory) {
+EgoWaypoints PlanDecoder::plan(const Rows& bev, const DetectedTracks& tracks,
+                               const PredictedMotion& motion, RoadCommand command,
+                               UniadMemory& memory) {
   adapt(bev);
   ask(tracks, motion, command, memory);
   for (const Layer& layer : layers_) {
@@ -134,10 +135,10 @@ UniadMiniNetwork::UniadMiniNetwork(const UniadMiniModel& model, inference::Instr
 UniadMiniOutput UniadMiniNetwork::forward(const UniadMiniInput& input) {
   UniadMiniOutput output;
   bev_ = &encoder_.encode(input.images, input.motion, input.poses, input.past);
-  SeenTracks tracks;
+  DetectedTracks tracks;
   tracks_.see(*bev_, input.poses, input.past_tracks, memory_, tracks);
   output.lines = map_.see(*bev_, memory_, map_tokens_);
-  const SeenMotion motion = motion_.see(*bev_, map_tokens_, memory_, tracks);
+  const PredictedMotion motion = motion_.see(*bev_, map_tokens_, memory_, tracks);
   occupancy_.see(*bev_, tracks, motion, memory_, output.occupancy);
   output.plan = plan_.plan(*bev_, tracks, motion, input.command, memory_);
   output.agents = std::move(tracks.agents);

@@ -20,9 +20,9 @@ struct UniadMiniInput {
 
 /// What the network answers (body frame, SI units).
 struct UniadMiniOutput {
-  std::vector<SeenAgent> agents;  ///< by slot
-  std::vector<SeenLine> lines;    ///< by query
-  SeenOccupancy occupancy;
+  std::vector<DetectedAgent> agents;  ///< by slot
+  std::vector<DetectedLine> lines;    ///< by query
+  PredictedOccupancy occupancy;
   EgoWaypoints plan{};  ///< for the command that was asked [m]
   TrackSet tracks;      ///< for the decision half a second later
 
@@ -36,8 +36,8 @@ class PlanDecoder {
  public:
   PlanDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
               inference::InstructionSet set);
-  EgoWaypoints plan(const inference::Rows& bev, const SeenTracks& tracks, const SeenMotion& motion,
-                    RoadCommand command, UniadMemory& memory);
+  EgoWaypoints plan(const inference::Rows& bev, const DetectedTracks& tracks,
+                    const PredictedMotion& motion, RoadCommand command, UniadMemory& memory);
 
  private:
   struct Layer {
@@ -45,7 +45,7 @@ class PlanDecoder {
     inference::PreNormFeedForward mix;
   };
   void adapt(const inference::Rows& bev);
-  void ask(const SeenTracks& tracks, const SeenMotion& motion, RoadCommand command,
+  void ask(const DetectedTracks& tracks, const PredictedMotion& motion, RoadCommand command,
            UniadMemory& memory);
 
   UniadMiniArchitecture architecture_;

@@ -27,7 +27,7 @@ float dotOf(const float* a, const float* b) {
 }
 
 /// Where an agent will be at a step by its most probable way.
-Eigen::Vector2d placeAt(const SeenAgent& agent, std::size_t step) {
+Eigen::Vector2d placeAt(const DetectedAgent& agent, std::size_t step) {
   if (step == 0) return {agent.box[0], agent.box[1]};
   const auto best = std::max_element(agent.way_scores.begin(), agent.way_scores.end());
   return agent.ways[static_cast<std::size_t>(best - agent.way_scores.begin())][step - 1];
@@ -35,7 +35,7 @@ Eigen::Vector2d placeAt(const SeenAgent& agent, std::size_t step) {
 
 }  // namespace
 
-std::vector<float> SeenOccupancy::probability(std::size_t step) const {
+std::vector<float> PredictedOccupancy::probability(std::size_t step) const {
   constexpr float kNever = -std::numeric_limits<float>::infinity();
   std::vector<float> largest(static_cast<std::size_t>(cells), kNever);
   for (std::size_t i = 0; i < logits[step].size(); ++i) {
@@ -46,7 +46,7 @@ std::vector<float> SeenOccupancy::probability(std::size_t step) const {
   return largest;
 }
 
-bool SeenOccupancy::finite() const {
+bool PredictedOccupancy::finite() const {
   return std::all_of(logits.begin(), logits.end(), [](const std::vector<float>& step) {
     return std::all_of(step.begin(), step.end(), [](float logit) { return std::isfinite(logit); });
   });
@@ -77,7 +77,7 @@ OccupancyDecoder::OccupancyDecoder(const UniadMiniArchitecture& architecture,
 }
 
 /// Features of each agent beside the largest of its modes', fused.
-void OccupancyDecoder::fuseAgents(const SeenTracks& tracks, const SeenMotion& motion,
+void OccupancyDecoder::fuseAgents(const DetectedTracks& tracks, const PredictedMotion& motion,
                                   UniadMemory& memory) {
   const std::int64_t width = architecture_.ego.width, slots = architecture_.tracks;
   joined_.resize(slots, 2 * width);
@@ -94,11 +94,11 @@ void OccupancyDecoder::fuseAgents(const SeenTracks& tracks, const SeenMotion& mo
   agent_.apply(joined_.view(), agents_.view(), slots, memory.transformer.hidden);
 }
 
-void OccupancyDecoder::placeAgents(const SeenTracks& tracks, std::size_t step,
+void OccupancyDecoder::placeAgents(const DetectedTracks& tracks, std::size_t step,
                                    UniadMemory& memory) {
   const std::int64_t width = architecture_.ego.width;
   std::vector<Eigen::Vector2d> places;
-  for (const SeenAgent& agent : tracks.agents) places.push_back(placeAt(agent, step));
+  for (const DetectedAgent& agent : tracks.agents) places.push_back(placeAt(agent, step));
   place_.apply(places, memory, places_);
   placed_.resize(agents_.rows(), width);
   for (std::int64_t row = 0; row < agents_.rows(); ++row) {
@@ -179,12 +179,13 @@ void OccupancyDecoder::answer(std::vector<float>& logits) {
   }
 }
 
-void OccupancyDecoder::see(const Rows& bev, const SeenTracks& tracks, const SeenMotion& motion,
-                           UniadMemory& memory, SeenOccupancy& occupancy) {
+void OccupancyDecoder::see(const Rows& bev, const DetectedTracks& tracks,
+                           const PredictedMotion& motion, UniadMemory& memory,
+                           PredictedOccupancy& occupancy) {
   const inference::MapGrid grid = architecture_.ego.bev.grid();
   occupancy.cells = grid.cells();
   occupancy.sure.clear();
-  for (const SeenAgent& agent : tracks.agents)
+  for (const DetectedAgent& agent : tracks.agents)
     occupancy.sure.push_back(logistic(agent.score) >= kKeepScore);
   fuseAgents(tracks, motion, memory);
   base_.resize(grid.cells(), kOccupancyWidth);

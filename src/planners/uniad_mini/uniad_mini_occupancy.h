@@ -12,7 +12,7 @@ namespace cdiff::planners {
 
 /// Occupancy of the BEV's cells now and at the waypoints to come: logits [agents, cells] by step,
 /// row-major.
-struct SeenOccupancy {
+struct PredictedOccupancy {
   std::array<std::vector<float>, kOccupancySteps> logits;
   std::vector<bool> sure;  ///< by slot: agents that are there
   std::int64_t cells = 0;
@@ -30,8 +30,8 @@ class OccupancyDecoder {
  public:
   OccupancyDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
                    inference::InstructionSet set);
-  void see(const inference::Rows& bev, const SeenTracks& tracks, const SeenMotion& motion,
-           UniadMemory& memory, SeenOccupancy& occupancy);
+  void see(const inference::Rows& bev, const DetectedTracks& tracks, const PredictedMotion& motion,
+           UniadMemory& memory, PredictedOccupancy& occupancy);
 
  private:
   struct Step {
@@ -41,8 +41,8 @@ class OccupancyDecoder {
     inference::Linear query, key, value, mask, output;
     inference::PreNormFeedForward mix;
   };
-  void fuseAgents(const SeenTracks& tracks, const SeenMotion& motion, UniadMemory& memory);
-  void placeAgents(const SeenTracks& tracks, std::size_t step, UniadMemory& memory);
+  void fuseAgents(const DetectedTracks& tracks, const PredictedMotion& motion, UniadMemory& memory);
+  void placeAgents(const DetectedTracks& tracks, std::size_t step, UniadMemory& memory);
   void run(const Step& step, UniadMemory& memory, const std::vector<bool>& sure);
   void attend(const std::vector<bool>& sure);
   void answer(std::vector<float>& logits);

@@ -23,7 +23,7 @@ std::vector<Eigen::Vector2d> toMap(const geometry::Pose2d& pose, const Eigen::Ve
   return places;
 }
 
-planning::PerceivedVehicle vehicleOf(const SeenAgent& agent, const traffic::VehicleState& ego) {
+planning::PerceivedVehicle vehicleOf(const DetectedAgent& agent, const traffic::VehicleState& ego) {
   planning::PerceivedVehicle vehicle;
   const auto number = [&](std::size_t i) { return static_cast<double>(agent.box[i]); };
   vehicle.score = logistic(agent.score);
@@ -53,10 +53,10 @@ void VadMiniOptions::describe(core::OptionsVisitor& visitor) {
 planning::Perception perceptionOf(const VadMiniOutput& output, const traffic::VehicleState& ego,
                                   double least) {
   planning::Perception perception;
-  for (const SeenAgent& agent : output.agents) {
+  for (const DetectedAgent& agent : output.agents) {
     if (logistic(agent.score) >= least) perception.vehicles.push_back(vehicleOf(agent, ego));
   }
-  for (const SeenLine& line : output.lines) {
+  for (const DetectedLine& line : output.lines) {
     const auto best = std::max_element(line.scores.begin(), line.scores.end());
     if (logistic(*best) < least) continue;
     perception.lines.push_back({toText(static_cast<MapKind>(best - line.scores.begin())),

@@ -54,7 +54,7 @@ Rows rowSums(const Rows& first, const Rows& second, std::int64_t channels) {
 }
 
 bool VadMiniOutput::finite() const {
-  const auto agent_finite = [](const SeenAgent& agent) {
+  const auto agent_finite = [](const DetectedAgent& agent) {
     return std::isfinite(agent.score) &&
            std::all_of(agent.box.begin(), agent.box.end(),
                        [](float x) { return std::isfinite(x); }) &&
@@ -139,7 +139,7 @@ void VadMiniNetwork::seeAgents(VadMiniOutput& output) {
   }
   output.agents.resize(static_cast<std::size_t>(count));
   for (std::int64_t i = 0; i < count; ++i) {
-    SeenAgent& agent = output.agents[static_cast<std::size_t>(i)];
+    DetectedAgent& agent = output.agents[static_cast<std::size_t>(i)];
     std::copy_n(head_.row(i), kBoxNumbers, agent.box.begin());
     const Eigen::Vector2f center = bev.fromShare(shareOf(reference.row(i))).cast<float>();
     agent.box[0] = center.x();

@@ -12,7 +12,7 @@
 namespace cdiff::planners {
 
 /// An agent query's answer (body frame of the ego, SI units).
-struct SeenAgent {
+struct DetectedAgent {
   float score = 0.0F;                             ///< logit of being a vehicle
   std::array<float, kBoxNumbers> box{};           ///< center of the box, kBoxNumbers
   std::array<EgoWaypoints, kMotionModes> ways{};  ///< where it will be
@@ -20,7 +20,7 @@ struct SeenAgent {
 };
 
 /// A map query's answer.
-struct SeenLine {
+struct DetectedLine {
   std::array<float, kMapKinds> scores{};             ///< logits
   std::array<Eigen::Vector2d, kMapPoints> points{};  ///< body frame of the ego [m]
 };
@@ -33,8 +33,8 @@ inference::Rows rowSums(const inference::Rows& first, const inference::Rows& sec
 
 /// What the network answers.
 struct VadMiniOutput {
-  std::vector<SeenAgent> agents;                    ///< by query
-  std::vector<SeenLine> lines;                      ///< by query
+  std::vector<DetectedAgent> agents;                ///< by query
+  std::vector<DetectedLine> lines;                  ///< by query
   std::array<EgoWaypoints, kRoadCommands> plans{};  ///< by command (body frame [m])
 
   bool finite() const;

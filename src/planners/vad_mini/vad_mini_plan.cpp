@@ -20,7 +20,7 @@ EgoWaypoints waypointsOf(const float* offsets, const Eigen::Vector2d& start) {
 }
 
 /// The point of a line that is nearest to the ego.
-Eigen::Vector2d nearestPoint(const SeenLine& line) {
+Eigen::Vector2d nearestPoint(const DetectedLine& line) {
   return *std::min_element(line.points.begin(), line.points.end(),
                            [](const Eigen::Vector2d& left, const Eigen::Vector2d& right) {
                              return left.squaredNorm() < right.squaredNorm();
@@ -33,7 +33,7 @@ void VadMiniNetwork::forecast(VadMiniOutput& output) {
   const std::int64_t width = architecture_.ego.width;
   modes_ = rowSums(agents_, mode_, width);
   std::vector<Eigen::Vector2d> places;
-  for (const SeenAgent& agent : output.agents) {
+  for (const DetectedAgent& agent : output.agents) {
     for (std::int64_t mode = 0; mode < kMotionModes; ++mode)
       places.emplace_back(agent.box[0], agent.box[1]);
   }
@@ -56,7 +56,7 @@ void VadMiniNetwork::readForecasts(VadMiniOutput& output) {
   head_.resize(rows, 2 * kEgoWaypoints);
   motion_offset_.apply(joined_.view(), head_.view(), rows, memory_.hidden);
   for (std::int64_t row = 0; row < rows; ++row) {
-    SeenAgent& agent = output.agents[static_cast<std::size_t>(row / kMotionModes)];
+    DetectedAgent& agent = output.agents[static_cast<std::size_t>(row / kMotionModes)];
     agent.ways[static_cast<std::size_t>(row % kMotionModes)] =
         waypointsOf(head_.row(row), {agent.box[0], agent.box[1]});
   }
@@ -92,7 +92,7 @@ void VadMiniNetwork::plan(VadMiniOutput& output) {
   fuse_.apply({joined_.row(0), kMotionModes * joined_.stride()}, tokens_.view(), agents,
               memory_.hidden);
   std::vector<Eigen::Vector2d> places;
-  for (const SeenAgent& agent : output.agents) places.emplace_back(agent.box[0], agent.box[1]);
+  for (const DetectedAgent& agent : output.agents) places.emplace_back(agent.box[0], agent.box[1]);
   embedPlaces(places, positions_);
   for (std::int64_t i = 0; i < agents; ++i)
     inference::addRow(positions_.row(i), width, tokens_.row(i));
@@ -101,7 +101,7 @@ void VadMiniNetwork::plan(VadMiniOutput& output) {
   ego_joined_.resize(1, 2 * width);
   std::copy_n(ego_row_.row(0), width, ego_joined_.row(0));
   places.clear();
-  for (const SeenLine& line : output.lines) places.push_back(nearestPoint(line));
+  for (const DetectedLine& line : output.lines) places.push_back(nearestPoint(line));
   embedPlaces(places, positions_);
   for (std::int64_t i = 0; i < map_tokens_.rows(); ++i)
     inference::addRow(positions_.row(i), width, map_tokens_.row(i));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 #include "planning/perception.h"
 
 namespace cdiff::record {
@@ -114,8 +114,8 @@ void Timeline::addFrame(const traffic::TrafficSnapshot& snapshot) {
   frames_.push_back(std::move(frame));
 }
 
-void Timeline::observeGazes(const traffic::TrafficSnapshot& snapshot,
-                            const std::vector<planning::PlannedAction>& actions) {
+void Timeline::observeAttention(const traffic::TrafficSnapshot& snapshot,
+                                const std::vector<planning::PlannedAction>& actions) {
   constexpr std::size_t kMost = 8;
   constexpr double kLeast = 0.02;
   if (frames_.empty() || frames_.back().time != snapshot.time) return;

@@ -11,7 +11,7 @@
 
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/sample_statistics.h"
 
 namespace cdiff::record {
 
@@ -85,7 +85,7 @@ struct TimelinePose {
 };
 
 /// How much the planner of one vehicle looked at another (planning::AttendedVehicle).
-struct TimelineGaze {
+struct TimelineAttention {
   std::uint32_t driver = 0;  ///< index in Timeline::vehicles(), as is the next
   std::uint32_t vehicle = 0;
   float weight = 0.0F;  ///< [0, 1]
@@ -95,8 +95,8 @@ struct TimelineGaze {
 struct TimelineFrame {
   double time = 0.0;  ///< [s]
   std::vector<TimelinePose> poses;
-  std::vector<TimelineGaze> gazes;  ///< the largest of each driver, of planners that say them
-  planning::Perception perception;  ///< of the ego's planner; of forecasts the likeliest alone
+  std::vector<TimelineAttention> gazes;  ///< the largest of each driver, of planners that say them
+  planning::Perception perception;       ///< of the ego's planner; of forecasts the likeliest alone
 };
 
 /// A contact of two vehicles, with its place in the map frame [m].
@@ -123,8 +123,8 @@ class Timeline {
   void observe(const traffic::TrafficSnapshot& snapshot);
   /// What the planners looked at, after `observe` of the snapshot that they decided on. Of each
   /// driver the eight largest weights are kept, those below 0.02 not.
-  void observeGazes(const traffic::TrafficSnapshot& snapshot,
-                    const std::vector<planning::PlannedAction>& actions);
+  void observeAttention(const traffic::TrafficSnapshot& snapshot,
+                        const std::vector<planning::PlannedAction>& actions);
   /// What the ego's planner believed to see, likewise.
   void observePerception(const traffic::TrafficSnapshot& snapshot,
                          const std::vector<planning::PlannedAction>& actions);

@@ -34,7 +34,7 @@ double leastCost(const std::vector<double>& cost, std::size_t rows, std::size_t 
 
 // Row by row the cheapest column is 0 for both; together 1 + 2 beats 0 + 10.
 TEST(Matching, IsCheapestTogether) {
-  EXPECT_EQ(matchCheapest({0.0, 1.0, 2.0, 10.0}, 2, 2), (std::vector<int>{1, 0}));
+  EXPECT_EQ(hungarian({0.0, 1.0, 2.0, 10.0}, 2, 2), (std::vector<int>{1, 0}));
 }
 
 TEST(Matching, IsAsCheapAsTheBestPermutation) {
@@ -44,7 +44,7 @@ TEST(Matching, IsAsCheapAsTheBestPermutation) {
     std::vector<double> cost;
     for (std::uint32_t i = 0; i < rows * columns; ++i)
       cost.push_back(random.uniform({trial}, i, -1.0, 3.0));
-    const std::vector<int> match = matchCheapest(cost, rows, columns);
+    const std::vector<int> match = hungarian(cost, rows, columns);
     std::vector<int> taken = match;
     std::sort(taken.begin(), taken.end());
     EXPECT_EQ(std::unique(taken.begin(), taken.end()), taken.end()) << "a column taken twice";
@@ -53,12 +53,12 @@ TEST(Matching, IsAsCheapAsTheBestPermutation) {
 }
 
 TEST(Matching, EqualCostsGoToTheFirstColumns) {
-  EXPECT_EQ(matchCheapest(std::vector<double>(6, 1.0), 2, 3), (std::vector<int>{0, 1}));
-  EXPECT_TRUE(matchCheapest({}, 0, 3).empty());
+  EXPECT_EQ(hungarian(std::vector<double>(6, 1.0), 2, 3), (std::vector<int>{0, 1}));
+  EXPECT_TRUE(hungarian({}, 0, 3).empty());
 }
 
 TEST(Matching, RefusesMoreRowsThanColumns) {
-  EXPECT_THROW(matchCheapest({1.0, 2.0}, 2, 1), std::invalid_argument);
+  EXPECT_THROW(hungarian({1.0, 2.0}, 2, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ TEST(PlanAdjustment, CanBeSwitchedOff) {
 }
 
 /// Two agents and three cells at step 0: the second agent is not there.
-SeenOccupancy threeCells() {
-  SeenOccupancy occupancy;
+PredictedOccupancy threeCells() {
+  PredictedOccupancy occupancy;
   occupancy.cells = 3;
   occupancy.sure = {true, false};
   occupancy.logits[0] = {0.0F, 2.0F, -2.0F, 100.0F, 100.0F, 100.0F};
@@ -94,7 +94,7 @@ SeenOccupancy threeCells() {
 
 // 1 / (1 + exp(-2)) = 0.8808.
 TEST(Occupancy, IsTheLargestProbabilityOfAgentsThatAreThere) {
-  SeenOccupancy occupancy = threeCells();
+  PredictedOccupancy occupancy = threeCells();
   std::vector<float> probability = occupancy.probability(0);
   ASSERT_EQ(probability.size(), 3U);
   EXPECT_NEAR(probability[0], 0.5F, 1e-6F);
@@ -116,7 +116,7 @@ TEST(Occupancy, PlacesAreCentersOfCells) {
 
 TEST(Occupancy, IsShownForEveryStep) {
   const BevGrid bev{1, 3, 2.0, 16.0};
-  SeenOccupancy occupancy = threeCells();
+  PredictedOccupancy occupancy = threeCells();
   for (std::size_t i = 1; i < 5; ++i) occupancy.logits[i] = occupancy.logits[0];
   traffic::VehicleState ego;
   ego.position = {7.0, 8.0};

@@ -20,8 +20,8 @@ traffic::VehicleState ego() {
   return state;
 }
 
-SeenAgent agent(float score) {
-  SeenAgent seen;
+DetectedAgent agent(float score) {
+  DetectedAgent seen;
   seen.score = score;
   seen.box = {4.0F,           1.0F,           std::log(1.9F), std::log(4.6F), -0.5F,
               std::log(1.6F), std::sin(0.3F), std::cos(0.3F), 3.0F,           -4.0F};
@@ -61,7 +61,7 @@ TEST(Perceived, VehiclesAreGivenInTheMap) {
 
 // The kind of the best score; points lie 1 m apart ahead, 2 m to the left.
 TEST(Perceived, LinesAreOfTheirLikeliestKind) {
-  SeenLine line;
+  DetectedLine line;
   for (std::size_t i = 0; i < line.points.size(); ++i)
     line.points[i] = {static_cast<double>(i), 2.0};
   VadMiniOutput output;

@@ -15,7 +15,7 @@ BevBatch bevBatch(const std::vector<const EgoExample*>& examples, std::size_t ba
   BevBatch batch;
   for (const EgoExample* example : examples) {
     const std::size_t last = example->looks.size() - 1;
-    const EgoLook& look = example->looks[last - std::min(last, back)];
+    const EgoFrame& look = example->looks[last - std::min(last, back)];
     for (const traffic::CameraImage& image : look.images) images.push_back(&image);
     motion.insert(motion.end(), look.motion.begin(), look.motion.end());
     const bool past = back <= last && look.poses.past.has_value();
@@ -30,8 +30,8 @@ BevBatch bevBatch(const std::vector<const EgoExample*>& examples, std::size_t ba
   return batch;
 }
 
-at::Tensor encodeLooks(const BevNet& net, const std::vector<const EgoExample*>& examples,
-                       const CameraEgoSizes& sizes, const at::Device& device) {
+at::Tensor encodeFrames(const BevNet& net, const std::vector<const EgoExample*>& examples,
+                        const CameraEgoSizes& sizes, const at::Device& device) {
   std::size_t looks = 1;
   for (const EgoExample* example : examples) looks = std::max(looks, example->looks.size());
   if (!sizes.past_bev) looks = 1;

@@ -16,7 +16,7 @@ BevBatch bevBatch(const std::vector<const EgoExample*>& examples, std::size_t ba
 
 /// The BEV of the present [B x cells, width]: the past looks one after the other without gradients,
 /// each with the BEV of the one before where there is one.
-at::Tensor encodeLooks(const BevNet& net, const std::vector<const EgoExample*>& examples,
-                       const CameraEgoSizes& sizes, const at::Device& device);
+at::Tensor encodeFrames(const BevNet& net, const std::vector<const EgoExample*>& examples,
+                        const CameraEgoSizes& sizes, const at::Device& device);
 
 }  // namespace cdiff::planners

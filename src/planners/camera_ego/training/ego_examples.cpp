@@ -106,14 +106,14 @@ RoadCommand EgoExamples::commandAt(const PlutoScene& scene, const PlutoPlace& pl
 }
 
 /// A look at a decision; labels of what was seen go into `labeled` where that is asked for.
-EgoLook EgoExamples::lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
-                            const EgoExampleOptions& options, EgoExample* labeled) {
+EgoFrame EgoExamples::lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
+                             const EgoExampleOptions& options, EgoExample* labeled) {
   const std::uint32_t number = scene.drives()[place.drive].vehicle;
   traffic::Vehicle own;
   own.id = scene.vehicles().id(number);
   own.dimensions = scene.vehicles().size(number);
   own.state = scene.frames()[decision].find(number)->state;
-  EgoLook look;
+  EgoFrame look;
   look.poses.present = movedPose(own.state, options);
   own.state.position = look.poses.present.position;
   own.state.heading = look.poses.present.heading;
@@ -170,7 +170,7 @@ EgoExample EgoExamples::make(const PlutoScene& scene, const PlutoPlace& place,
     then.decision = static_cast<std::uint32_t>(decision);
     EgoExample* labeled = options.past_agents ? &past : nullptr;
     if (decision == place.decision) labeled = &example;
-    EgoLook look = lookAt(scene, then, decision, options, labeled);
+    EgoFrame look = lookAt(scene, then, decision, options, labeled);
     if (past.agents.size() > options.most_agents) past.agents.resize(options.most_agents);
     look.agents = std::move(past.agents);
     if (!example.looks.empty()) look.poses.past = example.looks.back().poses.present;

@@ -39,7 +39,7 @@ struct AgentLabel {
 };
 
 /// What the cameras saw at one decision, with the ego's motion.
-struct EgoLook {
+struct EgoFrame {
   std::vector<traffic::CameraImage> images;  ///< in the rig's order
   EgoPoses poses;                            ///< with the pose of the look before, if there is one
   EgoMotion motion{};
@@ -48,9 +48,9 @@ struct EgoLook {
 
 /// A moment to learn from, or to be judged on.
 struct EgoExample {
-  std::uint64_t network = 0;   ///< hash of its network's name, where it is known
-  std::vector<EgoLook> looks;  ///< kPastAge apart, the present one last
-  double speed = 0.0;          ///< of the ego [m/s]
+  std::uint64_t network = 0;    ///< hash of its network's name, where it is known
+  std::vector<EgoFrame> looks;  ///< kPastAge apart, the present one last
+  double speed = 0.0;           ///< of the ego [m/s]
   RoadCommand command = RoadCommand::kFollow;
   Eigen::Vector2d target = Eigen::Vector2d::Zero();  ///< of the route (body frame [m])
   FuturePlaces driven;                               ///< where the ego was then
@@ -92,8 +92,8 @@ class EgoExamples {
     RoadLines lines;
   };
   World& worldOf(const PlutoScene& scene);
-  EgoLook lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
-                 const EgoExampleOptions& options, EgoExample* labeled);
+  EgoFrame lookAt(const PlutoScene& scene, const PlutoPlace& place, std::size_t decision,
+                  const EgoExampleOptions& options, EgoExample* labeled);
   void addAgents(const PlutoScene& scene, const PlutoPlace& place, const geometry::Pose2d& pose,
                  const std::vector<int>& pixels, EgoExample& example) const;
   const NavigationNode& nextNode(const PlutoScene& scene, const PlutoPlace& place);

@@ -46,7 +46,7 @@ float dot(const float* first, const float* second, std::int64_t count) {
 
 /// Adds to the gradients of values, offsets and weights what comes from one visit. `forward` holds
 /// the gradient of the output in place of the output.
-void pullBackVisit(const MapReading& forward, const MapReading& gradient, const SamplingPlan& plan,
+void backwardVisit(const MapReading& forward, const MapReading& gradient, const SamplingPlan& plan,
                    std::size_t number) {
   const DeformableSizes& sizes = forward.sizes;
   const inference::MapVisit& visit = plan.visits[number];
@@ -122,7 +122,7 @@ class MapReader : public torch::autograd::Function<MapReader> {
       const MapReading forward = rows.sample(index, saved[0], saved[1], saved[2], output);
       const MapReading gradient = rows.sample(index, values, offsets, weights, output);
       for (std::size_t visit = 0; visit < reading.plans[i]->visits.size(); ++visit)
-        pullBackVisit(forward, gradient, *reading.plans[i], visit);
+        backwardVisit(forward, gradient, *reading.plans[i], visit);
     }
     return {values, offsets, weights, at::Tensor()};
   }

@@ -30,7 +30,7 @@ double boxCost(const float* box, const AgentBox& label, double velocity) {
 /// The query of each label; where there are more labels than queries, the first labels get one.
 std::vector<int> matched(const std::vector<double>& cost, std::size_t labels, std::size_t queries) {
   const std::size_t rows = std::min(labels, queries);
-  std::vector<int> result = matchCheapest(
+  std::vector<int> result = hungarian(
       {cost.begin(), cost.begin() + static_cast<std::ptrdiff_t>(rows * queries)}, rows, queries);
   result.resize(labels, -1);
   return result;

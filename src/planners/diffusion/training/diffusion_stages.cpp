@@ -109,7 +109,7 @@ class EncoderStage : public learning::Stage {
     return loss;
   }
 
-  Measures judge() override {
+  Measures measureHeldOut() override {
     const at::NoGradGuard no_gradient;
     std::vector<at::Tensor> clean, with_route, without;
     for (std::size_t begin = 0; begin < state_.run.held_out.size(); begin += kEncodeBatch) {
@@ -187,7 +187,7 @@ class DiffusionStage : public learning::Stage {
     return loss;
   }
 
-  Measures judge() override {
+  Measures measureHeldOut() override {
     if (cache_ == nullptr) held_out_ = encodeHeldOut(state_);
     return state_.loss.judge(state_.denoiser, held_out_.batch, held_out_.gray_features);
   }

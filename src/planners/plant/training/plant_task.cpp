@@ -66,7 +66,7 @@ class ImitationOfWaypoints : public learning::EvenStage {
 
   /// By the planner's own network; beside it a vehicle that stands, and one that keeps its speed
   /// straight on.
-  Measures judge() override {
+  Measures measureHeldOut() override {
     PlantNetwork network({state_.architecture, state_.net.parameters().values()});
     DisplacementSums planned, standing, constant;
     for (const std::size_t index : state_.run.held_out) {

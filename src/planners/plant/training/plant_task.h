@@ -9,8 +9,8 @@
 
 #include "learning/task_registry.h"
 #include "planners/network_task.h"
-#include "planners/plant/training/plant_net.h"
 #include "planners/plant/training/plant_samples.h"
+#include "planners/plant/training/plant_trainer_network.h"
 
 namespace cdiff::planners {
 

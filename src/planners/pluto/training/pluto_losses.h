@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "learning/task.h"
-#include "planners/pluto/training/pluto_net.h"
+#include "planners/pluto/training/pluto_trainer_network.h"
 
 namespace cdiff::planners {
 

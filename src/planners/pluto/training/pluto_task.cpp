@@ -45,7 +45,7 @@ class ImitationOfPlans : public learning::EvenStage {
     return plutoLoss(state_.net, batch, all, factorsOf(step, all.size()), examples.triplets);
   }
 
-  learning::Measures judge() override {
+  learning::Measures measureHeldOut() override {
     PlutoJudge judge({state_.settings.architecture, state_.net.parameters().values()});
     for (const std::size_t index : state_.run.held_out) {
       const PlutoPlace& place = state_.places[index];

@@ -10,8 +10,8 @@
 #include "learning/task_registry.h"
 #include "planners/network_task.h"
 #include "planners/pluto/training/pluto_examples.h"
-#include "planners/pluto/training/pluto_net.h"
 #include "planners/pluto/training/pluto_scenes.h"
+#include "planners/pluto/training/pluto_trainer_network.h"
 
 namespace cdiff::planners {
 

@@ -210,7 +210,7 @@ learning::Measures PpoStage::news() {
   return fresh;
 }
 
-learning::Measures PpoStage::judge() {
+learning::Measures PpoStage::measureHeldOut() {
   const PpoActor actor(training_.networks.weights());
   const auto episodes = training_.collector().judge(actor, training_.settings.held_out_rounds);
   return PpoEpisodeCounts(episodes).measures("");

@@ -75,7 +75,7 @@ class PpoStage : public learning::Stage {
   learning::Measures news() override;
   std::vector<std::size_t> samplesOf(std::int64_t step) override;
   /// tanh(mean) on the held-out networks.
-  learning::Measures judge() override;
+  learning::Measures measureHeldOut() override;
 
  private:
   /// The decisions of an iteration as tensors.

@@ -190,7 +190,7 @@ std::string PpoTask::measuresText(const learning::Measures& held_out) const {
 learning::TrainedModel PpoTask::finish() {
   learning::TrainedModel model;
   model.files = {{kPpo.file, {{{"format", kPpo.format}}, training_->networks.weights()}, true, ""}};
-  model.held_out = PpoStage(*training_).judge();
+  model.held_out = PpoStage(*training_).measureHeldOut();
   model.settings = facts();
   model.settings["data"] = {
       {"suite", routes_->suiteName()},        {"sha256", routes_->sha256()},

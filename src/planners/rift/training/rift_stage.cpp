@@ -192,7 +192,7 @@ std::optional<double> RiftStage::learningRate(std::int64_t step) const {
   return riftRate(state_.run.options.learning_rate, step, batches(), state_.settings.epochs);
 }
 
-learning::Measures RiftStage::judge() {
+learning::Measures RiftStage::measureHeldOut() {
   const at::NoGradGuard no_gradient;
   if (held_out_.empty()) {
     for (const std::size_t index : state_.run.held_out) {

@@ -42,7 +42,7 @@ class RiftStage : public learning::Stage {
   std::int64_t batchSize() const override;
   std::vector<std::size_t> samplesOf(std::int64_t step) override;
   learning::Loss loss(std::int64_t step) override;
-  learning::Measures judge() override;
+  learning::Measures measureHeldOut() override;
   std::optional<double> learningRate(std::int64_t step) const override;
   learning::StageRules rules() const override;
 

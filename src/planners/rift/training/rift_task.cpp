@@ -116,7 +116,7 @@ learning::TrainedModel RiftTask::finish() {
   learning::TrainedModel model;
   model.files = {
       {kRift.file, {networkMetadata(kRift, state_->model.architecture), weights}, true, ""}};
-  model.held_out = RiftStage(*state_).judge();
+  model.held_out = RiftStage(*state_).measureHeldOut();
   model.settings = {{"settings", core::dumpOptions(settings)}};
   model.title = "RIFT";
   model.measures = riftTable(model.held_out);

@@ -41,7 +41,7 @@ TrackStart startAfter(const TrackAnswer& before, const std::vector<const EgoExam
   const auto samples = static_cast<std::int64_t>(examples.size());
   std::vector<float> goes_on, references;
   for (std::size_t b = 0; b < examples.size(); ++b) {
-    const EgoLook& look = examples[b]->looks[lookAt(*examples[b], back)];
+    const EgoFrame& look = examples[b]->looks[lookAt(*examples[b], back)];
     const bool has_past = back < examples[b]->looks.size() - 1;
     if (!has_past) held[b] = HeldTracks(static_cast<std::size_t>(slots));
     const TrackSet tracks = trackSetOf(before, static_cast<std::int64_t>(b), held[b]);

@@ -8,7 +8,7 @@
 #include "learning/task.h"
 #include "planners/camera_ego/training/ego_batch.h"
 #include "planners/camera_ego/training/set_losses.h"
-#include "planners/uniad_mini/training/uniad_mini_net.h"
+#include "planners/uniad_mini/training/uniad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 

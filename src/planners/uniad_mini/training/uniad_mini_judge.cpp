@@ -16,15 +16,15 @@ constexpr double kSureLine = 0.3;
 
 std::vector<Detection> detectionsOf(const UniadMiniOutput& output) {
   std::vector<Detection> detections;
-  for (const SeenAgent& agent : output.agents)
+  for (const DetectedAgent& agent : output.agents)
     detections.push_back({{agent.box[0], agent.box[1]}, logistic(agent.score)});
   return detections;
 }
 
 /// The surest agent within reach of a label; nullptr where none is a track.
-const SeenAgent* agentAt(const UniadMiniOutput& output, const AgentLabel& label) {
-  const SeenAgent* best = nullptr;
-  for (const SeenAgent& agent : output.agents) {
+const DetectedAgent* agentAt(const UniadMiniOutput& output, const AgentLabel& label) {
+  const DetectedAgent* best = nullptr;
+  for (const DetectedAgent& agent : output.agents) {
     const Eigen::Vector2d apart(agent.box[0] - label.box[0], agent.box[1] - label.box[1]);
     if (apart.norm() > DetectionMeasures::kReach || logistic(agent.score) < kKeepScore) continue;
     if (best == nullptr || agent.score > best->score) best = &agent;
@@ -48,7 +48,7 @@ UniadMiniOutput UniadMiniJudge::look(const EgoExample& example) {
   inference::Rows past;
   TrackSet tracks;
   for (std::size_t i = 0; i < example.looks.size(); ++i) {
-    const EgoLook& look = example.looks[i];
+    const EgoFrame& look = example.looks[i];
     UniadMiniInput input;
     for (const traffic::CameraImage& image : look.images) input.images.push_back(image.rgb.data());
     input.motion = look.motion;
@@ -65,7 +65,7 @@ UniadMiniOutput UniadMiniJudge::look(const EgoExample& example) {
 
 void UniadMiniJudge::addForecasts(const EgoExample& example, const UniadMiniOutput& output) {
   for (const AgentLabel& label : example.agents) {
-    const SeenAgent* agent = agentAt(output, label);
+    const DetectedAgent* agent = agentAt(output, label);
     if (agent == nullptr || label.future.known < label.future.places.size()) continue;
     double least = 1e9;
     for (const EgoWaypoints& way : agent->ways)

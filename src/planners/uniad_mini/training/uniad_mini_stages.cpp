@@ -51,7 +51,7 @@ class UniadStage : public learning::Stage {
   const std::string& name() const override { return name_; }
   std::int64_t batchSize() const override { return batch_; }
   std::vector<std::size_t> samplesOf(std::int64_t step) override { return order_.at(step); }
-  learning::Measures judge() override { return judgeUniad(state_); }
+  learning::Measures measureHeldOut() override { return judgeUniad(state_); }
 
   std::vector<learning::TrainedPart> parts() override {
     UniadMiniNet& net = state_.net;

@@ -34,7 +34,7 @@ at::Tensor withStart(const at::Tensor& plans) {
 }
 
 /// 1 up to and without the first segment of the plan that crosses a sure one [B, 6].
-at::Tensor beforeCrossing(const at::Tensor& plans, const SeenAround& seen) {
+at::Tensor beforeCrossing(const at::Tensor& plans, const DetectedSurroundings& seen) {
   const at::Tensor path = withStart(plans.detach());
   const at::Tensor a = path.narrow(1, 0, kEgoWaypoints).unsqueeze(2);
   const at::Tensor b = path.narrow(1, 1, kEgoWaypoints).unsqueeze(2);
@@ -72,14 +72,14 @@ at::Tensor imitationLoss(const at::Tensor& plans, const std::vector<const EgoExa
   return ((plans - wanted).abs() * counted).sum() / (2.0 * counted.sum()).clamp_min(1.0);
 }
 
-at::Tensor boundaryLoss(const at::Tensor& plans, const SeenAround& seen) {
+at::Tensor boundaryLoss(const at::Tensor& plans, const DetectedSurroundings& seen) {
   const at::Tensor nearest =
       distances(plans, seen.edge_begin, seen.edge_end, seen.edge_sure).amin(2);
   const at::Tensor hinge = at::relu(PlanLossOptions::kBoundaryReach - nearest);
   return (hinge * beforeCrossing(plans, seen)).mean();
 }
 
-at::Tensor collisionLoss(const at::Tensor& plans, const SeenAround& seen) {
+at::Tensor collisionLoss(const at::Tensor& plans, const DetectedSurroundings& seen) {
   const at::Tensor apart = plans.unsqueeze(1) - seen.agents;  // [B, A, 6, 2]
   const at::Tensor distance =
       at::sqrt(apart.detach().square().sum(-1)) + kFar * (1.0 - seen.agent_sure.unsqueeze(2));
@@ -92,7 +92,7 @@ at::Tensor collisionLoss(const at::Tensor& plans, const SeenAround& seen) {
   return ((along + across) * near).mean();
 }
 
-at::Tensor directionLoss(const at::Tensor& plans, const SeenAround& seen) {
+at::Tensor directionLoss(const at::Tensor& plans, const DetectedSurroundings& seen) {
   const at::Tensor apart = distances(plans, seen.lane_begin, seen.lane_end, seen.lane_sure);
   const auto [nearest, index] = apart.detach().min(2);  // [B, 6]
   const at::Tensor near = nearest.lt(PlanLossOptions::kLaneReach).to(plans.scalar_type());

@@ -39,7 +39,7 @@ at::Tensor commandedPlans(const at::Tensor& plans, const std::vector<const EgoEx
 at::Tensor imitationLoss(const at::Tensor& plans, const std::vector<const EgoExample*>& examples);
 
 /// What plans are held against (body frame [m], no gradients). S segments, A agents.
-struct SeenAround {
+struct DetectedSurroundings {
   at::Tensor edge_begin, edge_end;  ///< [B, S, 2]
   at::Tensor edge_sure;             ///< [B, S]: 1 or 0
   at::Tensor lane_begin, lane_end;  ///< centerlines, likewise
@@ -50,13 +50,13 @@ struct SeenAround {
 
 /// Mean over waypoints of max(0, 1 m - distance to the nearest edge), 0 from where the plan crosses
 /// an edge on. Published: lines of the class "solid, double"; ours: edges of the drivable area.
-at::Tensor boundaryLoss(const at::Tensor& plans, const SeenAround& seen);
+at::Tensor boundaryLoss(const at::Tensor& plans, const DetectedSurroundings& seen);
 /// Mean over waypoints of max(0, 1.5 m - |dy|) + max(0, 3 m - |dx|) to the nearest agent within 3
 /// m.
-at::Tensor collisionLoss(const at::Tensor& plans, const SeenAround& seen);
+at::Tensor collisionLoss(const at::Tensor& plans, const DetectedSurroundings& seen);
 /// Mean over waypoints of the angle between plan and nearest lane within 2 m, either way along it;
 /// plans of less than 1 m count nothing. Published: lines of the class "broken"; ours: centerlines.
-at::Tensor directionLoss(const at::Tensor& plans, const SeenAround& seen);
+at::Tensor directionLoss(const at::Tensor& plans, const DetectedSurroundings& seen);
 
 /// Ways [B, A, 6, 6, 2] and logits [B, A, 6] of matched agents: L1 of the way whose last known
 /// place is nearest to the true one, and focal loss of which one that is.

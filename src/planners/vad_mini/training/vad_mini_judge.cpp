@@ -11,7 +11,7 @@ constexpr double kSureLine = 0.3;
 
 std::vector<Detection> detectionsOf(const VadMiniOutput& output) {
   std::vector<Detection> detections;
-  for (const SeenAgent& agent : output.agents)
+  for (const DetectedAgent& agent : output.agents)
     detections.push_back({{agent.box[0], agent.box[1]}, logistic(agent.score)});
   return detections;
 }
@@ -20,7 +20,7 @@ std::vector<Detection> detectionsOf(const VadMiniOutput& output) {
 
 std::vector<BevLine> sureLines(const VadMiniOutput& output, double least) {
   std::vector<BevLine> lines;
-  for (const SeenLine& seen : output.lines) {
+  for (const DetectedLine& seen : output.lines) {
     const auto best = std::max_element(seen.scores.begin(), seen.scores.end());
     if (logistic(*best) < least) continue;
     lines.push_back({static_cast<MapKind>(best - seen.scores.begin()), seen.points});
@@ -35,7 +35,7 @@ VadMiniOutput VadMiniJudge::look(const EgoExample& example) {
   VadMiniOutput output;
   inference::Rows past;
   for (std::size_t i = 0; i < example.looks.size(); ++i) {
-    const EgoLook& look = example.looks[i];
+    const EgoFrame& look = example.looks[i];
     VadMiniInput input;
     for (const traffic::CameraImage& image : look.images) input.images.push_back(image.rgb.data());
     input.motion = look.motion;

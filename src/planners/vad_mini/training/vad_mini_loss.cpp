@@ -45,9 +45,9 @@ void addSets(const VadMiniAnswer& answer, const BevGrid& bev,
 
 }  // namespace
 
-SeenAround seenAround(const VadMiniAnswer& answer, const BevGrid& bev) {
+DetectedSurroundings seenAround(const VadMiniAnswer& answer, const BevGrid& bev) {
   const at::NoGradGuard no_gradient;
-  SeenAround seen;
+  DetectedSurroundings seen;
   const at::Tensor meters = metersOfShares(bev, answer.lines.back());
   const at::Tensor& kinds = answer.line_logits.back();
   seen.edge_begin = seen.lane_begin = segmentEnds(meters, 0);
@@ -72,7 +72,7 @@ learning::Loss vadMiniLoss(const VadMiniAnswer& answer, const BevGrid& bev,
   const at::Tensor plans = commandedPlans(answer.plans, examples);
   loss.add("plan", options.plan.imitation * imitationLoss(plans, examples));
   if (!options.constraints || !options.intermediate) return loss;
-  const SeenAround seen = seenAround(answer, bev);
+  const DetectedSurroundings seen = seenAround(answer, bev);
   loss.add("plan_boundary", options.plan.boundary * boundaryLoss(plans, seen));
   loss.add("plan_collision", options.plan.collision * collisionLoss(plans, seen));
   loss.add("plan_direction", options.plan.direction * directionLoss(plans, seen));

@@ -6,7 +6,7 @@
 
 #include "learning/task.h"
 #include "planners/vad_mini/training/plan_losses.h"
-#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/training/vad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 
@@ -25,6 +25,6 @@ learning::Loss vadMiniLoss(const VadMiniAnswer& answer, const BevGrid& bev,
                            const VadMiniLossOptions& options);
 
 /// What the network sees around, for the constraints on its plans.
-SeenAround seenAround(const VadMiniAnswer& answer, const BevGrid& bev);
+DetectedSurroundings seenAround(const VadMiniAnswer& answer, const BevGrid& bev);
 
 }  // namespace cdiff::planners

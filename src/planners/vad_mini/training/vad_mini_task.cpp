@@ -41,11 +41,11 @@ class ImitationOfEgos : public learning::Stage {
     const std::vector<EgoExample> examples =
         state_.data.examplesOf(samplesOf(step), step, changes_, looksAt(step));
     const std::vector<const EgoExample*> views = viewsOf(examples);
-    const at::Tensor bev = encodeLooks(state_.net.bev(), views, sizes, state_.run.device);
+    const at::Tensor bev = encodeFrames(state_.net.bev(), views, sizes, state_.run.device);
     return vadMiniLoss(state_.net.answer(bev, batch_), sizes.bev, views, optionsOf(step));
   }
 
-  learning::Measures judge() override {
+  learning::Measures measureHeldOut() override {
     const VadMiniArchitecture& architecture = state_.settings.architecture;
     if (!state_.prior)
       state_.prior.emplace(state_.data.agentCenters(kPriorSamples),

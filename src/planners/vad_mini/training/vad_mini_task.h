@@ -12,7 +12,7 @@
 #include "planners/camera_ego/training/open_loop.h"
 #include "planners/network_task.h"
 #include "planners/vad_mini/training/vad_mini_loss.h"
-#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/training/vad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 

@@ -90,7 +90,7 @@ class Inference : public ::testing::TestWithParam<const char*> {
   ContextBatch context_;
 };
 
-TEST_P(Inference, ActionHeadAndItsPullBackAgree) {
+TEST_P(Inference, ActionHeadAndItsBackwardPassAgrees) {
   const std::vector<float> noisy = draws(kBatch * 32 * 7, "noisy");
   const std::vector<float> gradient = draws(kBatch * 32 * 3, "gradient");
   for (const int k : {1, 50, 100}) {
@@ -100,13 +100,13 @@ TEST_P(Inference, ActionHeadAndItsPullBackAgree) {
     std::vector<float> actions(gradient.size());
     std::vector<float> pulled(noisy.size());
     ours_.predictActions(noisy.data(), k, actions.data());
-    ours_.pullBackActions(gradient.data(), pulled.data());
+    ours_.backwardActions(gradient.data(), pulled.data());
     EXPECT_LT(relativeDifference(actions, toVector(expected.detach())), 1e-5) << k;
     EXPECT_LT(relativeDifference(pulled, toVector(input.grad())), 1e-4) << k;
   }
 }
 
-TEST_P(Inference, StateHeadAndItsPullBackAgree) {
+TEST_P(Inference, StateHeadAndItsBackwardPassAgrees) {
   const std::vector<float> actions = draws(kBatch * 32 * 3, "actions");
   const std::vector<float> gradient = draws(kBatch * 32 * 4, "state gradient");
   at::Tensor input = toTensor(actions, {kBatch, 32, 3}, at::kCPU).clone().set_requires_grad(true);
@@ -115,7 +115,7 @@ TEST_P(Inference, StateHeadAndItsPullBackAgree) {
   std::vector<float> states(gradient.size());
   std::vector<float> pulled(actions.size());
   ours_.predictStates(actions.data(), 30, states.data());
-  ours_.pullBackStates(gradient.data(), pulled.data());
+  ours_.backwardStates(gradient.data(), pulled.data());
   EXPECT_LT(relativeDifference(states, toVector(expected.detach())), 1e-5);
   EXPECT_LT(relativeDifference(pulled, toVector(input.grad())), 1e-5);
 }

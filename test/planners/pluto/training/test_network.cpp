@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "planners/course.h"
-#include "planners/pluto/training/pluto_net.h"
+#include "planners/pluto/training/pluto_trainer_network.h"
 #include "support/random_model.h"
 
 namespace cdiff::planners {

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "planners/camera_ego/training/two_looks.h"
-#include "planners/uniad_mini/training/uniad_mini_net.h"
+#include "planners/uniad_mini/training/uniad_mini_trainer_network.h"
 #include "planners/uniad_mini/uniad_mini_network.h"
 #include "support/random_model.h"
 
@@ -33,7 +33,7 @@ UniadMiniModel drawnUniad() {
 /// The agents that are there by the scores of the network at run time.
 at::Tensor sureOf(const UniadMiniOutput& output) {
   std::vector<float> sure;
-  for (const SeenAgent& agent : output.agents)
+  for (const DetectedAgent& agent : output.agents)
     sure.push_back(logistic(agent.score) >= kKeepScore ? 1.0F : 0.0F);
   return learning::toTensor(sure, {1, static_cast<std::int64_t>(sure.size())}, at::kCPU);
 }
@@ -76,7 +76,7 @@ void expectSameAgents(const UniadMiniOutput& found, const NetAnswer& expected) {
   const at::Tensor shares = at::softmax(expected.motion.logits.back(), 2);
   for (std::size_t a = 0; a < found.agents.size(); ++a) {
     const auto i = static_cast<std::int64_t>(a);
-    const SeenAgent& agent = found.agents[a];
+    const DetectedAgent& agent = found.agents[a];
     expectNear(agent.score, expected.tracks.logits.back()[0][i][0], "score");
     for (std::int64_t n = 0; n < kBoxNumbers; ++n)
       expectNear(agent.box[static_cast<std::size_t>(n)], expected.tracks.boxes.back()[0][i][n],

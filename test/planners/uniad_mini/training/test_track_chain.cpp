@@ -92,7 +92,7 @@ traffic::CameraImage grayImage(std::uint8_t value) {
 EgoExample seenTimes(std::size_t looks) {
   EgoExample example;
   for (std::size_t i = 0; i < looks; ++i) {
-    EgoLook look;
+    EgoFrame look;
     for (int camera = 0; camera < 3; ++camera)
       look.images.push_back(grayImage(static_cast<std::uint8_t>(100 + 10 * i)));
     look.poses.present = {{2.0 * static_cast<double>(i), 0.0}, 0.0};

@@ -19,8 +19,8 @@ at::Tensor straightPlan(float y = 0.0F) {
   return planOf(places);
 }
 
-SeenAround seenOf(const std::vector<float>& begin, const std::vector<float>& end) {
-  SeenAround seen;
+DetectedSurroundings seenOf(const std::vector<float>& begin, const std::vector<float>& end) {
+  DetectedSurroundings seen;
   const auto count = static_cast<std::int64_t>(begin.size() / 2);
   seen.edge_begin = seen.lane_begin = learning::toTensor(begin, {1, count, 2}, at::kCPU);
   seen.edge_end = seen.lane_end = learning::toTensor(end, {1, count, 2}, at::kCPU);
@@ -30,7 +30,7 @@ SeenAround seenOf(const std::vector<float>& begin, const std::vector<float>& end
 
 // An edge 0.4 m to the left of all waypoints: 1 - 0.4 each. The gradient pushes to the right.
 TEST(PlanLosses, KeepOneMeterFromEdges) {
-  const SeenAround seen = seenOf({-50.0F, 0.4F}, {50.0F, 0.4F});
+  const DetectedSurroundings seen = seenOf({-50.0F, 0.4F}, {50.0F, 0.4F});
   const at::Tensor plan = straightPlan();
   const at::Tensor loss = boundaryLoss(plan, seen);
   EXPECT_NEAR(loss.item<double>(), 0.6, 1e-4);
@@ -43,16 +43,17 @@ TEST(PlanLosses, KeepOneMeterFromEdges) {
 // An edge across the way at x = 10: the waypoint at 8 is 2 m before it, and behind it nothing
 // counts.
 TEST(PlanLosses, CountNothingBehindACrossedEdge) {
-  const SeenAround seen = seenOf({10.0F, -5.0F, -50.0F, 0.5F}, {10.0F, 5.0F, 50.0F, 0.5F});
+  const DetectedSurroundings seen =
+      seenOf({10.0F, -5.0F, -50.0F, 0.5F}, {10.0F, 5.0F, 50.0F, 0.5F});
   EXPECT_NEAR(boundaryLoss(straightPlan(), seen).item<double>(), 2 * 0.5 / 6.0, 1e-4);
-  SeenAround unsure = seen;
+  DetectedSurroundings unsure = seen;
   unsure.edge_sure = at::zeros({1, 2});
   EXPECT_EQ(boundaryLoss(straightPlan(), unsure).item<double>(), 0.0);
 }
 
 // An agent always 1 m ahead and 0.5 m beside: (3 - 1) + (1.5 - 0.5) = 3.
 TEST(PlanLosses, KeepAwayFromAgents) {
-  SeenAround seen;
+  DetectedSurroundings seen;
   const at::Tensor plan = straightPlan();
   seen.agents = (plan.detach() + learning::toTensor({1.0F, 0.5F}, {2}, at::kCPU)).unsqueeze(1);
   seen.agent_sure = at::ones({1, 1});

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "planners/camera_ego/training/two_looks.h"
-#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/training/vad_mini_trainer_network.h"
 #include "planners/vad_mini/vad_mini_network.h"
 #include "support/random_model.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/driving_score.h"
+#include "metrics/formulas/driving_score.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/post_encroachment.h"
+#include "metrics/formulas/post_encroachment.h"
 
 #include <algorithm>
 #include <boost/container/static_vector.hpp>

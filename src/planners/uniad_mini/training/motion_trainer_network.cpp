@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <cmath>
 
-#include "planners/uniad_mini/training/uniad_mini_net.h"
+#include "planners/uniad_mini/training/uniad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 namespace {

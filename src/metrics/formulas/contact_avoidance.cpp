@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/contacts.h"
-#include "metrics/measures/free_road.h"
+#include "metrics/formulas/contacts.h"
+#include "metrics/formulas/free_road.h"
 
 namespace cdiff::metrics {
 namespace {

@@ -37,19 +37,20 @@ class VadMiniNet {
 
  private:
   /// Features of queries behind the last layer.
-  struct Seen {
+  struct Detections {
     at::Tensor agents;   ///< [B, A, width]
     at::Tensor centers;  ///< [B, A, 2], as shares of the BEV, without gradient
     at::Tensor tokens;   ///< of lines [B, L, width]
     at::Tensor nearest;  ///< of lines, their points nearest to the ego [B, L, 2], likewise
   };
   void seeAgents(const at::Tensor& bev, std::int64_t samples, VadMiniAnswer& answer,
-                 Seen& seen) const;
-  void seeMap(const at::Tensor& bev, std::int64_t samples, VadMiniAnswer& answer, Seen& seen) const;
+                 Detections& seen) const;
+  void seeMap(const at::Tensor& bev, std::int64_t samples, VadMiniAnswer& answer,
+              Detections& seen) const;
   at::Tensor nearestPoints(const at::Tensor& lines) const;
   /// Agents beside their modes [B, A x 6, 2 width].
-  at::Tensor forecast(const Seen& seen, VadMiniAnswer& answer) const;
-  void plan(const at::Tensor& bev, const Seen& seen, const at::Tensor& joined,
+  at::Tensor forecast(const Detections& seen, VadMiniAnswer& answer) const;
+  void plan(const at::Tensor& bev, const Detections& seen, const at::Tensor& joined,
             VadMiniAnswer& answer) const;
   at::Tensor place(const at::Tensor& shares) const {
     return layers_.mlp("place", 2.0 * shares - 1.0);

@@ -33,8 +33,8 @@ class PlaceEmbedding {
 };
 
 /// Track queries of a decision, those of the slots and then the ego's (body frame, SI units).
-struct SeenTracks {
-  std::vector<SeenAgent> agents;         ///< by slot
+struct DetectedTracks {
+  std::vector<DetectedAgent> agents;     ///< by slot
   std::vector<Eigen::Vector2d> centers;  ///< by row: of the slots, and the ego's own place
   inference::Rows features;              ///< by row, normalized
   TrackSet kept;                         ///< for the decision half a second later
@@ -49,7 +49,7 @@ class TrackDecoder {
                inference::InstructionSet set);
   /// `past`: of poses.past, or nullptr.
   void see(const inference::Rows& bev, const EgoPoses& poses, const TrackSet* past,
-           UniadMemory& memory, SeenTracks& seen);
+           UniadMemory& memory, DetectedTracks& seen);
 
  private:
   struct Layer {
@@ -59,9 +59,9 @@ class TrackDecoder {
     inference::Mlp box;
   };
   void start(const EgoPoses& poses, const TrackSet* past, UniadMemory& memory);
-  void decode(const inference::Rows& bev, UniadMemory& memory, SeenTracks& seen);
-  void answer(UniadMemory& memory, SeenTracks& seen) const;
-  void keep(UniadMemory& memory, SeenTracks& seen) const;
+  void decode(const inference::Rows& bev, UniadMemory& memory, DetectedTracks& seen);
+  void answer(UniadMemory& memory, DetectedTracks& seen) const;
+  void keep(UniadMemory& memory, DetectedTracks& seen) const;
 
   UniadMiniArchitecture architecture_;
   std::vector<Layer> layers_;
@@ -80,8 +80,8 @@ class MapDecoder {
   MapDecoder(const UniadMiniArchitecture& architecture, const WeightTensors& tensors,
              inference::InstructionSet set);
   /// Lines, and their normalized features to `tokens`.
-  std::vector<SeenLine> see(const inference::Rows& bev, UniadMemory& memory,
-                            inference::Rows& tokens);
+  std::vector<DetectedLine> see(const inference::Rows& bev, UniadMemory& memory,
+                                inference::Rows& tokens);
 
  private:
   struct Layer {

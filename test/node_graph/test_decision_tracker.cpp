@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "node_graph/lockstep/decision_book.h"
+#include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/conversions.h"
 #include "node_graph/sample_messages.h"
@@ -98,7 +98,7 @@ class LateSession : public testing::Test {
     return options;
   }
   void arrive(int slot, std::uint64_t tick, double now) {
-    if (slot == DecisionBook::kSelection)
+    if (slot == DecisionTracker::kSelection)
       answers_.add(ChannelId::kSelection, selectionFor(tick, 1, "bg_7"));
     if (slot == -1) answers_.add(ChannelId::kEgoControl, controlFor(tick, -1, "ego"));
     if (slot == 1) answers_.add({ChannelId::kCbvControl, 1}, controlFor(tick, 1, "bg_7"));
@@ -110,14 +110,14 @@ class LateSession : public testing::Test {
     book_.ended(tick, paced_.actions(*snapshot, taken, answers_), now);
     return book_.settle(answers_, tick, false);
   }
-  DecisionBook book_;
+  DecisionTracker book_;
   PacedAnswers paced_;
   TickAnswers answers_;
 };
 
 TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
   book_.open(snapshotAt(4));
-  arrive(DecisionBook::kSelection, 4, 10.01);
+  arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   EXPECT_TRUE(end(4, 10.05).empty());  // the CBV's answer is awaited
   arrive(1, 4, 10.08);
@@ -144,12 +144,12 @@ TEST_F(LateSession, RecordSaysWhatDroveAndHowLateTheAnswerCame) {
 
 TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {
   book_.open(snapshotAt(4));
-  arrive(DecisionBook::kSelection, 4, 10.01);
+  arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   end(4, 10.05);
   end(5, 10.10);
   book_.open(snapshotAt(6));
-  arrive(DecisionBook::kSelection, 6, 10.11);
+  arrive(DecisionTracker::kSelection, 6, 10.11);
   arrive(-1, 6, 10.11);
   arrive(1, 6, 10.12);
   const auto records = end(6, 10.15);
@@ -162,7 +162,7 @@ TEST_F(LateSession, DecisionThatAPlannerLeftOutIsSettledByItsNextAnswer) {
 
 TEST_F(LateSession, AnswerThatIsTooOldToDriveIsTimedButNoActionThatDrove) {
   book_.open(snapshotAt(4));
-  arrive(DecisionBook::kSelection, 4, 10.01);
+  arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   end(4, 10.05);
   for (std::uint64_t tick = 5; tick < 15; ++tick) end(tick, 10.0);
@@ -179,7 +179,7 @@ TEST_F(LateSession, AnswerThatIsTooOldToDriveIsTimedButNoActionThatDrove) {
 
 TEST_F(LateSession, SilentPlannerIsGivenUpAfterTenSeconds) {
   book_.open(snapshotAt(4));
-  arrive(DecisionBook::kSelection, 4, 0.01);
+  arrive(DecisionTracker::kSelection, 4, 0.01);
   arrive(1, 4, 0.02);
   for (std::uint64_t tick = 4; tick <= 204; ++tick) EXPECT_TRUE(end(tick, 0.05).empty()) << tick;
   const auto records = end(205, 0.05);  // (205 - 4) x 0.05 s > 10 s
@@ -193,7 +193,7 @@ TEST_F(LateSession, RecordSaysWhatObserversWaitFor) {
   TickAnswers observed(0.05, awaitedBy(Party::kMetrics, paced));
   EXPECT_EQ(namesOf(observed.missing(*snapshotAt(4))), std::vector<std::string>{"decision_record"});
   book_.open(snapshotAt(4));
-  arrive(DecisionBook::kSelection, 4, 10.01);
+  arrive(DecisionTracker::kSelection, 4, 10.01);
   arrive(-1, 4, 10.02);
   arrive(1, 4, 10.02);
   observed.add(ChannelId::kDecisionRecord, end(4, 10.05).at(0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/pluto/training/pluto_net.h"
+#include "planners/pluto/training/pluto_trainer_network.h"
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/plant/training/plant_net.h"
+#include "planners/plant/training/plant_trainer_network.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/distributions.h"
+#include "metrics/formulas/distributions.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/sample_statistics.h"
+#include "metrics/formulas/sample_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "node_graph/lockstep/participant_book.h"
+#include "node_graph/lockstep/participant_tracker.h"
 
 #include <algorithm>
 #include <chrono>
@@ -56,11 +56,11 @@ bool SilenceWatch::silent(double now) {
   return everHeard() && silence_ > timeout_;
 }
 
-ParticipantBook::ParticipantBook(const std::vector<std::string>& nodes) {
+ParticipantTracker::ParticipantTracker(const std::vector<std::string>& nodes) {
   for (const std::string& node : nodes) entries_[node];
 }
 
-void ParticipantBook::note(const ::e2e_cdiff::TickAck& message, Clock::time_point now) {
+void ParticipantTracker::note(const ::e2e_cdiff::TickAck& message, Clock::time_point now) {
   const auto found = entries_.find(message.node);
   if (found == entries_.end()) return;
   Entry& entry = found->second;
@@ -73,7 +73,7 @@ void ParticipantBook::note(const ::e2e_cdiff::TickAck& message, Clock::time_poin
   if (message.kind == Ack::ERROR && !error_) error_ = Error{message.node, message.text};
 }
 
-std::vector<std::string> ParticipantBook::notReady() const {
+std::vector<std::string> ParticipantTracker::notReady() const {
   std::vector<std::string> texts;
   for (const bool silent : {true, false}) {  // a node that never came is why others wait
     for (const auto& [node, entry] : entries_) {
@@ -85,7 +85,7 @@ std::vector<std::string> ParticipantBook::notReady() const {
   return texts;
 }
 
-std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) const {
+std::vector<std::string> ParticipantTracker::notAcknowledged(std::uint64_t tick) const {
   std::vector<std::string> nodes;
   for (const auto& [node, entry] : entries_) {
     if (isObserver(node) && (!entry.acknowledged || *entry.acknowledged < tick))
@@ -94,7 +94,7 @@ std::vector<std::string> ParticipantBook::notAcknowledged(std::uint64_t tick) co
   return nodes;
 }
 
-std::uint64_t ParticipantBook::acknowledgedByAll() const {
+std::uint64_t ParticipantTracker::acknowledgedByAll() const {
   std::optional<std::uint64_t> least;
   for (const auto& [node, entry] : entries_) {
     if (!isObserver(node)) continue;
@@ -104,7 +104,7 @@ std::uint64_t ParticipantBook::acknowledgedByAll() const {
   return least.value_or(0);
 }
 
-std::vector<std::string> ParticipantBook::notFinished() const {
+std::vector<std::string> ParticipantTracker::notFinished() const {
   std::vector<std::string> nodes;
   for (const auto& [node, entry] : entries_) {
     if (isObserver(node) && !entry.finished) nodes.push_back(node);
@@ -112,17 +112,17 @@ std::vector<std::string> ParticipantBook::notFinished() const {
   return nodes;
 }
 
-bool ParticipantBook::finished(const std::string& node) const {
+bool ParticipantTracker::finished(const std::string& node) const {
   const auto found = entries_.find(node);
   return found != entries_.end() && found->second.finished;
 }
 
-bool ParticipantBook::heard(const std::string& node) const {
+bool ParticipantTracker::heard(const std::string& node) const {
   const auto found = entries_.find(node);
   return found != entries_.end() && found->second.heard_at;
 }
 
-std::vector<std::string> ParticipantBook::silent(double seconds, Clock::time_point now) const {
+std::vector<std::string> ParticipantTracker::silent(double seconds, Clock::time_point now) const {
   std::vector<std::string> nodes;
   for (const auto& [node, entry] : entries_) {
     if (entry.finished || !entry.heard_at) continue;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "planners/uniad_mini/neighbor_cells.h"
-#include "planners/uniad_mini/training/uniad_mini_net.h"
+#include "planners/uniad_mini/training/uniad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 namespace {

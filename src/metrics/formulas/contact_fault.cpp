@@ -7,7 +7,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/measures/contacts.h"
+#include "metrics/formulas/contacts.h"
 
 namespace cdiff::metrics {
 namespace {

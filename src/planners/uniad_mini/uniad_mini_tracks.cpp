@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/uniad_mini/uniad_mini_seen.h"
+#include "planners/uniad_mini/uniad_mini_tracks.h"
 
 #include <algorithm>
 
@@ -85,7 +85,7 @@ void TrackDecoder::start(const EgoPoses& poses, const TrackSet* past, UniadMemor
   place_.apply(places, memory, position_);
 }
 
-void TrackDecoder::decode(const Rows& bev, UniadMemory& memory, SeenTracks& seen) {
+void TrackDecoder::decode(const Rows& bev, UniadMemory& memory, DetectedTracks& seen) {
   const BevGrid& grid = architecture_.ego.bev;
   const std::int64_t slots = architecture_.tracks;
   seen.features.resize(slots + 1, architecture_.ego.width);
@@ -104,12 +104,12 @@ void TrackDecoder::decode(const Rows& bev, UniadMemory& memory, SeenTracks& seen
 }
 
 /// Boxes of the last layer, which are in memory.head, and scores.
-void TrackDecoder::answer(UniadMemory& memory, SeenTracks& seen) const {
+void TrackDecoder::answer(UniadMemory& memory, DetectedTracks& seen) const {
   const std::int64_t slots = architecture_.tracks;
   seen.agents.assign(static_cast<std::size_t>(slots), {});
   seen.centers.clear();
   for (std::int64_t row = 0; row < slots; ++row) {
-    SeenAgent& agent = seen.agents[static_cast<std::size_t>(row)];
+    DetectedAgent& agent = seen.agents[static_cast<std::size_t>(row)];
     std::copy_n(memory.head.row(row), kBoxNumbers, agent.box.begin());
     seen.centers.push_back(placeOf(architecture_.ego.bev, start_.row(row)));
     agent.box[0] = static_cast<float>(seen.centers.back().x());
@@ -125,7 +125,7 @@ void TrackDecoder::answer(UniadMemory& memory, SeenTracks& seen) const {
 }
 
 /// What the next decision starts from: contents updated by attention among all queries.
-void TrackDecoder::keep(UniadMemory& memory, SeenTracks& seen) const {
+void TrackDecoder::keep(UniadMemory& memory, DetectedTracks& seen) const {
   const std::int64_t rows = architecture_.rows(), width = architecture_.ego.width;
   TrackSet& kept = seen.kept;
   kept.content.resize(rows, width);
@@ -136,7 +136,7 @@ void TrackDecoder::keep(UniadMemory& memory, SeenTracks& seen) const {
   kept.centers.clear();
   kept.velocities.clear();
   for (std::size_t slot = 0; slot < seen.agents.size(); ++slot) {
-    const SeenAgent& agent = seen.agents[slot];
+    const DetectedAgent& agent = seen.agents[slot];
     kept.live.push_back(holdsTrack(held_[slot], logistic(agent.score)));
     kept.centers.push_back(seen.centers[slot]);
     kept.velocities.emplace_back(agent.box[8], agent.box[9]);
@@ -144,7 +144,7 @@ void TrackDecoder::keep(UniadMemory& memory, SeenTracks& seen) const {
 }
 
 void TrackDecoder::see(const Rows& bev, const EgoPoses& poses, const TrackSet* past,
-                       UniadMemory& memory, SeenTracks& seen) {
+                       UniadMemory& memory, DetectedTracks& seen) {
   start(poses, past, memory);
   decode(bev, memory, seen);
   answer(memory, seen);
@@ -194,7 +194,7 @@ void MapDecoder::decode(const Rows& bev, UniadMemory& memory, const Rows& tokens
   }
 }
 
-std::vector<SeenLine> MapDecoder::see(const Rows& bev, UniadMemory& memory, Rows& tokens) {
+std::vector<DetectedLine> MapDecoder::see(const Rows& bev, UniadMemory& memory, Rows& tokens) {
   const std::int64_t lines = architecture_.map_lines, numbers = 2 * kMapPoints;
   x_.resize(lines, architecture_.ego.width);
   points_.resize(lines, numbers);
@@ -204,9 +204,9 @@ std::vector<SeenLine> MapDecoder::see(const Rows& bev, UniadMemory& memory, Rows
   decode(bev, memory, tokens);
   memory.head.resize(lines, kMapKinds);
   layers_.back().kinds.apply(tokens.view(), memory.head.view(), lines);
-  std::vector<SeenLine> seen(static_cast<std::size_t>(lines));
+  std::vector<DetectedLine> seen(static_cast<std::size_t>(lines));
   for (std::int64_t line = 0; line < lines; ++line) {
-    SeenLine& one = seen[static_cast<std::size_t>(line)];
+    DetectedLine& one = seen[static_cast<std::size_t>(line)];
     one.points = pointsOf(line);
     std::copy_n(memory.head.row(line), kMapKinds, one.scores.begin());
   }

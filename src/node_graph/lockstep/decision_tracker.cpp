@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "node_graph/lockstep/decision_book.h"
+#include "node_graph/lockstep/decision_tracker.h"
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
@@ -82,7 +82,7 @@ std::string insteadText(const msgs::DecidedVehicle& vehicle) {
 
 }  // namespace
 
-DecisionBook::DecisionBook(const session::ScenarioOptions& options)
+DecisionTracker::DecisionTracker(const session::ScenarioOptions& options)
     : ego_planner_("ego:" + options.ego_planner),
       cbv_planner_("cbv:" + options.cbv_planner),
       ticks_per_decision_(static_cast<std::uint64_t>(
@@ -90,8 +90,8 @@ DecisionBook::DecisionBook(const session::ScenarioOptions& options)
       give_up_after_(
           static_cast<std::uint64_t>(std::llround(kGiveUpAfter / options.simulation_step))) {}
 
-void DecisionBook::ended(std::uint64_t tick, const std::vector<AppliedAction>& applied,
-                         double now) {
+void DecisionTracker::ended(std::uint64_t tick, const std::vector<AppliedAction>& applied,
+                            double now) {
   for (const AppliedAction& action : applied) {
     if (action.driven_by != msgs::DecidedVehicle::FULL_BRAKE)
       drove_.emplace(action.plan_tick, action.planned.slot);
@@ -103,8 +103,8 @@ void DecisionBook::ended(std::uint64_t tick, const std::vector<AppliedAction>& a
 
 /// Whether nothing more is awaited: it came, or its planner has answered a later decision, or it
 /// has been silent for long.
-bool DecisionBook::settled(const Decision& decision, const TickAnswers& answers,
-                           std::uint64_t tick) const {
+bool DecisionTracker::settled(const Decision& decision, const TickAnswers& answers,
+                              std::uint64_t tick) const {
   const msgs::TrafficSnapshot& snapshot = *decision.snapshot;
   if (!decision.ended_at) return false;
   if (tick - snapshot.tick > give_up_after_) return true;
@@ -117,14 +117,14 @@ bool DecisionBook::settled(const Decision& decision, const TickAnswers& answers,
   return true;
 }
 
-double DecisionBook::lateness(const Decision& decision, int slot, std::uint64_t tick) const {
+double DecisionTracker::lateness(const Decision& decision, int slot, std::uint64_t tick) const {
   const auto arrival = arrivals_.find({tick, slot});
   if (arrival == arrivals_.end() || !decision.ended_at) return 0.0;
   return std::max(0.0, arrival->second - *decision.ended_at);
 }
 
-void DecisionBook::fill(msgs::DecidedVehicle& vehicle, const Decision& decision,
-                        const TickAnswers& answers) const {
+void DecisionTracker::fill(msgs::DecidedVehicle& vehicle, const Decision& decision,
+                           const TickAnswers& answers) const {
   const msgs::TrafficSnapshot& snapshot = *decision.snapshot;
   const bool ego = vehicle.slot == kEgoSlot;
   const TickAnswers::TimedControl answer =
@@ -137,8 +137,8 @@ void DecisionBook::fill(msgs::DecidedVehicle& vehicle, const Decision& decision,
   vehicle.answer_drove = drove_.count({answer.tick, vehicle.slot}) > 0;
 }
 
-msgs::DecisionRecord DecisionBook::recordOf(const Decision& decision,
-                                            const TickAnswers& answers) const {
+msgs::DecisionRecord DecisionTracker::recordOf(const Decision& decision,
+                                               const TickAnswers& answers) const {
   const msgs::TrafficSnapshot& snapshot = *decision.snapshot;
   msgs::DecisionRecord record = emptyRecord(snapshot);
   record.selection_came = answers.selection(snapshot.tick) != nullptr;
@@ -164,14 +164,14 @@ msgs::DecisionRecord DecisionBook::recordOf(const Decision& decision,
   return record;
 }
 
-void DecisionBook::count(const msgs::DecisionRecord& record) {
+void DecisionTracker::count(const msgs::DecisionRecord& record) {
   late_ += !record.selection_came || record.selection_lateness > 0.0;
   for (const msgs::DecidedVehicle& vehicle : record.vehicles)
     late_ += vehicle.asked && (!vehicle.answered || vehicle.lateness > 0.0);
 }
 
-std::vector<msgs::DecisionRecord::ConstPtr> DecisionBook::settle(const TickAnswers& answers,
-                                                                 std::uint64_t tick, bool all) {
+std::vector<msgs::DecisionRecord::ConstPtr> DecisionTracker::settle(const TickAnswers& answers,
+                                                                    std::uint64_t tick, bool all) {
   std::vector<msgs::DecisionRecord::ConstPtr> records;
   while (!open_.empty() && (all || settled(open_.front(), answers, tick))) {
     records.push_back(
@@ -183,13 +183,13 @@ std::vector<msgs::DecisionRecord::ConstPtr> DecisionBook::settle(const TickAnswe
   return records;
 }
 
-std::optional<std::uint64_t> DecisionBook::oldestOpen() const {
+std::optional<std::uint64_t> DecisionTracker::oldestOpen() const {
   if (open_.empty()) return std::nullopt;
   return open_.front().snapshot->tick;
 }
 
 /// What belongs to decisions that are settled.
-void DecisionBook::forget() {
+void DecisionTracker::forget() {
   if (open_.empty()) return;
   const std::pair<std::uint64_t, int> oldest(open_.front().snapshot->tick, kSelection);
   arrivals_.erase(arrivals_.begin(), arrivals_.lower_bound(oldest));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/random.h"
-#include "planners/plant/training/plant_net.h"
+#include "planners/plant/training/plant_trainer_network.h"
 
 namespace cdiff::planners {
 namespace {

@@ -23,13 +23,13 @@ namespace cdiff::node_graph {
 /// how late, and what drove each vehicle meanwhile. A decision is settled once nothing more is
 /// awaited for it: every answer is here, its planner has answered a later decision, or 10 s of
 /// simulated time have passed. Each settled decision gives one DecisionRecord message.
-class DecisionBook {
+class DecisionTracker {
  public:
   using Snapshot = ::e2e_cdiff::TrafficSnapshot::ConstPtr;
   /// "Slot" under which the arrival of the selection is noted.
   static constexpr int kSelection = -2;
 
-  explicit DecisionBook(const session::ScenarioOptions& options);
+  explicit DecisionTracker(const session::ScenarioOptions& options);
 
   /// A decision has been published.
   void open(const Snapshot& snapshot) { open_.push_back({snapshot, {}, {}}); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/uniad_mini/training/uniad_mini_net.h"
+#include "planners/uniad_mini/training/uniad_mini_trainer_network.h"
 
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -61,10 +61,10 @@ class SilenceWatch {
 
 /// What the traffic simulator knows about the other nodes from their TickAck messages: ready, last
 /// tick acknowledged, finished, in error, when last heard.
-class ParticipantBook {
+class ParticipantTracker {
  public:
   /// Nodes that the session counts on, without namespace.
-  explicit ParticipantBook(const std::vector<std::string>& nodes);
+  explicit ParticipantTracker(const std::vector<std::string>& nodes);
 
   using Clock = std::chrono::steady_clock;
   /// Messages of nodes that the session does not count on are ignored.

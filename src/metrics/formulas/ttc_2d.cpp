@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "metrics/measures/ttc_2d.h"
+#include "metrics/formulas/ttc_2d.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/vad_mini/training/vad_mini_net.h"
+#include "planners/vad_mini/training/vad_mini_trainer_network.h"
 
 namespace cdiff::planners {
 namespace {
@@ -29,7 +29,7 @@ VadMiniNet::VadMiniNet(const VadMiniArchitecture& architecture, std::uint64_t se
 }
 
 void VadMiniNet::seeAgents(const at::Tensor& bev, std::int64_t samples, VadMiniAnswer& answer,
-                           Seen& seen) const {
+                           Detections& seen) const {
   const BevGrid& grid = architecture_.ego.bev;
   at::Tensor x = repeated(layers_.table("agent.content"), samples);
   at::Tensor reference = repeated(layers_.table("agent.reference"), samples);
@@ -51,7 +51,7 @@ void VadMiniNet::seeAgents(const at::Tensor& bev, std::int64_t samples, VadMiniA
 }
 
 void VadMiniNet::seeMap(const at::Tensor& bev, std::int64_t samples, VadMiniAnswer& answer,
-                        Seen& seen) const {
+                        Detections& seen) const {
   const BevGrid& grid = architecture_.ego.bev;
   const std::int64_t width = architecture_.ego.width, lines = architecture_.map_lines;
   const auto queries = [&](const char* part) {
@@ -89,7 +89,7 @@ at::Tensor VadMiniNet::interact(const std::string& name, const at::Tensor& x,
   return y + layers_.mix(name + ".mix", y);
 }
 
-at::Tensor VadMiniNet::forecast(const Seen& seen, VadMiniAnswer& answer) const {
+at::Tensor VadMiniNet::forecast(const Detections& seen, VadMiniAnswer& answer) const {
   const std::int64_t samples = seen.agents.size(0), agents = architecture_.agents,
                      width = architecture_.ego.width;
   const at::Tensor own = seen.agents.unsqueeze(2).expand({samples, agents, kMotionModes, width});
@@ -107,7 +107,7 @@ at::Tensor VadMiniNet::forecast(const Seen& seen, VadMiniAnswer& answer) const {
   return joined;
 }
 
-void VadMiniNet::plan(const at::Tensor& bev, const Seen& seen, const at::Tensor& joined,
+void VadMiniNet::plan(const at::Tensor& bev, const Detections& seen, const at::Tensor& joined,
                       VadMiniAnswer& answer) const {
   const std::int64_t samples = seen.agents.size(0), width = architecture_.ego.width;
   const Eigen::Vector2f cell = architecture_.ego.bev.toCell(Eigen::Vector2d::Zero()).cast<float>();
@@ -129,7 +129,7 @@ void VadMiniNet::plan(const at::Tensor& bev, const Seen& seen, const at::Tensor&
 
 VadMiniAnswer VadMiniNet::answer(const at::Tensor& bev, std::int64_t samples) const {
   VadMiniAnswer answer;
-  Seen seen;
+  Detections seen;
   seeAgents(bev, samples, answer, seen);
   seeMap(bev, samples, answer, seen);
   const at::Tensor joined = forecast(seen, answer);
