@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/file.h"
-#include "core/output_folder.h"
+#include "core/scratch_folder.h"
 #include "core/process.h"
 #include "core/program.h"
 #include "core/text.h"
