@@ -12,48 +12,12 @@
 #include <string_view>
 #include <vector>
 
-#include "e2e_cdiff/core/exceptions.h"
+#include "core/folder_lock.h"
 
 namespace cdiff::core {
 
 // Folders that the program writes into. Nothing that it did not make itself is ever replaced or
 // removed there: each folder keeps a record of the files that are the program's.
-
-/// An output folder that is locked as long as the object exists, by the file kFile in it, which
-/// names host, process, program and time. The kernel ends the lock with its process, so one that
-/// was killed locks nothing.
-class FolderLock {
- public:
-  /// Name of the file.
-  static constexpr const char* kFile = ".lock";
-
-  /// Throws the constructor's InputError where another process holds the folder now; makes nothing.
-  static void requireUnlocked(const std::filesystem::path& folder);
-
-  /// Makes the folder and its parents. `program` names this writer to a second one ("cdiff run").
-  /// Throws InputError naming host and process of the writer that holds it, why the folder or the
-  /// file cannot be made, or that the folder is a link or the file no lock of this program.
-  FolderLock(const std::filesystem::path& folder, const std::string& program);
-  /// Removes the file, and the folders that it made where they are still empty.
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  void takeLock();
-  bool tryLock();
-  bool placeSigned();
-  bool takeOver();
-  void removeMade() const;
-  InputError heldBy() const;
-  std::string signature() const;
-
-  std::filesystem::path folder_;
-  std::string program_;
-  std::vector<std::filesystem::path> made_;  ///< innermost first
-  int directory_ = -1;
-  int descriptor_ = -1;  ///< of the lock file
-};
 
 /// A folder that the program writes files into. Its record (the hidden file kRecord) lists by name
 /// what the program made there; only that may be replaced or removed. Everything else that is found
@@ -149,21 +113,5 @@ class PendingFile {
 
 /// OutputFolder::write for a file given by its path.
 void writeOwnFile(const std::filesystem::path& path, std::string_view content);
-
-/// A temporary folder of this process below TMPDIR, removed with the object. The first one of a
-/// process also removes those of processes that are gone.
-class ScratchFolder {
- public:
-  /// Throws InputError when none can be made.
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  int descriptor_ = -1;  ///< of the folder; locked
-};
 
 }  // namespace cdiff::core

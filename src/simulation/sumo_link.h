@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/output_folder.h"
 #include "core/process.h"
+#include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "simulation/sumo_simulator.h"

@@ -153,7 +153,7 @@ TEST_F(ResultFolder, WhatAKilledSessionLeavesEndsWithItOrIsRemovedByTheNext) {
   }
   const pid_t encoder = std::stoi(core::readFile(folder("ffmpeg_process"), "process"));
   EXPECT_TRUE(waitUntil([&] { return !isAlive(encoder); })) << "ffmpeg outlives the session";
-  std::ofstream(results() + "/session.bag.active") << "half";
+  std::ofstream(core::OutputFolder(results()).claim("session.bag.active")) << "half";
   ASSERT_TRUE(holds(".part"));
   ASSERT_TRUE(holds("e2e_cdiff_scratch_"));  // SUMO's log
   for (const auto& entry : fs::directory_iterator(folder("temporary")))

@@ -15,6 +15,7 @@
 
 #include "core/file.h"
 #include "core/output_folder.h"
+#include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "support/temporary_folder.h"
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/output_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/GuidanceReport.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
@@ -255,8 +256,8 @@ TEST_F(Session, BadInputGivesItsExitCodeAndASentence) {
 
 TEST_F(Session, AFolderWithAResultIsNotTouched) {
   fs::create_directories(results());
-  core::writeFileAtomically(results() / "summary.json", "of an earlier session");
-  core::writeFileAtomically(results() / "exit_code", "0\n");
+  core::writeOwnFile(results() / "summary.json", "of an earlier session");
+  core::writeOwnFile(results() / "exit_code", "0\n");
   ::setenv("E2E_CDIFF_EXIT_CODE_FILE", (folder_ / "code").c_str(), 1);
   const std::string log = launch("e2e_cdiff session.launch", "scenario:=crossing_left_turn");
   ::unsetenv("E2E_CDIFF_EXIT_CODE_FILE");
@@ -264,7 +265,8 @@ TEST_F(Session, AFolderWithAResultIsNotTouched) {
   EXPECT_EQ(core::readFile(folder_ / "code", "exit code"), "3\n");
   EXPECT_EQ(exitCode(), "0\n");
   EXPECT_EQ(core::readFile(results() / "summary.json", "summary"), "of an earlier session");
-  EXPECT_EQ(std::distance(fs::directory_iterator(results()), fs::directory_iterator()), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(results()), fs::directory_iterator()), 3)
+      << "and the record";
 }
 
 TEST_F(Session, ADemandThatSumoRefusesIsBadInput) {
@@ -272,8 +274,8 @@ TEST_F(Session, ADemandThatSumoRefusesIsBadInput) {
   core::writeFileAtomically(
       demand, "<routes><trip id=\"t\" depart=\"900\" from=\"nowhere\" to=\"sb_b1\"/></routes>");
   fs::create_directories(results());
-  core::writeFileAtomically(results() / "exit_code", "0\n");
-  core::writeFileAtomically(results() / "session.mp4", "of an earlier session");
+  core::writeOwnFile(results() / "exit_code", "0\n");
+  core::writeOwnFile(results() / "session.mp4", "of an earlier session");
   const std::string log =
       launch("e2e_cdiff session.launch",
              "scenario:=crossing_straight overwrite:=true set:=demand=" + demand.string());

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/file.h"
-#include "core/output_folder.h"
+#include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/matched.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.h"
-#include "core/output_folder.h"
+#include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/recording.h"
 #include "support/real_data.h"

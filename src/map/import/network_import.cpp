@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "core/file.h"
-#include "core/output_folder.h"
 #include "core/process.h"
 #include "core/program.h"
+#include "core/scratch_folder.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

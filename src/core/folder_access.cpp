@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "core/folder_access.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "core/program.h"
+#include "e2e_cdiff/core/exceptions.h"
+
+namespace cdiff::core {
+
+namespace fs = std::filesystem;
+
+void failOn(const fs::path& path, const std::string& what, int error) {
+  throw InputError("cannot " + what + " '" + path.string() + "': " + writeErrorText(error));
+}
+
+bool isSame(const struct stat& left, const struct stat& right) {
+  return left.st_dev == right.st_dev && left.st_ino == right.st_ino;
+}
+
+bool isSameFile(int descriptor, int directory, const char* name) {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(descriptor, &held) == 0 &&
+         ::fstatat(directory, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && isSame(held, named);
+}
+
+int placeUnlessThere(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;  // a file system that cannot do that
+}
+
+fs::path withoutSlash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+int openFolder(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+  const int descriptor = ::open(folder.c_str(), kFlags);
+  if (descriptor >= 0) return descriptor;
+  int reason = errno;
+  std::error_code none;
+  if (fs::is_symlink(folder, none) && ::access(folder.c_str(), F_OK) != 0) reason = errno;
+  if (fs::is_symlink(folder, none) && fs::is_directory(folder, none)) {
+    throw InputError("'" + folder.string() + "' is a symbolic link to '" +
+                     fs::read_symlink(folder, none).string() + "'; give the folder itself");
+  }
+  if (fs::exists(folder, none) && !fs::is_directory(folder, none))
+    throw InputError("'" + folder.string() + "' is a file; give a folder");
+  failOn(folder, "open the folder", reason);
+}
+
+int makeFolder(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_symlink(folder, error)) fs::create_directories(folder, error);
+  if (error && (!fs::exists(folder) || fs::is_directory(folder)))
+    throw InputError("cannot make the folder '" + folder.string() + "': " + error.message());
+  return openFolder(folder);
+}
+
+}  // namespace cdiff::core

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+
+namespace cdiff::core {
+
+// What locks and records do with folders: no link is followed, and nothing is replaced.
+
+/// Throws InputError: "cannot WHAT 'path': REASON".
+[[noreturn]] void failOn(const std::filesystem::path& path, const std::string& what, int error);
+
+/// Whether two files are one.
+bool isSame(const struct stat& left, const struct stat& right);
+
+/// Whether `name` in a folder is the file that is open, and no link to it.
+bool isSameFile(int descriptor, int directory, const char* name);
+
+/// Gives a file another name unless something has it. Answers 0 or why not.
+int placeUnlessThere(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// The path without a slash at its end, which would follow a link.
+std::filesystem::path withoutSlash(const std::filesystem::path& folder);
+
+/// Opens a folder that is no link. Throws InputError naming what is there.
+int openFolder(const std::filesystem::path& folder);
+
+/// Makes a folder and its parents where they are missing, and opens it.
+int makeFolder(const std::filesystem::path& folder);
+
+}  // namespace cdiff::core

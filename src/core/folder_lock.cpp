@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "core/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <map>
+#include <thread>
+#include <utility>
+
+#include "core/folder_access.h"
+#include "core/text.h"
+
+namespace cdiff::core {
+namespace {
+
+namespace fs = std::filesystem;
+/// For a writer that was killed a moment ago to be gone.
+constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::milliseconds kPeriod{20};
+
+std::string hostName() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+/// Lines "key: value" of a lock file.
+std::map<std::string, std::string> contentOf(int descriptor) {
+  std::array<char, 1024> buffer{};
+  const ssize_t count = ::pread(descriptor, buffer.data(), buffer.size(), 0);
+  std::map<std::string, std::string> content;
+  for (const std::string& line :
+       splitText({buffer.data(), static_cast<std::size_t>(count > 0 ? count : 0)}, '\n')) {
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) content[line.substr(0, colon)] = line.substr(colon + 2);
+  }
+  return content;
+}
+
+std::string holderText(int descriptor) {
+  auto content = contentOf(descriptor);
+  return "'" + content["program"] + "', process " + content["process"] + " on host " +
+         content["host"] + ", since " + content["since"];
+}
+
+bool isLock(int descriptor) {
+  struct stat status {};
+  const auto content = contentOf(descriptor);
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+         content.count("host") + content.count("process") + content.count("program") == 3;
+}
+
+/// The folder and its parents that do not exist, the innermost first.
+std::vector<fs::path> missingFolders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  fs::path place = fs::absolute(folder, error).lexically_normal();
+  if (!place.has_filename()) place = place.parent_path();
+  for (; !fs::exists(place, error) && place != place.parent_path(); place = place.parent_path())
+    missing.push_back(place);
+  return missing;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& folder, const std::string& program)
+    : folder_(withoutSlash(folder)), program_(program), made_(missingFolders(folder_)) {
+  try {
+    takeLock();
+  } catch (...) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (directory_ >= 0) ::close(directory_);
+    removeMade();
+    throw;
+  }
+}
+
+void FolderLock::requireUnlocked(const fs::path& folder) {
+  constexpr int kFlags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const int descriptor = ::open((folder / kFile).c_str(), kFlags);
+  if (descriptor < 0) return;
+  const bool held =
+      isLock(descriptor) && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const InputError error("'" + folder.string() + "' is being written by " + holderText(descriptor) +
+                         "; wait until it has ended, or give another folder");
+  ::close(descriptor);
+  if (held) throw error;
+}
+
+FolderLock::~FolderLock() {
+  if (isSameFile(descriptor_, directory_, kFile)) ::unlinkat(directory_, kFile, 0);
+  ::close(descriptor_);
+  ::close(directory_);
+  removeMade();
+}
+
+void FolderLock::removeMade() const {
+  for (const fs::path& folder : made_) ::rmdir(folder.c_str());  // refused where it holds anything
+}
+
+InputError FolderLock::heldBy() const {
+  return InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
+                    "; wait until it has ended, or give another folder");
+}
+
+void FolderLock::takeLock() {
+  const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  while (!tryLock()) {
+    if (std::chrono::steady_clock::now() - begin > kPatience) throw heldBy();
+    std::this_thread::sleep_for(kPeriod);
+  }
+}
+
+/// Whether the lock is ours. It is not where another process has it or removes it just now.
+bool FolderLock::tryLock() {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (directory_ >= 0) ::close(std::exchange(directory_, -1));
+  directory_ = makeFolder(folder_);
+  return placeSigned() || takeOver();
+}
+
+/// Places a lock that is locked and signed before anybody can see it, where there is none.
+bool FolderLock::placeSigned() {
+  const fs::path file = folder_ / kFile;
+  std::string draft = file.string() + ".XXXXXX";
+  const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
+  if (descriptor < 0) failOn(file, "write", errno);
+  const std::string text = signature();
+  const bool written =
+      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fchmod(descriptor, 0644) == 0 &&
+      ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  const int reason = written ? placeUnlessThere(draft, file) : errno;
+  const bool placed = isSameFile(descriptor, directory_, kFile);
+  if (placed) {
+    descriptor_ = descriptor;
+  } else {
+    ::close(descriptor);
+  }
+  ::unlink(draft.c_str());
+  if (!placed && reason != EEXIST) failOn(file, "write", reason);
+  return placed;
+}
+
+/// Takes the lock of a process of this host that is gone.
+bool FolderLock::takeOver() {
+  const fs::path file = folder_ / kFile;
+  descriptor_ = ::openat(directory_, kFile, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0 && errno == ENOENT) return false;
+  if (descriptor_ < 0 && errno != ELOOP && errno != ENXIO && errno != EISDIR)
+    failOn(file, "write", errno);
+  if (descriptor_ < 0 || !isLock(descriptor_)) {
+    throw InputError("'" + file.string() +
+                     "' is no lock of this program; move it away, or give another folder");
+  }
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK || errno == EINTR) return false;
+    failOn(file, "lock", errno);
+  }
+  if (!isSameFile(descriptor_, directory_, kFile)) return false;
+  // The kernel of another host may not have announced its lock to ours.
+  if (contentOf(descriptor_)["host"] != hostName()) {
+    throw InputError("'" + folder_.string() + "' is being written by " + holderText(descriptor_) +
+                     "; if that process is gone, delete '" + file.string() + "'");
+  }
+  const std::string text = signature();
+  if (::ftruncate(descriptor_, 0) != 0 ||
+      ::pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
+    failOn(file, "write", errno);
+  return true;
+}
+
+std::string FolderLock::signature() const {
+  return "host: " + hostName() + "\nprocess: " + std::to_string(::getpid()) +
+         "\nprogram: " + program_ + "\nsince: " + timeText() + "\n";
+}
+
+}  // namespace cdiff::core
