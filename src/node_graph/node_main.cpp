@@ -41,17 +41,17 @@ int runNode(int argc, char** argv, const char* name, const std::function<int(Sto
             const std::function<int()>& without_master = {}) {
   core::prepareProgram();
   StopSignal stop;
-  node_graph::init(argc, argv, name, node_graph::init_options::NoSigintHandler);
-  if (!node_graph::master::check()) {
+  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  if (!ros::master::check()) {
     ROS_FATAL("no ROS master answers at %s; start one with roscore, or use roslaunch",
-              node_graph::master::getURI().c_str());
+              ros::master::getURI().c_str());
     return without_master ? without_master() : core::ExitCode::kRunTimeError;
   }
-  node_graph::master::setRetryTimeout(node_graph::WallDuration(kMasterPatience));
-  node_graph::start();  // else ROS would end with the last node handle, and an error after that
-                        // would not be logged
+  ros::master::setRetryTimeout(ros::WallDuration(kMasterPatience));
+  ros::start();  // else ROS would end with the last node handle, and an error after that
+                 // would not be logged
   const int exit_code = runGuarded(body, stop);
-  node_graph::shutdown();
+  ros::shutdown();
   return exit_code;
 }
 
@@ -65,7 +65,7 @@ int runNode(int argc, char** argv, const char* name) {
 bool masterAnswers() {
   auto promise = std::make_shared<std::promise<bool>>();
   std::future<bool> answer = promise->get_future();
-  std::thread([promise] { promise->set_value(node_graph::master::check()); }).detach();
+  std::thread([promise] { promise->set_value(ros::master::check()); }).detach();
   return answer.wait_for(std::chrono::seconds(2)) == std::future_status::ready && answer.get();
 }
 

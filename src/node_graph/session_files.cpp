@@ -43,21 +43,19 @@ std::string textOf(const std::string& key, XmlRpc::XmlRpcValue value) {
 }  // namespace
 
 Parameters Parameters::ofThisNode() {
-  const Parameters parameters = of(node_graph::this_node::getName());
-  if (parameters.empty() && !node_graph::master::check())
-    throw std::runtime_error("the ROS master at " + node_graph::master::getURI() +
+  const Parameters parameters = of(ros::this_node::getName());
+  if (parameters.empty() && !ros::master::check())
+    throw std::runtime_error("the ROS master at " + ros::master::getURI() +
                              " does not answer any more");
   return parameters;
 }
 
-Parameters Parameters::ofNode(const std::string& node) {
-  return of(node_graph::names::resolve(node));
-}
+Parameters Parameters::ofNode(const std::string& node) { return of(ros::names::resolve(node)); }
 
 Parameters Parameters::of(const std::string& full_name) {
   std::map<std::string, std::string> values;
   XmlRpc::XmlRpcValue all;
-  if (!node_graph::param::get(full_name, all)) return Parameters(values);
+  if (!ros::param::get(full_name, all)) return Parameters(values);
   if (all.getType() != XmlRpc::XmlRpcValue::TypeStruct) return Parameters(values);
   for (auto& [key, value] : all) values[key] = textOf(key, value);
   return Parameters(values);
@@ -95,12 +93,12 @@ bool Parameters::flag(const std::string& key, bool otherwise) const {
   return value == "true";
 }
 
-void noteRefusal() { node_graph::param::set(kRefusedLaunch, static_cast<int>(::getppid())); }
+void noteRefusal() { ros::param::set(kRefusedLaunch, static_cast<int>(::getppid())); }
 
 bool takeRefusal() {
   int launch = 0;
-  if (!node_graph::param::get(kRefusedLaunch, launch) || launch != ::getppid()) return false;
-  node_graph::param::del(kRefusedLaunch);
+  if (!ros::param::get(kRefusedLaunch, launch) || launch != ::getppid()) return false;
+  ros::param::del(kRefusedLaunch);
   return true;
 }
 

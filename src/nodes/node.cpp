@@ -3,4 +3,4 @@
 /// The main function of each node; CMakeLists.txt says which.
 #include "node_graph/node_main.h"
 
-int main(int argc, char** argv) { return cdiffros::CDIFF_RUN_NODE(argc, argv); }
+int main(int argc, char** argv) { return cdiff::node_graph::CDIFF_RUN_NODE(argc, argv); }

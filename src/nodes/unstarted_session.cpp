@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   }
   using cdiff::traffic::SessionStatus;
   const bool interrupted = std::string(argv[1]) == "interrupted";
-  return cdiffros::writeUnstartedResult(
-      cdiffros::Parameters(arguments),
+  return cdiff::node_graph::writeUnstartedResult(
+      cdiff::node_graph::Parameters(arguments),
       interrupted ? SessionStatus::kInterrupted : SessionStatus::kError, {0, argv[2], argv[3]});
 }

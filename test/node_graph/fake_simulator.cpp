@@ -15,11 +15,10 @@ using namespace ros;  // NOLINT: a test of that layer
 namespace {
 
 template <class Message, class Callback>
-node_graph::Subscriber subscribe(node_graph::NodeHandle& node_handle, const Topic& topic,
-                                 Callback callback) {
+ros::Subscriber subscribe(ros::NodeHandle& node_handle, const Topic& topic, Callback callback) {
   return node_handle.subscribe<Message>(
       topic.name(), 1000, boost::function<void(const boost::shared_ptr<const Message>&)>(callback),
-      {}, node_graph::TransportHints().tcpNoDelay());
+      {}, ros::TransportHints().tcpNoDelay());
 }
 
 session::ScenarioOptions scenarioFor(const std::string& node,

@@ -31,9 +31,9 @@ class FakeSimulator {
   /// Spins until `done` or 20 s of wall time; returns whether it is done.
   template <class Done>
   bool until(Done done) {
-    const node_graph::WallTime limit = node_graph::WallTime::now() + node_graph::WallDuration(20.0);
-    while (!done() && node_graph::WallTime::now() < limit) {
-      node_graph::getGlobalCallbackQueue()->callAvailable(node_graph::WallDuration(0.05));
+    const ros::WallTime limit = ros::WallTime::now() + ros::WallDuration(20.0);
+    while (!done() && ros::WallTime::now() < limit) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
     }
     return done();
   }
@@ -76,13 +76,12 @@ class FakeSimulator {
   session::SessionSetup setup_;
   node_graph::SessionGraph graph_;
   node_graph::Connections connections_;
-  node_graph::NodeHandle node_;
-  node_graph::Publisher session_;
-  node_graph::Publisher route_;
-  node_graph::Publisher traffic_;
-  std::map<node_graph::Topic, node_graph::Publisher>
-      others_;  ///< topics of nodes that do not take part
-  std::vector<node_graph::Subscriber> inputs_;
+  ros::NodeHandle node_;
+  ros::Publisher session_;
+  ros::Publisher route_;
+  ros::Publisher traffic_;
+  std::map<node_graph::Topic, ros::Publisher> others_;  ///< topics of nodes that do not take part
+  std::vector<ros::Subscriber> inputs_;
   std::vector<node_graph::msgs::TickAck> acks_;
 };
 

@@ -20,8 +20,7 @@ bool write(const tf2_ros::Buffer& frames, const e2e_cdiff::TrafficSnapshot& traf
            const std::string& file) {
   const e2e_cdiff::VehicleState& ego = traffic.vehicles.at(0).state;
   const auto base = frames.lookupTransform("map", "ego/base_link", traffic.header.stamp);
-  const auto camera =
-      frames.lookupTransform("ego/base_link", "ego/camera_optical", node_graph::Time(0));
+  const auto camera = frames.lookupTransform("ego/base_link", "ego/camera_optical", ros::Time(0));
   frames.lookupTransform("map", "ego/camera_optical",
                          traffic.header.stamp);  // throws without a chain
   const double forward = forwardOf(camera.transform.rotation);
@@ -35,9 +34,9 @@ bool write(const tf2_ros::Buffer& frames, const e2e_cdiff::TrafficSnapshot& traf
 }  // namespace
 
 int main(int argc, char** argv) {
-  node_graph::init(argc, argv, "frame_listener");
+  ros::init(argc, argv, "frame_listener");
   if (argc < 2) return 3;
-  node_graph::NodeHandle node;
+  ros::NodeHandle node;
   tf2_ros::Buffer frames;
   const tf2_ros::TransformListener listener(frames);
   e2e_cdiff::TrafficSnapshot::ConstPtr
@@ -52,7 +51,6 @@ int main(int argc, char** argv) {
         }
         last = traffic;
       };
-  const node_graph::Subscriber input =
-      node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, look);
-  node_graph::spin();
+  const ros::Subscriber input = node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, look);
+  ros::spin();
 }

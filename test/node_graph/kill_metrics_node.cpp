@@ -14,31 +14,31 @@ namespace {
 
 int processIdOf(const std::string& node) {
   XmlRpc::XmlRpcValue arguments, result, payload;
-  arguments[0] = node_graph::this_node::getName();
+  arguments[0] = ros::this_node::getName();
   arguments[1] = node;
-  if (!node_graph::master::execute("lookupNode", arguments, result, payload, true)) return 0;
+  if (!ros::master::execute("lookupNode", arguments, result, payload, true)) return 0;
   std::string host;
   std::uint32_t port = 0;
-  if (!node_graph::network::splitURI(std::string(payload), host, port)) return 0;
+  if (!ros::network::splitURI(std::string(payload), host, port)) return 0;
   XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
   XmlRpc::XmlRpcValue request, response;
-  request[0] = node_graph::this_node::getName();
+  request[0] = ros::this_node::getName();
   return client.execute("getPid", request, response) ? int(response[2]) : 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  node_graph::init(argc, argv, "kill_metrics_node");
-  node_graph::NodeHandle node;
+  ros::init(argc, argv, "kill_metrics_node");
+  ros::NodeHandle node;
   const boost::function<void(const e2e_cdiff::TrafficSnapshot&)> on_traffic =
       [](const e2e_cdiff::TrafficSnapshot& traffic) {
         if (traffic.tick < 10) return;
         const int process = processIdOf("/metrics_node");
         if (process > 1) kill(process, SIGKILL);
-        node_graph::requestShutdown();
+        ros::requestShutdown();
       };
-  const node_graph::Subscriber input =
+  const ros::Subscriber input =
       node.subscribe<e2e_cdiff::TrafficSnapshot>("/traffic", 10, on_traffic);
-  node_graph::spin();
+  ros::spin();
 }

@@ -73,19 +73,19 @@ TEST(EgoPlanner, DrivesTheEgoAtDecisionTicks) {
 /// Goes on with decisions until the planner's diagnostics come, which they do once a second.
 bool reportsStatistics(FakeSimulator& simulator) {
   bool reported = false;
-  node_graph::NodeHandle node;
+  ros::NodeHandle node;
   const auto note = [&](const diagnostic_msgs::DiagnosticArray::ConstPtr& message) {
     for (const auto& status : message->status)
       reported = reported || status.name.find("cbv_planner_node: planner") != std::string::npos;
   };
-  const node_graph::Subscriber input = node.subscribe<diagnostic_msgs::DiagnosticArray>(
+  const ros::Subscriber input = node.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 10,
       boost::function<void(const diagnostic_msgs::DiagnosticArray::ConstPtr&)>(note));
   for (std::uint64_t tick = 2; !reported && tick < 60; tick += 2) {
     simulator.publish(simulator.snapshot(tick));
     simulator.publishSelection(simulator.snapshot(tick));
-    const node_graph::WallTime wait = node_graph::WallTime::now() + node_graph::WallDuration(0.2);
-    simulator.until([&] { return node_graph::WallTime::now() > wait; });
+    const ros::WallTime wait = ros::WallTime::now() + ros::WallDuration(0.2);
+    simulator.until([&] { return ros::WallTime::now() > wait; });
   }
   return reported;
 }
@@ -95,8 +95,8 @@ TEST(CbvPlanner, WaitsForTheSelectionThenDrivesItsVehicle) {
   ASSERT_TRUE(simulator.ready());
   const traffic::TrafficSnapshot snapshot = simulator.snapshot(0);
   simulator.publish(snapshot);
-  const node_graph::WallTime wait = node_graph::WallTime::now() + node_graph::WallDuration(0.3);
-  EXPECT_FALSE(simulator.until([&] { return node_graph::WallTime::now() > wait; }) &&
+  const ros::WallTime wait = ros::WallTime::now() + ros::WallDuration(0.3);
+  EXPECT_FALSE(simulator.until([&] { return ros::WallTime::now() > wait; }) &&
                !simulator.cbv_controls.empty());
   simulator.publishSelection(snapshot);
   ASSERT_TRUE(simulator.until(
@@ -127,8 +127,8 @@ TEST(DiffusionPlanner, WaitsForTheImageAndBrakesWithANamedFaultWithoutAUsableOne
     return node_graph::toMsg(gray, 0.05 * static_cast<double>(tick), "bg_0");
   };
   const auto expectNoAnswer = [&](std::uint64_t tick) {
-    const node_graph::WallTime wait = node_graph::WallTime::now() + node_graph::WallDuration(0.3);
-    EXPECT_TRUE(simulator.until([&] { return node_graph::WallTime::now() > wait; }));
+    const ros::WallTime wait = ros::WallTime::now() + ros::WallDuration(0.3);
+    EXPECT_TRUE(simulator.until([&] { return ros::WallTime::now() > wait; }));
     EXPECT_EQ(simulator.cbv_controls.count(tick), 0U);
   };
   publish(0);
@@ -237,7 +237,7 @@ TEST(Recorder, BagHoldsEveryTickInOrder) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  node_graph::init(argc, argv, "traffic_simulator_node");
-  node_graph::NodeHandle keep_alive;
+  ros::init(argc, argv, "traffic_simulator_node");
+  ros::NodeHandle keep_alive;
   return RUN_ALL_TESTS();
 }

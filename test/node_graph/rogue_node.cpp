@@ -31,13 +31,13 @@ class Rogue {
     advertise<msgs::SessionInfo>("/session");
     advertise<msgs::MetricReport>("/metrics");
     advertise<sensor_msgs::Image>("/cbv_0/camera/image_raw");
-    const boost::function<void(const node_graph::MessageEvent<const msgs::TrafficSnapshot>&)>
-        disturb = [this](const auto& event) {
-          if (event.getPublisherName() != node_graph::this_node::getName())
+    const boost::function<void(const ros::MessageEvent<const msgs::TrafficSnapshot>&)> disturb =
+        [this](const auto& event) {
+          if (event.getPublisherName() != ros::this_node::getName())
             disturbAt(event.getMessage()->tick);
         };
-    traffic_ = node_.subscribe<const node_graph::MessageEvent<const msgs::TrafficSnapshot>&>(
-        "/traffic", 100, disturb, {}, node_graph::TransportHints().tcpNoDelay());
+    traffic_ = node_.subscribe<const ros::MessageEvent<const msgs::TrafficSnapshot>&>(
+        "/traffic", 100, disturb, {}, ros::TransportHints().tcpNoDelay());
   }
 
  private:
@@ -80,7 +80,7 @@ class Rogue {
     report.tick = tick;
     outputs_.at("/metrics").publish(report);
     sensor_msgs::Image image;
-    image.header.stamp = node_graph::Time(std::min(0.05 * static_cast<double>(tick), 4e9));
+    image.header.stamp = ros::Time(std::min(0.05 * static_cast<double>(tick), 4e9));
     outputs_.at("/cbv_0/camera/image_raw").publish(image);
   }
 
@@ -100,15 +100,15 @@ class Rogue {
     outputs_.at("/tick_ack").publish(ack);
   }
 
-  node_graph::NodeHandle node_;
-  std::map<std::string, node_graph::Publisher> outputs_;
-  node_graph::Subscriber traffic_;
+  ros::NodeHandle node_;
+  std::map<std::string, ros::Publisher> outputs_;
+  ros::Subscriber traffic_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  node_graph::init(argc, argv, "rogue_node");
+  ros::init(argc, argv, "rogue_node");
   Rogue rogue;
-  node_graph::spin();
+  ros::spin();
 }

@@ -21,10 +21,9 @@ namespace {
 /// The message as another process reads it.
 template <class Message>
 Message overTheWire(const Message& message) {
-  const node_graph::SerializedMessage serialized =
-      node_graph::serialization::serializeMessage(message);
+  const ros::SerializedMessage serialized = ros::serialization::serializeMessage(message);
   Message copy;
-  node_graph::serialization::deserializeMessage(serialized, copy);
+  ros::serialization::deserializeMessage(serialized, copy);
   return copy;
 }
 
@@ -70,7 +69,7 @@ TEST(Conversions, NonFiniteActionComesBackUnchanged) {
   const auto message =
       overTheWire(toMsg(action, test::sampleSnapshot(4), {"cbv:x", 2.5, "broken"}));
   EXPECT_EQ(message.tick, 4U);
-  EXPECT_EQ(message.header.stamp, node_graph::Time(0.2));
+  EXPECT_EQ(message.header.stamp, ros::Time(0.2));
   EXPECT_EQ(message.planner, "cbv:x");
   EXPECT_EQ(message.planner_latency_ms, 2.5);
   EXPECT_EQ(message.fault, "broken");

@@ -163,7 +163,7 @@ TEST_F(DamagedBags, NothingToEvaluateIsAnErrorThatWritesNothing) {
          }),
          "topic '/session' holds std_msgs/Float64; expected e2e_cdiff/SessionInfo");
   expect(replayEdited([](const auto& message, rosbag::Bag& to) {
-           auto header = boost::make_shared<node_graph::M_string>(*message.getConnectionHeader());
+           auto header = boost::make_shared<ros::M_string>(*message.getConnectionHeader());
            if (message.getTopic() == "/traffic") (*header)["md5sum"] = std::string(32, '0');
            to.write(message.getTopic(), message.getTime(), message, header);
          }),

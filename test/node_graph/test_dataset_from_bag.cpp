@@ -204,7 +204,7 @@ TEST_F(DatasetFromBag, BadBagsAreNamedErrors) {
   EXPECT_NE(errorOf(in("text.bag")).find("text.bag"), std::string::npos);
   {
     rosbag::Bag foreign(in("foreign.bag").string(), rosbag::bagmode::Write);
-    foreign.write("/words", node_graph::TIME_MIN, std_msgs::String());
+    foreign.write("/words", ros::TIME_MIN, std_msgs::String());
   }
   EXPECT_NE(errorOf(in("foreign.bag")).find("holds no session"), std::string::npos);
   record(in("blind.bag"), false);

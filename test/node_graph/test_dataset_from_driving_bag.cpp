@@ -38,7 +38,7 @@ void writeDrive(const std::filesystem::path& file, double gap_begin = 1e9,
   state.speed = 3.0;
   for (int tick = 0; tick < 200; ++tick) {
     const double time = 0.05 * tick;
-    const node_graph::Time stamp(kStart + time);
+    const ros::Time stamp(kStart + time);
     nav_msgs::Odometry odometry;
     odometry.header.stamp = stamp;
     odometry.header.frame_id = "odom";
@@ -67,7 +67,7 @@ void writeDrive(const std::filesystem::path& file, double gap_begin = 1e9,
     }
     state = model.step(state, actionAt(tick), 0.05);
   }
-  bag.write("/my/words", node_graph::Time(kStart), std_msgs::String());
+  bag.write("/my/words", ros::Time(kStart), std_msgs::String());
 }
 
 class DrivingBagTest : public testing::Test {
@@ -174,7 +174,7 @@ void writeOdometry(rosbag::Bag& bag, double speed, double w, double reverse_at =
   double x = 0.0;
   for (int tick = 0; tick < 50; ++tick, x += 0.1 * speed) {
     if (0.1 * tick > reverse_at) speed = -std::abs(speed);
-    const node_graph::Time stamp(kStart + 0.1 * tick);
+    const ros::Time stamp(kStart + 0.1 * tick);
     nav_msgs::Odometry odometry;
     odometry.header.stamp = stamp;
     odometry.header.frame_id = "odom";
@@ -234,7 +234,7 @@ TEST_F(DrivingBagTest, AnOrientationOfAnyLengthButZeroIsOne) {
 
 nav_msgs::Path pathAlongX(const std::string& frame) {
   nav_msgs::Path path;
-  path.header.stamp = node_graph::Time(kStart);
+  path.header.stamp = ros::Time(kStart);
   path.header.frame_id = frame;
   path.poses.resize(30);
   for (std::size_t i = 0; i < path.poses.size(); ++i)
@@ -245,8 +245,8 @@ nav_msgs::Path pathAlongX(const std::string& frame) {
 TEST_F(DrivingBagTest, APathInTheSameFrameIsTheRoute) {
   topics_.path = "/my/path";
   rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
-  bag.write(topics_.path, node_graph::Time(kStart), pathAlongX("/odom"));
-  bag.write(topics_.path, node_graph::Time(kStart), nav_msgs::Path());  // clears a display
+  bag.write(topics_.path, ros::Time(kStart), pathAlongX("/odom"));
+  bag.write(topics_.path, ros::Time(kStart), nav_msgs::Path());  // clears a display
   writeOdometry(bag, 2.0, 1.0);
   bag.close();
   const auto all = samples();
@@ -258,7 +258,7 @@ TEST_F(DrivingBagTest, APathInTheSameFrameIsTheRoute) {
 TEST_F(DrivingBagTest, APathInAnotherFrameIsRefused) {
   topics_.path = "/my/path";
   rosbag::Bag bag(file_.string(), rosbag::bagmode::Write);
-  bag.write(topics_.path, node_graph::Time(kStart), pathAlongX("map"));
+  bag.write(topics_.path, ros::Time(kStart), pathAlongX("map"));
   writeOdometry(bag, 2.0, 1.0);
   bag.close();
   EXPECT_NE(error().find("'/my/odom' is in the frame 'odom', '/my/path' in 'map'"),

@@ -43,7 +43,7 @@ TEST(ImageConversions, ImageComesBackByteByByte) {
   EXPECT_EQ(message.encoding, "rgb8");
   EXPECT_EQ(message.step, 480U);
   EXPECT_EQ(message.header.frame_id, "bg_7/camera_optical");
-  EXPECT_EQ(message.header.stamp, node_graph::Time(0, 200000000));
+  EXPECT_EQ(message.header.stamp, ros::Time(0, 200000000));
   const traffic::CameraImage back = fromMsg(message, kExpected);
   EXPECT_EQ(back.width, 160);
   EXPECT_EQ(back.height, 96);
@@ -86,7 +86,7 @@ TEST(ImageConversions, WrongImagesAreErrorsThatNameTheTopic) {
             "image on cbv_1/camera/image_raw has frame 'bg_8/camera_optical'; expected "
             "'bg_7/camera_optical'");
   message = sampleMessage();
-  message.header.stamp += node_graph::Duration(0, 1);  // a nanosecond off
+  message.header.stamp += ros::Duration(0, 1);  // a nanosecond off
   EXPECT_EQ(errorOf(message),
             "image on cbv_1/camera/image_raw has stamp 0.200000001, which is no tick of 0.05 s");
 }

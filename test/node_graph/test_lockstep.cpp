@@ -153,7 +153,7 @@ TEST(TickAnswers, EgoComesFirstWhateverTheOrderOfArrival) {
 TEST(TickAnswers, ExternalEgoMayGiveItsStampAloneAndNoName) {
   const msgs::TrafficSnapshot snapshot = toMsg(test::sampleSnapshot(4));
   auto control = boost::make_shared<msgs::ControlAction>();
-  control->header.stamp = node_graph::Time(0.2);  // tick 4 of 0.05 s
+  control->header.stamp = ros::Time(0.2);  // tick 4 of 0.05 s
   control->throttle = 0.5;
   TickAnswers answers;
   answers.add(ChannelId::kEgoControl, control);

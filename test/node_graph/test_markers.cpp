@@ -31,7 +31,7 @@ TEST(Markers, OnlyTheFirstArrayClearsAndEveryIdIsItsOwn) {
   std::set<std::pair<std::string, int>> ids;
   for (const Marker& marker : second.markers) {
     EXPECT_EQ(marker.action, Marker::ADD);
-    EXPECT_EQ(marker.lifetime, node_graph::Duration(0.5));
+    EXPECT_EQ(marker.lifetime, ros::Duration(0.5));
     EXPECT_EQ(marker.header.frame_id, "map");
     EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
   }
@@ -72,7 +72,7 @@ TEST(Display, TransformsAreOfEgoAndCbvsOnly) {
   ASSERT_EQ(message.transforms.size(), 2U);
   EXPECT_EQ(message.transforms[0].child_frame_id, "ego/base_link");
   EXPECT_EQ(message.transforms[1].child_frame_id, "bg_7/base_link");
-  EXPECT_EQ(message.transforms[0].header.stamp, node_graph::Time(0.2));
+  EXPECT_EQ(message.transforms[0].header.stamp, ros::Time(0.2));
 }
 
 TEST(Display, CameraSitsOnTheMountAndLooksDownTheRoad) {
@@ -146,7 +146,7 @@ TEST(Markers, PerceptionShowsVehiclesWaysLinesAndCells) {
   EXPECT_EQ(ways.points[0].x, 10.0);
   EXPECT_EQ(ways.points[3].x, 12.0);
   for (std::size_t i = 1; i < array.markers.size(); ++i) {
-    EXPECT_EQ(array.markers[i].lifetime, node_graph::Duration(0.5));
+    EXPECT_EQ(array.markers[i].lifetime, ros::Duration(0.5));
     EXPECT_EQ(array.markers[i].header.frame_id, "map");
   }
   EXPECT_EQ(perceptionMarkers({}, 0.0, 0.2).markers.size(), 1U) << "clears what was shown";
@@ -162,7 +162,7 @@ TEST(Markers, RolloutsAreLinesBySlot) {
   ASSERT_EQ(array.markers[0].points.size(), 2U);
   EXPECT_EQ(array.markers[0].points[1].x, 4.0);
   EXPECT_GT(array.markers[0].points[1].z, 6.0);
-  EXPECT_EQ(array.markers[0].header.stamp, node_graph::Time(0.2));
+  EXPECT_EQ(array.markers[0].header.stamp, ros::Time(0.2));
   EXPECT_EQ(array.markers[1].action, Marker::DELETE);  // nothing is planned
 }
 

@@ -56,9 +56,9 @@ TEST_F(Session, HasTheTraceOfTheClosedLoopAndAReadableBag) {
 /// What a bag shows of each decision: slots that a selection occupies with a vehicle of the
 /// snapshot, and images by topic.
 struct BagImages {
-  std::set<std::pair<std::string, node_graph::Time>> occupied;  ///< image topic and stamp
-  std::set<std::pair<std::string, node_graph::Time>> shown;
-  std::set<node_graph::Time> guided;
+  std::set<std::pair<std::string, ros::Time>> occupied;  ///< image topic and stamp
+  std::set<std::pair<std::string, ros::Time>> shown;
+  std::set<ros::Time> guided;
 };
 
 BagImages imagesIn(const fs::path& file) {
@@ -102,7 +102,7 @@ TEST_F(Session, CamerasShowOccupiedSlotsAtDecisionsAndChangeNothing) {
   BagImages images = imagesIn(results() / "session.bag");
   EXPECT_GT(images.occupied.size(), 0U) << "the session shows no CBV; choose one that does";
   for (int decision = 0; decision < 80; ++decision)  // 8 s at 10 Hz, the end decides nothing
-    images.occupied.emplace("/ego/camera/image_raw", node_graph::Time(0.1 * decision));
+    images.occupied.emplace("/ego/camera/image_raw", ros::Time(0.1 * decision));
   EXPECT_EQ(images.shown, images.occupied);
 }
 
@@ -130,7 +130,7 @@ TEST_F(Session, DiffusionPlannerHasTheResultOfTheClosedLoopAndItsImagesInTheBag)
   EXPECT_EQ(summary()["faults"].size(), 0U) << summary()["faults"];
   const BagImages images = imagesIn(results() / "session.bag");
   EXPECT_EQ(images.shown, images.occupied);
-  std::set<node_graph::Time> decisions;
+  std::set<ros::Time> decisions;
   for (const auto& [topic, stamp] : images.occupied) decisions.insert(stamp);
   EXPECT_EQ(images.guided, decisions);
 }

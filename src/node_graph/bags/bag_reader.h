@@ -92,9 +92,8 @@ boost::shared_ptr<const Message> decode(const BagMessage& message) {
   try {
     // IStream takes a non-const pointer, but only reads.
     auto* begin = reinterpret_cast<std::uint8_t*>(const_cast<char*>(message.bytes.data()));
-    node_graph::serialization::IStream stream(begin,
-                                              static_cast<std::uint32_t>(message.bytes.size()));
-    node_graph::serialization::deserialize(stream, *decoded);
+    ros::serialization::IStream stream(begin, static_cast<std::uint32_t>(message.bytes.size()));
+    ros::serialization::deserialize(stream, *decoded);
     if (stream.getLength() != 0) throw refuse("it is longer than its type");
   } catch (const core::InputError&) {
     throw;

@@ -16,9 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A bag takes no stamp of zero.
-node_graph::Time bagStamp(const node_graph::Time& stamp) {
-  return std::max(stamp, node_graph::TIME_MIN);
-}
+ros::Time bagStamp(const ros::Time& stamp) { return std::max(stamp, ros::TIME_MIN); }
 
 }  // namespace
 
@@ -68,17 +66,17 @@ void BagFile::guard(const std::function<void()>& writing) {
   }
 }
 
-void BagFile::put(const Topic& topic, const node_graph::Time& stamp, const AnyMessage& message) {
+void BagFile::put(const Topic& topic, const ros::Time& stamp, const AnyMessage& message) {
   const std::string name = topic.name();
   topic.row().type.write(*bag_, name.front() == '/' ? name : naming_(name), stamp, message);
 }
 
 void BagFile::write(const msgs::SessionInfo& info) {
-  guard([&] { put(ChannelId::kSession, node_graph::TIME_MIN, shared(info)); });
+  guard([&] { put(ChannelId::kSession, ros::TIME_MIN, shared(info)); });
 }
 
 void BagFile::write(const nav_msgs::Path& ego_route) {
-  guard([&] { put(ChannelId::kEgoRoute, node_graph::TIME_MIN, shared(ego_route)); });
+  guard([&] { put(ChannelId::kEgoRoute, ros::TIME_MIN, shared(ego_route)); });
 }
 
 void BagFile::write(const TickMessages& tick) {
@@ -87,7 +85,7 @@ void BagFile::write(const TickMessages& tick) {
 
 void BagFile::writeTick(const TickMessages& tick) {
   const auto snapshot = tick.get<msgs::TrafficSnapshot>(ChannelId::kTraffic);
-  const node_graph::Time stamp = bagStamp(snapshot->header.stamp);
+  const ros::Time stamp = bagStamp(snapshot->header.stamp);
   for (const Channel& row : channels()) {
     if (row.recorded != Recorded::kTick && row.recorded != Recorded::kDecision) continue;
     for (const Topic& topic : topicsOf(row, max_cbv_, reading_.rigs)) {

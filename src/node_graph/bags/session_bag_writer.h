@@ -50,7 +50,7 @@ class BagFile {
  private:
   void guard(const std::function<void()>& writing);
   void writeTick(const TickMessages& tick);
-  void put(const Topic& topic, const node_graph::Time& stamp, const AnyMessage& message);
+  void put(const Topic& topic, const ros::Time& stamp, const AnyMessage& message);
 
   std::string activeName() const { return name_ + ".active"; }
 

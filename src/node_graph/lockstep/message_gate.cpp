@@ -59,7 +59,7 @@ std::string countText(std::uint64_t count) {
 }  // namespace
 
 std::string siblingNode(const std::string& base_name) {
-  return node_graph::names::append(node_graph::this_node::getNamespace(), base_name);
+  return ros::names::append(ros::this_node::getNamespace(), base_name);
 }
 
 std::vector<std::string> siblingNodes(const std::vector<std::string>& base_names) {
@@ -88,7 +88,7 @@ bool MessageGate::admitsTick(const std::string& topic, const std::string& caller
   return false;
 }
 
-std::uint64_t MessageGate::tickOf(const node_graph::Time& stamp) const {
+std::uint64_t MessageGate::tickOf(const ros::Time& stamp) const {
   return nearestTick(stamp, simulation_step_);
 }
 

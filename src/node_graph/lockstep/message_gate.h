@@ -49,13 +49,13 @@ class Connections {
 
   /// Advertises a topic and counts on `nodes` to listen. This object must outlive the publisher.
   template <class Message>
-  node_graph::Publisher advertise(node_graph::NodeHandle& node_handle, const std::string& topic,
-                                  const std::vector<std::string>& nodes, bool latch = false) {
+  ros::Publisher advertise(ros::NodeHandle& node_handle, const std::string& topic,
+                           const std::vector<std::string>& nodes, bool latch = false) {
     expect(topic, nodes);
-    const auto connect = [this, topic](const node_graph::SingleSubscriberPublisher& peer) {
+    const auto connect = [this, topic](const ros::SingleSubscriberPublisher& peer) {
       connected(topic, peer.getSubscriberName());
     };
-    const auto disconnect = [this, topic](const node_graph::SingleSubscriberPublisher& peer) {
+    const auto disconnect = [this, topic](const ros::SingleSubscriberPublisher& peer) {
       disconnected(topic, peer.getSubscriberName());
     };
     return node_handle.advertise<Message>(topic, kQueueSize, connect, disconnect, {}, latch);
@@ -112,9 +112,9 @@ class MessageGate {
   /// a constant message that was admitted, and may answer why it cannot be used (a text, empty when
   /// it can). This object must outlive the subscriber.
   template <class Message, class Callback>
-  node_graph::Subscriber subscribe(node_graph::NodeHandle& node_handle, const std::string& topic,
-                                   const std::vector<std::string>& publishers, Callback callback) {
-    using Event = node_graph::MessageEvent<const Message>;
+  ros::Subscriber subscribe(ros::NodeHandle& node_handle, const std::string& topic,
+                            const std::vector<std::string>& publishers, Callback callback) {
+    using Event = ros::MessageEvent<const Message>;
     const boost::function<void(const Event&)> take = [this, topic, publishers,
                                                       callback](const Event& event) {
       const std::string& caller = event.getPublisherName();
@@ -130,7 +130,7 @@ class MessageGate {
     };
     constexpr std::uint32_t kQueueSize = 1000;
     return node_handle.subscribe<const Event&>(topic, kQueueSize, take, {},
-                                               node_graph::TransportHints().tcpNoDelay());
+                                               ros::TransportHints().tcpNoDelay());
   }
 
  private:
@@ -148,7 +148,7 @@ class MessageGate {
       return 0;
     }
   }
-  std::uint64_t tickOf(const node_graph::Time& stamp) const;
+  std::uint64_t tickOf(const ros::Time& stamp) const;
   template <class Message>
   static constexpr auto hasTick(int) -> decltype(std::declval<Message>().tick, true) {
     return true;

@@ -19,7 +19,7 @@ namespace cdiff::node_graph {
 /// made later, and asked for when it suits. So a session can end in order, whatever it is doing.
 class StopSignal {
  public:
-  /// Make it before any other thread exists, hence before node_graph::init.
+  /// Make it before any other thread exists, hence before ros::init.
   StopSignal();
   /// Whether one of them has arrived, now or before.
   bool raised();
@@ -39,7 +39,7 @@ inline double secondsSince(std::chrono::steady_clock::time_point begin) {
 
 /// Handles what has arrived; waits at most `seconds` for it.
 inline void spin(double seconds) {
-  node_graph::getGlobalCallbackQueue()->callAvailable(node_graph::WallDuration(seconds));
+  ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(seconds));
 }
 
 // The other nodes of a session as processes: those that the same roslaunch has started on this

@@ -27,13 +27,9 @@ constexpr double kFarewell = 3.0;  // [s] for the last messages to arrive
 constexpr double kLead = 100.0;
 constexpr double kFirstHeartbeat = 30.0;  // [s] for a simulator of the same launch to begin
 
-void spin() {
-  node_graph::getGlobalCallbackQueue()->callAvailable(node_graph::WallDuration(kPeriod));
-}
+void spin() { ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kPeriod)); }
 
-double secondsSince(const node_graph::WallTime& begin) {
-  return (node_graph::WallTime::now() - begin).toSec();
-}
+double secondsSince(const ros::WallTime& begin) { return (ros::WallTime::now() - begin).toSec(); }
 
 }  // namespace
 
@@ -44,7 +40,7 @@ std::string simulatorFault(Ending ending, double timeout) {
 }
 
 Participant::Participant(StopSignal& stop)
-    : stop_(stop), name_(baseName(node_graph::this_node::getName())) {
+    : stop_(stop), name_(baseName(ros::this_node::getName())) {
   acks_ = connections_.advertise<msgs::TickAck>(node_, Topic(ChannelId::kTickAck).name(),
                                                 {kTrafficSimulatorNode});
   gate_.setReport([this](const std::string& text) {
@@ -59,7 +55,7 @@ Participant::Participant(StopSignal& stop)
       [this](const auto& message) { session_ = message; });
 }
 
-node_graph::Publisher Participant::advertise(const Topic& topic) {
+ros::Publisher Participant::advertise(const Topic& topic) {
   const Channel& row = topic.row();
   return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
                             row.latched);
@@ -89,7 +85,7 @@ int Participant::run() {
 int Participant::standBy() {
   ROS_DEBUG("%s: the session does not need this node", name_.c_str());
   session_input_.shutdown();
-  while (node_graph::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) spin();
+  while (ros::ok() && !stop_.raised() && !simulatorGone() && !simulatorSilent()) spin();
   return core::ExitCode::kPassed;
 }
 
@@ -104,12 +100,12 @@ std::optional<Ending> Participant::waitForSession() {
 }
 
 std::optional<Ending> Participant::unstartedEnding() {
-  if (!node_graph::ok()) return Ending::kStopped;
+  if (!ros::ok()) return Ending::kStopped;
   if (simulatorSilent()) return Ending::kSimulatorSilent;
   const bool overdue = !heartbeat_.everHeard() && secondsSince(began_) > kFirstHeartbeat;
   if (overdue && launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorSilent;
   if (!stop_.raised()) return std::nullopt;
-  if (stopped_at_.isZero()) stopped_at_ = node_graph::WallTime::now();
+  if (stopped_at_.isZero()) stopped_at_ = ros::WallTime::now();
   // The simulator was stopped too and writes a result, or its death is why roslaunch stops us.
   if (!launchedProcess(kTrafficSimulatorNode)) return Ending::kSimulatorGone;
   if (secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
@@ -134,17 +130,15 @@ int Participant::runSession() {
 }
 
 std::optional<Ending> Participant::unexpectedEnding() {
-  if (!node_graph::ok()) return Ending::kStopped;
+  if (!ros::ok()) return Ending::kStopped;
   if (simulatorGone()) return Ending::kSimulatorGone;
   if (simulatorSilent()) return Ending::kSimulatorSilent;
-  if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = node_graph::WallTime::now();
+  if (stop_.raised() && stopped_at_.isZero()) stopped_at_ = ros::WallTime::now();
   if (!stopped_at_.isZero() && secondsSince(stopped_at_) > kStopPatience) return Ending::kStopped;
   return std::nullopt;
 }
 
-bool Participant::simulatorSilent() {
-  return heartbeat_.silent(node_graph::SteadyTime::now().toSec());
-}
+bool Participant::simulatorSilent() { return heartbeat_.silent(ros::SteadyTime::now().toSec()); }
 
 void Participant::queue(const Snapshot& snapshot) {
   if (snapshot->tick < next_tick_) return;  // sent again for a late listener
@@ -183,21 +177,19 @@ int Participant::leave(Ending ending) {
     snapshots_.pop_front();
   const int exit_code = conclude(ending);
   if (ending == Ending::kSimulatorSilent) endSilentSimulator();
-  if (!isObserver(name_) || !node_graph::ok()) return exit_code;
+  if (!isObserver(name_) || !ros::ok()) return exit_code;
   publishAck(msgs::TickAck::FINISHED, lastTick());
   // The simulator leaves once it knows; until then the message may still be on its way.
-  const node_graph::WallTime limit =
-      node_graph::WallTime::now() + node_graph::WallDuration(kFarewell);
-  while (!simulatorGone() && node_graph::WallTime::now() < limit) spin();
+  const ros::WallTime limit = ros::WallTime::now() + ros::WallDuration(kFarewell);
+  while (!simulatorGone() && ros::WallTime::now() < limit) spin();
   return exit_code;
 }
 
 /// So that it does not go on one day, and so that roslaunch ends. The metrics node ends it, once it
 /// has written the result; the others only where the metrics node does not.
 void Participant::endSilentSimulator() {
-  const node_graph::WallTime begin = node_graph::WallTime::now();
-  while (name_ != kMetricsNode && node_graph::ok() && !simulatorGone() &&
-         secondsSince(begin) < kFarewell)
+  const ros::WallTime begin = ros::WallTime::now();
+  while (name_ != kMetricsNode && ros::ok() && !simulatorGone() && secondsSince(begin) < kFarewell)
     spin();
   if (!simulatorGone() && killLaunchedProcess(kTrafficSimulatorNode))
     ROS_ERROR("%s, silent for %g s, was ended", kTrafficSimulatorNode, heartbeat_.timeout());
@@ -205,9 +197,8 @@ void Participant::endSilentSimulator() {
 
 int Participant::fail(const std::string& text) {
   ROS_ERROR("%s: %s", name_.c_str(), text.c_str());
-  const node_graph::WallTime limit =
-      node_graph::WallTime::now() + node_graph::WallDuration(kFarewell);
-  while (node_graph::ok() && !simulatorGone() && node_graph::WallTime::now() < limit) {
+  const ros::WallTime limit = ros::WallTime::now() + ros::WallDuration(kFarewell);
+  while (ros::ok() && !simulatorGone() && ros::WallTime::now() < limit) {
     publishAck(msgs::TickAck::ERROR, lastTick(), text);
     spin();
     const bool ended =
@@ -229,7 +220,7 @@ void Participant::publishAck(std::uint8_t kind, std::uint64_t tick, const std::s
 void Participant::report() {
   const bool begun = next_tick_ > 0;
   if (secondsSince(reported_at_) < (begun ? kAlivePeriod : kPeriod)) return;
-  reported_at_ = node_graph::WallTime::now();
+  reported_at_ = ros::WallTime::now();
   if (begun) return publishAck(msgs::TickAck::ALIVE, lastTick());
   const std::string text = missing();
   publishAck(text.empty() ? msgs::TickAck::READY : msgs::TickAck::WAITING, 0, text);
@@ -237,7 +228,7 @@ void Participant::report() {
 
 std::string Participant::missing() const {
   std::vector<std::string> texts = connections_.missing();
-  for (const node_graph::Subscriber& input : inputs_) {
+  for (const ros::Subscriber& input : inputs_) {
     if (input.getNumPublishers() == 0)
       texts.push_back("no node publishes " + input.getTopic() + " yet");
   }
@@ -270,7 +261,7 @@ bool Observer::complete(const msgs::TrafficSnapshot& snapshot, bool superseded) 
     return true;
   }
   if (!superseded || !answers_.decision(snapshot.tick)) return false;
-  const node_graph::WallTime now = node_graph::WallTime::now();
+  const ros::WallTime now = ros::WallTime::now();
   if (waiting_since_.isZero()) waiting_since_ = now;
   if ((now - waiting_since_).toSec() < kPatience) return false;
   waiting_since_ = {};

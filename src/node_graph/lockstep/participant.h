@@ -64,12 +64,12 @@ class Participant {
 
   /// Throws std::logic_error unless the topic's messages are of that type, as `listen` does.
   template <class Message>
-  node_graph::Publisher advertise(const Topic& topic) {
+  ros::Publisher advertise(const Topic& topic) {
     requireType(topic.id, typeid(Message));
     return connections_.advertise<Message>(node_, topic.name(), listeners(topic, graph_),
                                            topic.row().latched);
   }
-  node_graph::Publisher advertise(const Topic& topic);
+  ros::Publisher advertise(const Topic& topic);
   /// Takes what the topic's publisher sends; see MessageGate::subscribe.
   template <class Message, class Callback>
   void listen(const Topic& topic, Callback callback) {
@@ -85,7 +85,7 @@ class Participant {
   bool over() const { return over_; }
   /// For publishers that advertise() does not make.
   Connections& connections() { return connections_; }
-  node_graph::NodeHandle& node() { return node_; }
+  ros::NodeHandle& node() { return node_; }
   /// [s] of silence that the traffic simulator has promised not to exceed.
   double heartbeatTimeout() const { return heartbeat_.timeout(); }
 
@@ -111,23 +111,23 @@ class Participant {
   StopSignal& stop_;
   Connections connections_;
   MessageGate gate_;
-  node_graph::NodeHandle node_;
+  ros::NodeHandle node_;
   std::string name_;
   SessionGraph graph_;
-  node_graph::Publisher acks_;
+  ros::Publisher acks_;
   SilenceWatch heartbeat_;
-  node_graph::Subscriber heartbeat_input_;
-  node_graph::Subscriber session_input_;
-  node_graph::Subscriber traffic_input_;
-  std::vector<node_graph::Subscriber> inputs_;
+  ros::Subscriber heartbeat_input_;
+  ros::Subscriber session_input_;
+  ros::Subscriber traffic_input_;
+  std::vector<ros::Subscriber> inputs_;
   ::e2e_cdiff::SessionInfo::ConstPtr session_;
   std::deque<Snapshot> snapshots_;
   std::uint64_t next_tick_ = 0;    ///< snapshots before it were seen
   double simulation_step_ = 0.05;  ///< [s]
   std::uint64_t lead_ = 0;         ///< ticks that answers may come before their snapshot
-  node_graph::WallTime began_ = node_graph::WallTime::now();
-  node_graph::WallTime stopped_at_;   ///< when the stop signal was seen
-  node_graph::WallTime reported_at_;  ///< when this node last said how it stands
+  ros::WallTime began_ = ros::WallTime::now();
+  ros::WallTime stopped_at_;   ///< when the stop signal was seen
+  ros::WallTime reported_at_;  ///< when this node last said how it stands
   bool final_handled_ = false;
   bool over_ = false;
 };
@@ -151,7 +151,7 @@ class Observer : public Participant {
 
  private:
   TickAnswers answers_;
-  node_graph::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
+  ros::WallTime waiting_since_;  ///< for what a decision's record names; zero when not
 };
 
 }  // namespace cdiff::node_graph

@@ -16,7 +16,7 @@ constexpr std::chrono::seconds kBeatPeriod{1};
 
 }  // namespace
 
-HeartbeatPublisher::HeartbeatPublisher(node_graph::NodeHandle& node, double timeout)
+HeartbeatPublisher::HeartbeatPublisher(ros::NodeHandle& node, double timeout)
     : publisher_(
           node.advertise<::e2e_cdiff::Heartbeat>(Topic(ChannelId::kHeartbeat).name(), 1, true)),
       thread_([this, timeout] { publishUntilStopped(timeout); }) {}
@@ -33,7 +33,7 @@ HeartbeatPublisher::~HeartbeatPublisher() {
 void HeartbeatPublisher::publishUntilStopped(double timeout) {
   const auto begin = std::chrono::steady_clock::now();
   ::e2e_cdiff::Heartbeat message;
-  message.node = baseName(node_graph::this_node::getName());
+  message.node = baseName(ros::this_node::getName());
   message.timeout = timeout;
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {

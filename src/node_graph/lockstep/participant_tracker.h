@@ -25,7 +25,7 @@ namespace cdiff::node_graph {
 class HeartbeatPublisher {
  public:
   /// Publishes from now on. After `timeout` [s] of silence listeners take this node for dead.
-  HeartbeatPublisher(node_graph::NodeHandle& node, double timeout);
+  HeartbeatPublisher(ros::NodeHandle& node, double timeout);
   ~HeartbeatPublisher();
   HeartbeatPublisher(const HeartbeatPublisher&) = delete;
   HeartbeatPublisher& operator=(const HeartbeatPublisher&) = delete;
@@ -33,7 +33,7 @@ class HeartbeatPublisher {
  private:
   void publishUntilStopped(double timeout);
 
-  node_graph::Publisher publisher_;
+  ros::Publisher publisher_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;

@@ -33,16 +33,14 @@ struct MessageType {
   std::string md5sum;  ///< MD5 sum of the definition
   /// Throws InputError when the bytes do not match its type.
   AnyMessage (*decode)(const BagMessage& message);
-  void (*write)(rosbag::Bag& bag, const std::string& topic, const node_graph::Time& stamp,
+  void (*write)(rosbag::Bag& bag, const std::string& topic, const ros::Time& stamp,
                 const AnyMessage& message);
-  node_graph::Publisher (*advertise)(Connections& connections, node_graph::NodeHandle& node,
-                                     const std::string& topic,
-                                     const std::vector<std::string>& nodes, bool latched);
-  void (*publish)(const node_graph::Publisher& publisher, const AnyMessage& message);
-  node_graph::Subscriber (*subscribe)(MessageGate& gate, node_graph::NodeHandle& node,
-                                      const std::string& topic,
-                                      const std::vector<std::string>& publishers,
-                                      const TakeMessage& take);
+  ros::Publisher (*advertise)(Connections& connections, ros::NodeHandle& node,
+                              const std::string& topic, const std::vector<std::string>& nodes,
+                              bool latched);
+  void (*publish)(const ros::Publisher& publisher, const AnyMessage& message);
+  ros::Subscriber (*subscribe)(MessageGate& gate, ros::NodeHandle& node, const std::string& topic,
+                               const std::vector<std::string>& publishers, const TakeMessage& take);
   /// Tick that the message is of; its stamp where it has no tick or the tick 0, and nullopt where
   /// that is zero, too.
   std::optional<std::uint64_t> (*tick)(const AnyMessage& message, double simulation_step);
@@ -104,18 +102,18 @@ template <class Message>
 const MessageType& messageType() {
   static const MessageType type = {
       typeid(Message),
-      node_graph::message_traits::DataType<Message>::value(),
-      node_graph::message_traits::MD5Sum<Message>::value(),
+      ros::message_traits::DataType<Message>::value(),
+      ros::message_traits::MD5Sum<Message>::value(),
       [](const BagMessage& message) -> AnyMessage { return decode<Message>(message); },
-      [](rosbag::Bag& bag, const std::string& topic, const node_graph::Time& stamp,
+      [](rosbag::Bag& bag, const std::string& topic, const ros::Time& stamp,
          const AnyMessage& message) { bag.write(topic, stamp, messageAs<Message>(message)); },
-      [](Connections& connections, node_graph::NodeHandle& node, const std::string& topic,
+      [](Connections& connections, ros::NodeHandle& node, const std::string& topic,
          const std::vector<std::string>& nodes,
          bool latched) { return connections.advertise<Message>(node, topic, nodes, latched); },
-      [](const node_graph::Publisher& publisher, const AnyMessage& message) {
+      [](const ros::Publisher& publisher, const AnyMessage& message) {
         publisher.publish(messageAs<Message>(message));
       },
-      [](MessageGate& gate, node_graph::NodeHandle& node, const std::string& topic,
+      [](MessageGate& gate, ros::NodeHandle& node, const std::string& topic,
          const std::vector<std::string>& publishers, const TakeMessage& take) {
         return gate.subscribe<Message>(node, topic, publishers,
                                        [take](const auto& message) { return take(message); });

@@ -26,7 +26,7 @@ namespace cdiff::node_graph {
 // Ticks of messages that carry a stamp alone.
 
 /// Tick whose stamp is nearest; `simulation_step` in [s].
-std::uint64_t nearestTick(const node_graph::Time& stamp, double simulation_step);
+std::uint64_t nearestTick(const ros::Time& stamp, double simulation_step);
 
 // Between the core's value types and our messages, exact for every float64: `fromMsg(toMsg(x))` is
 // x, bit by bit.
@@ -37,7 +37,7 @@ namespace msgs = ::e2e_cdiff;
 inline constexpr const char* kMapFrame = "map";
 
 /// Simulated time as a ROS stamp.
-node_graph::Time toStamp(double seconds);
+ros::Time toStamp(double seconds);
 
 msgs::VehicleState toMsg(const traffic::VehicleState& state);
 traffic::VehicleState fromMsg(const msgs::VehicleState& message);

@@ -130,7 +130,7 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
   return message;
 }
 
-Display::Display(node_graph::NodeHandle& node)
+Display::Display(ros::NodeHandle& node)
     : odometry_(node.advertise<nav_msgs::Odometry>(Topic(ChannelId::kEgoOdometry).name(), 100)) {}
 
 void Display::publish(const traffic::TrafficSnapshot& snapshot) {

@@ -42,7 +42,7 @@ tf2_msgs::TFMessage toTfMsg(const traffic::TrafficSnapshot& snapshot,
 /// once a vehicle, those of its camera. Nothing of the session is computed from it.
 class Display {
  public:
-  explicit Display(node_graph::NodeHandle& node);
+  explicit Display(ros::NodeHandle& node);
   /// From now on tf holds the camera frames too.
   void showCameras(const session::VehicleRigs& rigs) { rigs_ = rigs; }
   void publish(const traffic::TrafficSnapshot& snapshot);
@@ -50,7 +50,7 @@ class Display {
  private:
   void mountCameras(const traffic::TrafficSnapshot& snapshot);
 
-  node_graph::Publisher odometry_;
+  ros::Publisher odometry_;
   tf2_ros::TransformBroadcaster transforms_;
   tf2_ros::StaticTransformBroadcaster mounts_;
   std::optional<session::VehicleRigs> rigs_;

@@ -157,7 +157,7 @@ MarkerArray rolloutMarkers(const std::vector<planning::PlannedAction>& actions, 
     Marker marker = makeMarker("rollouts", action.slot, Marker::LINE_STRIP, kRolloutColor);
     if (action.rollout.size() < 2) marker.action = Marker::DELETE;  // a line needs two points
     marker.header.stamp = toStamp(time);
-    marker.lifetime = node_graph::Duration(kLifetime);
+    marker.lifetime = ros::Duration(kLifetime);
     marker.scale.x = 0.5;
     for (const planning::RolloutPoint& point : action.rollout) {
       const Eigen::Vector2d& position = point.state.position;
@@ -253,7 +253,7 @@ MarkerArray perceptionMarkers(const planning::Perception& perception, double ele
   array.markers.push_back(forecastMarker(perception, z));
   for (Marker& marker : array.markers) {
     marker.header.stamp = toStamp(time);
-    marker.lifetime = node_graph::Duration(kLifetime);
+    marker.lifetime = ros::Duration(kLifetime);
   }
   array.markers.erase(std::remove_if(array.markers.begin(), array.markers.end(),
                                      [](const Marker& marker) {
@@ -288,7 +288,7 @@ visualization_msgs::MarkerArray SessionMarkers::build(const traffic::TrafficSnap
   }
   for (Marker& marker : array.markers) {
     marker.header.stamp = toStamp(snapshot.time);
-    marker.lifetime = node_graph::Duration(kLifetime);
+    marker.lifetime = ros::Duration(kLifetime);
   }
   if (first_) array.markers.insert(array.markers.begin(), deleteAll());
   first_ = false;

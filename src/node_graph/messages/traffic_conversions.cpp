@@ -40,9 +40,9 @@ std_msgs::Header headerOf(const traffic::TrafficSnapshot& snapshot) {
 
 }  // namespace
 
-node_graph::Time toStamp(double seconds) { return node_graph::Time(seconds); }
+ros::Time toStamp(double seconds) { return ros::Time(seconds); }
 
-std::uint64_t nearestTick(const node_graph::Time& stamp, double simulation_step) {
+std::uint64_t nearestTick(const ros::Time& stamp, double simulation_step) {
   return static_cast<std::uint64_t>(std::llround(stamp.toSec() / simulation_step));
 }
 

@@ -25,7 +25,7 @@ namespace {
 constexpr double kReportPatience =
     2.0;  // [s] of wall time for the last report, which a dead metrics node never sends
 
-std::string resolvedTopic(const std::string& topic) { return node_graph::names::resolve(topic); }
+std::string resolvedTopic(const std::string& topic) { return ros::names::resolve(topic); }
 
 /// A simulator that is stopped while it starts keeps the result folder to itself.
 void endStoppedSimulator() {
@@ -61,9 +61,8 @@ bool RecorderNode::measured(const msgs::TrafficSnapshot& snapshot, bool supersed
   if (!graph().has(kMetricsNode) || (!snapshot.decision_tick && !final) ||
       answers().has(ChannelId::kMetrics, snapshot.tick))
     return true;
-  if (waiting_since_.isZero()) waiting_since_ = node_graph::WallTime::now();
-  return (final || superseded) &&
-         (node_graph::WallTime::now() - waiting_since_).toSec() > kReportPatience;
+  if (waiting_since_.isZero()) waiting_since_ = ros::WallTime::now();
+  return (final || superseded) && (ros::WallTime::now() - waiting_since_).toSec() > kReportPatience;
 }
 
 bool RecorderNode::handle(const Snapshot& snapshot, bool superseded) {
@@ -89,11 +88,11 @@ namespace {
 std::string bagRow(const SessionGraph& graph, const std::filesystem::path& results) {
   constexpr double kPatience = 2.0;  // [s] of wall time
   const std::filesystem::path bag = results / "session.bag";
-  const node_graph::WallTime begin = node_graph::WallTime::now();
+  const ros::WallTime begin = ros::WallTime::now();
   std::string row = record::fileRow("bag", bag);
   while (row.empty() && graph.has(kRecorderNode) &&
-         (node_graph::WallTime::now() - begin).toSec() < kPatience) {
-    node_graph::WallDuration(0.02).sleep();
+         (ros::WallTime::now() - begin).toSec() < kPatience) {
+    ros::WallDuration(0.02).sleep();
     row = record::fileRow("bag", bag);
   }
   return row;

@@ -34,7 +34,7 @@ class RecorderNode : public Observer {
 
   std::unique_ptr<BagFile> bag_;
   bool has_route_ = false;
-  node_graph::WallTime waiting_since_;
+  ros::WallTime waiting_since_;
 };
 
 /// Metrics as a node: gathers each tick as one record, measures it live, and writes the result
@@ -71,9 +71,9 @@ class MetricsNode : public Observer {
   std::optional<Clock::time_point> begin_;  ///< first snapshot
   double slowest_planner_ms_ = 0.0;
   std::string slowest_planner_;
-  node_graph::Publisher reports_;
-  node_graph::Publisher marker_output_;
-  node_graph::Publisher map_output_;
+  ros::Publisher reports_;
+  ros::Publisher marker_output_;
+  ros::Publisher map_output_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };
 

@@ -35,7 +35,7 @@ class CbvIdentificationNode : public Participant {
   std::optional<map::LaneGraph> graph_;
   map::Route ego_route_;
   std::unique_ptr<cbv::CbvSelector> selector_;
-  node_graph::Publisher selections_;
+  ros::Publisher selections_;
 };
 
 /// The cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and its
@@ -57,7 +57,7 @@ class CameraNode : public Participant {
  private:
   struct Output {
     image_transport::Publisher images;
-    node_graph::Publisher infos;
+    ros::Publisher infos;
   };
   void open(int slot);
   void open(int slot, const std::string& camera);

@@ -78,8 +78,8 @@ class EgoPlannerNode : public SeeingParticipant {
   std::unique_ptr<session::SessionSetup> setup_;
   map::Route route_;
   std::unique_ptr<planning::Planner> planner_;
-  node_graph::Publisher controls_;
-  node_graph::Publisher markers_;
+  ros::Publisher controls_;
+  ros::Publisher markers_;
 };
 
 /// The planner of all CBVs, asked once per decision for all slots: snapshots and selection in (and
@@ -108,8 +108,8 @@ class CbvPlannerNode : public SeeingParticipant {
   std::unique_ptr<session::SessionSetup> setup_;
   std::unique_ptr<planning::Planner> planner_;
   std::map<std::uint64_t, ::e2e_cdiff::CbvSelection::ConstPtr> selections_;  ///< by tick
-  std::map<Topic, node_graph::Publisher> answers_;
-  node_graph::Publisher markers_;
+  std::map<Topic, ros::Publisher> answers_;
+  ros::Publisher markers_;
   PlannerStatistics statistics_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
 };

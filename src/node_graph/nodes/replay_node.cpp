@@ -149,7 +149,7 @@ bool ReplayNode::disturbed() {
   if (book_.error()) ROS_ERROR("%s: %s", book_.error()->node.c_str(), book_.error()->text.c_str());
   if (connections_.hasLeft(kMetricsNode)) ROS_ERROR("the metrics node left the replay");
   failed_ = book_.error() || connections_.hasLeft(kMetricsNode);
-  return failed_ || stop_.raised() || !node_graph::ok();
+  return failed_ || stop_.raised() || !ros::ok();
 }
 
 bool ReplayNode::waitFor(const std::function<std::vector<std::string>()>& missing) {
@@ -215,20 +215,20 @@ bool ReplayNode::waitForMetrics(const msgs::TrafficSnapshot& snapshot) {
 
 /// A last snapshot, so that the metrics node writes the result of the ticks replayed so far.
 void ReplayNode::publishInterruption() {
-  if (!last_ || last_->status != msgs::TrafficSnapshot::RUNNING || !node_graph::ok()) return;
+  if (!last_ || last_->status != msgs::TrafficSnapshot::RUNNING || !ros::ok()) return;
   const traffic::TrafficSnapshot end =
       endedAfter(fromMsg(*last_), session_.setup().options().simulation_step,
                  traffic::SessionStatus::kInterrupted, {0, "user", "the replay was interrupted"});
   publishTick(boost::make_shared<const msgs::TrafficSnapshot>(toMsg(end)));
   const Clock::time_point begin = Clock::now();
-  while (!book_.notFinished().empty() && node_graph::ok() && secondsSince(begin) < kReplayFarewell)
+  while (!book_.notFinished().empty() && ros::ok() && secondsSince(begin) < kReplayFarewell)
     spin(kSpinPeriod);
 }
 
 int ReplayNode::finish() {
   for (const std::string& finding : session_.findings())
     ROS_WARN("bag '%s': %s", bag_.c_str(), finding.c_str());
-  if (!failed_ && (stop_.raised() || !node_graph::ok())) return core::ExitCode::kInterrupted;
+  if (!failed_ && (stop_.raised() || !ros::ok())) return core::ExitCode::kInterrupted;
   if (!failed_ && session_.findings().empty()) return core::ExitCode::kPassed;
   writeExitCode(results_, core::ExitCode::kRunTimeError);
   return core::ExitCode::kRunTimeError;

@@ -64,10 +64,10 @@ class ReplayNode {
   ParticipantTracker book_;
   MessageGate gate_;
   Connections connections_;
-  node_graph::NodeHandle node_;
+  ros::NodeHandle node_;
   HeartbeatPublisher heartbeat_;
-  std::map<Topic, node_graph::Publisher> topics_;
-  node_graph::Subscriber acks_;
+  std::map<Topic, ros::Publisher> topics_;
+  ros::Subscriber acks_;
   Display display_;
   ::e2e_cdiff::TrafficSnapshot::ConstPtr last_;  ///< published
   Clock::time_point begin_;

@@ -81,7 +81,7 @@ bool TrafficSimulatorNode::startWorld() {
   }
 }
 
-node_graph::Publisher TrafficSimulatorNode::advertise(const Topic& topic) {
+ros::Publisher TrafficSimulatorNode::advertise(const Topic& topic) {
   const Channel& row = topic.row();
   return row.type.advertise(connections_, node_, topic.name(), listeners(topic, graph_),
                             row.latched);

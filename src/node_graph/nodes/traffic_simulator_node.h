@@ -60,7 +60,7 @@ class TrafficSimulatorNode {
   bool startWorld();
   void advertise();
   void listen();
-  node_graph::Publisher advertise(const Topic& topic);
+  ros::Publisher advertise(const Topic& topic);
   void listenTo(const Topic& topic);
   std::string takeAnswer(const Topic& topic, const AnyMessage& message);
   void noteFault(const std::string& source, const std::string& text);
@@ -105,7 +105,7 @@ class TrafficSimulatorNode {
   bool paced() const { return setup_->options().real_time_factor > 0.0; }
 
   StopSignal& stop_;
-  node_graph::NodeHandle node_;
+  ros::NodeHandle node_;
   HeartbeatPublisher heartbeat_;
   SimulatorLimits limits_;
   std::filesystem::path results_;
@@ -124,14 +124,14 @@ class TrafficSimulatorNode {
   MessageGate gate_;
   std::set<std::string> noted_faults_;  ///< texts
   Connections connections_;
-  node_graph::Publisher clock_;
-  node_graph::Publisher session_;
-  node_graph::Publisher traffic_;
-  node_graph::Publisher route_;
-  node_graph::Publisher records_;
+  ros::Publisher clock_;
+  ros::Publisher session_;
+  ros::Publisher traffic_;
+  ros::Publisher route_;
+  ros::Publisher records_;
   Display display_;
-  std::vector<node_graph::Subscriber> inputs_;
-  node_graph::Subscriber ego_control_;
+  std::vector<ros::Subscriber> inputs_;
+  ros::Subscriber ego_control_;
   Clock::time_point ego_heard_at_;  ///< last command of the external ego
   std::set<std::string> blamed_;    ///< nodes that are not waited for any more
   std::unique_ptr<session::World> world_;

@@ -34,7 +34,7 @@ std::optional<TrafficSimulatorNode::Ending> TrafficSimulatorNode::disturbance() 
     return ending(SessionStatus::kError, "the external ego planner",
                   "no node publishes on " + Topic(ChannelId::kEgoControl).name() + " any more");
   }
-  if (!node_graph::ok())
+  if (!ros::ok())
     return ending(SessionStatus::kInterrupted, kTrafficSimulatorNode, "ROS was shut down");
   return std::nullopt;
 }
@@ -89,7 +89,7 @@ void TrafficSimulatorNode::waitForObservers() {
     }
     return false;
   };
-  while (pending() && node_graph::ok() && secondsSince(begin) < limit) spin(kSpinPeriod);
+  while (pending() && ros::ok() && secondsSince(begin) < limit) spin(kSpinPeriod);
   for (const std::string& node : book_.notFinished()) killLaunchedProcess(node);
   for (const std::string& node : book_.silent(kSilence)) killLaunchedProcess(node);
   if (!book_.finished(kMetricsNode)) writeResultAlone(world_->snapshot());
