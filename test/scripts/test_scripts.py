@@ -205,6 +205,26 @@ class Scripts(unittest.TestCase):
             stand_in.write_text("#!/bin/bash\ncase ${!#} in *slow*) exec sleep 60 ;; esac\n")
             self.assertEqual(check("0.05").returncode, 0)  # the end of its time is no failure
 
+    def test_continuous_integration_ends_with_the_line_of_the_tests(self):
+        # Each case: exit codes of clang-tidy's check and of the tests -> that of .ci/run.
+        for check, tests, expected in ((0, 0, 0), (1, 0, 1), (0, 1, 1), (2, 1, 1), (2, 0, 2)):
+            with tempfile.TemporaryDirectory() as folder:
+                root = Path(folder) / "package"
+                for name, body in ((".ci/run", None), ("scripts/setup", "echo set up"), ("scripts/check", f"echo $*; exit {check}"),
+                                   ("scripts/test", f"echo many lines; echo 5 passed, {tests} failed, 0 skipped; exit {tests}")):
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).write_text((SOURCE / name).read_text() if body is None else f"#!/bin/bash\n{body}\n")
+                    (root / name).chmod(0o755)
+                git = ["git", "-C", root, "-c", "user.name=a", "-c", "user.email=a@b"]
+                subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
+                subprocess.run([*git, "add", "-A"], check=True)
+                subprocess.run([*git, "commit", "-qm", "first"], check=True)
+                done = subprocess.run([root / ".ci/run"], capture_output=True, text=True, check=False, timeout=60)
+                self.assertEqual(done.returncode, expected, done.stderr)
+                self.assertEqual(done.stdout.splitlines()[-1], f"5 passed, {tests} failed, 0 skipped")
+                self.assertIn("--tidy --rotating --minutes 5\n", done.stdout)
+                self.assertEqual("clang-tidy failed" in done.stdout, check != 0)
+
     def test_nightly_tests_are_left_to_nightly(self):
         def ctest(*arguments):
             return next(call for call in calls_of("test", *arguments) if call[0] == "ctest")
