@@ -4,9 +4,11 @@
     check_docs.py SOURCE RESULT.xml
 
 No text of the tree spells one of BRITISH. Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
-the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
+the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py;
+docs/images/layers.svg is what scripts/draw_layers makes.
 """
 import re
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -160,6 +162,12 @@ def unfilled(source):
                 yield f"{path.relative_to(source)}:{line}: '{found.group(0)}' was to be filled in"
 
 
+def wrong_picture(source):
+    """What scripts/draw_layers says of the picture of the layers."""
+    done = subprocess.run(["/usr/bin/python3", source / "scripts/draw_layers", "--check"], capture_output=True, text=True, check=False)
+    return (done.stdout + done.stderr).splitlines() if done.returncode != 0 else []
+
+
 def self_test():
     """The search finds what is wrong, and nothing else."""
     wrong = []
@@ -191,7 +199,7 @@ def self_test():
 
 def main():
     source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))),
+    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))), ("picture", wrong_picture(source)),
                ("spelling", list(british_words(source))), ("unfilled", list(unfilled(source)))]
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
     for _, found in results:

@@ -5,6 +5,7 @@
 """
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -224,6 +225,32 @@ class Scripts(unittest.TestCase):
                 self.assertEqual(done.stdout.splitlines()[-1], f"5 passed, {tests} failed, 0 skipped")
                 self.assertIn("--tidy --rotating --minutes 5\n", done.stdout)
                 self.assertEqual("clang-tidy failed" in done.stdout, check != 0)
+
+    def test_the_picture_of_the_layers_follows_the_lists_of_cmake(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("scripts/draw_layers", "test/layers/check_layers.py", "test/support/junit.py"):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(SOURCE / name, root / name)
+            (root / "docs/images").mkdir(parents=True)
+            for name, links in (("core", ""), ("geometry", "e2e_cdiff_core"), ("map", "e2e_cdiff_geometry e2e_cdiff_core"), ("learning", "")):
+                (root / "src" / name).mkdir(parents=True)
+                (root / "src" / name / "CMakeLists.txt").write_text(f"cdiff_layer({name}\n  SOURCES a.cpp LINK {links})  # e2e_cdiff_cbv\n")
+            learning = root / "src/learning/CMakeLists.txt"
+            learning.write_text("cdiff_layer(samples SOURCES a.cpp)\ncdiff_layer(learning SOURCES b.cpp LINK e2e_cdiff_samples)\n"
+                                "target_link_libraries(e2e_cdiff_learning PRIVATE e2e_cdiff_core)\n")
+
+            def draw(*arguments):
+                return subprocess.run([root / "scripts/draw_layers", *arguments], capture_output=True, text=True, check=False).returncode
+            self.assertEqual(draw("--check"), 1)
+            self.assertEqual([draw(), draw("--check"), draw("--chek")], [0, 0, 3])
+            picture = (root / "docs/images/layers.svg").read_text()
+            self.assertEqual(set(re.findall(r'<text x="[^"]*" y="[^"]*">(\w+)<', picture)), {"core", "geometry", "map", "learning"})
+            # geometry -> core, map -> geometry; that map is linked with core follows. The line of learning, six rows above core, has a part for each.
+            self.assertEqual(picture.count('class="link"'), 2 + 6)
+            self.assertEqual(picture.count('class="torch"'), 1 + 1)  # learning and the key
+            learning.write_text(learning.read_text().replace("e2e_cdiff_core", "e2e_cdiff_map"))
+            self.assertEqual(draw("--check"), 1)
 
     def test_nightly_tests_are_left_to_nightly(self):
         def ctest(*arguments):
