@@ -146,7 +146,7 @@ class Scripts(unittest.TestCase):
                 shutil.copy(SOURCE / name, root / name)
             (root / "src").mkdir()
             for i in range(21):
-                (root / f"src/s{i:02}.cpp").write_text("// Teh name of the file is in the line of a finding.\n")
+                (root / f"src/s{i:02}.cpp").write_text("// A kernal.\n")
             git = ["git", "-C", folder, "-c", "user.name=a", "-c", "user.email=a@b"]
             subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
             subprocess.run([*git, "add", "-A"], check=True)
@@ -156,14 +156,14 @@ class Scripts(unittest.TestCase):
                 done = subprocess.run([root / "scripts" / "check", "--spelling", *arguments], capture_output=True, text=True, check=False)
                 if done.returncode == 77:
                     self.skipTest("no codespell")
-                return [line.partition(":")[0] for line in done.stdout.splitlines() if line.endswith("Teh ==> The")]
+                return [line.partition(":")[0] for line in done.stdout.splitlines() if line.endswith("kernal ==> kernel")]
             # 21 sources: those at 0, 10 and 20 on days that end with 0, two on other days.
             self.assertEqual(checked("--rotating", "330"), ["src/s00.cpp", "src/s10.cpp", "src/s20.cpp"])
             self.assertEqual(checked("--rotating", "9"), ["src/s09.cpp", "src/s19.cpp"])
             self.assertGreaterEqual(len(checked("--rotating")), 2)
             subprocess.run([*git, "tag", "0.1.0"], check=True)
             self.assertEqual(checked("--rotating"), [])
-            (root / "src/s07.cpp").write_text("// Teh\n\n")
+            (root / "src/s07.cpp").write_text("// Another kernal.\n")
             self.assertEqual(checked("--rotating"), ["src/s07.cpp"])
 
     def test_words_that_tests_misspell_are_misspelled_elsewhere(self):
