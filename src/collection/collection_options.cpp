@@ -60,6 +60,7 @@ void NoiseOptions::describe(core::OptionsVisitor& visitor) {
                  0.0, 30.0);
 }
 
+// NOLINTNEXTLINE(readability-function-size): a table
 void CollectionOptions::describe(core::OptionsVisitor& visitor) {
   visitor.integer({"vehicles", "", "Background vehicles driven at a time."}, vehicles, 0, 16);
   visitor.number({"duration", "s", "Longest session."}, duration, 1.0, 3600.0);

@@ -25,7 +25,7 @@ class LoadVisitor : public OptionsVisitor {
   /// `source` names the text in errors; `lines`: errors give the line, too.
   LoadVisitor(std::string source, YAML::Node root, bool lines)
       : source_(std::move(source)), lines_(lines) {
-    push("", std::move(root));
+    push("", root);
   }
 
   void number(const FieldInfo& info, double& value, double minimum, double maximum) override {
@@ -69,7 +69,7 @@ class LoadVisitor : public OptionsVisitor {
     const std::string choice = "one of {" + joinText(choices, ", ") + "}";
     if (!node.IsScalar())
       fail(node, info.key, choices.empty() ? "a text" : choice + ": " + info.text);
-    const std::string given = node.Scalar();
+    const std::string& given = node.Scalar();
     if (!choices.empty() && std::find(choices.begin(), choices.end(), given) == choices.end()) {
       const std::string close = closeName(given, choices);
       fail(node, info.key,

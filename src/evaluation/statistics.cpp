@@ -90,8 +90,8 @@ System systemOf(const Factors& factors, const Records& records, RouteBootstrap& 
   system.routes = routes.size();
   system.seeds = seeds.size();
   for (const std::string& name : measureNames()) {
-    PooledEstimate estimate = pooledEstimate(complete, name, bootstrap);
-    if (estimate.runs > 0) system.measures[name] = std::move(estimate);
+    const PooledEstimate estimate = pooledEstimate(complete, name, bootstrap);
+    if (estimate.runs > 0) system.measures[name] = estimate;
   }
   return system;
 }

@@ -52,9 +52,10 @@ const std::vector<std::string>& shownMeasures() {
 std::string nameOf(const System& system, const std::vector<System>& systems) {
   std::vector<std::string> parts;
   for (const auto& [factor, level] : system.factors) {
-    const bool varies = std::any_of(systems.begin(), systems.end(), [&](const System& other) {
-      return other.factors.at(factor) != level;
-    });
+    const bool varies = std::any_of(systems.begin(), systems.end(),
+                                    [&factor = factor, &level = level](const System& other) {
+                                      return other.factors.at(factor) != level;
+                                    });
     if (varies) parts.push_back(factor + " " + (level.empty() ? "-" : level));
   }
   return parts.empty() ? "all runs" : core::joinText(parts, ", ");

@@ -204,25 +204,24 @@ struct Asked {
   dnnl::memory::desc source;
   dnnl::memory::desc destination;
   ConvolutionOptions options;
-  Precision precision;
 };
 
 dnnl::convolution_forward::primitive_desc describe(const dnnl::engine& engine, const Asked& asked,
                                                    const Tensor& weight, bool bias) {
   const dnnl::memory::dims strides = {asked.options.stride, asked.options.stride};
   const dnnl::memory::dims padding = {asked.options.padding, asked.options.padding};
-  const dnnl::memory::desc weights(weight.shape, weightType(asked.precision), Tag::any);
+  const dnnl::memory::desc weights(weight.shape, weightType(asked.options.precision), Tag::any);
   const auto kind = dnnl::prop_kind::forward_inference;
   const auto direct = dnnl::algorithm::convolution_direct;
   if (!bias) {
     return {{kind, direct, asked.source, weights, asked.destination, strides, padding, padding},
-            attributes(false, weight, asked.precision),
+            attributes(false, weight, asked.options.precision),
             engine};
   }
   const dnnl::memory::desc biases({weight.shape[0]}, kFloat, Tag::a);
   return {
       {kind, direct, asked.source, weights, biases, asked.destination, strides, padding, padding},
-      attributes(true, weight, asked.precision),
+      attributes(true, weight, asked.options.precision),
       engine};
 }
 
@@ -230,17 +229,16 @@ dnnl::convolution_forward::primitive_desc describe(const dnnl::engine& engine, c
 
 EncoderConvolution::EncoderConvolution(const dnnl::engine& engine, const MapShape& input,
                                        Tag layout, const ConvolutionOptions& options,
-                                       const Tensor& weight, const Tensor* bias,
-                                       Precision precision)
+                                       const Tensor& weight, const Tensor* bias)
     : output_(inference::outputShape(input, weight.shape[0], weight.shape[2], options)),
       description_(
           describe(engine,
                    {mapDescription(input, input.channels < 8 ? imageLayout(layout) : layout,
-                                   inputType(precision)),
-                    mapDescription(output_, layout), options, precision},
+                                   inputType(options.precision)),
+                    mapDescription(output_, layout), options},
                    weight, bias != nullptr)),
       primitive_(description_) {
-  loadWeights(engine, weight, bias, precision);
+  loadWeights(engine, weight, bias, options.precision);
 }
 
 void EncoderConvolution::loadWeights(const dnnl::engine& engine, const Tensor& weight,

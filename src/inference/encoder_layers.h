@@ -118,10 +118,12 @@ class ConvolutionInput {
   double unit_ = 1.0;
 };
 
-/// Stride and padding of a two-dimensional convolution [pixels].
+/// Stride and padding of a two-dimensional convolution [pixels], and in which numbers it
+/// multiplies.
 struct ConvolutionOptions {
   std::int64_t stride = 1;
   std::int64_t padding = 0;
+  Precision precision = Precision::kFp32;
 };
 
 /// A convolution of the image encoder by oneDNN: weights reordered once into the form that its
@@ -133,8 +135,7 @@ class EncoderConvolution {
   /// input of less than 8 channels comes in imageLayout(layout), all else in `layout`.
   EncoderConvolution(const dnnl::engine& engine, const MapShape& input,
                      dnnl::memory::format_tag layout, const ConvolutionOptions& options,
-                     const Tensor& weight, const Tensor* bias = nullptr,
-                     Precision precision = Precision::kFp32);
+                     const Tensor& weight, const Tensor* bias = nullptr);
 
   const MapShape& outputShape() const { return output_; }
   std::size_t scratchpadBytes() const { return description_.scratchpad_desc().get_size(); }

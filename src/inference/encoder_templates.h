@@ -14,7 +14,7 @@ namespace cdiff::inference {
 
 namespace {
 
-constexpr std::int64_t kSummedInFloat = 64;  ///< pixels
+inline constexpr std::int64_t kSummedInFloat = 64;  ///< pixels
 
 template <class V, bool kSquared>
 void sumLanes(const ChannelRun& run, std::int64_t lane, float mean, double* lanes) {

@@ -125,9 +125,17 @@ void paintBlock(const Block& block, Color walls, Color top, double rank, Painter
   painter.face(topOf(block), shade(top, painter.brightness({0, 0, 1})), rank);
 }
 
-/// A pair of lights on the rear (`x` negative) or front face.
-void paintLights(double x, double inner, double outer, double low, double high, Color color,
-                 Painter& painter) {
+/// A pair of lights on the rear (`x` negative) or front face [m].
+struct Lights {
+  double x;
+  double inner;  ///< distance from the middle
+  double outer;  ///< likewise
+  double low;    ///< above the road
+  double high;   ///< above the road
+};
+
+void paintLights(const Lights& lights, Color color, Painter& painter) {
+  const auto& [x, inner, outer, low, high] = lights;
   const Block right = {x, x, x, x, 0.0, 0.0, low, high};
   for (const double side : {1.0, -1.0}) {
     Corners corners = x < 0.0 ? rearOf(right) : frontOf(right);
@@ -233,9 +241,9 @@ VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance) {
   const double low = car ? 0.34 * size.height : std::min(0.6, 0.3 * size.height);
   const double high = low + (car ? 0.2 : 0.13) * std::min(size.height, 2.5);
   const bool braking = brakeLightsOn(vehicle);
-  paintLights(-0.5 * size.length, (braking ? 0.45 : 0.55) * half, 0.97 * half, low, high,
+  paintLights({-0.5 * size.length, (braking ? 0.45 : 0.55) * half, 0.97 * half, low, high},
               braking ? kBrakeLight : kTailLight, painter);
-  paintLights(0.5 * size.length, 0.6 * half, 0.95 * half, low, high, kHeadlight, painter);
+  paintLights({0.5 * size.length, 0.6 * half, 0.95 * half, low, high}, kHeadlight, painter);
   return painter.body();
 }
 

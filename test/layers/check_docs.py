@@ -4,9 +4,11 @@
     check_docs.py SOURCE RESULT.xml
 
 No text of the tree spells one of BRITISH. Each file and folder that a document names exists; each row of docs/glossary.md and docs/notation.md names identifiers that stand in
-the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py.
+the files of the row; no mark such as @RATE@ waits for its figure; the folder table and the order of layers in docs/architecture.md are those of the tree and of check_layers.py;
+docs/images/layers.svg is what scripts/draw_layers makes; package.xml, CMakeLists.txt, CITATION.cff and the newest release in CHANGELOG.rst have one version.
 """
 import re
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -35,11 +37,12 @@ SPELLING = re.compile(r"(?<![A-Za-z_])(?:" + "|".join(BRITISH) + r")(?:s|d|ed|in
 TEXTS = {".h", ".cpp", ".in", ".py", ".md", ".rst", ".yaml", ".msg", ".launch", ".cmake", ".txt", ".css", ".js", ""}
 # Folders and files whose words stand for something else: sealed bytes, keys in files, and this list.
 LEFT_ALONE = ["config/suites", "config/evaluations/image_effect.yaml", "test/layers/check_docs.py"]
+MOST_WORDS_OF_A_RELEASE = 600
 TABLES = ["docs/glossary.md", "docs/notation.md"]
 
 
 def documents(source):
-    return sorted([*source.glob("*.md"), *(source / "docs").rglob("*.md"), *(source / "examples").rglob("*.md")])
+    return sorted([*source.glob("*.md"), *(path for top in ("docs", "examples", ".github") for path in (source / top).rglob("*.md"))])
 
 
 def source_names(source):
@@ -160,6 +163,30 @@ def unfilled(source):
                 yield f"{path.relative_to(source)}:{line}: '{found.group(0)}' was to be filled in"
 
 
+def wrong_picture(source):
+    """What scripts/draw_layers says of the picture of the layers."""
+    done = subprocess.run(["/usr/bin/python3", source / "scripts/draw_layers", "--check"], capture_output=True, text=True, check=False)
+    return (done.stdout + done.stderr).splitlines() if done.returncode != 0 else []
+
+
+def wrong_release(source):
+    """Files that name another version or date than the newest release in CHANGELOG.rst, and a release that takes long to read."""
+    def found_in(name, pattern):
+        found = re.search(pattern, (source / name).read_text(), re.MULTILINE)
+        return found.group(1) if found else "none"
+    release = re.search(r"^(\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)\n-+\n(.*?)(?=^\S+ \(|\Z)", (source / "CHANGELOG.rst").read_text(), re.MULTILINE | re.DOTALL)
+    if not release:
+        yield "CHANGELOG.rst: no release such as '0.1.0 (2026-11-28)'"
+        return
+    version, date, text = release.groups()
+    for name, pattern, expected in (("package.xml", r"<version>(.*?)</version>", version), ("CMakeLists.txt", r"^project\(\w+ VERSION (\S+)", version),
+                                    ("CITATION.cff", r"^version: (\S+)", version), ("CITATION.cff", r"^date-released: (\S+)", date)):
+        if found_in(name, pattern) != expected:
+            yield f"{name}: {found_in(name, pattern)}, but the newest release in CHANGELOG.rst is {version} of {date}"
+    if len(text.split()) > MOST_WORDS_OF_A_RELEASE:
+        yield f"CHANGELOG.rst: release {version} has {len(text.split())} words, more than {MOST_WORDS_OF_A_RELEASE}"
+
+
 def self_test():
     """The search finds what is wrong, and nothing else."""
     wrong = []
@@ -179,6 +206,13 @@ def self_test():
         found = list(british_words(source))
         if [line.split("'")[1] for line in found] != ["Colours", "centred", "analysed", "centimetre"]:
             wrong.append(f"finds {found}")
+        (source / "CHANGELOG.rst").write_text("Forthcoming\n-----------\n* new\n\n0.2.0 (2026-01-02)\n------------------\n* a\n\n0.1.0 (2025-01-02)\n---\n" + "b " * 700)
+        (source / "package.xml").write_text("<version>0.2.0</version>\n")
+        (source / "CMakeLists.txt").write_text("project(a VERSION 0.1.0 LANGUAGES CXX)\n")
+        (source / "CITATION.cff").write_text("cff-version: 1.2.0\nversion: 0.2.0\ndate-released: 2026-01-03\n")
+        found = list(wrong_release(source))
+        if [line.split(",")[0] for line in found] != ["CMakeLists.txt: 0.1.0", "CITATION.cff: 2026-01-03"]:
+            wrong.append(f"finds {found}")
         page.write_text("@@B2D@@ and @RATE@, a@B.c, @param\n")
         if len(list(unfilled(source))) != 2:
             wrong.append("misses @@B2D@@ or @RATE@, or finds others")
@@ -191,7 +225,8 @@ def self_test():
 
 def main():
     source, result = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))),
+    results = [("self_test", self_test()), ("paths", list(wrong_paths(source))), ("folders", list(wrong_folders(source))), ("picture", wrong_picture(source)),
+               ("release", list(wrong_release(source))),
                ("spelling", list(british_words(source))), ("unfilled", list(unfilled(source)))]
     results += [(Path(table).stem, list(wrong_identifiers(source, table))) for table in TABLES]
     for _, found in results:

@@ -10,7 +10,7 @@
 
 namespace cdiff::test {
 
-using namespace ros;  // NOLINT: a test of that layer
+using namespace node_graph;  // NOLINT: a test of that layer
 
 namespace {
 

@@ -5,6 +5,7 @@
 """
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -136,6 +137,120 @@ class Scripts(unittest.TestCase):
             self.assertEqual(check(), (1, "src/new.h is not formatted\nclang-format: 2 files, 1 with findings\n"))
             self.assertEqual(check("--all")[1].splitlines()[:2], ["src/new.h is not formatted", "src/old.cpp is not formatted"])
             self.assertEqual(check("--base", "nowhere")[0], 3)
+
+    def test_check_reads_a_tenth_or_what_changed_since_the_tag(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("scripts/check", ".codespellrc", "test/misspelled_on_purpose.txt"):
+                (root / name).parent.mkdir(exist_ok=True)
+                shutil.copy(SOURCE / name, root / name)
+            (root / "src").mkdir()
+            for i in range(21):
+                (root / f"src/s{i:02}.cpp").write_text("// A kernal.\n")
+            git = ["git", "-C", folder, "-c", "user.name=a", "-c", "user.email=a@b"]
+            subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
+            subprocess.run([*git, "add", "-A"], check=True)
+            subprocess.run([*git, "commit", "-qm", "first"], check=True)
+
+            def checked(*arguments):
+                done = subprocess.run([root / "scripts" / "check", "--spelling", *arguments], capture_output=True, text=True, check=False)
+                if done.returncode == 77:
+                    self.skipTest("no codespell")
+                return [line.partition(":")[0] for line in done.stdout.splitlines() if line.endswith("kernal ==> kernel")]
+            # 21 sources: those at 0, 10 and 20 on days that end with 0, two on other days.
+            self.assertEqual(checked("--rotating", "330"), ["src/s00.cpp", "src/s10.cpp", "src/s20.cpp"])
+            self.assertEqual(checked("--rotating", "9"), ["src/s09.cpp", "src/s19.cpp"])
+            self.assertGreaterEqual(len(checked("--rotating")), 2)
+            subprocess.run([*git, "tag", "0.1.0"], check=True)
+            self.assertEqual(checked("--rotating"), [])
+            (root / "src/s07.cpp").write_text("// Another kernal.\n")
+            self.assertEqual(checked("--rotating"), ["src/s07.cpp"])
+
+    def test_words_that_tests_misspell_are_misspelled_elsewhere(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("scripts/check", ".codespellrc", "test/misspelled_on_purpose.txt"):
+                (root / name).parent.mkdir(exist_ok=True)
+                shutil.copy(SOURCE / name, root / name)
+            for name in ("docs/a.md", "test/a.cpp", ".github/a.md"):
+                (root / name).parent.mkdir(exist_ok=True)
+                (root / name).write_text("senario of a tread\nin\\nin kOwn\n")
+            done = subprocess.run([root / "scripts" / "check", "--spelling", "--all", "--junit", root / "found.xml"], capture_output=True, text=True, check=False)
+            if done.returncode == 77:
+                self.skipTest("no codespell")
+            self.assertEqual(done.stdout.splitlines()[:2], [".github/a.md:1: senario ==> scenario", "docs/a.md:1: senario ==> scenario"])
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual((root / "found.xml").read_text().count("<failure"), 2)
+
+    def test_clang_tidy_ends_with_its_time(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "scripts").mkdir()
+            (root / "src").mkdir()
+            (root / "programs").mkdir()
+            shutil.copy(SOURCE / "scripts" / "check", root / "scripts")
+            for name in ("quick", "slow", "wrong"):
+                (root / f"src/{name}.cpp").touch()
+            (root / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.16)\nproject(toy LANGUAGES CXX)\n"
+                                                 "add_library(toy src/quick.cpp src/slow.cpp src/wrong.cpp)\nadd_custom_target(e2e_cdiff_generate_messages_cpp)\n")
+            stand_in = root / "programs/clang-tidy-14"
+            stand_in.write_text("#!/bin/bash\ncase ${!#} in *slow*) exec sleep 60 ;; *wrong*) echo found; exit 1 ;; esac\n")
+            stand_in.chmod(0o755)
+
+            def check(minutes):
+                return subprocess.run([root / "scripts" / "check", "--tidy", "--all", "--minutes", minutes], capture_output=True, text=True, check=False, timeout=50,
+                                      env={**os.environ, "PATH": f"{root}/programs:{os.environ['PATH']}", "BUILD": "build", "JOBS": "3"})
+            done = check("0.2")
+            self.assertEqual(done.stdout, "found\nclang-tidy: 2 files, 1 with findings; its time ended before 1 more\n", done.stderr)
+            self.assertEqual(done.returncode, 1)
+            stand_in.write_text("#!/bin/bash\ncase ${!#} in *slow*) exec sleep 60 ;; esac\n")
+            self.assertEqual(check("0.05").returncode, 0)  # the end of its time is no failure
+
+    def test_continuous_integration_ends_with_the_line_of_the_tests(self):
+        # Each case: exit codes of clang-tidy's check and of the tests -> that of .ci/run.
+        for check, tests, expected in ((0, 0, 0), (1, 0, 1), (0, 1, 1), (2, 1, 1), (2, 0, 2)):
+            with tempfile.TemporaryDirectory() as folder:
+                root = Path(folder) / "package"
+                for name, body in ((".ci/run", None), ("scripts/setup", "echo set up"), ("scripts/check", f"echo $*; exit {check}"),
+                                   ("scripts/test", f"echo many lines; echo 5 passed, {tests} failed, 0 skipped; exit {tests}")):
+                    (root / name).parent.mkdir(parents=True, exist_ok=True)
+                    (root / name).write_text((SOURCE / name).read_text() if body is None else f"#!/bin/bash\n{body}\n")
+                    (root / name).chmod(0o755)
+                git = ["git", "-C", root, "-c", "user.name=a", "-c", "user.email=a@b"]
+                subprocess.run([*git, "init", "-q", "-b", "main"], check=True)
+                subprocess.run([*git, "add", "-A"], check=True)
+                subprocess.run([*git, "commit", "-qm", "first"], check=True)
+                done = subprocess.run([root / ".ci/run"], capture_output=True, text=True, check=False, timeout=60)
+                self.assertEqual(done.returncode, expected, done.stderr)
+                self.assertEqual(done.stdout.splitlines()[-1], f"5 passed, {tests} failed, 0 skipped")
+                self.assertIn("--tidy --rotating --minutes 5\n", done.stdout)
+                self.assertEqual("clang-tidy failed" in done.stdout, check != 0)
+
+    def test_the_picture_of_the_layers_follows_the_lists_of_cmake(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for name in ("scripts/draw_layers", "test/layers/check_layers.py", "test/support/junit.py"):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(SOURCE / name, root / name)
+            (root / "docs/images").mkdir(parents=True)
+            for name, links in (("core", ""), ("geometry", "e2e_cdiff_core"), ("map", "e2e_cdiff_geometry e2e_cdiff_core"), ("learning", "")):
+                (root / "src" / name).mkdir(parents=True)
+                (root / "src" / name / "CMakeLists.txt").write_text(f"cdiff_layer({name}\n  SOURCES a.cpp LINK {links})  # e2e_cdiff_cbv\n")
+            learning = root / "src/learning/CMakeLists.txt"
+            learning.write_text("cdiff_layer(samples SOURCES a.cpp)\ncdiff_layer(learning SOURCES b.cpp LINK e2e_cdiff_samples)\n"
+                                "target_link_libraries(e2e_cdiff_learning PRIVATE e2e_cdiff_core)\n")
+
+            def draw(*arguments):
+                return subprocess.run([root / "scripts/draw_layers", *arguments], capture_output=True, text=True, check=False).returncode
+            self.assertEqual(draw("--check"), 1)
+            self.assertEqual([draw(), draw("--check"), draw("--chek")], [0, 0, 3])
+            picture = (root / "docs/images/layers.svg").read_text()
+            self.assertEqual(set(re.findall(r'<text x="[^"]*" y="[^"]*">(\w+)<', picture)), {"core", "geometry", "map", "learning"})
+            # geometry -> core, map -> geometry; that map is linked with core follows. The line of learning, six rows above core, has a part for each.
+            self.assertEqual(picture.count('class="link"'), 2 + 6)
+            self.assertEqual(picture.count('class="torch"'), 1 + 1)  # learning and the key
+            learning.write_text(learning.read_text().replace("e2e_cdiff_core", "e2e_cdiff_map"))
+            self.assertEqual(draw("--check"), 1)
 
     def test_nightly_tests_are_left_to_nightly(self):
         def ctest(*arguments):

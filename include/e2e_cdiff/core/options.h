@@ -31,6 +31,7 @@ class OptionsVisitor {
   /// A whole number in [minimum, maximum].
   virtual void integer(const FieldInfo& info, std::int64_t& value, std::int64_t minimum,
                        std::int64_t maximum) = 0;
+  /// Yes or no.
   virtual void flag(const FieldInfo& info, bool& value) = 0;
   /// A text; when `choices` is not empty, one of them.
   virtual void text(const FieldInfo& info, std::string& value,
@@ -43,6 +44,7 @@ class OptionsVisitor {
   virtual void points(const FieldInfo& info, std::vector<Eigen::Vector3d>& value) = 0;
   /// Enters a nested group, which `leave` ends; returns whether the group is to be visited.
   virtual bool enter(const FieldInfo& info) = 0;
+  /// Leaves the group that was entered last.
   virtual void leave() = 0;
 
   /// Visits a nested options struct under `info.key`.
@@ -72,6 +74,7 @@ class OptionsVisitor {
   virtual std::optional<std::size_t> givenGroups(const FieldInfo&) { return std::nullopt; }
   /// Enters a list, which `leaveGroups` ends; returns whether its groups are to be visited.
   virtual bool enterGroups(const FieldInfo&) { return false; }
+  /// Leaves the list that was entered last.
   virtual void leaveGroups() {}
   /// Enters a group of the list, which `leave` ends.
   virtual void enterItem(std::size_t) {}
@@ -79,8 +82,8 @@ class OptionsVisitor {
 
 /// A YAML text with the name it is known by in errors ("file.yaml", "--set", "parameter ~set").
 struct YamlSource {
-  std::string name;
-  std::string text;
+  std::string name;  ///< in errors
+  std::string text;  ///< the YAML
 };
 
 namespace detail {

@@ -23,6 +23,7 @@ struct RandomKey {
 /// element), so no draw depends on the order of others. Copyable, without state.
 class RandomStream {
  public:
+  /// The stream of this name: streams of one seed with different names are independent.
   RandomStream(std::uint64_t root_seed, std::string_view name);
 
   /// 64 random bits for one element.

@@ -15,7 +15,8 @@ struct BicycleModelOptions {
   double max_deceleration = 8.0;       ///< cap of braking [m/s^2]
   double max_speed = 40.0;             ///< [m/s]
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
+  /// Throws InputError unless lengths, wheelbase and limits are positive.
   void validate() const;
 };
 
@@ -49,21 +50,27 @@ struct SlipResponse {
 ///    brake x change of full brake.
 class BicycleModel {
  public:
+  /// Throws InputError for options that BicycleModelOptions::validate refuses.
   explicit BicycleModel(const BicycleModelOptions& options = {});
   /// State after `duration` [s] with the action held; `duration` is a multiple of 0.05 s up to
   /// rounding, the polynomials being per 0.05 s. Never reverses. Elevation is kept. Throws
   /// std::invalid_argument for an invalid action.
   traffic::VehicleState step(const traffic::VehicleState& state,
                              const traffic::ControlAction& action, double duration) const;
+  /// What it was made with.
   const BicycleModelOptions& options() const { return options_; }
 
-  /// The parts of a tick, for derivatives along many ticks; the action is not checked. Where the
-  /// response has a kink (0.3 of throttle, caps, standstill) the derivative is that of the branch
-  /// that `step` takes.
+  // The parts of a tick, for derivatives along many ticks; the action is not checked. Where the
+  // response has a kink (0.3 of throttle, caps, standstill) the derivative is that of the branch
+  // that `step` takes.
   static constexpr double kTick = 0.05;  ///< [s] the period that the fitted polynomials describe
+  /// Slip angle of the center at a steer in [-1, 1] [rad].
   double slip(double steer) const;
+  /// The same with its derivative.
   SlipResponse slipResponse(double steer) const;
+  /// Speed one tick after `speed` [m/s].
   double nextSpeed(double speed, const traffic::ControlAction& action) const;
+  /// The same with its derivatives.
   SpeedResponse speedResponse(double speed, const traffic::ControlAction& action) const;
 
  private:

@@ -78,8 +78,8 @@ struct Projection {
 
 /// Part of a line around an arc length, in which a vehicle is looked for that was there before [m].
 struct SearchWindow {
-  double behind = 0.0;
-  double ahead = 0.0;
+  double behind = 0.0;  ///< how far before that arc length
+  double ahead = 0.0;   ///< how far beyond it
 };
 
 /// A line through points (x, y, z) in the map frame [m], parametrized by its arc length in the
@@ -91,14 +91,18 @@ class Polyline {
   /// two distinct points or a non-finite coordinate.
   explicit Polyline(const std::vector<Eigen::Vector3d>& points);
 
+  /// Its points, without the merged ones.
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
   /// Arc length of each point [m].
   const std::vector<double>& arcLengths() const { return arc_lengths_; }
+  /// Whether it was made without points.
   bool empty() const { return points_.empty(); }
+  /// Arc length of its end [m].
   double length() const { return arc_lengths_.empty() ? 0.0 : arc_lengths_.back(); }
 
   /// Point at an arc length, clamped to the ends.
   Eigen::Vector3d pointAt(double arc_length) const;
+  /// The same without elevation.
   Eigen::Vector2d positionAt(double arc_length) const { return pointAt(arc_length).head<2>(); }
   /// Heading of the segment at an arc length, clamped to the ends [rad].
   double headingAt(double arc_length) const;

@@ -14,18 +14,19 @@ namespace cdiff::guidance {
 /// An objective with the values that a profile gives it: its weight w_i in the sum, the diffusion
 /// steps k (counting down from K to 1) at which it acts, and the cap of its gradient.
 struct WeightedObjective {
-  std::string name;
+  std::string name;             ///< of the objective
   double weight = 0.0;          ///< w_i; 0 switches it off
   std::int64_t first_step = 0;  ///< acts at k <= first_step; 0: from K on
   std::int64_t last_step = 1;   ///< acts at k >= last_step
   double gradient_cap = 0.0;    ///< largest |w_i dJ_i/d tau| of a sample, normalized units; 0: none
-  std::unique_ptr<Objective> objective;
+  std::unique_ptr<Objective> objective;  ///< with its own options
 
+  /// Whether it has a weight and the step lies in its window.
   bool actsAt(int diffusion_step) const {
     return weight > 0.0 && diffusion_step >= last_step &&
            (first_step == 0 || diffusion_step <= first_step);
   }
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
 };
 
 /// Guidance of a session: every objective with weight, window and cap; J_total = sum_i w_i J_i
@@ -33,10 +34,10 @@ struct WeightedObjective {
 /// per known objective, all switched off by default; copies are deep.
 struct GuidanceOptions {
   GuidanceOptions();
-  GuidanceOptions(const GuidanceOptions& other);
-  GuidanceOptions(GuidanceOptions&&) noexcept = default;
-  GuidanceOptions& operator=(const GuidanceOptions& other);
-  GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;
+  GuidanceOptions(const GuidanceOptions& other);                     ///< deep copy
+  GuidanceOptions(GuidanceOptions&&) noexcept = default;             ///< move
+  GuidanceOptions& operator=(const GuidanceOptions& other);          ///< deep copy
+  GuidanceOptions& operator=(GuidanceOptions&&) noexcept = default;  ///< move
 
   std::vector<WeightedObjective> objectives;  ///< in the order of the table of objectives
   /// Farthest that a proximal step (sampler mode real_time) moves an action, in units of the spread
@@ -62,7 +63,7 @@ struct GuidanceOptions {
   bool acts(const WeightedObjective& entry, int diffusion_step) const {
     return diffusion_step >= last_step && entry.actsAt(diffusion_step);
   }
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
   /// Throws InputError; `group` is put before the keys that it names ("guidance.").
   void validate(const std::string& group = "") const;
   /// Throws InputError naming the key, with `group` before it, of an active objective whose window
@@ -81,8 +82,8 @@ std::vector<std::string> shippedProfiles();
 
 /// One objective over the denoising steps of the sample that was chosen.
 struct ObjectiveReport {
-  std::string name;
-  double weight = 0.0;
+  std::string name;            ///< of the objective
+  double weight = 0.0;         ///< w_i
   double value = 0.0;          ///< J of the rollout that was chosen (unweighted)
   double gradient_norm = 0.0;  ///< mean over active steps of |w dJ/d tau| at the start of the
                                ///< step, before the cap, normalized units

@@ -16,8 +16,8 @@ namespace cdiff::guidance {
 
 /// Another vehicle over the horizon.
 struct OtherMotion {
-  traffic::VehicleState now;
-  traffic::VehicleDimensions dimensions;
+  traffic::VehicleState now;                     ///< its state at this decision
+  traffic::VehicleDimensions dimensions;         ///< its box
   std::vector<traffic::VehicleState> predicted;  ///< at rows 1..T, 0.1 s apart
   bool by_same_rules = false;  ///< driven by the same planner, so that it gives way by these rules
   bool goes_first = false;     ///< then: the planned vehicle waits for it
@@ -28,7 +28,7 @@ struct OtherMotion {
 struct GuidanceScene {
   traffic::VehicleState
       state;  ///< state of the planned vehicle, which is the body frame of rollouts
-  traffic::VehicleDimensions dimensions;
+  traffic::VehicleDimensions dimensions;             ///< its box
   double target_speed = 8.0;                         ///< v* after the lane's limit [m/s]
   const map::DrivableArea* drivable_area = nullptr;  ///< never null
   const map::Route* route = nullptr;                 ///< null: no route
@@ -76,14 +76,15 @@ class Objective {
   /// them to the actions.
   virtual double evaluate(const GuidanceScene& scene, const traffic::Rollout& rollout,
                           traffic::Rollout& gradient) const = 0;
+  /// A copy with its options and what `prepare` found.
   virtual std::unique_ptr<Objective> clone() const = 0;
 };
 
 /// What is known about a guidance objective before one is made.
 struct ObjectiveDescriptor {
-  std::string name;  ///< in guidance profiles, snake_case
-  std::string help;  ///< one sentence: what a plan does to lower it
-  std::function<std::unique_ptr<Objective>()> make;
+  std::string name;                                  ///< in guidance profiles, snake_case
+  std::string help;                                  ///< one sentence: what a plan does to lower it
+  std::function<std::unique_ptr<Objective>()> make;  ///< one with default options
 };
 
 }  // namespace cdiff::guidance

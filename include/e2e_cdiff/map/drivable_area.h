@@ -20,13 +20,15 @@ struct SignedDistance {
 /// elevation, with the signed distance to its border [m], positive inside, and its gradient.
 class DrivableArea {
  public:
+  /// Throws InputError for a network without a lane that allows cars.
   explicit DrivableArea(const RoadNetwork& network);
-  DrivableArea(DrivableArea&&) noexcept;
-  DrivableArea& operator=(DrivableArea&&) noexcept;
+  DrivableArea(DrivableArea&&) noexcept;             ///< move
+  DrivableArea& operator=(DrivableArea&&) noexcept;  ///< move
   ~DrivableArea();
 
   /// Exact distance to the border of the area on the level of `elevation` [m].
   double signedDistance(const Eigen::Vector2d& position, double elevation = 0.0) const;
+  /// The same with its gradient.
   SignedDistance signedDistanceWithGradient(const Eigen::Vector2d& position,
                                             double elevation = 0.0) const;
   /// Whether a point lies on the area.

@@ -53,15 +53,15 @@ struct Lane {
 
 /// A junction of the network: position and outline in the map frame [m].
 struct Junction {
-  std::string id;
+  std::string id;    ///< SUMO's id
   std::string type;  ///< SUMO's type: priority, traffic_light, dead_end ...
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> shape;  ///< outline; may be empty
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< its node
+  std::vector<Eigen::Vector3d> shape;                  ///< outline; may be empty
 };
 
 /// A lane near a point.
 struct LaneMatch {
-  LaneIndex lane = kNoLane;
+  LaneIndex lane = kNoLane;         ///< the lane
   geometry::Projection projection;  ///< onto the lane's centerline
   double heading_difference = 0.0;  ///< lane heading minus asked heading, in (-pi, pi] [rad]
 };
@@ -75,12 +75,15 @@ class RoadNetwork {
   /// in errors. Throws InputError naming the file, the element and what was expected.
   static RoadNetwork fromText(std::string_view xml, const std::string& name);
 
-  RoadNetwork(RoadNetwork&&) noexcept;
-  RoadNetwork& operator=(RoadNetwork&&) noexcept;
+  RoadNetwork(RoadNetwork&&) noexcept;             ///< move
+  RoadNetwork& operator=(RoadNetwork&&) noexcept;  ///< move
   ~RoadNetwork();
 
+  /// All lanes, by index.
   const std::vector<Lane>& lanes() const { return lanes_; }
+  /// A lane of this network; the index is not checked.
   const Lane& lane(LaneIndex index) const { return lanes_[static_cast<std::size_t>(index)]; }
+  /// All junctions, in file order.
   const std::vector<Junction>& junctions() const { return junctions_; }
   /// Index of a lane by SUMO's id, or kNoLane.
   LaneIndex findLane(const std::string& id) const;
@@ -88,7 +91,7 @@ class RoadNetwork {
   std::vector<LaneIndex> lanesOfEdge(const std::string& edge_id) const;
   /// All edge ids in file order, internal ones left out.
   const std::vector<std::string>& edgeIds() const { return edge_ids_; }
-  /// netOffset of <location> [m]: network position = source position + offset.
+  /// netOffset of `<location>` [m]: network position = source position + offset.
   const Eigen::Vector2d& netOffset() const { return net_offset_; }
 
   /// Lanes that allow cars and whose centerline passes within `radius` of a point in the plane and

@@ -23,8 +23,11 @@ class Route {
   Route(const RoadNetwork& network, const std::vector<Eigen::Vector3d>& points,
         const std::vector<LaneIndex>& lanes);
 
+  /// Whether it was made without points.
   bool empty() const { return path_.empty(); }
+  /// Arc length of its end [m].
   double length() const { return path_.length(); }
+  /// Its points as a line.
   const geometry::Polyline& path() const { return path_; }
   /// Lane of each point of `path()`.
   const std::vector<LaneIndex>& lanes() const { return lanes_; }
@@ -46,6 +49,7 @@ class Route {
     std::string id;           ///< traffic light
     int link = -1;            ///< position in its state text
   };
+  /// The traffic lights along the route, in driving order.
   const std::vector<Signal>& signals() const { return signals_; }
   /// Arc lengths of the stop lines along the route at which right of way is SUMO's 's' (stop sign)
   /// or 'w' (all-way stop): where the lanes before those links end [m].
@@ -85,6 +89,7 @@ class RouteProgress {
   /// behind and the position is within `completion_distance` [m] of the end.
   explicit RouteProgress(const Route& route, double completion_percent = 99.0,
                          double completion_distance = 10.0);
+  /// Takes the vehicle's position, in the map frame [m].
   void update(const Eigen::Vector2d& position);
   /// Farthest arc length so far [m].
   double arcLength() const { return arc_length_; }

@@ -51,10 +51,10 @@ enum class SessionWeight {
 /// How a measure is summed up over sessions and between which values it lies, from which its
 /// interval follows. The default follows from the measure's unit and subject.
 struct PoolingRule {
-  Pooling kind = Pooling::kByUnit;
-  SessionWeight weight = SessionWeight::kByKind;
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
+  Pooling kind = Pooling::kByUnit;                          ///< what values are summed up to
+  SessionWeight weight = SessionWeight::kByKind;            ///< what a session weighs
+  double least = -std::numeric_limits<double>::infinity();  ///< no value is smaller
+  double most = std::numeric_limits<double>::infinity();    ///< no value is larger
 };
 
 /// Means and statistics of values that lie between 0 and 1, between 0 and 100, anywhere.
@@ -68,16 +68,16 @@ inline constexpr PoolingRule kEvents = {Pooling::kCount, SessionWeight::kByKind}
 
 /// The definition of one measure. Its texts must live as long as the program: string literals.
 struct MeasureDefinition {
-  const char* name;   ///< snake_case, unique; of messages and batch columns
-  const char* place;  ///< JSON pointer to the number in summary.json; "": /metrics/NAME/value
-  const char* label;  ///< for people
-  const char* unit;   ///< "s", "%", "m/s" ..., "count" for whole numbers, "" without unit
-  Direction direction;
-  Subject subject;
-  const char* definition;    ///< sentences, source included
-  const char* rift_compat;   ///< how RIFT's code differs; "" where it does not compute it otherwise
-  int decimals = 3;          ///< in the report's table
-  bool main = false;         ///< whether /diagnostics shows it
+  const char* name;         ///< snake_case, unique; of messages and batch columns
+  const char* place;        ///< JSON pointer to the number in summary.json; "": /metrics/NAME/value
+  const char* label;        ///< for people
+  const char* unit;         ///< "s", "%", "m/s" ..., "count" for whole numbers, "" without unit
+  Direction direction;      ///< which values are better
+  Subject subject;          ///< whose driving it describes
+  const char* definition;   ///< sentences, source included
+  const char* rift_compat;  ///< how RIFT's code differs; "" where it does not compute it otherwise
+  int decimals = 3;         ///< in the report's table
+  bool main = false;        ///< whether /diagnostics shows it
   PoolingRule pooling = {};  ///< how batches sum it up
 };
 
@@ -104,14 +104,14 @@ struct Interaction {
 
 /// A CBV of the tick.
 struct CbvSighting {
-  const traffic::Vehicle* vehicle = nullptr;
-  bool off_road = false;                     ///< whether its center is off the drivable area
-  std::optional<double> wanted_speed = {};   ///< target speed capped by the lane's limit [m/s]
-  std::optional<double> ego_distance = {};   ///< distance between the centers of ego and CBV [m]
-  bool corner_off_road = false;              ///< whether any corner of its box is off the road
-  double chord = 0.0;                        ///< driven since the last tick, where it was CBV [m]
-  std::optional<double> edge_distance = {};  ///< smallest signed distance of its corners to the
-                                             ///< edge of the drivable area, positive inside [m]
+  const traffic::Vehicle* vehicle = nullptr;  ///< never null in a tick
+  bool off_road = false;                      ///< whether its center is off the drivable area
+  std::optional<double> wanted_speed = {};    ///< target speed capped by the lane's limit [m/s]
+  std::optional<double> ego_distance = {};    ///< distance between the centers of ego and CBV [m]
+  bool corner_off_road = false;               ///< whether any corner of its box is off the road
+  double chord = 0.0;                         ///< driven since the last tick, where it was CBV [m]
+  std::optional<double> edge_distance = {};   ///< smallest signed distance of its corners to the
+                                              ///< edge of the drivable area, positive inside [m]
 
   /// Whether its position is finite.
   bool placed() const { return vehicle->state.position.allFinite(); }
@@ -126,40 +126,40 @@ struct ContactSighting {
 
 /// A contact of the ego and who is at fault (docs/protocols.md).
 struct EgoContact {
-  std::uint64_t tick = 0;  ///< first tick with overlap
-  double seconds = 0.0;    ///< its time [s]
-  std::string partner;     ///< id of the other vehicle
-  bool ego_at_fault = false;
+  std::uint64_t tick = 0;      ///< first tick with overlap
+  double seconds = 0.0;        ///< its time [s]
+  std::string partner;         ///< id of the other vehicle
+  bool ego_at_fault = false;   ///< by the rules of docs/protocols.md
   std::string reason;          ///< why, in a short sentence
   double ego_speed = 0.0;      ///< at that tick [m/s]
   double partner_speed = 0.0;  ///< [m/s]
   std::string ego_side;        ///< "front", "rear", "left side", "right side"; empty: not known
-  std::string partner_side;
-  double x = 0.0;          ///< place of the contact, map frame [m]
-  double y = 0.0;          ///< [m]
+  std::string partner_side;    ///< likewise
+  double x = 0.0;              ///< place of the contact, map frame [m]
+  double y = 0.0;              ///< [m]
   bool avoidable = false;  ///< whether the ego could have avoided it by braking (docs/metrics.md)
 };
 
 /// One tick as metrics see it: the snapshot, the selection, and what several metrics need of them
 /// (map frame, SI units). The actions are in the snapshot (`traffic::Vehicle::applied_action`).
 struct MetricTick {
-  const traffic::TrafficSnapshot& snapshot;
+  const traffic::TrafficSnapshot& snapshot;      ///< of the tick
   const cbv::CbvSelection* selection = nullptr;  ///< at decision ticks, where known; else nullptr
   const traffic::Vehicle* ego = nullptr;         ///< nullptr without one
   bool ego_off_road = false;                     ///< whether its center is off the drivable area
   double ego_arc_length = 0.0;                   ///< farthest place reached along the ego route [m]
   double route_completion_percent = 0.0;  ///< the ego's route completion, by the protocol's rule
-  Interaction interaction = {};
-  std::vector<CbvSighting> cbvs = {};  ///< vehicles whose role is CBV, in the snapshot's order
-  std::vector<ContactSighting> contacts = {};
-  std::vector<EgoContact> ego_contacts = {};  ///< that began at this tick, judged
+  Interaction interaction = {};           ///< the ego against the others
+  std::vector<CbvSighting> cbvs = {};     ///< vehicles whose role is CBV, in the snapshot's order
+  std::vector<ContactSighting> contacts = {};  ///< that began at this tick
+  std::vector<EgoContact> ego_contacts = {};   ///< that began at this tick, judged
 };
 
 /// What a metric may keep for the session; all references outlive the metric.
 struct MetricContext {
-  const map::DrivableArea& drivable_area;
-  const map::Route& ego_route;
-  const SessionMetricsOptions& options;
+  const map::DrivableArea& drivable_area;  ///< of the session's network
+  const map::Route& ego_route;             ///< the ego's route
+  const SessionMetricsOptions& options;    ///< what metrics know about the scenario
 };
 
 /// Keys and values of one entry of a list in summary.json, in order.
@@ -195,7 +195,7 @@ struct MetricDescriptor {
   std::string name;                         ///< snake_case, unique
   std::string help;                         ///< a sentence
   std::vector<MeasureDefinition> measures;  ///< in the order of the table; names and places unique
-  std::function<std::unique_ptr<Metric>(const MetricContext&)> make;
+  std::function<std::unique_ptr<Metric>(const MetricContext&)> make;  ///< for one session
   std::string source = "e2e_cdiff";  ///< who registers it; a plug-in gives its file
 };
 

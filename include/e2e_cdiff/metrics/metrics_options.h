@@ -33,7 +33,8 @@ struct InfractionOptions {
   bool speed_counts = false;            ///< whether the minimum speed enters the score
   std::string penalty = "factors";      ///< factors | charges
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
+  /// How `penalty` and `speed_counts` charge the score.
   ScoreRules scoreRules() const;
 };
 
@@ -48,7 +49,7 @@ struct MetricsOptions {
   /// no file.
   std::vector<std::string> speed_target_samples;
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
   /// Throws InputError for a file target without file or samples, and for a sample that is no
   /// finite number.
   void validate() const;

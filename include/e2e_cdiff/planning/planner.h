@@ -24,12 +24,12 @@ namespace cdiff::planning {
 
 /// What a planner may keep for the session; all references outlive the planner.
 struct PlanningContext {
-  const map::RoadNetwork& network;
-  const map::DrivableArea& drivable_area;
-  std::uint64_t seed = 1;
-  double simulation_step = 0.05;          ///< [s]
-  double decision_period = 0.1;           ///< [s]
-  const map::Route* ego_route = nullptr;  ///< for forecasts of the ego; may be null
+  const map::RoadNetwork& network;         ///< of the session
+  const map::DrivableArea& drivable_area;  ///< of that network
+  std::uint64_t seed = 1;                  ///< root seed of the session
+  double simulation_step = 0.05;           ///< [s]
+  double decision_period = 0.1;            ///< [s]
+  const map::Route* ego_route = nullptr;   ///< for forecasts of the ego; may be null
 };
 
 /// How a vehicle drives, for planners that follow by IDM (defaults: PDM-Lite's). With an
@@ -40,12 +40,13 @@ struct DrivingStyle {
   double time_headway = 0.25;  ///< T [s]
   double acceleration = 0.0;   ///< a [m/s^2]; 0: PDM-Lite's own pedals, full or none
   double deceleration = 3.0;   ///< b, comfortable, where a is given [m/s^2]
+  /// Whether pedals are smooth.
   bool even() const { return acceleration > 0.0; }
 };
 
 /// What the cameras of a vehicle saw at a decision; without a rig for planners that see nothing.
 struct CameraViews {
-  const rendering::CameraRig* rig = nullptr;
+  const rendering::CameraRig* rig = nullptr;  ///< the cameras; null: none
   /// One per camera, in the rig's order; nullptr where none came.
   std::vector<const traffic::CameraImage*> images;
 
@@ -57,26 +58,26 @@ struct CameraViews {
 
 /// One vehicle to drive at this decision.
 struct PlanningTask {
-  int slot = traffic::kEgoSlot;  ///< that, or of a CBV
-  const traffic::Vehicle* vehicle = nullptr;
+  int slot = traffic::kEgoSlot;                 ///< that, or of a CBV
+  const traffic::Vehicle* vehicle = nullptr;    ///< in the snapshot; never null
   const map::Route* route = nullptr;            ///< ego route, or the CBV's conflict-aware route
   double target_speed = 8.0;                    ///< v* before the lane's limit [m/s]
   const traffic::CameraImage* image = nullptr;  ///< of its camera "front", for planners that see
-  DrivingStyle style = {};
-  CameraViews views = {};  ///< of all its cameras, for planners that see
+  DrivingStyle style = {};                      ///< for planners that follow by IDM
+  CameraViews views = {};                       ///< of all its cameras, for planners that see
 };
 
 /// A state and the action that leads to it; a plan is a list of these (plan step 0.1 s), for
 /// display.
 struct RolloutPoint {
-  traffic::VehicleState state;
-  traffic::ControlAction action;
+  traffic::VehicleState state;    ///< map frame
+  traffic::ControlAction action;  ///< during the plan step before it
 };
 
 /// How much a planner looked at a vehicle when it decided.
 struct AttendedVehicle {
-  std::string vehicle_id;
-  double weight = 0.0;  ///< share of the planner's attention, in [0, 1]; all together at most 1
+  std::string vehicle_id;  ///< in the snapshot
+  double weight = 0.0;     ///< share of the planner's attention, in [0, 1]; all together at most 1
 };
 
 /// Time from one place of a candidate to the next [s].
@@ -97,8 +98,8 @@ struct PerceivedForecast {
 
 /// A vehicle that a planner believes to see (map frame).
 struct PerceivedVehicle {
-  traffic::VehicleState state;
-  traffic::VehicleDimensions dimensions;
+  traffic::VehicleState state;               ///< as it is believed to be
+  traffic::VehicleDimensions dimensions;     ///< likewise
   double score = 0.0;                        ///< in [0, 1]
   std::vector<PerceivedForecast> forecasts;  ///< in the planner's own order
 };
@@ -117,25 +118,26 @@ struct PerceivedOccupancy {
   geometry::Pose2d frame;                            ///< of the vehicle now (map frame)
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< in `frame` [m]
   double cell = 1.0;                                 ///< side of a cell [m]
-  int rows = 0;
-  int columns = 0;
-  std::vector<float> probability;  ///< [rows x columns], in [0, 1]
+  int rows = 0;                                      ///< number of cells along x
+  int columns = 0;                                   ///< number of cells along y
+  std::vector<float> probability;                    ///< [rows x columns], in [0, 1]
 };
 
 /// What a planner believes to see when it decides, for people who look: markers, report, video.
 struct Perception {
-  std::vector<PerceivedVehicle> vehicles;
-  std::vector<PerceivedLine> lines;
-  std::vector<PerceivedOccupancy> occupancy;
+  std::vector<PerceivedVehicle> vehicles;     ///< in the planner's own order
+  std::vector<PerceivedLine> lines;           ///< likewise
+  std::vector<PerceivedOccupancy> occupancy;  ///< by time
+  /// Whether it holds nothing.
   bool empty() const { return vehicles.empty() && lines.empty() && occupancy.empty(); }
 };
 
 /// What a planner decided for one vehicle: the action to apply, with the rollout and the report it
 /// comes from.
 struct PlannedAction {
-  int slot = traffic::kEgoSlot;
-  std::string vehicle_id;
-  traffic::ControlAction action;
+  int slot = traffic::kEgoSlot;         ///< of the task
+  std::string vehicle_id;               ///< of the task's vehicle
+  traffic::ControlAction action;        ///< to apply until the next decision
   std::vector<RolloutPoint> rollout;    ///< may be empty
   std::string fault{};                  ///< why `action` is the fail-safe action; empty when none
   guidance::GuidanceReport guidance{};  ///< what guidance did; set by planners that are guided
@@ -171,9 +173,11 @@ inline constexpr const char* kExternalPlanner = "external";
 class PlannerOptions {
  public:
   virtual ~PlannerOptions() = default;
+  /// Visits every option.
   virtual void describe(core::OptionsVisitor& visitor) = 0;
   /// Throws InputError for values that contradict each other.
   virtual void validate() const = 0;
+  /// A copy.
   virtual std::unique_ptr<PlannerOptions> clone() const = 0;
 };
 
@@ -181,12 +185,14 @@ class PlannerOptions {
 template <class Options>
 class PlannerOptionsOf final : public PlannerOptions {
  public:
+  /// Visits every option.
   void describe(core::OptionsVisitor& visitor) override { values.describe(visitor); }
   void validate() const override { values.validate(); }
+  /// A copy.
   std::unique_ptr<PlannerOptions> clone() const override {
     return std::make_unique<PlannerOptionsOf>(*this);
   }
-  Options values;
+  Options values;  ///< the struct
 };
 
 /// The options of all planners of a scenario. Copies are deep.
@@ -194,17 +200,18 @@ class PlannerOptionsTable {
  public:
   /// A planner's name with a sentence about it, and its options.
   struct Entry {
-    std::string name;
-    std::string help;
-    std::unique_ptr<PlannerOptions> options;
+    std::string name;                         ///< of the planner
+    std::string help;                         ///< the sentence
+    std::unique_ptr<PlannerOptions> options;  ///< never null
   };
 
   PlannerOptionsTable() = default;
+  /// One entry per planner.
   explicit PlannerOptionsTable(std::vector<Entry> entries) : entries_(std::move(entries)) {}
-  PlannerOptionsTable(const PlannerOptionsTable& other);
-  PlannerOptionsTable(PlannerOptionsTable&&) noexcept = default;
-  PlannerOptionsTable& operator=(const PlannerOptionsTable& other);
-  PlannerOptionsTable& operator=(PlannerOptionsTable&&) noexcept = default;
+  PlannerOptionsTable(const PlannerOptionsTable& other);                     ///< deep copy
+  PlannerOptionsTable(PlannerOptionsTable&&) noexcept = default;             ///< move
+  PlannerOptionsTable& operator=(const PlannerOptionsTable& other);          ///< deep copy
+  PlannerOptionsTable& operator=(PlannerOptionsTable&&) noexcept = default;  ///< move
 
   /// The options of type `Options`; several planners may use those of one. Throws std::logic_error
   /// when no planner has options of this type.
@@ -216,12 +223,14 @@ class PlannerOptionsTable {
     }
     throw std::logic_error("no planner is registered with these options");
   }
+  /// The same, to read.
   template <class Options>
   const Options& of() const {
     return const_cast<PlannerOptionsTable*>(this)->of<Options>();
   }
   /// Visits one group per planner, under its name.
   void describe(core::OptionsVisitor& visitor);
+  /// Throws InputError for the first planner whose values contradict each other.
   void validate() const;
 
  private:
@@ -230,14 +239,14 @@ class PlannerOptionsTable {
 
 /// What a planner is made of. References outlive the planner, as those of the context do.
 struct PlannerParts {
-  PlanningContext context;
-  const PlannerOptionsTable& options;
-  const dynamics::BicycleModelOptions& vehicle;
-  const rendering::CameraOptions& camera;     ///< that the vehicle's images come from
-  const guidance::GuidanceOptions& guidance;  ///< of planners that are guided
-  std::string guidance_group = "guidance.";   ///< before its keys in errors
-  rendering::RigOptions rig_options = {};     ///< cameras of the planner's vehicles, as given
-  std::string rig_key = "ego_rig";            ///< their key in errors
+  PlanningContext context;                       ///< what it may keep for the session
+  const PlannerOptionsTable& options;            ///< of all planners of the scenario
+  const dynamics::BicycleModelOptions& vehicle;  ///< how its vehicles move
+  const rendering::CameraOptions& camera;        ///< that the vehicle's images come from
+  const guidance::GuidanceOptions& guidance;     ///< of planners that are guided
+  std::string guidance_group = "guidance.";      ///< before its keys in errors
+  rendering::RigOptions rig_options = {};        ///< cameras of the planner's vehicles, as given
+  std::string rig_key = "ego_rig";               ///< their key in errors
   rendering::CameraRig rig = {};  ///< what they are, filled in by makePlanner; copy what is kept
 };
 
@@ -253,17 +262,18 @@ struct NetworkFacts {
 /// Scenario files, the node graph, reports, tables and error texts read descriptors only.
 /// Everything about a planner but the planner itself.
 struct PlannerDescriptor {
-  std::string name;   ///< in scenario files, snake_case
-  std::string title;  ///< in tables, as its authors write it
-  std::string help;   ///< one sentence
-  bool drives_ego = true;
-  bool drives_cbv = true;
+  std::string name;                  ///< in scenario files, snake_case
+  std::string title;                 ///< in tables, as its authors write it
+  std::string help;                  ///< one sentence
+  bool drives_ego = true;            ///< whether it can be the ego's planner
+  bool drives_cbv = true;            ///< whether it can be the planner of CBVs
   std::vector<std::string> cameras;  ///< names of the cameras that it needs; none: it sees nothing
   std::string rig = rendering::kFrontRig;  ///< preset that its vehicles have unless the scenario
                                            ///< says otherwise; holds `cameras`
   bool guided = false;                     ///< follows guidance objectives
   /// Program that runs it for the CBVs in the node graph.
   std::string cbv_node = "cbv_planner_node";
+  /// Its options with their defaults.
   std::function<std::unique_ptr<PlannerOptions>()> options;
   /// Throws InputError naming the key of an option that it cannot work with.
   std::function<std::unique_ptr<Planner>(const PlannerParts&)> make;
@@ -272,6 +282,7 @@ struct PlannerDescriptor {
   /// SHA-256 over the weight files of the network; throws InputError when one cannot be read.
   std::function<std::string(const PlannerOptionsTable&)> weights_sha256;
 
+  /// Whether it needs images.
   bool sees() const { return !cameras.empty(); }
 };
 

@@ -16,18 +16,25 @@ inline constexpr int kApiVersion = 3;
 /// What a package of the user's own adds: planners, guidance objectives, metrics.
 ///
 /// A library exports one class or more:
-///   class MyPlugin : public cdiff::plugins::Plugin { ... };
-///   CLASS_LOADER_REGISTER_CLASS(MyPlugin, cdiff::plugins::Plugin)
+///
+///     class MyPlugin : public cdiff::plugins::Plugin { ... };
+///     CLASS_LOADER_REGISTER_CLASS(MyPlugin, cdiff::plugins::Plugin)
+///
 /// and its package names the library in package.xml:
-///   <export><e2e_cdiff plugin="libmy_plugins.so"/></export>
+///
+///     <export><e2e_cdiff plugin="libmy_plugins.so"/></export>
+///
 /// `examples/my_plugins` is a whole package.
 class Plugin {
  public:
   virtual ~Plugin() = default;
   /// Compiled into the plug-in, and the first function of the class in every version.
   virtual int apiVersion() const { return kApiVersion; }
+  /// Planners that scenarios may then name.
   virtual std::vector<planning::PlannerDescriptor> planners() const { return {}; }
+  /// Objectives that guidance profiles may then name.
   virtual std::vector<guidance::ObjectiveDescriptor> objectives() const { return {}; }
+  /// Metrics that every session then has.
   virtual std::vector<metrics::MetricDescriptor> metrics() const { return {}; }
 };
 

@@ -20,15 +20,16 @@ struct CameraOptions {
   std::int64_t supersampling = 2;  ///< samples per pixel and axis
   bool blind = false;              ///< every pixel mid-gray: shows what an image is worth
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
+  /// Throws InputError naming an option that is out of range.
   void validate() const;
 };
 
 /// Pinhole intrinsics [px]; the center of the top left pixel is (0, 0).
 struct Intrinsics {
   double focal_length = 0.0;  ///< f_x = f_y
-  double center_x = 0.0;
-  double center_y = 0.0;
+  double center_x = 0.0;      ///< of the principal point, to the right
+  double center_y = 0.0;      ///< of the principal point, downward
 };
 
 /// f = width / 2 / tan(field_of_view / 2); center ((width - 1) / 2, (height - 1) / 2).

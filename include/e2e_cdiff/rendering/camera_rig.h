@@ -25,23 +25,24 @@ struct RigCamera {
   std::int64_t width = 160;     ///< [px]
   std::int64_t height = 96;     ///< [px]
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
 };
 
 /// The cameras of one vehicle and what they share. The order of the cameras is that of every list
 /// of its images.
 struct CameraRig {
-  std::vector<RigCamera> cameras;
+  std::vector<RigCamera> cameras;  ///< at least one
   double far_distance = 90.0;      ///< farthest ground and vehicles that are drawn [m]
   std::int64_t supersampling = 2;  ///< samples per pixel and axis
   bool blind = false;              ///< every pixel mid-gray
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
   /// Throws InputError naming camera and key: no camera, more than kMostCameras, a name that is
   /// repeated or not snake_case, a value out of range.
   void validate() const;
   /// The camera with this name, or nullptr.
   const RigCamera* find(const std::string& name) const;
+  /// Names of the cameras, in their order.
   std::vector<std::string> names() const;
 };
 
@@ -61,12 +62,12 @@ const std::vector<std::string>& rigPresets();
 
 /// Which cameras a vehicle has: a preset, or cameras of the user's own.
 struct RigOptions {
-  std::string preset = kPlannersRig;
-  std::int64_t width = 0;   ///< of a preset's images [px]; 0: camera.width
-  std::int64_t height = 0;  ///< [px]; 0: camera.height
-  std::vector<RigCamera> cameras;
+  std::string preset = kPlannersRig;  ///< name of a preset (above)
+  std::int64_t width = 0;             ///< of a preset's images [px]; 0: camera.width
+  std::int64_t height = 0;            ///< [px]; 0: camera.height
+  std::vector<RigCamera> cameras;     ///< of preset "own"
 
-  void describe(core::OptionsVisitor& visitor);
+  void describe(core::OptionsVisitor& visitor);  ///< visits every option
   /// Throws InputError naming the key after `group` ("ego_rig."): cameras listed without the preset
   /// "own" or none with it, a size for the preset "front", and what CameraRig::validate refuses.
   void validate(const std::string& group) const;

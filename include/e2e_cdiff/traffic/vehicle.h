@@ -18,6 +18,7 @@ struct VehicleState {
   double heading = 0.0;                                ///< counter-clockwise from +x [rad]
   double speed = 0.0;                                  ///< along the heading, never negative [m/s]
 
+  /// Position and heading.
   geometry::Pose2d pose() const { return {position, heading}; }
   /// Speed along the heading as a vector [m/s].
   Eigen::Vector2d velocity() const { return speed * geometry::direction(heading); }
@@ -25,17 +26,17 @@ struct VehicleState {
 
 /// Size of a vehicle's box [m].
 struct VehicleDimensions {
-  double length = 4.5;
-  double width = 1.8;
-  double height = 1.5;
+  double length = 4.5;  ///< along the heading
+  double width = 1.8;   ///< across it
+  double height = 1.5;  ///< above the road
 };
 
 /// Executable command of a vehicle: throttle in [0, 1], steer in [-1, 1] (positive left), brake in
 /// [0, 1]; without unit.
 struct ControlAction {
-  double throttle = 0.0;
-  double steer = 0.0;
-  double brake = 0.0;
+  double throttle = 0.0;  ///< [0, 1]
+  double steer = 0.0;     ///< [-1, 1], positive left
+  double brake = 0.0;     ///< [0, 1]
 
   /// Whether all three are finite and in range.
   bool valid() const;
@@ -59,17 +60,18 @@ inline constexpr int kEgoSlot = -1;
 /// One vehicle of a snapshot: all that is known about it at one tick (map frame, SI units; position
 /// = center of its box).
 struct Vehicle {
-  std::string id;  ///< stable over the session
-  VehicleRole role = VehicleRole::kBackground;
-  int cbv_slot = -1;  ///< slot of a CBV, else -1
-  VehicleState state;
-  VehicleDimensions dimensions;
+  std::string id;                               ///< stable over the session
+  VehicleRole role = VehicleRole::kBackground;  ///< who drives it
+  int cbv_slot = -1;                            ///< slot of a CBV, else -1
+  VehicleState state;                           ///< at this tick
+  VehicleDimensions dimensions;                 ///< of its box
   double acceleration = 0.0;  ///< mean rate of change of speed over the last tick [m/s^2]
   double yaw_rate = 0.0;      ///< mean rate of change of heading over the last tick [rad/s]
   std::optional<ControlAction>
       applied_action;   ///< held during the last tick; absent when SUMO drives it
   std::string lane_id;  ///< SUMO lane it is on; empty off the road
 
+  /// Its box in the plane, in the map frame.
   geometry::OrientedBox box() const {
     return {state.position, state.heading, dimensions.length, dimensions.width};
   }

@@ -64,9 +64,9 @@ inference::EncoderConvolution EncoderNetwork::convolution(const Model& model,
   const inference::Tensor& weight =
       requireTensor(model, name + ".weight", {channels, shape_.channels, kernel, kernel});
   const bool reads_image = shape_.channels == image_.channels;
-  inference::EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2}, weight,
-                                     nullptr,
-                                     reads_image ? inference::Precision::kFp32 : precision_);
+  const inference::Precision precision = reads_image ? inference::Precision::kFp32 : precision_;
+  inference::EncoderConvolution made(engine_, shape_, layout_, {stride, kernel / 2, precision},
+                                     weight);
   shape_ = made.outputShape();
   return made;
 }

@@ -118,7 +118,7 @@ class MessageGate {
     const boost::function<void(const Event&)> take = [this, topic, publishers,
                                                       callback](const Event& event) {
       const std::string& caller = event.getPublisherName();
-      const auto message = event.getConstMessage();
+      const auto& message = event.getConstMessage();
       if (!admits(topic, publishers, caller) || !admitsTick(topic, caller, tickOf(*message)))
         return;
       if constexpr (std::is_void_v<decltype(callback(message))>) {

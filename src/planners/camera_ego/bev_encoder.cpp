@@ -125,6 +125,7 @@ QueryLayer::QueryLayer(const LayerWeights& weights, const std::string& name,
       cross_(weights, name + ".cross", querySizes(sizes)),
       mix_(weights, name + ".mix") {}
 
+// NOLINTNEXTLINE(readability-function-size): two of seven parameters are scratch memory
 void QueryLayer::run(const Rows& x, const Rows& position, const std::vector<float>& places,
                      const Rows& bev, const inference::MapGrid& grid,
                      inference::TransformerMemory& memory,

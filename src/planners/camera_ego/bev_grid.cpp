@@ -54,8 +54,8 @@ void BevGrid::describe(core::OptionsVisitor& visitor) {
 }
 
 Eigen::Vector2d BevGrid::center(std::int64_t index) const {
-  const Eigen::Vector2d place(static_cast<double>(index / columns) + 0.5,
-                              static_cast<double>(index % columns) + 0.5);
+  const std::int64_t row = index / columns, column = index % columns;
+  const Eigen::Vector2d place(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5);
   return origin() + cell * place;
 }
 

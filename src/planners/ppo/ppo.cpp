@@ -77,7 +77,9 @@ void Ppo::driveOn(const traffic::TrafficSnapshot& snapshot,
   if (arrived.empty()) return;
   for (planning::PlannedAction& driven : on_route_.plan(snapshot, arrived)) {
     for (planning::PlannedAction& action : actions) {
-      if (action.vehicle_id == driven.vehicle_id) action = std::move(driven);
+      if (action.vehicle_id != driven.vehicle_id) continue;
+      action = std::move(driven);
+      break;
     }
   }
 }

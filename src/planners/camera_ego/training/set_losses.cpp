@@ -62,30 +62,38 @@ struct LineTargets {
   double count = 0.0;
 };
 
+/// What the queries of one sample say of lines.
+struct LineQueries {
+  const float* logits;  ///< [count, 3]
+  const float* lines;   ///< [count, 10, 2]
+  std::size_t count;
+};
+
 /// One sample's lines: costs, matching, targets.
-void addLineTargets(const float* logits, const float* lines, std::size_t queries,
-                    const std::vector<BevLine>& labels, const BevGrid& bev,
-                    const SetLossWeights& weights, std::size_t sample, LineTargets& targets) {
+void addLineTargets(const LineQueries& queries, const std::vector<BevLine>& labels,
+                    const BevGrid& bev, const SetLossWeights& weights, std::size_t sample,
+                    LineTargets& targets) {
   constexpr std::size_t kKinds = 3;
   std::vector<double> cost;
   std::vector<std::vector<std::vector<float>>> ends;  // by label: from its begin, from its end
   for (const BevLine& label : labels) {
     ends.push_back({sharesOf(label, bev, false)});
     if (hasNoDirection(label.kind)) ends.back().push_back(sharesOf(label, bev, true));
-    for (std::size_t q = 0; q < queries; ++q) {
+    for (std::size_t q = 0; q < queries.count; ++q) {
       double least = 1e9;
       for (const auto& end : ends.back())
-        least = std::min(least, pointCost(lines + q * kLineNumbers, end));
-      cost.push_back(weights.line_kind *
-                         focalCost(logits[q * kKinds + static_cast<std::size_t>(label.kind)]) +
-                     weights.line_points * least);
+        least = std::min(least, pointCost(queries.lines + q * kLineNumbers, end));
+      cost.push_back(
+          weights.line_kind *
+              focalCost(queries.logits[q * kKinds + static_cast<std::size_t>(label.kind)]) +
+          weights.line_points * least);
     }
   }
-  const std::vector<int> found = matched(cost, labels.size(), queries);
+  const std::vector<int> found = matched(cost, labels.size(), queries.count);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (found[i] < 0) continue;
-    const std::size_t q = static_cast<std::size_t>(found[i]), row = sample * queries + q;
-    const float* points = lines + q * kLineNumbers;
+    const std::size_t q = static_cast<std::size_t>(found[i]), row = sample * queries.count + q;
+    const float* points = queries.lines + q * kLineNumbers;
     const bool from_end =
         ends[i].size() > 1 && pointCost(points, ends[i][1]) < pointCost(points, ends[i][0]);
     targets.kinds[row * kKinds + static_cast<std::size_t>(labels[i].kind)] = 1.0F;
@@ -183,8 +191,9 @@ LineLoss lineLoss(const at::Tensor& logits, const at::Tensor& lines,
   LineTargets targets{std::vector<float>(scores.size()), std::vector<float>(places.size()),
                       std::vector<float>(examples.size() * queries), 0.0};
   for (std::size_t b = 0; b < examples.size(); ++b)
-    addLineTargets(scores.data() + b * queries * 3, places.data() + b * queries * kLineNumbers,
-                   queries, examples[b]->lines, bev, weights, b, targets);
+    addLineTargets(
+        {scores.data() + b * queries * 3, places.data() + b * queries * kLineNumbers, queries},
+        examples[b]->lines, bev, weights, b, targets);
   const at::Device device = logits.device();
   const at::Tensor kinds = learning::toTensor(targets.kinds, logits.sizes(), device);
   const at::Tensor points = learning::toTensor(targets.points, lines.sizes(), device);

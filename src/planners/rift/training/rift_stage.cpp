@@ -65,8 +65,9 @@ double riftRate(double first, std::int64_t step, std::int64_t batches, std::int6
   constexpr double kLeastShare = 0.9;  // at the end of a buffer
   constexpr std::int64_t kWarmUpEpochs = 3;
   const std::int64_t steps = batches * epochs;
-  const auto buffer = static_cast<double>(step / steps);
-  const double rate = std::max(kLeastRate, first * std::pow(kFallPerBuffer, buffer));
+  const std::int64_t buffer = step / steps;
+  const double rate =
+      std::max(kLeastRate, first * std::pow(kFallPerBuffer, static_cast<double>(buffer)));
   const std::int64_t here = step % steps;
   const std::int64_t warm_up = std::min(kWarmUpEpochs * batches, steps);
   if (here < warm_up) return rate * static_cast<double>(here + 1) / static_cast<double>(warm_up);
