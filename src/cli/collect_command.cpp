@@ -138,7 +138,7 @@ void removeHalves(const fs::path& results) {
     core::OutputFolder folder(results / name);
     folder.removeUnfinished();
     for (const auto& entry : fs::directory_iterator(folder.path())) {
-      if (entry.path().extension() == ".active") folder.remove(entry.path().filename().string());
+      if (entry.path().extension() == ".active") folder.remove({entry.path().filename().string()});
     }
   }
 }

@@ -117,7 +117,7 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
 void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool overwrite) {
   if (overwrite) {
     for (const auto* names : {&kBatchFiles, &kBatchFolders}) {
-      for (const std::string& name : *names) output.remove(name);
+      for (const std::string& name : *names) output.remove({name});
     }
   }
   const fs::path file = output.path() / kMatrixFile;

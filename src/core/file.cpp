@@ -65,9 +65,9 @@ fs::path outputPlace(const fs::path& path) {
   if (!error && !fs::is_regular_file(target)) return path;
   if (!error && target.parent_path() == fs::canonical(fs::absolute(path).parent_path()))
     return target;
-  throw InputError("'" + path.string() + "' is a symbolic link to '" +
-                   fs::read_symlink(path, error).string() +
-                   "', a file of another folder; give that file itself, or remove the link");
+  throw InputError(
+      "'" + path.string() + "' is a symbolic link to '" + fs::read_symlink(path, error).string() +
+      "', which is no file of the same folder; give a file itself, or remove the link");
 }
 
 /// Opens a device or pipe for writing.
@@ -214,6 +214,7 @@ void writeFileAtomically(const fs::path& path, std::string_view content) {
   fs::path temporary;
   const bool through = stream || (there && !S_ISREG(status.st_mode));
   const int descriptor = through ? openThrough(place, status) : openBeside(place, temporary);
+  if (there && !through) ::fchmod(descriptor, status.st_mode & 07777);
   int reason = writeAll(descriptor, content) ? 0 : errno;
   if (::close(descriptor) != 0 && reason == 0) reason = errno;
   if (reason == 0 && !through && ::rename(temporary.c_str(), place.c_str()) != 0) reason = errno;

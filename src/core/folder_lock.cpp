@@ -53,8 +53,10 @@ std::string holderText(int descriptor) {
 bool isLock(int descriptor) {
   struct stat status {};
   const auto content = contentOf(descriptor);
-  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
-         content.count("host") + content.count("process") + content.count("program") == 3;
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && content.size() == 4 &&
+         content.count("host") + content.count("process") + content.count("program") +
+                 content.count("since") ==
+             4;
 }
 
 /// The folder and its parents that do not exist, the innermost first.

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "core/folder_access.h"
@@ -24,10 +26,12 @@ namespace {
 
 constexpr const char* kRecordHead =
     "# What e2e_cdiff made in this folder and may replace. Delete this file to keep all of it.";
-constexpr off_t kLargestRecord = off_t{1} << 26;  // [bytes]
+constexpr off_t kLargestRecord = off_t{1} << 23;  // [bytes]
+/// For another process to write the record.
+constexpr std::chrono::seconds kRecordPatience{5};
 constexpr const char* kPart = ".part";
 
-/// The record of a folder, open and locked against other processes.
+/// The record of a folder, open and locked against other processes until it is changed, once.
 class Record {
  public:
   /// Opens the record, and makes it where there is none and it `must` be there.
@@ -61,8 +65,10 @@ class Record {
     if (names_.insert(name).second) store();
   }
   /// A record without names is removed.
-  void erase(const std::string& name) {
-    if (names_.erase(name) == 0) return;
+  void erase(const std::set<std::string>& names) {
+    const std::size_t before = names_.size();
+    for (const std::string& name : names) names_.erase(name);
+    if (names_.size() == before) return;
     if (names_.empty()) {
       remove();
     } else {
@@ -85,10 +91,11 @@ class Record {
     return ::openat(directory_, OutputFolder::kRecord, O_RDONLY | kFlags);
   }
 
-  /// Makes an empty one that is whole before anybody can see it.
-  void make() const {
-    const std::string text = std::string(kRecordHead) + "\n";
+  /// A new file beside the record that holds these names.
+  fs::path draftOf(const std::set<std::string>& names) const {
     const fs::path file = folder_ / OutputFolder::kRecord;
+    std::string text = std::string(kRecordHead) + "\n";
+    for (const std::string& name : names) text += name + "\n";
     std::string draft = file.string() + ".XXXXXX";
     const int descriptor = ::mkostemp(draft.data(), O_CLOEXEC);
     if (descriptor < 0) failOn(file, "write", errno);
@@ -96,26 +103,34 @@ class Record {
     const bool written =
         ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
         ::fchmod(descriptor, 0644) == 0;
-    const int reason = written ? placeUnlessThere(draft, file) : errno;
+    const int reason = errno;
     ::close(descriptor);
+    if (written) return draft;
     ::unlink(draft.c_str());
-    if (reason != 0 && reason != EEXIST) failOn(file, "write", reason);
+    failOn(file, "write", reason);
+  }
+
+  /// Makes an empty one that is whole before anybody can see it.
+  void make() const {
+    const fs::path draft = draftOf({});
+    const int reason = placeUnlessThere(draft, folder_ / OutputFolder::kRecord);
+    ::unlink(draft.c_str());
+    if (reason != 0 && reason != EEXIST) failOn(folder_ / OutputFolder::kRecord, "write", reason);
   }
 
   /// Whether it is a record.
   bool readNames() {
     struct stat status {};
-    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) ||
-        status.st_size > kLargestRecord)
-      return false;
-    text_.assign(static_cast<std::size_t>(status.st_size), '\0');
-    const ssize_t count = ::pread(descriptor_, text_.data(), text_.size(), 0);
-    text_.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) return false;
+    lock();
+    if (::fstat(descriptor_, &status) != 0 || status.st_size > kLargestRecord) return false;
+    std::string text(static_cast<std::size_t>(status.st_size), '\0');
+    const ssize_t count = ::pread(descriptor_, text.data(), text.size(), 0);
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     names_.clear();
-    if (text_.rfind(kRecordHead, 0) != 0) return false;
-    std::vector<std::string> lines = splitText(text_, '\n');
-    if (text_.back() != '\n') lines.pop_back();  // cut off
+    if (text.rfind(kRecordHead, 0) != 0) return false;
+    std::vector<std::string> lines = splitText(text, '\n');
+    if (text.back() != '\n') lines.pop_back();  // cut off
     for (const std::string& line : lines) {
       const bool name = !line.empty() && line.find('/') == std::string::npos && line != "." &&
                         line != ".." && line != kRecordHead;
@@ -124,29 +139,29 @@ class Record {
     return true;
   }
 
-  /// Writes it in place, in the order of the names; on a full disk it is as it was before.
-  void store() {
-    std::string text = std::string(kRecordHead) + "\n";
-    for (const std::string& name : names_) text += name + "\n";
-    const auto write = [this](const std::string& content) {
-      return ::pwrite(descriptor_, content.data(), content.size(), 0) ==
-                 static_cast<ssize_t>(content.size()) &&
-             ::ftruncate(descriptor_, static_cast<off_t>(content.size())) == 0;
-    };
-    errno = ENOSPC;  // where less than all is written
-    if (write(text)) {
-      text_ = text;
-      return;
+  void lock() const {
+    const auto begin = std::chrono::steady_clock::now();
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      if (std::chrono::steady_clock::now() - begin > kRecordPatience)
+        throw InputError("another process holds '" + (folder_ / OutputFolder::kRecord).string() +
+                         "' for longer than 5 s; end it, or give another folder");
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+  }
+
+  /// Puts a new record in place of the old one, which may have another name in a backup.
+  void store() const {
+    const fs::path file = folder_ / OutputFolder::kRecord;
+    const fs::path draft = draftOf(names_);
+    if (::rename(draft.c_str(), file.c_str()) == 0) return;
     const int reason = errno;
-    (void)write(text_);
-    failOn(folder_ / OutputFolder::kRecord, "write", reason);
+    ::unlink(draft.c_str());
+    failOn(file, "write", reason);
   }
 
   int directory_;
   fs::path folder_;
   int descriptor_ = -1;
-  std::string text_;
   std::set<std::string> names_;
 };
 
@@ -230,6 +245,12 @@ void OutputFolder::makeAgain() const {
 
 fs::path OutputFolder::claim(const std::string& name) {
   const fs::path folder = path();
+  const auto is_control = [](unsigned char sign) { return sign < 0x20 || sign == 0x7f; };
+  if (name.empty() || name.find('/') != std::string::npos ||
+      std::any_of(name.begin(), name.end(), is_control)) {
+    throw InputError("'" + (folder / name).string() +
+                     "' is no name for a file: it holds a slash or a control character");
+  }
   Record record(descriptor_, folder, true);
   requireOwn(descriptor_, folder, name, record);
   record.add(name);
@@ -242,20 +263,26 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
   file.finish();
 }
 
-void OutputFolder::remove(const std::string& name) {
+void OutputFolder::remove(const std::set<std::string>& names) {
   const fs::path folder = path();
   Record record(descriptor_, folder, false);
-  if (!record.lists(name)) return;
-  struct stat status {};
-  const bool there = isThere(descriptor_, name, status);
-  if (there && S_ISREG(status.st_mode) && ::unlinkat(descriptor_, name.c_str(), 0) != 0)
-    failOn(folder / name, "replace", errno);
-  if (there && S_ISDIR(status.st_mode)) {
-    OutputFolder(folder / name).clear();
-    // Refused where a file of the user's is in it: then it stays, and stays on the record.
-    if (::unlinkat(descriptor_, name.c_str(), AT_REMOVEDIR) != 0) return;
+  std::set<std::string> gone;
+  for (const std::string& name : names) {
+    if (record.lists(name) && removeEntry(folder, name)) gone.insert(name);
   }
-  record.erase(name);
+  record.erase(gone);
+}
+
+/// Whether nothing of the program's is left under this name, which the record lists.
+bool OutputFolder::removeEntry(const fs::path& folder, const std::string& name) {
+  struct stat status {};
+  if (!isThere(descriptor_, name, status)) return true;
+  if (S_ISREG(status.st_mode) && ::unlinkat(descriptor_, name.c_str(), 0) != 0)
+    failOn(folder / name, "replace", errno);
+  if (!S_ISDIR(status.st_mode)) return true;
+  OutputFolder(folder / name).clear();
+  // Refused where a file of the user's is in it: then it stays, and stays on the record.
+  return ::unlinkat(descriptor_, name.c_str(), AT_REMOVEDIR) == 0;
 }
 
 std::set<std::string> OutputFolder::names() const {
@@ -263,13 +290,24 @@ std::set<std::string> OutputFolder::names() const {
   return Record(descriptor_, folder, false).names();
 }
 
-void OutputFolder::clear() {
-  for (const std::string& name : names()) remove(name);
-}
+void OutputFolder::clear() { remove(names()); }
 
 void OutputFolder::removeUnfinished() {
-  for (const std::string& name : names())
-    if (endsWith(name, kPart)) remove(name);
+  std::set<std::string> unfinished;
+  for (const std::string& name : names()) {
+    if (endsWith(name, kPart)) unfinished.insert(name);
+  }
+  remove(unfinished);
+}
+
+void OutputFolder::requireInPlace() const {
+  const fs::path now = path();
+  if (deleted_)
+    throw Error("the folder '" + path_.string() +
+                "' was deleted meanwhile; what was written before is lost");
+  if (now != path_)
+    throw Error("the folder '" + path_.string() + "' was renamed to '" + now.string() +
+                "' meanwhile; what was written after that is in a folder of the old name");
 }
 
 void OutputFolder::forget() {
@@ -307,7 +345,7 @@ PendingFile::~PendingFile() {
 
 /// Opens a new file of the temporary name.
 void PendingFile::open() {
-  folder_.remove(part_);  // of a write that was cut off
+  folder_.remove({part_});  // of a write that was cut off
   folder_.claim(part_);
   constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   descriptor_ = ::openat(folder_.descriptor_, part_.c_str(), kFlags, 0644);
@@ -331,10 +369,21 @@ void PendingFile::finish() {
   if (!isSameFile(descriptor_, folder_.descriptor_, part_.c_str())) restore();
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
-  folder_.claim(name_);
+  claimOrKeep();
   const int directory = folder_.descriptor_;
   if (::renameat(directory, part_.c_str(), directory, name_.c_str()) != 0) fail(errno);
-  folder_.remove(part_);
+  folder_.remove({part_});
+}
+
+/// Where a file of the user's has the name by now, what was written stays as NAME.part.
+void PendingFile::claimOrKeep() {
+  try {
+    folder_.claim(name_);
+  } catch (const InputError& error) {
+    kept_ = true;
+    throw InputError(std::string(error.what()) + "; what was to be written is in '" +
+                     (folder_.path() / part_).string() + "'");
+  }
 }
 
 /// Writes what was written so far into a new file: the old one was deleted with its folder.
@@ -350,7 +399,7 @@ void PendingFile::restore() {
 
 void PendingFile::discard() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  folder_.remove(part_);
+  if (!kept_) folder_.remove({part_});
 }
 
 void PendingFile::fail(int reason) {

@@ -58,15 +58,17 @@ class OutputFolder {
   void write(const std::string& name, std::string_view content);
   /// What the record lists.
   std::set<std::string> names() const;
-  /// Removes a file that the record lists, and takes it off the record; nothing where it lists none
-  /// of that name.
-  void remove(const std::string& name);
-  /// The same for every file of the record, and for folders of it that are empty then.
+  /// Removes the files of these names that the record lists, and folders of it that are empty then,
+  /// and takes them off the record. Throws InputError naming what cannot be removed.
+  void remove(const std::set<std::string>& names);
+  /// The same for everything on the record.
   void clear();
   /// Takes away what writes that were cut off left.
   void removeUnfinished();
   /// Ends the record: from now on the files are the user's.
   void forget();
+  /// Throws Error when the folder was renamed or deleted since the object was made.
+  void requireInPlace() const;
   /// Makes a folder in it and returns its path. Throws InputError when something else has that
   /// name.
   std::filesystem::path subfolder(const std::string& name);
@@ -74,6 +76,7 @@ class OutputFolder {
  private:
   friend class PendingFile;
   void makeAgain() const;
+  bool removeEntry(const std::filesystem::path& folder, const std::string& name);
 
   std::unique_ptr<FolderLock> lock_;
   std::filesystem::path path_;
@@ -95,11 +98,13 @@ class PendingFile {
   /// Throws InputError naming the path.
   void append(std::string_view text);
   /// Flushes it to the disk and gives it its name; also where the folder was deleted meanwhile.
-  /// Call once. Throws InputError naming the path; nothing of the file stays then.
+  /// Call once. Throws InputError naming the path; nothing of the file stays then, unless a file of
+  /// the user's has taken the name meanwhile: NAME.part stays beside it.
   void finish();
 
  private:
   void open();
+  void claimOrKeep();
   void restore();
   void discard();
   [[noreturn]] void fail(int reason);
@@ -108,6 +113,7 @@ class PendingFile {
   std::string name_;
   std::string part_;
   off_t written_ = 0;
+  bool kept_ = false;  ///< the part stays
   int descriptor_ = -1;
 };
 

@@ -107,7 +107,7 @@ class Executor {
   core::ProcessJob start(std::size_t index) {
     const fs::path folder = folderOf(index);
     core::OutputFolder output(folder);
-    output.remove("summary.json");
+    output.remove({"summary.json"});
     output.removeUnfinished();
     output.write("scenario.yaml", plan_[index].scenario_text);
     ++records_[index].attempts;

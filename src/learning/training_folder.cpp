@@ -168,9 +168,9 @@ void removeEarlier(const Training& training) {
   if (!options.overwrite) return;
   core::OutputFolder output(options.output);
   for (const std::string& stage : trainedStages(training))
-    output.remove(checkpointPath("", stage).string());
+    output.remove({checkpointPath("", stage).string()});
   if (options.stage != "all") return;
-  for (const std::string& name : ownFiles(*training.task)) output.remove(name);
+  for (const std::string& name : ownFiles(*training.task)) output.remove({name});
 }
 
 }  // namespace cdiff::learning

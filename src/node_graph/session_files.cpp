@@ -242,7 +242,7 @@ ReserveResult::ReserveResult(const session::SessionSetup& setup, const record::R
 ReserveResult::~ReserveResult() {
   writer_.reset();
   try {
-    results_.remove(kReserve);
+    results_.remove({kReserve});
   } catch (const core::InputError&) {
     // It stays on the record, and goes with the next session.
   }
@@ -261,9 +261,10 @@ void ReserveResult::adopt(double wall_seconds) {
   if (fs::exists(results / "exit_code")) return;
   writer_->finish(wall_seconds);
   results_.removeUnfinished();
-  for (const auto& entry : fs::directory_iterator(results / kReserve)) {
-    const std::string name = entry.path().filename().string();
-    if (name != core::OutputFolder::kRecord) fs::rename(entry.path(), results_.claim(name));
+  const fs::path reserve = results / kReserve;
+  for (const std::string& name : core::OutputFolder(reserve).names()) {
+    if (fs::exists(fs::symlink_status(reserve / name)))
+      fs::rename(reserve / name, results_.claim(name));
   }
   std::cout << writer_->table(results) << std::flush;
   writeExitCode(results, writer_->exitCode());

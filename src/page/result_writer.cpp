@@ -44,7 +44,7 @@ class ResultWriter::Record {
                 guidance_, front_views_, driving_, facts} {
     for (const char* name :
          {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"})
-      folder_.remove(name);
+      folder_.remove({name});
     folder_.write("session.yaml", record::sessionYaml(setup, facts));
   }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -153,6 +154,12 @@ void requireFree(const fs::path& folder, bool overwrite) {
   std::vector<std::string> names(kSessionFiles.begin(), kSessionFiles.end());
   names.emplace_back(kExitCodeFile);
   core::OutputFolder::requireFree(folder, names);
+  if (fs::exists(fs::symlink_status(folder / kReserveFolder, error)) &&
+      !core::OutputFolder::lists(folder, kReserveFolder)) {
+    throw core::InputError("'" + (folder / kReserveFolder).string() +
+                           "' is no folder that this program made; move it away, or give another "
+                           "folder");
+  }
   if (overwrite) return;
   for (const char* name : kSessionFiles) {
     if (!fs::exists(folder / name, error)) continue;
@@ -172,9 +179,9 @@ void requireFreeFolder(const fs::path& folder, bool overwrite) {
 ResultFolder::ResultFolder(const fs::path& folder, const std::string& program, bool overwrite)
     : folder_(folder, program) {
   requireFree(folder, overwrite);
-  for (const char* name : kSessionFiles) folder_.remove(name);
-  folder_.remove(kExitCodeFile);
-  folder_.remove(kReserveFolder);
+  std::set<std::string> earlier(kSessionFiles.begin(), kSessionFiles.end());
+  earlier.insert({kExitCodeFile, kReserveFolder});
+  folder_.remove(earlier);
   folder_.removeUnfinished();
 }
 

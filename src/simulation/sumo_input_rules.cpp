@@ -36,9 +36,11 @@ std::string lowerCase(std::string_view text) {
 /// The words of a name of SUMO's, in lower case: "device.ssm.edgeFile" has device, ssm, edge, file.
 std::vector<std::string> wordsOf(std::string_view name) {
   std::string spaced;
+  bool upper = false;  // the letter before: capitals in a row are one word
   for (const char letter : name) {
     const auto byte = static_cast<unsigned char>(letter);
-    if (std::isupper(byte) != 0) spaced += ' ';
+    if (std::isupper(byte) != 0 && !upper) spaced += ' ';
+    upper = std::isupper(byte) != 0;
     spaced += std::isalnum(byte) != 0 ? letter : ' ';
   }
   return core::splitText(lowerCase(spaced), ' ');
@@ -123,9 +125,7 @@ class SumoInput : private pugi::xml_tree_walker {
       : text_(text), name_(name), rules_(rules) {}
 
   void check() {
-    // pugixml ends at a zero byte, and both must read the same letters.
-    if (text_.find('\0') != std::string_view::npos)
-      throw InputError(name_ + ": holds a zero byte; UTF-8 was expected");
+    requirePlainText();
     pugi::xml_document document;
     const pugi::xml_parse_result parsed =
         document.load_buffer(text_.data(), text_.size(), kParsing, pugi::encoding_utf8);
@@ -138,6 +138,25 @@ class SumoInput : private pugi::xml_tree_walker {
   static constexpr unsigned int kParsing =
       pugi::parse_default | pugi::parse_doctype | pugi::parse_declaration;
   static constexpr int kDeepest = 20;  // SUMO's own files: 5
+
+  /// SUMO unpacks what does not start like XML, and pugixml skips it: both must read the same
+  /// letters from the first to the last.
+  void requirePlainText() const {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    constexpr std::string_view kSpace = " \t\r\n";
+    const bool marked = text_.substr(0, kMark.size()) == kMark;
+    const std::string_view text = text_.substr(marked ? kMark.size() : 0);
+    const std::size_t first = text.find_first_not_of(kSpace);
+    const std::size_t last = text.find_last_not_of(kSpace);
+    if (first == std::string_view::npos || text[first] != '<' || text[last] != '>')
+      throw InputError(name_ + ": does not start with < and end with >; an XML file was expected");
+    const auto control = std::find_if(text_.begin(), text_.end(), [&](unsigned char letter) {
+      return letter < 0x20 && kSpace.find(static_cast<char>(letter)) == std::string_view::npos;
+    });
+    if (control != text_.end())
+      throw InputError(at(control - text_.begin()) +
+                       ": holds a control character; text was expected");
+  }
 
   std::string at(std::ptrdiff_t offset) const {
     const std::string_view before =

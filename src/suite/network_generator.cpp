@@ -221,7 +221,7 @@ std::string buildNetwork(const RoadPlan& plan, const fs::path& folder) {
   map::runNetconvert(command, "network '" + plan.name + "'");
   const std::string text = withoutComment(core::readFile(raw, "network"));
   core::writeOwnFile(base + ".net.xml", text);
-  output.remove(raw.filename().string());
+  output.remove({raw.filename().string()});
   return text;
 }
 

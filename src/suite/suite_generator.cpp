@@ -2,12 +2,16 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "suite/suite_generator.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <memory>
 #include <set>
 
 #include "core/file.h"
+#include "core/folder_access.h"
 #include "core/output_folder.h"
+#include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "suite/network_generator.h"
@@ -225,6 +229,15 @@ void requireOwnContent(core::OutputFolder& work) {
   }
 }
 
+/// Gives the finished suite its name; what has taken it meanwhile stays.
+void place(const fs::path& work, const fs::path& target) {
+  ::rmdir(target.c_str());  // refused where it holds anything, or is no folder
+  const int reason = core::placeUnlessThere(work, target);
+  if (reason == 0) return;
+  throw InputError("cannot give the suite the name '" + target.string() +
+                   "': " + core::writeErrorText(reason) + "; it is in '" + work.string() + "'");
+}
+
 /// A suite is complete or not there; its files are the user's from now on.
 void endRecords(const fs::path& folder) {
   std::vector<fs::path> folders = {folder};
@@ -245,8 +258,7 @@ Suite generateSuite(const std::string& kind, std::int64_t seed, const fs::path& 
   Suite suite = Generator(kind, seed, work).generate();
   endRecords(work);
   output.reset();
-  fs::remove(target);
-  fs::rename(work, target);
+  place(work, target);
   suite.folder = target;
   return suite;
 }

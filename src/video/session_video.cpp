@@ -63,8 +63,8 @@ VideoEncoder::VideoEncoder(const fs::path& file, const VideoFormat& format)
     : folder_(fs::absolute(file).parent_path()), name_(file.filename().string()), file_(file) {
   try {
     core::OutputFolder::requireFree(folder_.path(), {name_});
-    folder_.remove(name_);
-    folder_.remove(partName());
+    folder_.remove({name_});
+    folder_.remove({partName()});
     start(format);
   } catch (...) {
     stop();
@@ -120,7 +120,7 @@ void VideoEncoder::finish() {
   std::error_code error;
   fs::rename(part, folder_.claim(name_), error);
   if (error) fail(error.message());
-  folder_.remove(partName());
+  folder_.remove({partName()});
 }
 
 void VideoEncoder::closeInput() {
@@ -137,7 +137,7 @@ void VideoEncoder::stop() {
   closeInput();
   process_.reset();
   try {
-    folder_.remove(partName());
+    folder_.remove({partName()});
   } catch (const core::InputError&) {
     // It stays on the record, and goes with the next video.
   }

@@ -210,7 +210,7 @@ TEST_F(OutputFolderTest, ReplacesAndRemovesOnlyWhatItsRecordLists) {
   EXPECT_EQ(readFile(folder() / "ours", "file"), "second");
   EXPECT_TRUE(OutputFolder::lists(folder(), "ours"));
   OutputFolder::requireFree(folder(), {"ours"});
-  output.remove("mine");
+  output.remove({"mine"});
   output.clear();
   EXPECT_EQ(readFile(folder() / "mine", "file"), "mine");
   EXPECT_EQ(namesOf(folder()), (std::set<std::string>{"half.part", "mine"}));
@@ -220,7 +220,7 @@ TEST_F(OutputFolderTest, WhatTookTheNameOfARemovedFileIsTheUsers) {
   OutputFolder output(folder());
   output.write("a", "ours");
   output.write("b", "ours");
-  output.remove("a");
+  output.remove({"a"});
   std::ofstream(folder() / "a") << "mine";
   EXPECT_THROW(output.write("a", "ours"), InputError);
   fs::remove(folder() / "b");

@@ -205,7 +205,7 @@ collection::DatasetStatistics writeShard(const collection::CollectRequest& reque
   for (const learning::DrivingSample& sample : samplesFromBag(bag, options, statistics))
     writer.append(sample);
   if (statistics.samples == 0) {
-    core::OutputFolder(shard.parent_path()).remove(shard.filename().string());
+    core::OutputFolder(shard.parent_path()).remove({shard.filename().string()});
     return statistics;
   }
   writer.write(shard, {{"made_by", "cdiff collect"},
@@ -246,7 +246,7 @@ void collectSession(const collection::CollectRequest& request, const std::atomic
   if (!request.images) return;
   const collection::DatasetStatistics statistics =
       writeShard(request, settings, bag, collection::shardFile(request, name));
-  if (!request.keep_bag) core::OutputFolder(bag.parent_path()).remove(bag.filename().string());
+  if (!request.keep_bag) core::OutputFolder(bag.parent_path()).remove({bag.filename().string()});
   const fs::path file = collection::statisticsFile(request, name);
   core::writeOwnFile(file, collection::toJson(statistics));
 }

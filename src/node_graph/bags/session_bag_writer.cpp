@@ -29,7 +29,7 @@ BagFile::BagFile(const fs::path& file, const session::ScenarioOptions& options, 
       bag_(std::make_unique<rosbag::Bag>()) {
   guard([&] {
     core::OutputFolder::requireFree(folder_.path(), {name_});
-    folder_.remove(activeName());
+    folder_.remove({activeName()});
     bag_->open(folder_.claim(activeName()).string(), rosbag::bagmode::Write);
     bag_->setCompression(rosbag::compression::LZ4);
   });
@@ -44,7 +44,7 @@ BagFile::~BagFile() {
   }
   if (!failed_) return;
   try {
-    folder_.remove(activeName());
+    folder_.remove({activeName()});
   } catch (const core::InputError&) {
     // It stays on the record, and goes with the next session.
   }
@@ -101,7 +101,7 @@ void BagFile::finish() {
   guard([&] {
     bag_->close();
     fs::rename(folder_.path() / activeName(), folder_.claim(name_));
-    folder_.remove(activeName());
+    folder_.remove({activeName()});
   });
 }
 
