@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/output_folder.h"

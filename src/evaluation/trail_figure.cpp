@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"

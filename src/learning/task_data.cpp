@@ -4,7 +4,6 @@
 
 #include <ostream>
 
-#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/task.h"
 

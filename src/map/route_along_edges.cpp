@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "map/route_search.h"

@@ -5,6 +5,7 @@
 #include <map>
 #include <string_view>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

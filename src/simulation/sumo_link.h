@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/process.h"
+#include "core/guarded_process.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/markup.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

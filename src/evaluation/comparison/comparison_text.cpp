@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/csv.h"
 #include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/comparison/comparison.h"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper/paper_figures.h"

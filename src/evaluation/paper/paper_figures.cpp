@@ -7,6 +7,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "evaluation/paper/paper_table.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "planners/registry.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/text.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "node_graph/messages/conversions.h"

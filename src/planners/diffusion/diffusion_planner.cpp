@@ -6,7 +6,6 @@
 #include <cmath>
 #include <future>
 
-#include "core/text.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
