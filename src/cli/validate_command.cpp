@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/map/drivable_area.h"
-#include "map/import/network_import.h"
 #include "map/lane_graph.h"
 #include "planners/registry.h"
-#include "record/metric_file.h"
 #include "session/session_request.h"
 #include "session/session_setup.h"
 
@@ -82,68 +78,6 @@ void addValidateCommand(CLI::App& program, int& exit_code) {
     for (const std::string& name : names) {
       if (!validateOne(name, *print)) exit_code = ExitCode::kBadInput;
     }
-  });
-}
-
-namespace {
-
-void importOne(const std::string& source, const std::string& output) {
-  const map::ImportedNetwork imported = map::importNetwork(source);
-  const map::RoadNetwork network = map::RoadNetwork::fromText(imported.text, source);
-  const map::DrivableArea area(network);
-  std::cout << "source    " << imported.source.string() << "\n"
-            << "sha256    " << imported.source_sha256 << "\n"
-            << "network   " << imported.file.string() << "\n"
-            << "lanes     " << network.lanes().size() << "\n"
-            << "edges     " << network.edgeIds().size() << "\n"
-            << "junctions " << network.junctions().size() << "\n"
-            << "levels    " << area.levelCount() << "\n";
-  const std::string turns = map::turnRoundText(network);
-  if (!turns.empty()) std::cout << "turns     " << turns << "\n";
-  for (const std::string& change : imported.changes) std::cout << "change    " << change << "\n";
-  if (!output.empty()) core::writeFileAtomically(output, imported.text);
-}
-
-}  // namespace
-
-void addImportCommand(CLI::App& program, int& exit_code) {
-  auto source = std::make_shared<std::string>();
-  auto output = std::make_shared<std::string>();
-  CLI::App* command = program.add_subcommand("import",
-                                             "Make a SUMO network, an OpenDRIVE or an "
-                                             "OpenStreetMap file usable, and say what was changed");
-  command->add_option("source", *source, "*.net.xml, *.xodr, *.osm or a shipped network")
-      ->required();
-  command->add_option("--output", *output, "Also write the network to this file");
-  command->callback([source, output, &exit_code] {
-    importOne(*source, *output);
-    exit_code = ExitCode::kPassed;
-  });
-}
-
-void addMetricCommand(CLI::App& program, int& exit_code) {
-  auto metric = std::make_shared<std::string>();
-  auto file = std::make_shared<std::string>();
-  CLI::App* command =
-      program.add_subcommand("metric",
-                             "Compute one metric for the cases of a file, one line each; or print "
-                             "the definitions of all measures of a session");
-  command->add_option("metric", *metric, "ttc_2d, shapiro_wilk, wasserstein or definitions")
-      ->required()
-      ->check(CLI::IsMember({"ttc_2d", "shapiro_wilk", "wasserstein", "definitions"}));
-  command->add_option("file", *file, "Cases as CSV or JSON (not for definitions)");
-  command->callback([metric, file, &exit_code] {
-    exit_code = ExitCode::kPassed;
-    if (*metric == "definitions") {
-      std::cout << record::measureList();
-      return;
-    }
-    if (file->empty()) {
-      throw core::InputError("metric " + *metric + " needs a file of cases: cdiff metric " +
-                             *metric + " FILE");
-    }
-    for (const std::string& line : record::evaluateMetricFile(*metric, *file))
-      std::cout << line << "\n";
   });
 }
 
