@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "planners/pdm_lite/lateral_controller.h"
 #include "planners/pdm_lite/longitudinal_controller.h"
 #include "planning/surrounding_vehicles.h"
 
