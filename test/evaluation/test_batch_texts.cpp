@@ -12,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/markup.h"
+#include "core/text.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
 #include "evaluation/paper/paper_table.h"
