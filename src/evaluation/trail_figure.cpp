@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/top_view.h"
 #include "planners/registry.h"
 
 namespace cdiff::evaluation {

@@ -7,10 +7,10 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/camera_strip.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"
 

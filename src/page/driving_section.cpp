@@ -6,7 +6,6 @@
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "record/session_text.h"

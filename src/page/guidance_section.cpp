@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "core/text.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
+#include "page/report_tables.h"
 
 namespace cdiff::page {
 namespace {

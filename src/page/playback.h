@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/markup.h"
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {

@@ -7,7 +7,6 @@
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 #include "record/session_result.h"
 #include "rendering/front_camera.h"
 #include "session/session_observer.h"

@@ -12,6 +12,7 @@
 #include "evaluation/paper/paper_figures.h"
 #include "evaluation/paper/paper_table.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/plan_log.h"
 

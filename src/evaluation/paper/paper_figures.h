@@ -8,8 +8,8 @@
 
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/run_record.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/panel_sheet.h"
-#include "page/pictures/top_view.h"
 
 namespace cdiff::evaluation {
 

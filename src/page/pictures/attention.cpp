@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "page/pictures/charts.h"
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 
 namespace cdiff::page {
 namespace {

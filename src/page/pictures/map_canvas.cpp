@@ -8,7 +8,6 @@
 #include "core/text.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
-#include "page/pictures/top_view.h"
 
 namespace cdiff::page {
 namespace {

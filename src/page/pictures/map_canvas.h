@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/simplified.h"
 #include "record/session_result.h"
 
 namespace cdiff::page {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 #include "planning/perception.h"
 
 namespace cdiff::page {

@@ -9,7 +9,10 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "page/page_parts.h"
+#include "page/pictures/attention.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
+#include "page/pictures/perceived.h"
 
 namespace cdiff::page {
 namespace {
