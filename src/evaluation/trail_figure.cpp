@@ -9,6 +9,8 @@
 
 #include "core/csv.h"
 #include "core/text.h"
+#include "evaluation/paper/frame_figure.h"
+#include "evaluation/trail_scene.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"
