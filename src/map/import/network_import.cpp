@@ -13,6 +13,7 @@
 #include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/import/vehicle_classes.h"
 
 namespace cdiff::map {
 namespace {
