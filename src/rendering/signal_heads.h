@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <array>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -60,45 +59,5 @@ class SignalHeads {
   std::vector<std::vector<int>> visible_heads_;  ///< by view
   std::vector<std::vector<int>> visible_masts_;  ///< by view
 };
-
-// Other vehicles as shaded boxes: body, cabin, wheels, tail lights that show whether it brakes,
-// headlights, and a shadow below.
-
-/// Whether the brake lights are on: it slows down by more than 0.5 m/s^2, brakes by more than 0.1,
-/// or stands (below 0.1 m/s).
-bool brakeLightsOn(const traffic::Vehicle& vehicle);
-
-/// Color of the paint, by a hash of the id.
-Color bodyColor(const std::string& id);
-
-/// A face of a vehicle, counter-clockwise seen from outside (map frame [m]).
-struct BodyFace {
-  std::array<Eigen::Vector3d, 8> corners;
-  int count = 0;
-  Paint paint;
-};
-
-/// A vehicle's faces in the order in which they are drawn.
-using VehicleBody = std::vector<BodyFace>;
-
-/// The same in every view. `instance`: its number in the label of its pixels, from 1 on.
-VehicleBody bodyOf(const traffic::Vehicle& vehicle, std::uint16_t instance);
-
-/// A vehicle that a camera may see: the ball around it and its faces.
-struct VisibleVehicle {
-  Bound bound;
-  VehicleBody body;
-};
-
-/// What a network looks like, with the buffers of drawing it. One per thread.
-struct NetworkScene {
-  explicit NetworkScene(const map::RoadNetwork& network) : road(network), signals(network) {}
-
-  RoadScene road;
-  SignalHeads signals;
-};
-
-/// Draws the faces that are turned toward the eye.
-void drawBody(const VehicleBody& body, const View& view, Canvas& canvas);
 
 }  // namespace cdiff::rendering
