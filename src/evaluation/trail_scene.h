@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "learning/samples/scene_file.h"
 #include "record/result_folder.h"
 
 namespace cdiff::evaluation {

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/samples/scene_file.h"
 #include "learning/task.h"
 
 namespace cdiff::learning {

@@ -18,6 +18,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "learning/samples/driving_sample.h"
+#include "learning/samples/scene_file.h"
 #include "node_graph/bags/driving_bag.h"
 #include "node_graph/bags/recorded_session.h"
 #include "node_graph/bags/session_bag_writer.h"
