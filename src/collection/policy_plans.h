@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "collection/training_samples.h"
 #include "diffusion/model.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"

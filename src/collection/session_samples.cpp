@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/session_samples.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "collection/dataset_statistics.h"
+#include "collection/drive_samples.h"
+#include "collection/offset_samples.h"
 #include "collection/policy_plans.h"
-#include "collection/training_samples.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -10,8 +10,9 @@
 
 #include "collection/collection_loop.h"
 #include "collection/collection_options.h"
+#include "collection/drive_samples.h"
 #include "collection/scene_recorder.h"
-#include "collection/training_samples.h"
+#include "collection/session_samples.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/text.h"

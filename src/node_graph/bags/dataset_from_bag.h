@@ -9,7 +9,8 @@
 
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
-#include "collection/training_samples.h"
+#include "collection/drive_samples.h"
+#include "collection/session_samples.h"
 
 namespace cdiff::node_graph {
 
