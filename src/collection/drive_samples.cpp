@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "collection/camera_sight.h"
 #include "collection/dataset_statistics.h"
 #include "collection/session_samples.h"
 #include "diffusion/network/architecture.h"

@@ -9,7 +9,6 @@
 
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
-#include "collection/session_samples.h"
 #include "e2e_cdiff/core/options.h"
 #include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"

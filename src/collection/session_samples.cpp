@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "collection/dataset_statistics.h"
-#include "collection/drive_samples.h"
 #include "collection/offset_samples.h"
 #include "collection/policy_plans.h"
 #include "diffusion/network/architecture.h"

@@ -12,7 +12,6 @@
 
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
-#include "collection/drive_samples.h"
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "e2e_cdiff/traffic/vehicle.h"

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/run_record.h"
+
 namespace cdiff::evaluation {
 
 // Texts of a batch's files: runs.csv (a row per planned run), summary.json (a cell per

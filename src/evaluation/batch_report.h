@@ -8,6 +8,7 @@
 
 #include "core/markup.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_table.h"
 
 namespace cdiff::evaluation {
 

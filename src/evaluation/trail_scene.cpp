@@ -8,6 +8,8 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/run_plan.h"
+#include "evaluation/run_record.h"
 #include "metrics/known_measures.h"
 
 namespace cdiff::evaluation {

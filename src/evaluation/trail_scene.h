@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "learning/samples/scene_file.h"
+#include "evaluation/run_plan.h"
+#include "evaluation/run_record.h"
 #include "record/result_folder.h"
 
 namespace cdiff::evaluation {

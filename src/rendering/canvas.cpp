@@ -2,12 +2,13 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "rendering/canvas.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #include "e2e_cdiff/core/angle.h"
 
