@@ -23,8 +23,9 @@
 #include "node_graph/bags/driving_bag.h"
 #include "node_graph/bags/recorded_session.h"
 #include "node_graph/bags/session_bag_writer.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "sensor_msgs/Image.h"
 
 namespace cdiff::node_graph {

@@ -4,9 +4,7 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 
-#include "cbv/cbv_selector.h"
 #include "e2e_cdiff/CbvSelection.h"
 #include "image_transport/image_transport.h"
 #include "nav_msgs/Path.h"
@@ -15,28 +13,6 @@
 #include "session/vehicle_cameras.h"
 
 namespace cdiff::node_graph {
-
-/// CBV identification as a node: ego route and snapshots in, a selection at every decision tick
-/// out.
-class CbvIdentificationNode : public Participant {
- public:
-  using Participant::Participant;
-
- protected:
-  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
-  std::string waitingFor() const override;
-  bool handle(const Snapshot& snapshot, bool superseded) override;
-  int conclude(Ending) override { return core::ExitCode::kPassed; }
-
- private:
-  void takeRoute(const nav_msgs::Path& path);
-  cbv::CbvOptions options_;
-  std::optional<map::RoadNetwork> network_;
-  std::optional<map::LaneGraph> graph_;
-  map::Route ego_route_;
-  std::unique_ptr<cbv::CbvSelector> selector_;
-  ros::Publisher selections_;
-};
 
 /// The cameras as a node: snapshots and selection in; at decision ticks an image (rgb8) and its
 /// intrinsics of each camera of each occupied slot and of the ego out, of those whose planner sees

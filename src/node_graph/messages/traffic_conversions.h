@@ -6,20 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/CbvSelection.h"
 #include "e2e_cdiff/ControlAction.h"
-#include "e2e_cdiff/GuidanceReport.h"
-#include "e2e_cdiff/MetricReport.h"
 #include "e2e_cdiff/Rollout.h"
-#include "e2e_cdiff/SessionInfo.h"
 #include "e2e_cdiff/TrafficSnapshot.h"
-#include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
-#include "metrics/session_metrics.h"
-#include "nav_msgs/Path.h"
 #include "ros/time.h"
-#include "session/session_setup.h"
 
 namespace cdiff::node_graph {
 
@@ -48,10 +40,6 @@ msgs::TrafficSnapshot toMsg(const traffic::TrafficSnapshot& snapshot);
 /// Throws InputError for an unknown status.
 traffic::TrafficSnapshot fromMsg(const msgs::TrafficSnapshot& message);
 
-msgs::Perception toMsg(const planning::Perception& perception);
-/// Without occupancy whose cells are not rows x columns.
-planning::Perception fromMsg(const msgs::Perception& message);
-
 /// How an action came about.
 struct ActionOrigin {
   std::string planner;      ///< "ego:NAME" or "cbv:NAME"
@@ -68,32 +56,5 @@ msgs::Rollout toRolloutMsg(const planning::PlannedAction& action,
                            const traffic::TrafficSnapshot& snapshot);
 std::vector<planning::RolloutPoint> fromMsg(const msgs::Rollout& message);
 std::vector<planning::PlannedCandidate> candidatesFromMsg(const msgs::Rollout& message);
-
-/// What guidance did for all vehicles of a decision; the caller fills in latency and image age.
-msgs::GuidanceReport toGuidanceMsg(const std::vector<planning::PlannedAction>& actions,
-                                   const traffic::TrafficSnapshot& snapshot);
-guidance::GuidanceReport fromMsg(const msgs::VehicleGuidance& message);
-
-/// Names lanes by their ids in `network`.
-msgs::CbvSelection toMsg(const cbv::CbvSelection& selection, double time,
-                         const map::RoadNetwork& network);
-/// Throws InputError for a lane that `network` does not have.
-cbv::CbvSelection fromMsg(const msgs::CbvSelection& message, const map::RoadNetwork& network);
-
-/// The scenario, the network and the ego route; the caller fills in the rest.
-msgs::SessionInfo toMsg(const session::SessionSetup& setup);
-/// Options of the session. Throws InputError when they cannot be read.
-session::ScenarioOptions optionsFromMsg(const msgs::SessionInfo& message);
-map::ImportedNetwork importFromMsg(const msgs::SessionInfo& message);
-std::vector<Eigen::Vector3d> routeFromMsg(const msgs::SessionInfo& message);
-
-/// Positions are exact; orientations are for display.
-nav_msgs::Path toPathMsg(const map::Route& route);
-std::vector<Eigen::Vector3d> fromMsg(const nav_msgs::Path& message);
-
-msgs::MetricReport toMsg(const metrics::TickMeasures& measures,
-                         const traffic::TrafficSnapshot& snapshot);
-/// All measures of a session, in a fixed order.
-std::vector<msgs::Measure> toMsg(const metrics::SessionMeasures& measures);
 
 }  // namespace cdiff::node_graph
