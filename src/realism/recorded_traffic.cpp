@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "realism/recorded_traffic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +14,6 @@
 #include "realism/recording.h"
 
 namespace cdiff::realism {
-
 namespace {
 
 namespace fs = std::filesystem;
