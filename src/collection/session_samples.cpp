@@ -13,7 +13,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::collection {
@@ -32,7 +32,7 @@ struct Place {
 };
 
 /// Makes the training samples of one driven session and adds them to the statistics (samplesOf in
-/// training_samples.h); one object per session.
+/// session_samples.h); one object per session.
 class SampleMaker {
  public:
   SampleMaker(const DrivenSession& session, const DatasetOptions& options,

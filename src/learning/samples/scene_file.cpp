@@ -214,7 +214,7 @@ class VehicleRows {
   std::size_t row_ = 0;
 };
 
-/// Reads the tables of one scene (scene_tables.h), the counterpart of scene_writer.cpp; a column
+/// Reads the tables of one scene (scene_tables.h), the counterpart of TableWriter; a column
 /// that is too short throws std::out_of_range.
 class TableReader {
  public:
