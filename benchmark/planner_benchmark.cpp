@@ -8,6 +8,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "fma_peak.h"
 #include "network_times.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_planner.h"
 #ifdef E2E_CDIFF_EAGER
 #include "eager_planner.h"

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "cbv/candidates.h"
+#include "cbv/cbv_options.h"
+#include "cbv/conflict_search.h"
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/core/exceptions.h"
 

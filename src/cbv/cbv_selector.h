@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cbv/candidates.h"
+#include "cbv/cbv_options.h"
+#include "cbv/conflict_search.h"
 #include "e2e_cdiff/cbv/cbv_selection.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "map/lane_graph.h"

@@ -11,7 +11,7 @@
 #include "collection/dataset_statistics.h"
 #include "core/file.h"
 #include "core/output_folder.h"
-#include "core/process.h"
+#include "core/process_pool.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -13,6 +13,7 @@
 #include "core/output_folder.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"

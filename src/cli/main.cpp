@@ -4,8 +4,9 @@
 
 #include "cli/commands.h"
 #include "cli/refused_arguments.h"
-#include "core/process.h"
+#include "core/guarded_process.h"
 #include "core/program.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "e2e_cdiff/core/exceptions.h"

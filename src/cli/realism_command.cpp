@@ -14,6 +14,7 @@
 #include "evaluation/suite_selection.h"
 #include "realism/matched.h"
 #include "realism/pooled.h"
+#include "realism/realism_tables.h"
 #include "session/session_request.h"
 #include "suite/seal.h"
 

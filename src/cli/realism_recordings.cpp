@@ -9,6 +9,8 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "evaluation/executor.h"
+#include "realism/recorded_session.h"
+#include "realism/recorded_traffic.h"
 #include "realism/recording.h"
 #ifdef E2E_CDIFF_WITH_ROS
 #include "node_graph/bags/replay.h"

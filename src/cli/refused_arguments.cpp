@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "cli/refused_arguments.h"
 
+#include "core/spelling.h"
 #include "core/text.h"
 
 namespace cdiff::cli {

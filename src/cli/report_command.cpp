@@ -12,6 +12,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/comparison/comparison_text.h"
 #include "evaluation/matrix.h"
 #include "evaluation/pedal_use.h"
 #include "page/training_pages.h"

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "core/clock.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "core/process.h"
+#include "core/process_pool.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "learning/samples/scene.h"
+#include "learning/samples/scene_file.h"
 #include "planners/registry.h"
 
 namespace cdiff::collection {

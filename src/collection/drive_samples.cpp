@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/drive_samples.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "collection/camera_sight.h"
 #include "collection/dataset_statistics.h"
-#include "collection/training_samples.h"
+#include "collection/session_samples.h"
 #include "diffusion/network/architecture.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"

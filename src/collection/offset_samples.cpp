@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/offset_samples.h"
+
 #include <algorithm>
 
-#include "collection/training_samples.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/lateral_controller.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planning/route_follower.h"
 

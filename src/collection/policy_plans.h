@@ -6,12 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "collection/training_samples.h"
+#include "collection/dataset_statistics.h"
 #include "diffusion/model.h"
 #include "diffusion/network/cpu_denoiser.h"
 #include "diffusion/network/image_encoder.h"
 #include "diffusion/sampler.h"
 #include "dynamics/action_rollout.h"
+#include "learning/samples/driving_sample.h"
+#include "session/session_setup.h"
 
 namespace cdiff::collection {
 

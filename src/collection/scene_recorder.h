@@ -7,7 +7,7 @@
 #include <string>
 
 #include "collection/collection_loop.h"
-#include "collection/training_samples.h"
+#include "collection/session_samples.h"
 #include "learning/samples/scene.h"
 #include "session/session_observer.h"
 #include "session/session_setup.h"

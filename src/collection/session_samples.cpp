@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "collection/session_samples.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "collection/dataset_statistics.h"
+#include "collection/offset_samples.h"
 #include "collection/policy_plans.h"
-#include "collection/training_samples.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
-#include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::collection {
@@ -30,7 +32,7 @@ struct Place {
 };
 
 /// Makes the training samples of one driven session and adds them to the statistics (samplesOf in
-/// training_samples.h); one object per session.
+/// session_samples.h); one object per session.
 class SampleMaker {
  public:
   SampleMaker(const DrivenSession& session, const DatasetOptions& options,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cbv/candidates.h"
+#include "cbv/cbv_options.h"
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/core/exceptions.h"
 

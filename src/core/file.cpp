@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/program.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

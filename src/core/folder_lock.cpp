@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/clock.h"
 #include "core/folder_access.h"
 #include "core/text.h"
 

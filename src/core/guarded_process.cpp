@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "core/guarded_process.h"
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -13,13 +15,11 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "core/process.h"
 #include "core/program.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {
-
 namespace {
 
 constexpr std::chrono::milliseconds kGuardPeriod{50};

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/option_fields.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "core/yaml_text.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "core/process_pool.h"
+
 #include <chrono>
 #include <csignal>
 #include <memory>
 #include <optional>
 #include <thread>
 
-#include "core/process.h"
+#include "core/guarded_process.h"
 
 namespace cdiff::core {
 namespace {

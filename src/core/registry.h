@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/text.h"
+#include "core/spelling.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::core {

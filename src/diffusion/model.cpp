@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "diffusion/normalizer.h"
 #include "e2e_cdiff/core/exceptions.h"

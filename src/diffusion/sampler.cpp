@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/text.h"
 #include "diffusion/few_step_solver.h"
 #include "diffusion/sampling_batch.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/batch_files.h"
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/markup.h"
 #include "core/output_folder.h"
 #include "core/text.h"
-#include "evaluation/batch_report.h"
 #include "evaluation/system_summary.h"
 #include "metrics/known_measures.h"
 #include "record/junit.h"

@@ -13,8 +13,10 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/table_definitions.h"
 #include "evaluation/system_summary.h"
 #include "evaluation/trail_figure.h"
+#include "evaluation/trail_scene.h"
 #include "metrics/known_measures.h"
 #include "page/page_parts.h"
 

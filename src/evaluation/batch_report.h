@@ -8,7 +8,7 @@
 
 #include "core/markup.h"
 #include "evaluation/paper/paper_figures.h"
-#include "evaluation/statistics.h"
+#include "evaluation/paper/paper_table.h"
 
 namespace cdiff::evaluation {
 
@@ -27,18 +27,6 @@ std::string tablesMarkdown(const std::vector<Table>& tables);
 /// self-contained. Elements of class "wall-clock" hold all that depends on wall-clock time.
 std::string batchPage(const std::string& name, const std::vector<BatchRun>& runs,
                       const std::vector<Table>& tables, const std::vector<Figure>& figures);
-
-// Texts of a batch's files: runs.csv (a row per planned run), summary.json (a cell per
-// combination), junit.xml (a case per run), summary.md (a table of cells).
-
-std::string runsCsv(const std::vector<RunRecord>& records);
-std::string batchSummaryJson(const std::string& name, const std::vector<RunRecord>& records);
-std::string batchJunitXml(const std::string& name, const std::vector<RunRecord>& records);
-std::string batchMarkdown(const std::string& name, const std::vector<RunRecord>& records);
-
-/// Writes all four, each whole.
-void writeBatchFiles(const std::filesystem::path& results, const std::string& name,
-                     const std::vector<RunRecord>& records);
 
 // Style sheets of a batch's page: the files in evaluation/assets.
 

@@ -12,6 +12,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 #include "session/scenario_options.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evaluation/run_plan.h"
-#include "record/verdict.h"
+#include "record/outcome.h"
 
 namespace cdiff::evaluation {
 

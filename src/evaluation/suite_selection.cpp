@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "core/clock.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/text.h"

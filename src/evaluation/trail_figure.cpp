@@ -7,9 +7,13 @@
 #include <cmath>
 #include <map>
 
+#include "core/csv.h"
 #include "core/text.h"
+#include "evaluation/paper/frame_figure.h"
+#include "evaluation/trail_scene.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/top_view.h"
 #include "planners/registry.h"
 
 namespace cdiff::evaluation {

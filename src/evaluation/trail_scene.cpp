@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/trail_scene.h"
+
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "evaluation/trail_figure.h"
+#include "evaluation/run_plan.h"
+#include "evaluation/run_record.h"
 #include "metrics/known_measures.h"
 
 namespace cdiff::evaluation {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/file.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "guidance/objective_registry.h"

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/text.h"

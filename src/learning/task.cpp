@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/text.h"
+#include "core/spelling.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/task_registry.h"
 

@@ -4,8 +4,8 @@
 
 #include <ostream>
 
-#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/samples/scene_file.h"
 #include "learning/task.h"
 
 namespace cdiff::learning {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

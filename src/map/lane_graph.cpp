@@ -8,7 +8,8 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "map/route_search.h"
+#include "map/lane_search.h"
+#include "map/route_builder.h"
 
 namespace cdiff::map {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "e2e_cdiff/map/route.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "metrics/formulas/contacts.h"
+#include "metrics/formulas/contact_avoidance.h"
+#include "metrics/formulas/contact_fault.h"
 
 namespace cdiff::metrics {
 

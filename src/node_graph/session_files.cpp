@@ -10,9 +10,11 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "core/clock.h"
 #include "core/file.h"
 #include "core/output_folder.h"
 #include "core/program.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/node_process.h"

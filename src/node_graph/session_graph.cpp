@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "planners/registry.h"
 
 namespace cdiff::node_graph {

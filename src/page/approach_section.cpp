@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/approach_section.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/text.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/camera_strip.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"
 

@@ -6,7 +6,13 @@
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
+#include "page/approach_section.h"
+#include "page/driving_section.h"
+#include "page/guidance_section.h"
 #include "page/page_parts.h"
+#include "page/pictures/session_charts.h"
+#include "page/playback.h"
+#include "page/report_tables.h"
 #include "record/session_text.h"
 #include "session/session_request.h"
 

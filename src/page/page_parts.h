@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/markup.h"
-#include "record/verdict.h"
+#include "record/outcome.h"
 
 namespace cdiff::page {
 

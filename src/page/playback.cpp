@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/playback.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,8 +9,10 @@
 #include <set>
 
 #include "e2e_cdiff/core/angle.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
+#include "page/pictures/attention.h"
+#include "page/pictures/map_canvas.h"
+#include "page/pictures/perceived.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/cbv_log.h"
 

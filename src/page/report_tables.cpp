@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/report_tables.h"
+
 #include <algorithm>
 
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "record/session_text.h"
 #include "record/session_yaml.h"

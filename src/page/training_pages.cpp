@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "diffusion/network/architecture.h"
 #include "e2e_cdiff/core/exceptions.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/registry.h"

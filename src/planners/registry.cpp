@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/registry.h"
+#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "planners/planner_by_slot.h"
 

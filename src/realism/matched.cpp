@@ -9,7 +9,7 @@
 
 #include "core/file.h"
 #include "core/output_folder.h"
-#include "core/process.h"
+#include "core/process_pool.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -74,9 +74,4 @@ struct MatchedRow {
 std::vector<MatchedRow> matchedRows(const std::vector<MatchedJob>& jobs,
                                     const std::vector<MatchedEnd>& ends);
 
-std::string matchedJson(const std::vector<MatchedRow>& rows, const ContinuationOptions& options);
-std::string matchedMarkdown(const std::vector<MatchedRow>& rows,
-                            const ContinuationOptions& options);
-std::string matchedPage(const std::vector<MatchedRow>& rows, const ContinuationOptions& options);
-
 }  // namespace cdiff::realism

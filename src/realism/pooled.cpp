@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/recording.h"

@@ -80,8 +80,4 @@ struct PooledResult {
 PooledResult comparePooled(const std::vector<Recording>& log, const PooledDrivers& drivers,
                            const std::string& headline);
 
-std::string pooledJson(const PooledResult& result);
-std::string pooledMarkdown(const PooledResult& result);
-std::string pooledPage(const PooledResult& result);
-
 }  // namespace cdiff::realism

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "realism/realism_tables.h"
+
 #include <nlohmann/json.hpp>
 
 #include "core/markup.h"

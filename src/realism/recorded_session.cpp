@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "realism/recorded_session.h"
+
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include "record/result_folder.h"
 
 namespace cdiff::realism {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "realism/recorded_traffic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string_view>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/recording.h"
 
 namespace cdiff::realism {
-
 namespace {
 
 namespace fs = std::filesystem;

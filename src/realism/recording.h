@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -106,27 +105,5 @@ double timeToCollision(const MovingBox& self, const std::vector<MovingBox>& othe
 /// map (empty). `motions`: of all tracks. Steps without the track are NaN.
 Course courseOf(const Recording& recording, const std::vector<Motion>& motions, std::size_t track,
                 std::size_t begin, std::size_t end);
-
-/// Columns that a file of recorded traffic must have, in any order: recording, vehicle, t [s], x, y
-/// [m], heading [rad], length, width [m]. Others are skipped: speeds and accelerations are
-/// differentiated again from x and y.
-const std::vector<std::string>& recordedColumns();
-
-/// Recorded traffic from a CSV file: rows of a vehicle lie together in order of time, 0.1 s apart.
-/// A longer gap starts another track. The site is the recording's name up to the first '-'. Throws
-/// InputError naming file, missing and expected columns, or the line that cannot be read.
-std::vector<Recording> readRecordedTraffic(const std::filesystem::path& file);
-
-/// The same of several files, or of all *.csv files that have these columns in a folder, sorted by
-/// name.
-std::vector<Recording> readRecordedTraffic(const std::vector<std::filesystem::path>& files);
-
-/// The course of a session from its result folder (trace.csv, session.yaml), every 0.1 s, with the
-/// contacts of every tick: a CBV leaves the simulation at the tick after one, which need not be a
-/// step. The trace holds neither elevations nor sizes: all vehicles lie on one level and are 4.5 m
-/// x 1.8 m (generated demand: 4.2 x 1.75 to 5.2 x 1.95), so that contacts of ego and CBVs are taken
-/// from summary.json, too, where it is there. Throws InputError for a folder without trace.csv or
-/// session.yaml, a damaged file, and for a simulation step that does not divide 0.1 s.
-Recording readResult(const std::filesystem::path& folder);
 
 }  // namespace cdiff::realism

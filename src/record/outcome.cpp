@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "record/outcome.h"
+
 #include <cctype>
 #include <utility>
 
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "record/verdict.h"
 
 namespace cdiff::record {
 namespace {

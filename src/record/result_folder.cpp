@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/program.h"
 #include "core/text.h"

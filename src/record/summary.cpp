@@ -2,9 +2,12 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "record/summary.h"
 
+#include <cmath>
+
 #include "core/text.h"
 #include "metrics/known_measures.h"
 #include "metrics/metric_registry.h"
+#include "planners/planner_by_slot.h"
 #include "session/session_request.h"
 
 namespace cdiff::record {
@@ -157,6 +160,181 @@ std::string summaryJson(const SessionResult& result) {
   summary["faults"] = faultList(result.faults);
   summary["verdict"] = verdictObject(result.verdict);
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+namespace {
+
+/// {value, n, unit} and, where there is one, the reason (why absent, or how thinned out) and the
+/// target that it is compared with.
+Json measureObject(const metrics::Measure& measure) {
+  Json object = {{"value", number(measure.value)}, {"n", measure.n}, {"unit", measure.unit}};
+  if (!measure.reason.empty()) object["reason"] = measure.reason;
+  if (!measure.target.empty()) object["target"] = measure.target;
+  return object;
+}
+
+/// Adds `leaf` to a distribution's object: its values, then n and, where there is one, the reason.
+void addToDistribution(Json& object, const std::string& leaf, const metrics::Measure& measure) {
+  if (object.is_null()) object = Json::object();
+  const std::string reason = object.value("reason", measure.reason);
+  object.erase("n");
+  object.erase("reason");
+  object[leaf] = number(measure.value);
+  object["n"] = measure.n;
+  if (!reason.empty()) object["reason"] = reason;
+}
+
+Json entryList(const std::vector<metrics::MetricEntry>& entries) {
+  Json list = Json::array();
+  for (const metrics::MetricEntry& entry : entries) {
+    list.push_back(Json::object());
+    for (const auto& [key, value] : entry)
+      std::visit([&, &name = key](const auto& content) { list.back()[name] = content; }, value);
+  }
+  return list;
+}
+
+}  // namespace
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+void addMeasure(Json& object, const std::string& key, const metrics::Measure& measure) {
+  object[key] = number(measure.value);
+  if (!measure.reason.empty()) object[key + "_reason"] = measure.reason;
+}
+
+void addPlainMeasure(Json& object, const std::string& key, const metrics::Measure& measure) {
+  addMeasure(object, key, measure);
+  if (measure.unit == "count" && measure.value)
+    object[key] = static_cast<std::uint64_t>(*measure.value);
+}
+
+void addMeasures(Json& object, const std::string& section,
+                 const metrics::SessionMeasures& measures) {
+  for (const metrics::MeasureDefinition& definition : metrics::measureDefinitions()) {
+    const std::vector<std::string> keys = core::splitText(definition.place, '/');
+    if (keys.front() != section) continue;
+    const metrics::Measure measure = measures.at(definition);
+    if (keys.size() == 2) {
+      addPlainMeasure(object, keys[1], measure);
+      continue;
+    }
+    Json* parent = &object;
+    for (std::size_t i = 1; i + 1 < keys.size(); ++i) parent = &(*parent)[keys[i]];
+    if (keys.back() == "value") {
+      *parent = measureObject(measure);
+    } else {
+      addToDistribution(*parent, keys.back(), measure);
+    }
+  }
+  for (const auto& [place, entries] : measures.lists) {
+    const std::vector<std::string> keys = core::splitText(place, '/');
+    if (keys.front() == section) object[keys.back()] = entryList(entries);
+  }
+}
+
+namespace {
+
+Json summaryObject(const SampleSummary& summary) {
+  return {{"mean", number(summary.mean)}, {"p95", number(summary.percentile_95)}, {"n", summary.n}};
+}
+
+Json conflictObject(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  return {{"x", conflict.position.x()},
+          {"y", conflict.position.y()},
+          {"z", conflict.position.z()},
+          {"ego_distance_m", conflict.ego_distance},
+          {"cbv_distance_m", conflict.cbv_distance},
+          {"ego_arrival_s", conflict.ego_arrival},
+          {"cbv_arrival_s", conflict.cbv_arrival},
+          {"arrival_time_gap_s", conflict.arrivalTimeGap()},
+          {"ego_arc_length_m", conflict.ego_arc_length},
+          {"in_junction_or_beyond", atOrBeyondFirstJunction(conflict, ego_route)}};
+}
+
+/// Time of a tick without the last bit of the product: 5.8, not 5.800000000000001 [s].
+double secondsOf(std::uint64_t tick, double step) {
+  return std::round(static_cast<double>(tick) * step * 1e9) / 1e9;
+}
+
+Json selectionObject(const CbvRecord& record, const SessionResult& result) {
+  const session::SessionSetup& setup = result.setup;
+  const double step = setup.options().simulation_step;
+  Json object = {{"slot", record.slot},
+                 {"planner", planners::plannerOfSlot(setup.options().cbv_planner, record.slot)},
+                 {"vehicle_id", record.vehicle_id},
+                 {"selected_tick", record.selected_tick},
+                 {"selected_seconds", secondsOf(record.selected_tick, step)},
+                 {"interaction_score", record.interaction_score},
+                 {"conflict_point", conflictObject(record.conflict_point, setup.egoRoute())},
+                 {"decisions_driven", record.decisions_driven},
+                 {"released_tick", nullptr},
+                 {"release_reason", record.release_reason},
+                 {"contact_with", nullptr},
+                 {"route_length_m", record.route_length},
+                 {"route_completion_percent", record.routeCompletionPercent()},
+                 {"conflict_point_passed", record.conflict_point_passed},
+                 {"route_completed", record.routeCompleted()}};
+  if (setup.options().cbv_target_speed.drawn())
+    object["target_speed_mps"] = setup.cbvTargetSpeed(record.vehicle_id);
+  if (record.released_tick) object["released_tick"] = *record.released_tick;
+  if (const auto other = contactPartner(record, result)) object["contact_with"] = *other;
+  return object;
+}
+
+/// Plans of all CBVs against what was driven and against exact dynamics; null without plans.
+Json planObject(const SessionResult& result) {
+  if (result.plans.empty()) return nullptr;
+  Json object = Json::object();
+  for (const int seconds : {1, 2, 3}) {
+    object["displacement_" + std::to_string(seconds) + "s_m"] =
+        summaryObject(displacementSummary(result.plans, seconds));
+  }
+  const SampleSummary mismatch = mismatchSummary(result.plans);
+  object["state_mismatch_m"] = {{"mean", number(mismatch.mean)},
+                                {"p95", number(mismatch.percentile_95)},
+                                {"max", number(mismatch.maximum)},
+                                {"n", mismatch.n}};
+  return object;
+}
+
+/// Faults of planners of CBVs, by planner.
+Json cbvFaults(const std::vector<traffic::Fault>& faults) {
+  Json object = Json::object();
+  for (const traffic::Fault& fault : faults) {
+    if (fault.source.rfind("cbv:", 0) != 0) continue;
+    object[fault.source] = object.value(fault.source, 0) + 1;
+  }
+  return object;
+}
+
+}  // namespace
+
+bool atOrBeyondFirstJunction(const cbv::ConflictPoint& conflict, const map::Route& ego_route) {
+  const auto& junctions = ego_route.junctionStretches();
+  return !junctions.empty() && conflict.ego_arc_length >= junctions.front().first;
+}
+
+std::optional<std::string> contactPartner(const CbvRecord& record, const SessionResult& result) {
+  const double step = result.setup.options().simulation_step;
+  const double end = record.released_tick ? static_cast<double>(*record.released_tick) * step
+                                          : result.timeline.duration();
+  return result.timeline.lastContactOf(record.vehicle_id,
+                                       static_cast<double>(record.selected_tick) * step, end);
+}
+
+Json cbvObject(const SessionResult& result) {
+  Json object = Json::object();
+  addMeasures(object, "cbv", result.measures);
+  object["selections"] = Json::array();
+  for (const CbvRecord& record : result.cbv.records()) {
+    object["selections"].push_back(selectionObject(record, result));
+  }
+  object["rejected"] = Json::object();
+  for (const auto& [reason, count] : result.cbv.rejected()) object["rejected"][reason] = count;
+  object["faults"] = cbvFaults(result.faults);
+  object["plan"] = planObject(result);
+  return object;
 }
 
 }  // namespace cdiff::record

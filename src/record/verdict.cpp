@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "metrics/known_measures.h"
+#include "record/outcome.h"
 
 namespace cdiff::record {
 namespace {

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rendering/network_scene.h"
 #include "rendering/road_scene.h"
-#include "rendering/scene_objects.h"
+#include "rendering/vehicle_body.h"
 
 namespace cdiff::rendering {
 namespace {

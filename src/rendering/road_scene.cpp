@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "rendering/lane_surface.h"
+
 namespace cdiff::rendering {
 namespace {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include <algorithm>
+#include "rendering/signal_heads.h"
 
-#include "rendering/scene_objects.h"
+#include <algorithm>
 
 namespace cdiff::rendering {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "rendering/vehicle_body.h"
+
 #include <algorithm>
 #include <array>
 
-#include "rendering/scene_objects.h"
 #include "traffic/vehicle_class.h"
 
 namespace cdiff::rendering {

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "core/file.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/traffic/vehicle.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "simulation/sumo_link.h"
+#include "simulation/sumo_conventions.h"
 
 namespace cdiff::simulation {
 

@@ -11,29 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/process.h"
+#include "core/guarded_process.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/traffic/vehicle.h"
 #include "simulation/sumo_simulator.h"
 
 namespace cdiff::simulation {
-
-// SUMO's conventions and ours: SUMO places a vehicle by the center of its front bumper and an angle
-// in degrees clockwise from north; we by the center of its box and a heading in radians
-// counter-clockwise from east. center = front - L/2 (cos, sin)(heading).
-
-/// Heading of a navigation angle [deg], in (-pi, pi] [rad].
-double headingFromAngle(double angle_degrees);
-
-/// Navigation angle of a heading [rad], in [0, 360) [deg].
-double angleFromHeading(double heading);
-
-/// Front bumper of a vehicle whose center is at `pose` [m].
-Eigen::Vector2d frontOf(const geometry::Pose2d& pose, double length);
-
-/// Center of a vehicle whose front bumper is at `front` [m].
-Eigen::Vector2d centerBehind(const Eigen::Vector2d& front, double heading, double length);
 
 /// A TCP port that was free a moment ago.
 int freePort();
@@ -157,17 +140,5 @@ class SumoLink {
   bool connected_ = false;
   bool loaded_ = false;  ///< network and demand
 };
-
-// What a session gives to SUMO, and which file is at fault when SUMO refuses it.
-
-/// Starts SUMO and connects. Throws InputError naming the file that is missing or that SUMO
-/// refuses, with SUMO's own message.
-std::unique_ptr<SumoLink> startSumo(const SumoOptions& options, const SumoSession& session);
-
-/// Whether a sentence of SUMO names ('...') something that the session's demand defines.
-bool namesDemand(const std::string& sentence, const SumoSession& session);
-
-/// Throws InputError naming the demand, with SUMO's sentence.
-[[noreturn]] void refuseDemand(const SumoSession& session, const std::string& sentence);
 
 }  // namespace cdiff::simulation

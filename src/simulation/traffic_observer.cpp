@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "simulation/sumo_link.h"
+#include "simulation/sumo_conventions.h"
 
 namespace cdiff::simulation {
 namespace {

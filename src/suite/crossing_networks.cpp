@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "suite/crossing_networks.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -15,6 +15,8 @@
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/geometry/shapes.h"
 #include "map/import/network_import.h"
+#include "suite/crossing_networks.h"
+#include "suite/merging_networks.h"
 
 namespace cdiff::suite {
 namespace {

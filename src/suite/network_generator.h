@@ -153,15 +153,10 @@ struct NetworkSpec {
 
 RoadPlan drawNetwork(const NetworkSpec& spec, Draws& draws);
 
-// The kinds of networks, and the roads that lead to a junction.
+// The roads that lead to a junction.
 
 /// Width of every lane [m], as in networks/netconvert.netccfg.
 inline constexpr double kLaneWidth = 3.5;
-
-RoadPlan drawCrossing(const NetworkSpec& spec, Draws& draws);
-RoadPlan drawRoundabout(const NetworkSpec& spec, Draws& draws);
-RoadPlan drawMerge(const NetworkSpec& spec, Draws& draws);
-RoadPlan drawDistrict(const NetworkSpec& spec, Draws& draws);
 
 /// Limits of small and of larger roads: 30 to 50 and 40 to 70 km/h [m/s].
 double drawSmallSpeed(Draws& draws);

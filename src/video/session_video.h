@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/guarded_process.h"
 #include "core/output_folder.h"
-#include "core/process.h"
 #include "record/session_result.h"
 #include "session/session_observer.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "metrics/formulas/contacts.h"
+#include "metrics/formulas/contact_fault.h"
 #include "session/session_setup.h"
 
 namespace cdiff::video {

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "cbv/candidates.h"
+#include "cbv/cbv_options.h"
+#include "cbv/conflict_search.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
 

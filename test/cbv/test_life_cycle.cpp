@@ -3,6 +3,8 @@
 // How long a CBV keeps its slot, in both life cycles.
 #include <gtest/gtest.h>
 
+#include "cbv/candidates.h"
+#include "cbv/cbv_options.h"
 #include "cbv/crossing_world.h"
 
 namespace cdiff::cbv {

@@ -6,6 +6,9 @@
 
 #include "cli/evaluate_command.h"
 #include "cli/wall_clock.h"
+#include "core/csv.h"
+#include "core/text.h"
+#include "evaluation/paper/paper_figures.h"
 #include "evaluation/run_record.h"
 
 namespace cdiff::evaluation {

@@ -8,6 +8,7 @@
 #include "cli/evaluate_command.h"
 #include "cli/processes.h"
 #include "core/output_folder.h"
+#include "core/text.h"
 
 namespace cdiff::evaluation {
 namespace {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 

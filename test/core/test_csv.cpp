@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "core/text.h"
+#include "core/csv.h"
 
 namespace cdiff::core {
 namespace {

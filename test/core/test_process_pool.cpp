@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "core/file.h"
-#include "core/process.h"
+#include "core/process_pool.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::core {

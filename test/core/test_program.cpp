@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <functional>
 
-#include "core/process.h"
+#include "core/guarded_process.h"
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -17,8 +17,10 @@
 #include <new>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/file.h"
 #include "core/program.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"

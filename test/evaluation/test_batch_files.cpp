@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/run_records.h"
 #include "record/verdict_cases.h"

@@ -12,9 +12,14 @@
 
 #include "core/file.h"
 #include "core/markup.h"
+#include "core/text.h"
+#include "evaluation/batch_files.h"
 #include "evaluation/batch_report.h"
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/comparison/comparison_text.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/table_definitions.h"
 #include "evaluation/run_records.h"
 #include "page/outside_texts.h"
 

@@ -7,6 +7,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/comparison/comparison_text.h"
 #include "evaluation/matrix.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/run_records.h"

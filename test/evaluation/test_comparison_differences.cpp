@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/comparison/comparison_text.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

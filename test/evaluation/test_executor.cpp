@@ -11,7 +11,7 @@
 #include "diffusion/model.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/executor.h"
-#include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "support/temporary_folder.h"
 
 namespace cdiff::evaluation {

@@ -8,9 +8,12 @@
 
 #include "evaluation/batch_report.h"
 #include "evaluation/matrix.h"
+#include "evaluation/paper/bar_figure.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/paper/published_figures.h"
+#include "evaluation/paper/table_definitions.h"
 #include "evaluation/run_records.h"
 #include "session/session_request.h"
 

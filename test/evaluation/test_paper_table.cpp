@@ -5,8 +5,11 @@
 #include <set>
 
 #include "evaluation/batch_report.h"
+#include "evaluation/paper/bar_figure.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/table_definitions.h"
 #include "evaluation/run_records.h"
 
 namespace cdiff::evaluation {

@@ -9,6 +9,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/run_records.h"
 #include "evaluation/trail_figure.h"
+#include "evaluation/trail_scene.h"
 #include "page/outside_texts.h"
 
 namespace cdiff::evaluation {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/guidance/objective.h"
 #include "support/network_text.h"

@@ -12,7 +12,8 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
-#include "guidance/collision_objectives.h"
+#include "guidance/collision_avoidance_objective.h"
+#include "guidance/collision_seeking_objective.h"
 #include "guidance/objective_registry.h"
 
 namespace cdiff::guidance {

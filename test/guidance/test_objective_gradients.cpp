@@ -4,9 +4,10 @@
 
 #include <cmath>
 
-#include "guidance/driving_objectives.h"
+#include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
 #include "guidance/objective_registry.h"
+#include "guidance/route_objective.h"
 
 namespace cdiff::guidance {
 namespace {

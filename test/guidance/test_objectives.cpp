@@ -7,10 +7,16 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "guidance/collision_objectives.h"
-#include "guidance/driving_objectives.h"
+#include "guidance/collision_avoidance_objective.h"
+#include "guidance/collision_seeking_objective.h"
+#include "guidance/comfort_objective.h"
+#include "guidance/drivable_area_objective.h"
 #include "guidance/guidance_world.h"
 #include "guidance/objective_registry.h"
+#include "guidance/proximity.h"
+#include "guidance/route_objective.h"
+#include "guidance/speed_objective.h"
+#include "guidance/traffic_avoidance_objective.h"
 #include "support/network_text.h"
 
 namespace cdiff::guidance {

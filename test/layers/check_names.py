@@ -66,7 +66,7 @@ def no_calls(_names):
 
 
 # Files in which a name means something else: the life cycle of CBVs, a class of the pages' style.
-OTHER_MEANINGS = {"rift": {"src/cbv/candidates.cpp", "src/cbv/candidates.h", "src/evaluation/batch_report.cpp"}}
+OTHER_MEANINGS = {"rift": {"src/cbv/cbv_options.cpp", "src/cbv/cbv_options.h", "src/evaluation/batch_report.cpp"}}
 
 # "own": the folder whose files may spell the names.
 SECTIONS = {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "learning/samples/scene.h"
+#include "learning/samples/scene_file.h"
 #include "support/network_text.h"
 #include "support/snapshot_builder.h"
 

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/dataset.h"
+#include "learning/samples/scene_file.h"
 #include "learning/samples/scene_tables.h"
 #include "learning/small_scene.h"
 #include "support/same_vehicle.h"

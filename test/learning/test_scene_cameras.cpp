@@ -4,6 +4,7 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/scene_cameras.h"
+#include "learning/samples/scene_file.h"
 #include "learning/small_scene.h"
 #include "rendering/front_camera.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/formulas/contacts.h"
+#include "metrics/formulas/contact_avoidance.h"
 #include "metrics/straight_road.h"
 
 namespace cdiff::metrics {

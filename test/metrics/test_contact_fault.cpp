@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/formulas/contacts.h"
+#include "metrics/formulas/contact_fault.h"
 #include "metrics/straight_road.h"
 #include "support/snapshot_builder.h"
 

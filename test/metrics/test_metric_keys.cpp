@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 /// Strings that mean another thing than the measure of the same name, by file.
 const std::set<std::pair<std::string, std::string>> kOtherMeanings = {
-    {"record/summary_measures.cpp", "cbv_distance_m"},   // of a CBV to its conflict point
-    {"record/summary_measures.cpp", "ego_distance_m"}};  // of the ego likewise
+    {"record/summary.cpp", "cbv_distance_m"},   // of a CBV to its conflict point
+    {"record/summary.cpp", "ego_distance_m"}};  // of the ego likewise
 
 /// Texts of sources by path below their folder.
 using Sources = std::map<std::string, std::string>;
@@ -93,9 +93,9 @@ TEST(MetricKeys, DecimalsFollowFromTheUnit) {
 TEST(MetricKeys, AreFoundInEveryFileThatSpellsThem) {
   const Sources sources = {{"a.cpp", "x = \"cbv_count\";"},
                            {"b.cpp", "// as cbv_count\ny = \"cbv_counts\";"},
-                           {"record/summary_measures.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
+                           {"record/summary.cpp", "{\"cbv_distance_m\", \"cbv_count\"}"}};
   EXPECT_EQ(filesWith(sources, "cbv_count"),
-            (std::vector<std::string>{"a.cpp", "record/summary_measures.cpp"}));
+            (std::vector<std::string>{"a.cpp", "record/summary.cpp"}));
   EXPECT_TRUE(filesWith(sources, "cbv_distance_m").empty());
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "node_graph/session_graph.h"
-#include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "support/random_model.h"
 
 namespace cdiff::test {

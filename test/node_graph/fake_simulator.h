@@ -14,8 +14,9 @@
 
 #include "e2e_cdiff/TickAck.h"
 #include "node_graph/lockstep/message_gate.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "ros/callback_queue.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"

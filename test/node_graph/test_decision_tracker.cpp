@@ -4,7 +4,7 @@
 
 #include "node_graph/lockstep/decision_tracker.h"
 #include "node_graph/lockstep/tick_record.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/sample_messages.h"
 
 namespace cdiff::node_graph {

@@ -6,7 +6,8 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/image_inbox.h"
 #include "node_graph/messages/channel_conversions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/nodes/planner_node.h"
 #include "node_graph/sample_messages.h"
 

@@ -8,8 +8,9 @@
 #include "node_graph/lockstep/participant_tracker.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/channel_conversions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/sample_messages.h"
 #include "node_graph/session_graph.h"
 

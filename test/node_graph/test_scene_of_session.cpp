@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collection/scene_recorder.h"
+#include "learning/samples/scene_file.h"
 #include "node_graph/bags/dataset_from_bag.h"
 #include "node_graph/recorded_bag.h"
 #include "rendering/front_camera.h"

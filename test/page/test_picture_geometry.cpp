@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 
 namespace cdiff::page {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "planners/course.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_planner.h"
 #include "support/random_model.h"
 #include "support/temporary_folder.h"

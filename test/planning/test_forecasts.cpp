@@ -4,6 +4,8 @@
 
 #include "planners/course.h"
 #include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/lateral_controller.h"
+#include "planners/pdm_lite/longitudinal_controller.h"
 #include "planning/route_follower.h"
 #include "planning/surrounding_vehicles.h"
 

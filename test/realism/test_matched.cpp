@@ -8,6 +8,7 @@
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/matched.h"
+#include "realism/realism_tables.h"
 
 namespace cdiff::realism {
 namespace {

@@ -7,6 +7,8 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "realism/pooled.h"
+#include "realism/realism_tables.h"
+#include "realism/recorded_traffic.h"
 #include "realism/recording.h"
 #include "support/real_data.h"
 

@@ -5,6 +5,8 @@
 #include "core/file.h"
 #include "core/scratch_folder.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "realism/recorded_session.h"
+#include "realism/recorded_traffic.h"
 #include "realism/recording.h"
 #include "support/real_data.h"
 

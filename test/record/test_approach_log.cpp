@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "page/html_report.h"
+#include "page/approach_section.h"
 #include "record/sample_session.h"
 
 namespace cdiff::record {

@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planners/pluto/pluto.h"
 #include "planners/two_stage_pid/two_stage_pid.h"
 #include "session/session_request.h"

@@ -6,7 +6,7 @@
 #include "e2e_cdiff/core/angle.h"
 #include "simulation/crossing_world.h"
 #include "simulation/edge_graph.h"
-#include "simulation/sumo_link.h"
+#include "simulation/sumo_conventions.h"
 
 namespace cdiff {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/process.h"
+#include "core/guarded_process.h"
 
 namespace cdiff::test {
 

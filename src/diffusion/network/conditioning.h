@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diffusion/denoiser.h"
-#include "diffusion/network/heads.h"
+#include "diffusion/network/unet.h"
 #include "inference/convolution.h"
 
 namespace cdiff::diffusion {

@@ -5,7 +5,8 @@
 #include <stdexcept>
 
 #include "diffusion/network/conditioning.h"
-#include "diffusion/network/heads.h"
+#include "diffusion/network/state_head.h"
+#include "diffusion/network/unet.h"
 #include "e2e_cdiff/core/exceptions.h"
 
 namespace cdiff::diffusion {

@@ -8,8 +8,11 @@
 #include <utility>
 
 #include "core/markup.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/comparison/comparison_differences.h"
+#include "evaluation/intervals/intervals.h"
 
 namespace cdiff::evaluation {
 namespace {
@@ -293,6 +296,31 @@ void checkMeasureNames(const std::vector<std::string>& names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw InputError("--figure '" + name + "' is no measure" + nearest(name, known));
   }
+}
+
+void adjustForNumber(std::vector<Comparison>& comparisons) {
+  std::vector<double> p;
+  for (const Comparison& comparison : comparisons) {
+    for (const MeasureComparison& measure : comparison.measures) p.push_back(measure.p);
+  }
+  auto adjusted = holmAdjusted(p);
+  auto next = adjusted.begin();
+  for (Comparison& comparison : comparisons) {
+    for (MeasureComparison& measure : comparison.measures) measure.p_holm = *next++;
+  }
+}
+
+Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
+  constexpr double kLargest = 0.05;
+  Multiplicity result;
+  for (const Comparison& comparison : comparisons) {
+    for (const MeasureComparison& measure : comparison.measures) {
+      ++result.differences;
+      result.apart += measure.p <= kLargest;
+      if (measure.p_holm <= kLargest) result.apart_by_holm.push_back(measure.measure);
+    }
+  }
+  return result;
 }
 
 }  // namespace cdiff::evaluation

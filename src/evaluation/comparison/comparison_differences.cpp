@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/comparison/comparison_differences.h"
+
 #include <algorithm>
 
 #include "core/markup.h"
 #include "core/text.h"
-#include "evaluation/comparison/comparison.h"
 
 namespace cdiff::evaluation {
 namespace {

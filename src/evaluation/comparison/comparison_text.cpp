@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/comparison/comparison_text.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/csv.h"
 #include "core/markup.h"
 #include "core/text.h"
 #include "evaluation/comparison/comparison.h"
+#include "evaluation/comparison/comparison_differences.h"
 #include "evaluation/intervals/intervals.h"
 #include "evaluation/intervals/pooled_estimate.h"
 #include "metrics/metric_registry.h"
 
 namespace cdiff::evaluation {
-
 namespace {
 
 std::string levelText(const std::string& level) {
@@ -192,31 +195,6 @@ std::string comparisonCsv(const std::vector<Comparison>& comparisons) {
       text += csvLine(comparison, measure);
   }
   return text;
-}
-
-void adjustForNumber(std::vector<Comparison>& comparisons) {
-  std::vector<double> p;
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) p.push_back(measure.p);
-  }
-  auto adjusted = holmAdjusted(p);
-  auto next = adjusted.begin();
-  for (Comparison& comparison : comparisons) {
-    for (MeasureComparison& measure : comparison.measures) measure.p_holm = *next++;
-  }
-}
-
-Multiplicity multiplicityOf(const std::vector<Comparison>& comparisons) {
-  constexpr double kLargest = 0.05;
-  Multiplicity result;
-  for (const Comparison& comparison : comparisons) {
-    for (const MeasureComparison& measure : comparison.measures) {
-      ++result.differences;
-      result.apart += measure.p <= kLargest;
-      if (measure.p_holm <= kLargest) result.apart_by_holm.push_back(measure.measure);
-    }
-  }
-  return result;
 }
 
 }  // namespace cdiff::evaluation

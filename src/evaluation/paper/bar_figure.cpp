@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/paper/bar_figure.h"
+
 #include <algorithm>
 #include <set>
 
 #include "core/text.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 #include "page/pictures/charts.h"
 

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/paper/execution_figure.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "evaluation/paper/frame_figure.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/top_view.h"
 #include "record/logs/plan_log.h"
 

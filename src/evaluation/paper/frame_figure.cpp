@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "evaluation/paper/frame_figure.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 
+#include "core/csv.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "evaluation/paper/paper_figures.h"
+#include "evaluation/paper/paper_table.h"
 #include "metrics/known_measures.h"
 #include "page/pictures/charts.h"
+#include "page/pictures/map_canvas.h"
 #include "page/pictures/top_view.h"
 #include "record/result_folder.h"
 

@@ -7,10 +7,16 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "evaluation/paper/bar_figure.h"
+#include "evaluation/paper/execution_figure.h"
+#include "evaluation/paper/frame_figure.h"
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 #include "evaluation/paper/published_figures.h"
+#include "evaluation/paper/table_definitions.h"
 #include "metrics/formulas/distributions.h"
 #include "page/pictures/charts.h"
 #include "record/logs/driving_log.h"

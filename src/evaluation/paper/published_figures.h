@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/paper/paper_systems.h"
 #include "evaluation/paper/paper_table.h"
 
 namespace cdiff::evaluation {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "evaluation/tracking/tracker_tuning.h"
 
+#include "core/csv.h"
 #include "core/option_fields.h"
 #include "core/text.h"
 

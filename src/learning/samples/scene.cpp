@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "learning/samples/dataset.h"
+#include "learning/samples/scene_file.h"
 #include "learning/samples/scene_tables.h"
 
 namespace cdiff::learning {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -79,23 +78,6 @@ inline constexpr double kScenePeriod = 0.1;
 void requireScenePeriod(const Scene& scene, const std::string& learner);
 /// Whether a vehicle moved from one decision to the next as its speeds say, up to 0.5 m.
 bool drivesOn(const traffic::VehicleState& before, const traffic::VehicleState& after);
-
-/// Version of what scene files hold; readers refuse others.
-inline constexpr int kSceneVersion = 1;
-inline constexpr const char* kSceneExtension = ".scene";
-
-/// The bytes of a scene file: a shard (learning/samples/dataset.h) of the kind "CDIFFSCN" with one
-/// sample, whose packed fields are the tables of the scene. Throws InputError for a state that is
-/// not finite.
-std::string sceneBytes(const Scene& scene);
-/// Throws InputError naming `source` ("scene 'FILE'") and what is wrong: truncated, foreign,
-/// another version, checksum, tables that do not fit each other.
-Scene sceneOf(std::string bytes, const std::string& source);
-
-/// Whole or absent. Throws InputError naming the path, also when the disk is full.
-void writeScene(const std::filesystem::path& path, const Scene& scene);
-/// Throws InputError as sceneOf, naming the path.
-Scene readScene(const std::filesystem::path& path);
 
 /// The route of a drive in the scene's network. Throws InputError naming scene and lane that the
 /// network lacks.

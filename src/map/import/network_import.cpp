@@ -7,11 +7,13 @@
 #include <optional>
 
 #include "core/file.h"
-#include "core/process.h"
+#include "core/guarded_process.h"
 #include "core/program.h"
 #include "core/scratch_folder.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "map/import/vehicle_classes.h"
 
 namespace cdiff::map {
 namespace {

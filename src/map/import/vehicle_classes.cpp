@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "map/import/vehicle_classes.h"
+
 #include <algorithm>
 #include <array>
 
 #include "core/text.h"
-#include "map/import/network_import.h"
 
 namespace cdiff::map {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "metrics/formulas/contact_avoidance.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/formulas/contacts.h"
 #include "metrics/formulas/free_road.h"
 
 namespace cdiff::metrics {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "metrics/formulas/contact_fault.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
-#include "metrics/formulas/contacts.h"
 
 namespace cdiff::metrics {
 namespace {

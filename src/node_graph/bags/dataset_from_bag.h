@@ -9,7 +9,8 @@
 
 #include "collection/collection_options.h"
 #include "collection/dataset_statistics.h"
-#include "collection/training_samples.h"
+#include "collection/drive_samples.h"
+#include "collection/session_samples.h"
 
 namespace cdiff::node_graph {
 
@@ -20,14 +21,14 @@ collection::DrivenSession readSessionBag(const std::filesystem::path& bag);
 
 // Training samples from bags: of sessions of ours, and of drives that someone else recorded.
 
-/// Samples of a session's bag (collection/training_samples.h). Throws InputError for a file that is
+/// Samples of a session's bag (collection/session_samples.h). Throws InputError for a file that is
 /// no bag, holds no session of ours, no images, images of another size, or decisions that are not
 /// 0.1 s apart; the texts name the file.
 std::vector<learning::DrivingSample> samplesFromBag(const std::filesystem::path& bag,
                                                     const collection::DatasetOptions& options,
                                                     collection::DatasetStatistics& statistics);
 
-/// Samples of a drive's bag (collection/training_samples.h), called as the file without its
+/// Samples of a drive's bag (collection/drive_samples.h), called as the file without its
 /// extension. Throws InputError naming the file and what readDrivingBag or samplesOf finds.
 std::vector<learning::DrivingSample> samplesFromDrivingBag(
     const std::filesystem::path& bag, const collection::DriveOptions& drive_options,

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "collection/training_samples.h"
+#include "collection/drive_samples.h"
 #include "diffusion/network/architecture.h"
 
 namespace cdiff::node_graph {

@@ -10,8 +10,9 @@
 #include "core/text.h"
 #include "node_graph/bags/recorded_channels.h"
 #include "node_graph/lockstep/tick_record.h"
-#include "node_graph/messages/conversions.h"
 #include "node_graph/messages/message_checks.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_graph.h"
 
 namespace cdiff::node_graph {

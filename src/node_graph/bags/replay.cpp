@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "core/program.h"
-#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/tick_record.h"
 #include "page/result_writer.h"

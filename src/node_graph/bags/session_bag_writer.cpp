@@ -7,7 +7,8 @@
 
 #include "core/program.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "planners/registry.h"
 
 namespace cdiff::node_graph {

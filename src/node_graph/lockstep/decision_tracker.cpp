@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "node_graph/messages/conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/messages/channel_conversions.h"
-#include "node_graph/messages/conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "session/closed_loop.h"
 #include "session/vehicle_cameras.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 

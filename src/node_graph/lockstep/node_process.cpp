@@ -16,6 +16,7 @@
 
 #include "core/file.h"
 #include "core/program.h"
+#include "core/spelling.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 

@@ -7,8 +7,9 @@
 
 #include "e2e_cdiff/DecidedVehicle.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "core/text.h"
 #include "node_graph/lockstep/node_process.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_graph.h"
 #include "ros/callback_queue.h"
 

@@ -6,7 +6,8 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "node_graph/lockstep/tick_record.h"
 
-#include "node_graph/messages/conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 namespace {

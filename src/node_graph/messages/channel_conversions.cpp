@@ -8,7 +8,8 @@
 #include "core/text.h"
 #include "cv_bridge/cv_bridge.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "sensor_msgs/distortion_models.h"
 #include "sensor_msgs/image_encodings.h"
 

@@ -8,8 +8,8 @@
 #include "e2e_cdiff/rendering/camera_rig.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "node_graph/lockstep/tick_answers.h"
-#include "node_graph/messages/conversions.h"
 #include "node_graph/messages/display.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "sensor_msgs/CameraInfo.h"
 #include "sensor_msgs/Image.h"
 

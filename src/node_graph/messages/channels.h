@@ -13,7 +13,7 @@
 
 #include "node_graph/bags/bag_reader.h"
 #include "node_graph/lockstep/message_gate.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_graph.h"
 #include "ros/message_traits.h"
 #include "rosbag/bag.h"

@@ -11,8 +11,9 @@
 #include "e2e_cdiff/core/angle.h"
 #include "metrics/metric_registry.h"
 #include "node_graph/messages/channel_conversions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/topics.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "record/session_text.h"
 
 namespace cdiff::node_graph {

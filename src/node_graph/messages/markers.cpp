@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/perceived_conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "planning/perception.h"
 
 namespace cdiff::node_graph {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/messages/session_conversions.h"
+
 #include <cmath>
 #include <limits>
 
@@ -7,7 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/options.h"
 #include "metrics/metric_registry.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {
 namespace {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/messages/traffic_conversions.h"
+
 #include <cmath>
 
 #include "e2e_cdiff/core/exceptions.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/perceived_conversions.h"
 
 namespace cdiff::node_graph {
 namespace {

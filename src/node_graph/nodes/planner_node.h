@@ -14,7 +14,7 @@
 #include "nav_msgs/Path.h"
 #include "node_graph/lockstep/image_inbox.h"
 #include "node_graph/lockstep/participant.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
 #include "session/session_setup.h"
 
 namespace cdiff::node_graph {

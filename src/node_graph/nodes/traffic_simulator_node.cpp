@@ -6,8 +6,10 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/node_process.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/lockstep/participant.h"
 #include "node_graph/messages/message_checks.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/session_files.h"
 #include "node_graph/session_graph.h"
 

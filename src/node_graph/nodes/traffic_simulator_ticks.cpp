@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 
-#include "core/text.h"
 #include "node_graph/lockstep/node_process.h"
 #include "node_graph/lockstep/tick_record.h"
-#include "node_graph/messages/conversions.h"
+#include "node_graph/messages/session_conversions.h"
+#include "node_graph/messages/traffic_conversions.h"
 #include "node_graph/nodes/traffic_simulator_node.h"
 #include "rosgraph_msgs/Clock.h"
 

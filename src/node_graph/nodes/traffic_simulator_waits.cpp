@@ -5,7 +5,6 @@
 
 #include "core/text.h"
 #include "node_graph/lockstep/node_process.h"
-#include "node_graph/messages/conversions.h"
 #include "node_graph/node_main.h"
 #include "node_graph/nodes/traffic_simulator_node.h"
 

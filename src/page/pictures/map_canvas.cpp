@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/pictures/map_canvas.h"
+
 #include <algorithm>
 #include <utility>
 
 #include "core/text.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
-#include "page/pictures/top_view.h"
 
 namespace cdiff::page {
 namespace {
@@ -164,47 +165,6 @@ Region sessionRegion(const record::SessionResult& result) {
     }
   }
   return region.grown(kMargin);
-}
-
-namespace {
-
-Markup boxItem(const std::string& style, const std::string& text) {
-  const Markup box = element("path", {{"d", "M-10 -4H10V4H-10Z"}}) +
-                     element("path", {{"class", "nose"}, {"d", "M3 -3L8 0L3 3Z"}});
-  return legendItem(
-      element("g", {{"class", "vehicle " + style}, {"transform", "translate(14 7)"}}, box), text);
-}
-
-/// Of what planners say about themselves.
-Markup plannerLegend(const record::Timeline& timeline) {
-  Markup html;
-  if (showsAttention(timeline))
-    html += legendLine("gaze", "attention of the planner to a vehicle, by its share");
-  if (!showsPerception(timeline)) return html;
-  return html + legendLine("perceived vehicle-seen", "vehicle that the planner believes to see") +
-         legendLine("perceived forecast", "where it expects that vehicle in the next seconds") +
-         legendLine("perceived edge-seen", "edge of the road, as it sees it") +
-         legendLine("perceived divider-seen", "divider between lanes") +
-         legendLine("perceived center-seen", "centerline");
-}
-
-}  // namespace
-
-Markup topViewLegend(const MapCanvas& canvas, const record::Timeline* timeline) {
-  const Markup conflict =
-      element("path", {{"class", "conflict"}, {"d", "M9 2l10 10m0 -10l-10 10"}});
-  const Markup html = pageLegend(
-      boxItem("ego", "ego") + boxItem("cbv c0", "CBV") + boxItem("bg", "background") +
-      legendLine("route", "ego route") + legendLine("trail ego", "driven by the ego") +
-      legendLine("trail cbv c0", "driven as CBV") + legendLine("trail bg", "driven by background") +
-      legendLine("planned cbv c0", "conflict-aware route") +
-      legendItem(conflict, "conflict point as selected") +
-      legendItem(svgCircle("contact", {14.0, 7.0}, 6.0), "contact") +
-      (timeline == nullptr ? Markup() : plannerLegend(*timeline)));
-  const double magnification = vehicleMagnification(canvas);
-  if (magnification <= 1.0) return html;
-  return html + pageNote("Vehicles are drawn " + core::formatFixed(magnification, 1) +
-                         " times as large as they are.");
 }
 
 }  // namespace cdiff::page

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/pictures/perceived.h"
+
 #include <algorithm>
 
 #include "core/text.h"
-#include "page/pictures/top_view.h"
+#include "page/pictures/map_canvas.h"
 #include "planning/perception.h"
 
 namespace cdiff::page {

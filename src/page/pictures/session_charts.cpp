@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "page/pictures/session_charts.h"
+
 #include <algorithm>
 #include <functional>
 #include <limits>
 
 #include "core/text.h"
-#include "page/html_report.h"
 #include "page/page_parts.h"
 #include "page/pictures/charts.h"
 #include "page/pictures/top_view.h"

@@ -8,7 +8,7 @@
 
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "rendering/road_scene.h"
+#include "rendering/lane_surface.h"
 
 namespace cdiff::planners {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <future>
 
-#include "core/text.h"
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_situation.h"
 #include "planners/diffusion/image_watch.h"
 #include "planning/surrounding_vehicles.h"

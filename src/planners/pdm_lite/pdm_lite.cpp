@@ -11,6 +11,9 @@
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/idm.h"
+#include "planners/pdm_lite/lateral_controller.h"
+#include "planners/pdm_lite/longitudinal_controller.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {

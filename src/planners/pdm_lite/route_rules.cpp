@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/idm.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text.h"
 #include "e2e_cdiff/core/angle.h"
 #include "geometry/simplified.h"
 #include "inference/transformer_layers.h"

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/two_stage_pid/pdm_lite_tracker.h"
 
+#include "planners/pdm_lite/longitudinal_controller.h"
 #include "planning/plan_tracker.h"
 
 namespace cdiff::planners {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "e2e_cdiff/traffic/vehicle.h"
-#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/lateral_controller.h"
 
 namespace cdiff::planners {
 

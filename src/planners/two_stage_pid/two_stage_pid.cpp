@@ -9,6 +9,7 @@
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/vehicle.h"
+#include "planners/diffusion/diffusion_descriptor.h"
 
 namespace cdiff::planners {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/angle.h"

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "planners/course.h"
+#include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_planner.h"
 #include "planning/surrounding_vehicles.h"
 #include "rendering/front_camera.h"

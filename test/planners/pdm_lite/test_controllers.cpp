@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/angle.h"
-#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/lateral_controller.h"
+#include "planners/pdm_lite/longitudinal_controller.h"
 
 namespace cdiff::planners {
 namespace {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "planners/pdm_lite/forecasts.h"
+#include "planners/pdm_lite/idm.h"
 
 namespace cdiff::planners {
 namespace {

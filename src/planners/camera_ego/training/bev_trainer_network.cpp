@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "planners/camera_ego/training/bev_trainer_network.h"
+
 #include "learning/parameters.h"
 #include "planners/camera_ego/training/ego_layers.h"
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "planners/camera_ego/training/bev_trainer_network.h"
 #include "planners/camera_ego/training/ego_examples.h"
-#include "planners/camera_ego/training/ego_layers.h"
 
 namespace cdiff::planners {
 

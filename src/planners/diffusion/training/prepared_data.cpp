@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "core/file.h"
-#include "core/text.h"
 #include "diffusion/network/image_encoder.h"
 #include "inference/precision.h"
 #include "learning/batches.h"

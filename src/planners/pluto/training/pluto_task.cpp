@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include "planners/pluto/training/pluto_task.h"
 
-#include "core/text.h"
 #include "planners/pluto/training/pluto_judge.h"
 #include "planners/pluto/training/pluto_losses.h"
 

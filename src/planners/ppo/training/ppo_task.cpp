@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-/// The training of the planner ppo: proximal policy optimization in sessions of its own.
+#include "planners/ppo/training/ppo_task.h"
+
 #include <filesystem>
 #include <optional>
 #include <ostream>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
@@ -65,34 +67,7 @@ std::string riseText(const PpoDifference& rise) {
          ", " + formatFixed(rise.high, 2) + "]";
 }
 
-class PpoTask : public learning::OneStageTask {
- public:
-  PpoTask()
-      : OneStageTask(PpoStage::kStage, PpoStage::kBatch,
-                     {{"actor", "an actor"}, {"critic", "a critic"}}) {}
-  std::vector<std::string> weightFiles() const override { return {kPpo.file}; }
-  bool needsSamples() const override { return false; }
-  void setDefaults(learning::TrainingOptions& options) const override;
-  void describe(core::OptionsVisitor& visitor) override;
-  void validate() const override;
-  void start(const learning::TrainingRun& run) override;
-  nlohmann::json facts() const override;
-  std::vector<learning::TrainedPart> parts() override {
-    return {{"actor", &training_->networks.actor()}, {"critic", &training_->networks.critic()}};
-  }
-  std::unique_ptr<learning::Stage> makeStage(const std::string&) override {
-    return std::make_unique<PpoStage>(*training_);
-  }
-  learning::TrainedModel finish() override;
-
- private:
-  std::string sentence() const;
-  std::string measuresText(const learning::Measures& held_out) const;
-
-  PpoSettings settings_;
-  std::optional<PpoRoutes> routes_;
-  std::optional<PpoTraining> training_;
-};
+}  // namespace
 
 void PpoTask::setDefaults(learning::TrainingOptions& options) const {
   options.steps = 64000;  // 1000 iterations
@@ -209,8 +184,6 @@ learning::TrainedModel PpoTask::finish() {
   }
   return model;
 }
-
-}  // namespace
 
 learning::TaskDescriptor ppoTraining() {
   return {"ppo", "Train the CBV planner ppo in sessions of its own",

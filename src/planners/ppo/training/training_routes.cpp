@@ -7,7 +7,6 @@
 #include <set>
 
 #include "core/file.h"
-#include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
 

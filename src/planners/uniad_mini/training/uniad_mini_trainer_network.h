@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "planners/camera_ego/training/bev_trainer_network.h"
 #include "planners/camera_ego/training/ego_layers.h"
 #include "planners/uniad_mini/motion_anchors.h"
 #include "planners/uniad_mini/uniad_mini_weights.h"

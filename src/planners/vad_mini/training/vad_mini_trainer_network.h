@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "planners/camera_ego/training/bev_trainer_network.h"
 #include "planners/camera_ego/training/ego_layers.h"
 #include "planners/vad_mini/vad_mini_weights.h"
 

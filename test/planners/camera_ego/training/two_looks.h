@@ -11,7 +11,7 @@
 #include "learning/batches.h"
 #include "learning/parameters.h"
 #include "planners/camera_ego/bev_encoder.h"
-#include "planners/camera_ego/training/ego_layers.h"
+#include "planners/camera_ego/training/bev_trainer_network.h"
 
 namespace cdiff::planners::testing {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+#include "learning/samples/scene_file.h"
 #include "learning/small_scene.h"
 #include "learning/training_fixture.h"
 #include "planners/plant/training/plant_task.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "e2e_cdiff/core/exceptions.h"
+#include "learning/samples/scene_file.h"
 #include "learning/small_scene.h"
 #include "planners/pluto/pluto_course.h"
 #include "planners/pluto/training/pluto_examples.h"

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#include "node_graph/nodes/metrics_node.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include "core/program.h"
+#include "core/text.h"
+#include "node_graph/bags/replay.h"
+#include "node_graph/lockstep/node_process.h"
+#include "node_graph/lockstep/tick_record.h"
+#include "node_graph/messages/display.h"
+#include "node_graph/node_main.h"
+#include "node_graph/session_files.h"
+#include "node_graph/session_graph.h"
+#include "record/session_text.h"
+
+namespace cdiff::node_graph {
+namespace {
+
+/// A simulator that is stopped while it starts keeps the result folder to itself.
+void endStoppedSimulator() {
+  constexpr double kPatience = 1.0;  // [s] until the process is gone
+  const auto begin = std::chrono::steady_clock::now();
+  killLaunchedProcess(kTrafficSimulatorNode);
+  while (launchedProcess(kTrafficSimulatorNode) && secondsSince(begin) < kPatience)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+/// The row of the bag, which the recorder completes at the same time: it waits for it a little.
+std::string bagRow(const SessionGraph& graph, const std::filesystem::path& results) {
+  constexpr double kPatience = 2.0;  // [s] of wall time
+  const std::filesystem::path bag = results / "session.bag";
+  const ros::WallTime begin = ros::WallTime::now();
+  std::string row = record::fileRow("bag", bag);
+  while (row.empty() && graph.has(kRecorderNode) &&
+         (ros::WallTime::now() - begin).toSec() < kPatience) {
+    ros::WallDuration(0.02).sleep();
+    row = record::fileRow("bag", bag);
+  }
+  return row;
+}
+
+/// The end of a session whose last snapshot never came.
+traffic::TrafficSnapshot unpublishedEnd(const traffic::TrafficSnapshot& last, double step,
+                                        Ending ending, double timeout) {
+  if (ending == Ending::kStopped) {
+    return endedAfter(last, step, traffic::SessionStatus::kInterrupted,
+                      {0, kTrafficSimulatorNode, "interrupted; no last snapshot came"});
+  }
+  return endedAfter(last, step, traffic::SessionStatus::kError,
+                    {0, kTrafficSimulatorNode, simulatorFault(ending, timeout)});
+}
+
+}  // namespace
+
+void MetricsNode::startSession(const msgs::SessionInfo& info) {
+  setup_ = setupOf(info);
+  const bool deterministic = setup_->options().real_time_factor == 0.0;
+  results_ = info.results_folder;
+  writer_ = std::make_unique<page::ResultWriter>(*setup_, factsOf(info, deterministic), results_);
+  if (setup_->options().video) {
+    video_ = std::make_unique<video::SessionVideo>(*setup_, results_);
+  }
+  reporter_ = std::make_unique<MetricReporter>(*setup_);
+  reports_ = advertise<msgs::MetricReport>(ChannelId::kMetrics);
+  marker_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMarkers);
+  map_output_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kMapMarkers);
+  map_output_.publish(mapMarkers(*setup_));
+  listenToAnswers(Party::kMetrics, setup_->options());
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>();
+  diagnostics_->setHardwareID(setup_->options().name);
+  diagnostics_->add("session", this, &MetricsNode::diagnose);
+}
+
+bool MetricsNode::handle(const Snapshot& message, bool superseded) {
+  if (!complete(*message, superseded)) return false;
+  if (!begin_) begin_ = Clock::now();
+  const TickRecordView tick(*message, answers(), setup_->network());
+  writer_->observe(tick.record());
+  if (video_) video_->observe(tick.record());
+  note(tick.record().latencies);
+  if (const auto report = reporter_->observe(tick.snapshot(), tick.record().selection))
+    reports_.publish(report);
+  acknowledge(message->tick);
+  show(tick.snapshot(), tick.selection());
+  forgetUntil(message->tick);
+  last_ = tick.snapshot();
+  return true;
+}
+
+void MetricsNode::note(const std::vector<session::PlannerLatency>& latencies) {
+  for (const session::PlannerLatency& latency : latencies) {
+    if (latency.milliseconds <= slowest_planner_ms_) continue;
+    slowest_planner_ms_ = latency.milliseconds;
+    slowest_planner_ = latency.planner;
+  }
+}
+
+void MetricsNode::show(const traffic::TrafficSnapshot& snapshot,
+                       const cbv::CbvSelection* selection) {
+  const bool final = snapshot.status != traffic::SessionStatus::kRunning;
+  if (!snapshot.decision_tick && !final) return;
+  if (marker_output_.getNumSubscribers() > 0)
+    marker_output_.publish(markers_.build(snapshot, selection));
+  diagnostics_->update();
+}
+
+void MetricsNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const double wall = wallSeconds();
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, traffic::toText(last_.status));
+  status.add("tick", last_.tick);
+  status.add("simulated seconds", core::formatFixed(last_.time, 2));
+  status.add("real-time factor", core::formatFixed(wall > 0.0 ? last_.time / wall : 0.0, 2));
+  status.add("vehicles", last_.vehicles.size());
+  if (reporter_) {
+    for (const auto& [name, value] : metricDiagnostics(reporter_->session()))
+      status.add(name, value);
+  }
+  status.add("slowest planner", slowest_planner_);
+  status.add("slowest planning call [ms]", core::formatFixed(slowest_planner_ms_, 2));
+}
+
+double MetricsNode::wallSeconds() const {
+  return begin_ ? std::chrono::duration<double>(Clock::now() - *begin_).count() : 0.0;
+}
+
+int MetricsNode::conclude(Ending ending) {
+  if (ending != Ending::kFinalSnapshot) {
+    const traffic::TrafficSnapshot snapshot =
+        unpublishedEnd(last_, setup_->options().simulation_step, ending, heartbeatTimeout());
+    session::TickRecord record;
+    record.snapshot = &snapshot;
+    writer_->observe(record);
+    if (video_) video_->observe(record);
+  }
+  writer_->finish(wallSeconds());
+  const int exit_code = finishVideo(writer_->exitCode());
+  const std::filesystem::path results = writer_->folder();
+  std::cout << writer_->table() << bagRow(graph(), results)
+            << record::fileRow("video", results / video::kVideoFile) << std::flush;
+  writeExitCode(results, exit_code);
+  return exit_code;
+}
+
+int MetricsNode::concludeUnstarted(Ending ending) {
+  Parameters parameters = Parameters::ofNode(kTrafficSimulatorNode);
+  if (!parameters.empty() && takeRefusal()) return core::ExitCode::kBadInput;
+  if (parameters.empty()) parameters = launchParameters();
+  if (parameters.empty()) return core::ExitCode::kRunTimeError;
+  if (ending == Ending::kSimulatorSilent) endStoppedSimulator();
+  traffic::Fault fault{0, kTrafficSimulatorNode,
+                       simulatorFault(ending, heartbeatTimeout()) + " before the session began"};
+  if (!masterAnswers()) fault = {0, "rosmaster", kNoMaster};  // roslaunch ends all nodes then
+  return writeUnstartedResult(parameters, traffic::SessionStatus::kError, fault);
+}
+
+int MetricsNode::runWithoutMaster() {
+  const Parameters parameters = launchParameters();
+  if (parameters.empty()) return core::ExitCode::kRunTimeError;
+  return writeUnstartedResult(parameters, traffic::SessionStatus::kError,
+                              {0, "rosmaster", kNoMaster});
+}
+
+int MetricsNode::finishVideo(int exit_code) {
+  if (!video_) return exit_code;
+  video_->finish(writer_->result());
+  if (video_->error().empty()) return exit_code;
+  ROS_ERROR("%s; the other results are not affected", video_->error().c_str());
+  return std::max(exit_code, core::ExitCode::kRunTimeError);
+}
+
+}  // namespace cdiff::node_graph

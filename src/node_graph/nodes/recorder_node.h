@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <memory>
+
+#include "diagnostic_updater/diagnostic_updater.h"
+#include "node_graph/bags/session_bag_writer.h"
+#include "node_graph/lockstep/participant.h"
+
+namespace cdiff::node_graph {
+
+/// The recorder as a node: takes part in the lockstep and writes every tick of the session to
+/// session.bag in the result folder.
+class RecorderNode : public Observer {
+ public:
+  using Observer::Observer;
+
+ protected:
+  void startSession(const ::e2e_cdiff::SessionInfo& info) override;
+  std::string waitingFor() const override;
+  bool handle(const Snapshot& snapshot, bool superseded) override;
+  int conclude(Ending ending) override;
+
+ private:
+  bool measured(const ::e2e_cdiff::TrafficSnapshot& snapshot, bool superseded);
+
+  std::unique_ptr<BagFile> bag_;
+  bool has_route_ = false;
+  ros::WallTime waiting_since_;
+};
+
+}  // namespace cdiff::node_graph
