@@ -219,6 +219,7 @@ int collect(const CollectArguments& arguments) {
   removeHalves(arguments.request.results);
   const std::atomic<bool>& stop = core::catchStopSignals();
   driveSessions(jobs, arguments.jobs, stop);
+  output.requireInPlace();
   const int code = stop ? ExitCode::kInterrupted : exitCode(jobs);
   if (arguments.request.scenes) describeScenes(sessions);
   if (!arguments.request.images) return code;

@@ -17,6 +17,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
+#include "evaluation/paper/paper_table.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/suite_selection.h"
 
@@ -117,9 +118,12 @@ void requireFolder(const fs::path& folder, const EvaluateArguments& arguments) {
 /// that of another matrix is refused.
 void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool overwrite) {
   if (overwrite) {
-    for (const auto* names : {&kBatchFiles, &kBatchFolders}) {
-      for (const std::string& name : *names) output.remove({name});
+    output.remove({kBatchFiles.begin(), kBatchFiles.end()});
+    for (const std::string& name : kBatchFolders) {
+      // One that was the user's stays, and what the program made in it goes.
+      if (fs::is_directory(output.path() / name)) core::OutputFolder(output.path() / name).clear();
     }
+    output.remove({kBatchFolders.begin(), kBatchFolders.end()});
   }
   const fs::path file = output.path() / kMatrixFile;
   if (fs::exists(file)) {
@@ -132,7 +136,11 @@ void prepareFolder(core::OutputFolder& output, const MatrixOptions& matrix, bool
     }
   }
   output.removeUnfinished();
-  output.subfolder("runs");
+  for (const std::string& name : kBatchFolders) output.subfolder(name);
+  std::vector<std::string> tables = {"tables.md"};
+  for (const evaluation::TableDefinition& table : evaluation::paperTables())
+    tables.push_back(table.id + ".csv");
+  core::OutputFolder::requireFree(output.path() / "tables", tables);
   output.write(kMatrixFile, core::dumpOptions(matrix));
 }
 
@@ -190,6 +198,7 @@ int evaluate(const EvaluateArguments& arguments) {
   prepareFolder(output, matrix, arguments.overwrite);
   std::cerr << evaluation::recordOpening(matrix, results) << repeated;
   const auto records = execute(plan, matrix, results, arguments, chosen);
+  output.requireInPlace();
   evaluation::writeBatchFiles(results, matrix.name, records);
   evaluation::writeBatchReport(results, matrix.name);
   std::string text = evaluation::batchMarkdown(matrix.name, records) + repeated;

@@ -92,6 +92,8 @@ class Executor {
     for (const std::size_t index : resumed_) {
       if (options_.ended && isChosen(index)) options_.ended(records_[index], true);
     }
+    for (const std::size_t index : queue_)
+      core::OutputFolder::requireFree(folderOf(index), {"record.json", "scenario.yaml", "log.txt"});
     for (const std::size_t index : queue_) writeRecord(index);
     for (const std::size_t index : later_) {
       if (!fs::exists(folderOf(index) / "record.json")) writeRecord(index);
@@ -107,7 +109,7 @@ class Executor {
   core::ProcessJob start(std::size_t index) {
     const fs::path folder = folderOf(index);
     core::OutputFolder output(folder);
-    output.remove({"summary.json"});
+    output.remove({"summary.json", "log.txt"});
     output.removeUnfinished();
     output.write("scenario.yaml", plan_[index].scenario_text);
     ++records_[index].attempts;

@@ -250,6 +250,7 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
   if (!training.needsSamples()) {
     const Dataset none;
     Trainer(training, none, stop, log).run();
+    output.requireInPlace();
     return;
   }
   const Dataset dataset = readData(training, stop, log);
@@ -257,6 +258,7 @@ void train(const Training& training, const std::atomic<bool>& stop, std::ostream
       << dataset.validation().size() << " validation samples, " << dataset.sessions() << " "
       << dataset.unit() << std::endl;
   Trainer(training, dataset, stop, log).run();
+  output.requireInPlace();
 }
 
 }  // namespace cdiff::learning

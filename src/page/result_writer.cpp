@@ -42,9 +42,8 @@ class ResultWriter::Record {
         front_views_(setup),
         result_{setup,     timeline_,    cbv_,     approaches_, plans_,
                 guidance_, front_views_, driving_, facts} {
-    for (const char* name :
-         {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"})
-      folder_.remove({name});
+    folder_.remove(
+        {"session.yaml", "trace.csv", "plans.csv", "summary.json", "junit.xml", "report.html"});
     folder_.write("session.yaml", record::sessionYaml(setup, facts));
   }
 

@@ -106,7 +106,7 @@ class MatchedRunner {
     core::OutputFolder runs(core::OutputFolder(execution_.results).subfolder("runs"));
     core::OutputFolder output(runs.subfolder(jobs_[job].id));
     const fs::path folder = output.path();
-    output.remove({kScoreFile});
+    output.remove({kScoreFile, "log.txt"});
     output.write("scenario.yaml", jobs_[job].run.scenario_text);
     output.write(kJobFile, jobText(jobs_[job], execution_.options));
     const std::string& planner = jobs_[job].planner;

@@ -73,7 +73,9 @@ record::RunFacts factsOf(const ::e2e_cdiff::SessionInfo& info, bool deterministi
 void requireReplayFolder(const std::filesystem::path& bag, const std::filesystem::path& results,
                          bool overwrite) {
   std::error_code none;
-  if (overwrite && std::filesystem::equivalent(bag.parent_path(), results, none)) {
+  const std::filesystem::path recorded = std::filesystem::weakly_canonical(bag, none);
+  if (overwrite && (std::filesystem::equivalent(recorded.parent_path(), results, none) ||
+                    std::filesystem::equivalent(bag, results / "session.bag", none))) {
     throw core::InputError("'" + results.string() +
                            "' holds the bag that is replayed; give another folder");
   }

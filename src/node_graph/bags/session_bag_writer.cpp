@@ -99,9 +99,10 @@ void BagFile::writeTick(const TickMessages& tick) {
 }
 
 void BagFile::finish() {
+  guard([&] { bag_->close(); });
+  const fs::path place = folder_.claim(name_);  // of another by now: the file stays FILE.active
   guard([&] {
-    bag_->close();
-    fs::rename(folder_.path() / activeName(), folder_.claim(name_));
+    fs::rename(folder_.path() / activeName(), place);
     folder_.remove({activeName()});
   });
 }
