@@ -152,6 +152,39 @@ TEST_F(ForeignFiles, ASessionIsRefusedWhereOneHasItsName) {
   }
 }
 
+TEST_F(ForeignFiles, AFolderWithTheNameOfTheReserveIsRefused) {
+  addFile(results() / ".reserve" / "thesis");
+  remember();
+  EXPECT_EQ(session({"--overwrite"}), kRefused);
+  expectOutput(".reserve");
+  expectUntouched("a run beside .reserve");
+}
+
+TEST_F(ForeignFiles, LogsAndTablesThatAreNotOursAreRefusedBeforeTheFirstRun) {
+  for (const char* name : {"runs/arterial_exit/log.txt", "tables/table_1.csv"}) {
+    fs::remove_all(results());
+    known_.clear();
+    addFile(results() / name);
+    remember();
+    EXPECT_EQ(cdiff(batch()), kRefused) << name;
+    expectUntouched(name);
+    EXPECT_FALSE(fs::exists(results() / "runs.csv")) << name;
+  }
+}
+
+TEST_F(ForeignFiles, AnOverwrittenBatchLeavesNoRunsOfTheEarlierOneInAFolderOfTheUsers) {
+  addFile(results() / "runs" / "mine.log");
+  remember();
+  const std::string two = write("two.yaml",
+                                "name: two\nscenarios: [arterial_exit]\nseeds: [1, 2]\nset:\n  - "
+                                "protocol.time_limit=1\n  - cbv_planner=pdm_lite\n");
+  EXPECT_LE(cdiff({"evaluate", two, "--results", results()}), kVerdict) << output();
+  EXPECT_TRUE(fs::exists(results() / "runs" / "arterial_exit__seed2"));
+  EXPECT_LE(cdiff(batch() + Words{"--overwrite"}), kVerdict) << output();
+  EXPECT_FALSE(fs::exists(results() / "runs" / "arterial_exit__seed2"));
+  expectUntouched("an overwritten batch");
+}
+
 TEST_F(ForeignFiles, LinksPipesAndFoldersInPlaceOfItsFilesAreRefused) {
   for (const std::string name : {"trace.csv", "report.html", ".lock", ".cdiff_files"}) {
     for (const std::string kind : {"link", "folder link", "pipe", "folder"}) {

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -300,6 +301,58 @@ TEST_F(OutputFolderTest, APendingFileIsThereWhenFinishedOnlyAndTakesItsRoom) {
   }
   { const PendingFile unused(output, "other"); }
   EXPECT_EQ(namesOf(folder()), (std::set<std::string>{".cdiff_files", "summary.json"}));
+}
+
+TEST_F(OutputFolderTest, AFileThatTookTheNameMeanwhileStaysAndSoDoesWhatWasWritten) {
+  OutputFolder output(folder());
+  {
+    PendingFile file(output, "trace.csv");
+    file.append("whole");
+    std::ofstream(folder() / "trace.csv") << "mine";
+    EXPECT_THROW(file.finish(), InputError);
+  }
+  EXPECT_EQ(readFile(folder() / "trace.csv", "file"), "mine");
+  EXPECT_EQ(readFile(folder() / "trace.csv.part", "file"), "whole");
+}
+
+TEST_F(OutputFolderTest, NamesThatWouldForgeTheRecordAreRefused) {
+  OutputFolder output(folder());
+  for (const char* name : {"x\nthesis", "a/b", "", "tab\there"})
+    EXPECT_THROW(output.claim(name), InputError) << name;
+  EXPECT_EQ(output.names(), std::set<std::string>());
+}
+
+TEST_F(OutputFolderTest, ABackupOfTheRecordByAHardLinkStaysAsItWas) {
+  OutputFolder output(folder());
+  output.write("a", "ours");
+  const fs::path backup = scratch_.path() / "backup";
+  fs::create_hard_link(folder() / OutputFolder::kRecord, backup);
+  const std::string before = readFile(backup, "record");
+  output.write("b", "ours");
+  EXPECT_EQ(readFile(backup, "record"), before);
+}
+
+TEST_F(OutputFolderTest, ARecordThatAnotherProcessHoldsIsNamed) {
+  OutputFolder output(folder());
+  output.write("a", "ours");
+  const fs::path record = folder() / OutputFolder::kRecord;
+  const Child holder([&] {
+    static const int descriptor = ::open(record.c_str(), O_RDONLY);
+    ::flock(descriptor, LOCK_EX);
+  });
+  try {
+    output.write("b", "ours");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(record.string()), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(OutputFolderTest, AMovedFolderIsNamedWhenAskedFor) {
+  OutputFolder output(folder());
+  EXPECT_NO_THROW(output.requireInPlace());
+  fs::rename(folder(), scratch_.path() / "moved");
+  EXPECT_THROW(output.requireInPlace(), Error);
 }
 
 TEST_F(OutputFolderTest, HalvesOfKilledWritersAreRemovedByTheNext) {

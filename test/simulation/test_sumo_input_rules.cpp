@@ -41,6 +41,7 @@ std::string withParameter(const std::string& key) {
 
 TEST(SumoInputRules, AParameterThatMayNameAFileIsRefusedByKeyAndLine) {
   for (const std::string key : {"device.ssm.file",
+                                "device.driverstate.debugFILE",
                                 "has.ssm.device",
                                 "device.toc.file",
                                 "has.toc.device",
@@ -143,6 +144,17 @@ TEST(SumoInputRules, HiddenElementsAreRefused) {
   // SUMO writes before it comes to the fault.
   EXPECT_NE(demandError("<routes><include href=\"b\"/><").find("<include>"), std::string::npos);
   EXPECT_NE(demandError("<routes>\n<vehicle").find("line 2: not XML"), std::string::npos);
+}
+
+TEST(SumoInputRules, WhatIsNotPlainXmlFromTheFirstLetterToTheLastIsRefused) {
+  const std::string demand = "<routes></routes>";
+  EXPECT_EQ(demandError("\xEF\xBB\xBF \n" + demand + "\n"), "no error");
+  // A packed stream, which SUMO unpacks and pugixml skips.
+  EXPECT_NE(demandError("x\x9c packed" + demand), "no error");
+  EXPECT_NE(demandError(demand + "packed"), "no error");
+  EXPECT_NE(demandError("<routes>\x01</routes>"), "no error");
+  EXPECT_NE(networkError("x\x9c packed<net></net>"), "no error");
+  EXPECT_NE(demandError(""), "no error");
 }
 
 TEST(SumoInputRules, DeepNestingIsRefused) {
