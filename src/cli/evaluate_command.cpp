@@ -17,7 +17,7 @@
 #include "evaluation/batch_report.h"
 #include "evaluation/executor.h"
 #include "evaluation/matrix.h"
-#include "evaluation/paper/paper_table.h"
+#include "evaluation/paper/table_definitions.h"
 #include "evaluation/run_plan.h"
 #include "evaluation/suite_selection.h"
 
