@@ -7,7 +7,6 @@
 
 #include "e2e_cdiff/geometry/shapes.h"
 #include "e2e_cdiff/map/road_network.h"
-#include "rendering/canvas.h"
 #include "rendering/road_scene.h"
 
 namespace cdiff::rendering {

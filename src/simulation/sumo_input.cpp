@@ -6,7 +6,6 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "e2e_cdiff/core/angle.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/sumo_input_rules.h"
 #include "simulation/sumo_link.h"

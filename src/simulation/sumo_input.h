@@ -2,8 +2,6 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <signal.h>
-
 #include <memory>
 #include <string>
 

@@ -5,7 +5,6 @@
 #include "e2e_cdiff/ControlAction.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "node_graph/messages/traffic_conversions.h"
-#include "ros/time.h"
 
 namespace cdiff::node_graph {
 

@@ -14,7 +14,6 @@
 #include "metrics/session_metrics.h"
 #include "nav_msgs/Path.h"
 #include "node_graph/messages/traffic_conversions.h"
-#include "ros/time.h"
 #include "session/session_setup.h"
 
 namespace cdiff::node_graph {

@@ -7,7 +7,6 @@
 
 #include "cbv/cbv_selector.h"
 #include "e2e_cdiff/CbvSelection.h"
-#include "image_transport/image_transport.h"
 #include "nav_msgs/Path.h"
 #include "node_graph/lockstep/participant.h"
 

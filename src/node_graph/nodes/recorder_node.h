@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "diagnostic_updater/diagnostic_updater.h"
 #include "node_graph/bags/session_bag_writer.h"
 #include "node_graph/lockstep/participant.h"
 

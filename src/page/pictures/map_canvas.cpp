@@ -3,10 +3,7 @@
 #include "page/pictures/map_canvas.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "core/text.h"
-#include "page/page_parts.h"
 #include "page/pictures/charts.h"
 
 namespace cdiff::page {

@@ -19,6 +19,7 @@
 #include "e2e_cdiff/planning/planner.h"
 #include "guidance/right_of_way.h"
 #include "planners/diffusion/diffusion_options.h"
+#include "planners/diffusion/image_watch.h"
 #include "planning/route_follower.h"
 
 namespace cdiff::planners {

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <ostream>
 
 #include "core/csv.h"
 #include "core/file.h"
