@@ -14,6 +14,7 @@
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "guidance/total_objective.h"
 #include "planners/diffusion/diffusion_planner.h"
+#include "planners/diffusion/image_watch.h"
 
 namespace cdiff::planners {
 
