@@ -132,30 +132,33 @@ class SumoInput : private pugi::xml_tree_walker {
     // Also what stands before a fault: SUMO does as it says before it comes to the fault.
     document.traverse(*this);
     if (!parsed) throw InputError(at(parsed.offset) + ": not XML: " + parsed.description());
+    const std::size_t last = text_.find_last_not_of(kSpace);
+    if (text_[last] != '>')
+      throw InputError(name_ + ": goes on after its last element; delete what stands there");
   }
 
  private:
   static constexpr unsigned int kParsing =
       pugi::parse_default | pugi::parse_doctype | pugi::parse_declaration;
+  static constexpr std::string_view kSpace = " \t\r\n";
   static constexpr int kDeepest = 20;  // SUMO's own files: 5
 
   /// SUMO unpacks what does not start like XML, and pugixml skips it: both must read the same
   /// letters from the first to the last.
   void requirePlainText() const {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
-    constexpr std::string_view kSpace = " \t\r\n";
     const bool marked = text_.substr(0, kMark.size()) == kMark;
     const std::string_view text = text_.substr(marked ? kMark.size() : 0);
     const std::size_t first = text.find_first_not_of(kSpace);
-    const std::size_t last = text.find_last_not_of(kSpace);
-    if (first == std::string_view::npos || text[first] != '<' || text[last] != '>')
-      throw InputError(name_ + ": does not start with < and end with >; an XML file was expected");
+    if (first == std::string_view::npos || text[first] != '<')
+      throw InputError(name_ + ": does not start with <; an XML file was expected");
     const auto control = std::find_if(text_.begin(), text_.end(), [&](unsigned char letter) {
       return letter < 0x20 && kSpace.find(static_cast<char>(letter)) == std::string_view::npos;
     });
     if (control != text_.end())
-      throw InputError(at(control - text_.begin()) +
-                       ": holds a control character; text was expected");
+      throw InputError(at(control - text_.begin()) + ": holds a " +
+                       (*control == '\0' ? "zero byte" : "control character") +
+                       "; text was expected");
   }
 
   std::string at(std::ptrdiff_t offset) const {
