@@ -36,7 +36,7 @@ TEST(RepositoryFiles, CitationHasWhatItsFormatAsksFor) {
   EXPECT_NE(valueOf(paper, "title").find("Conditional Diffusion"), std::string::npos);
   EXPECT_EQ(paper["authors"].size(), 11u);
   for (const YAML::Node& author : paper["authors"])
-    EXPECT_TRUE(valueOf(author, "given-names") != "" && valueOf(author, "family-names") != "");
+    EXPECT_FALSE(valueOf(author, "given-names").empty() || valueOf(author, "family-names").empty());
 }
 
 TEST(RepositoryFiles, HooksDownloadNothing) {

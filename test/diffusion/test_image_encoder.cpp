@@ -29,8 +29,8 @@ inference::Tensor randomTensor(const inference::TensorShape& description, std::u
   std::int64_t count = 1;
   for (const std::int64_t side : description.shape) count *= side;
   const bool weight = description.shape.size() > 1;
-  const double fan_in = static_cast<double>(count / description.shape[0]);
-  const double reach = weight ? std::sqrt(6.0 / fan_in) : 0.5;
+  const std::int64_t fan_in = count / description.shape[0];
+  const double reach = weight ? std::sqrt(6.0 / static_cast<double>(fan_in)) : 0.5;
   const bool gain = !weight && description.name.find("weight") != std::string::npos;
   inference::Tensor tensor;
   tensor.shape = description.shape;
