@@ -60,8 +60,9 @@ class Activation {
 
   /// Sets everything to zero.
   void resize(std::int64_t samples) { values_ = AlignedFloats(samples * sampleSize()); }
-  View view(std::int64_t sample = 0, std::int64_t channel = 0) const {
-    return {values_.data() + sample * sampleSize() + halo_ * channels_ + channel, channels_};
+  View view(std::int64_t sample = 0, std::int64_t channel = 0, std::int64_t row = 0) const {
+    return {values_.data() + sample * sampleSize() + (halo_ + row) * channels_ + channel,
+            channels_};
   }
   /// Of a matrix.
   float* row(std::int64_t index) const { return view().data + index * channels_; }

@@ -188,6 +188,21 @@ TEST(Architecture, InputsOfMotionAreNamedOnlyWhereTheyAreTaken) {
   EXPECT_EQ(motion.joinedFeatures(), Architecture().joinedFeatures() + 256 + 32);
 }
 
+TEST(Architecture, RowsOfTheCurrentStateAreNamedOnlyWhereItIsPinned) {
+  EXPECT_EQ(Architecture().imageAlone().toJson().find("current_state_rows"), std::string::npos);
+  const Architecture pinned = Architecture().pinned();
+  EXPECT_EQ(pinned.rows(), pinned.horizon + 4);
+  EXPECT_TRUE(Architecture::fromJson(pinned.toJson(), "test") == pinned);
+  EXPECT_FALSE(pinned == Architecture().imageAlone());
+  EXPECT_TRUE(pinned.imageAlone() == Architecture().imageAlone());
+  // The state head is told the speed, the context is not.
+  EXPECT_EQ(byName(denoiserTensors(pinned)).at("state.0.weight"), (Shape{256, 96 + 1 + 64}));
+  EXPECT_EQ(pinned.contextValues(), pinned.image_features);
+  Architecture uneven = pinned;
+  uneven.current_state_rows = 3;
+  expectMentions(errorOf([&] { uneven.validate(); }), "current_state_rows is 3; a multiple of");
+}
+
 /// The default architecture as JSON with a piece of its text replaced.
 std::string jsonError(const std::string& from, const std::string& to) {
   std::string text = Architecture().toJson();

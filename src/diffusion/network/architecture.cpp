@@ -43,6 +43,7 @@ constexpr SizeField kSizes[] = {
     {"state_hidden", &Architecture::state_hidden, 1, 4096},
     {"previous_frame", &Architecture::previous_frame, 0, 1024, true},
     {"target_features", &Architecture::target_features, 0, 4096, true},
+    {"current_state_rows", &Architecture::current_state_rows, 0, 64, true},
 };
 constexpr std::int64_t kMinLevels = 2;
 constexpr std::int64_t kMaxLevels = 6;
@@ -118,6 +119,7 @@ Architecture Architecture::imageAlone() const {
   architecture.context_width = 0;
   architecture.previous_frame = 0;
   architecture.target_features = 0;
+  architecture.current_state_rows = 0;
   return architecture;
 }
 
@@ -128,13 +130,21 @@ Architecture Architecture::withMotion() const {
   return architecture;
 }
 
+Architecture Architecture::pinned() const {
+  Architecture architecture = imageAlone();
+  architecture.current_state_rows = std::int64_t{1} << (channels.size() - 1);
+  return architecture;
+}
+
 void Architecture::validate() const {
   for (const SizeField& field : kSizes) {
     requireInRange(field.name, this->*field.member, field.low, field.high);
   }
   const auto levels = static_cast<std::int64_t>(channels.size());
   requireInRange("the count of channels", levels, kMinLevels, kMaxLevels);
-  requireMultiple("horizon", horizon, std::int64_t{1} << (levels - 1), "2^(levels - 1)");
+  const std::int64_t halvings = std::int64_t{1} << (levels - 1);
+  requireMultiple("horizon", horizon, halvings, "2^(levels - 1)");
+  requireMultiple("current_state_rows", current_state_rows, halvings, "2^(levels - 1)");
   for (const std::int64_t channel : channels) {
     requireInRange("an element of channels", channel, 1, kMaxChannels);
     requireMultiple("an element of channels", channel, groups, "groups");
@@ -301,7 +311,7 @@ void addUNet(TensorList& list, const Architecture& a) {
 }
 
 void addStateHead(TensorList& list, const Architecture& a) {
-  const Size speed = a.takesSpeed() ? 1 : 0;
+  const Size speed = a.startsFromSpeed() ? 1 : 0;
   list.linear("state.0", a.horizon * traffic::kActionColumns + speed + a.time_width,
               a.state_hidden);
   list.linear("state.2", a.state_hidden, a.state_hidden);

@@ -34,11 +34,18 @@ struct Architecture {
   std::int64_t state_hidden = 256;   ///< hidden units of the state head
   std::int64_t previous_frame = 0;   ///< rollout steps that a second image lies back; 0: no second
   std::int64_t target_features = 0;  ///< 0: the target speed is no input
+  /// Rows of the current state s_0 before the trajectory, the same at every diffusion step; 0: none
+  std::int64_t current_state_rows = 0;
 
   bool takesRoute() const { return route_features > 0; }
   bool takesSpeed() const { return speed_features > 0; }
   bool takesPrevious() const { return previous_frame > 0; }
   bool takesTarget() const { return target_features > 0; }
+  bool pinsCurrentState() const { return current_state_rows > 0; }
+  /// Rows of the U-Net: those of the current state, then T.
+  std::int64_t rows() const { return current_state_rows + horizon; }
+  /// Whether the state head is told the speed that the vehicle starts with.
+  bool startsFromSpeed() const { return takesSpeed() || pinsCurrentState(); }
   /// Values of image, route, speed, image before and target speed together.
   std::int64_t joinedFeatures() const {
     return image_features * (takesPrevious() ? 2 : 1) + route_features + speed_features +
@@ -54,11 +61,13 @@ struct Architecture {
   Architecture imageAlone() const;
   /// The same that sees motion, by the image of 0.4 s before, and is told the target speed.
   Architecture withMotion() const;
+  /// The paper's inputs and the current state, pinned as in Diffuser (Janner et al. 2022, 3.2).
+  Architecture pinned() const;
 
   /// Throws InputError naming the size that is out of range or does not fit the others.
   void validate() const;
-  /// As JSON text and back; the inputs of withMotion are named where they are there. Throws
-  /// InputError naming the key that is missing, unknown or of the wrong type.
+  /// As JSON text and back; the inputs of withMotion and pinned are named where they are there.
+  /// Throws InputError naming the key that is missing, unknown or of the wrong type.
   std::string toJson() const;
   static Architecture fromJson(const std::string& text, const std::string& source);
 };

@@ -67,7 +67,7 @@ const Architecture& CpuDenoiser::architecture() const { return network_->archite
 void CpuDenoiser::setContexts(const std::vector<Context>& contexts) {
   network_->conditioning.setContexts(contexts);
   network_->state_head.setContexts(contexts);
-  network_->unet.resize(static_cast<std::int64_t>(contexts.size()));
+  network_->unet.setContexts(contexts);
   network_->ready = true;
   network_->actions_predicted = network_->states_predicted = false;
 }

@@ -46,7 +46,7 @@ StateHead::StateHead(const inference::DenoiserKernels& kernels, const Architectu
       out_reversed_(inference::reversedLinear(
           kernels, inference::Filter::ofLinear(inference::tensorNamed(tensors, "state.4.weight")))),
       time_part_(inference::matrix(width_, time_embeddings.rows())) {
-  const std::int64_t speed = architecture.takesSpeed() ? 1 : 0;
+  const std::int64_t speed = architecture.startsFromSpeed() ? 1 : 0;
   if (speed > 0)
     speed_.emplace(kernels, columns(tensors, action_values_, speed), inference::Spacing{});
   inference::Convolution(kernels, columns(tensors, action_values_ + speed, architecture.time_width),

@@ -3,6 +3,7 @@
 #include "diffusion/network/unet.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "e2e_cdiff/traffic/vehicle.h"
@@ -17,7 +18,7 @@ class UNetBuilder {
               const inference::Tensors& tensors)
       : source_{kernels, tensors, architecture.groups,
                 std::max<std::int64_t>(architecture.kernel, 4) / 2},
-        horizon_(architecture.horizon) {
+        rows_(architecture.rows()) {
     addLevels(architecture);
     addHead({architecture.channels.front()});
   }
@@ -36,7 +37,7 @@ class UNetBuilder {
   void addHead(const inference::ChannelLayout& layout);
 
   inference::LayerSource source_;
-  std::int64_t horizon_;
+  std::int64_t rows_;
   const inference::Variable* head_input_ = nullptr;
   UNet::Parts parts_;
 };
@@ -81,10 +82,10 @@ void UNetBuilder::addLevels(const Architecture& architecture) {
   const std::size_t levels = channels.size();
   std::vector<inference::Slice> level_outputs(levels);
   inference::ChannelLayout inputs{traffic::kRolloutColumns};
-  inference::Slice input{parts_.noisy = addVariable(inputs, horizon_)};
+  inference::Slice input{parts_.noisy = addVariable(inputs, rows_)};
   for (std::size_t l = 0; l < levels; ++l) {
     const std::string name = "down." + std::to_string(l);
-    const std::int64_t rows = horizon_ >> l;
+    const std::int64_t rows = rows_ >> l;
     const inference::ChannelLayout layout{channels[l]};
     const inference::ChannelLayout joined{2 * channels[l], 2};
     level_outputs[l] = l == 0 ? inference::Slice{addVariable(layout, rows)}
@@ -99,16 +100,16 @@ void UNetBuilder::addLevels(const Architecture& architecture) {
   for (std::size_t l = levels - 1; l > 0; --l) {
     const std::string name = "up." + std::to_string(levels - 1 - l);
     const inference::ChannelLayout layout{channels[l - 1]};
-    const inference::Slice output{addVariable(layout, horizon_ >> l)};
+    const inference::Slice output{addVariable(layout, rows_ >> l)};
     addBlockPair(name, {2 * channels[l], 2}, {{level_outputs[l].variable}, output});
-    head_input_ = l > 1 ? level_outputs[l - 1].variable : addVariable(layout, horizon_);
+    head_input_ = l > 1 ? level_outputs[l - 1].variable : addVariable(layout, rows_);
     addSampling(name + ".sample", {output, {head_input_}}, true);
   }
 }
 
 void UNetBuilder::addHead(const inference::ChannelLayout& layout) {
-  const inference::Variable* block = addVariable(layout, horizon_);
-  parts_.actions = addVariable({traffic::kActionColumns}, horizon_);
+  const inference::Variable* block = addVariable(layout, rows_);
+  parts_.actions = addVariable({traffic::kActionColumns}, rows_);
   parts_.layers.push_back(std::make_unique<inference::HeadBlock>(
       source_, "head.block", layout, inference::Edge{{head_input_}, {block}}));
   parts_.layers.push_back(std::make_unique<inference::PlainConvolution>(
@@ -117,19 +118,33 @@ void UNetBuilder::addHead(const inference::ChannelLayout& layout) {
 
 UNet::UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,
            const inference::Tensors& tensors)
-    : horizon_(architecture.horizon), parts_(UNetBuilder(kernels, architecture, tensors).take()) {}
+    : horizon_(architecture.horizon),
+      pinned_rows_(architecture.current_state_rows),
+      parts_(UNetBuilder(kernels, architecture, tensors).take()) {}
 
-void UNet::resize(std::int64_t samples) {
-  samples_ = samples;
-  for (const auto& variable : parts_.variables) variable->resize(samples);
-  for (const auto& layer : parts_.layers) layer->resize(samples);
+void UNet::setContexts(const std::vector<Context>& contexts) {
+  samples_ = static_cast<std::int64_t>(contexts.size());
+  speeds_.clear();
+  for (const Context& context : contexts)
+    speeds_.push_back(static_cast<float>(context.speed / kSpeedScale));
+  for (const auto& variable : parts_.variables) variable->resize(samples_);
+  for (const auto& layer : parts_.layers) layer->resize(samples_);
+}
+
+void UNet::writeCurrentState(std::int64_t sample) {
+  std::array<float, traffic::kRolloutColumns> state = {};
+  state[traffic::kRolloutSpeed] = speeds_[static_cast<std::size_t>(sample)];
+  for (std::int64_t row = 0; row < pinned_rows_; ++row)
+    inference::copyIn(state.data(), 1, traffic::kRolloutColumns,
+                      parts_.noisy->value.view(sample, 0, row));
 }
 
 void UNet::forward(const float* noisy, const inference::Activation& injection, float* actions) {
   const std::int64_t columns = traffic::kRolloutColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
+    writeCurrentState(b);
     inference::copyIn(noisy + b * horizon_ * columns, horizon_, columns,
-                      parts_.noisy->value.view(b));
+                      parts_.noisy->value.view(b, 0, pinned_rows_));
   }
   // Layer by layer: its weights stay in the cache for all samples.
   for (const auto& layer : parts_.layers) {
@@ -137,7 +152,7 @@ void UNet::forward(const float* noisy, const inference::Activation& injection, f
   }
   const std::int64_t results = traffic::kActionColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
-    inference::copyOut(parts_.actions->value.view(b), horizon_, results,
+    inference::copyOut(parts_.actions->value.view(b, 0, pinned_rows_), horizon_, results,
                        actions + b * horizon_ * results);
   }
 }
@@ -146,14 +161,14 @@ void UNet::backward(const float* action_gradient, float* noisy_gradient) {
   const std::int64_t columns = traffic::kActionColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
     inference::copyIn(action_gradient + b * horizon_ * columns, horizon_, columns,
-                      parts_.actions->gradient.view(b));
+                      parts_.actions->gradient.view(b, 0, pinned_rows_));
   }
   for (auto layer = parts_.layers.rbegin(); layer != parts_.layers.rend(); ++layer) {
     for (std::int64_t b = 0; b < samples_; ++b) (*layer)->backward(b);
   }
   const std::int64_t results = traffic::kRolloutColumns;
   for (std::int64_t b = 0; b < samples_; ++b) {
-    inference::copyOut(parts_.noisy->gradient.view(b), horizon_, results,
+    inference::copyOut(parts_.noisy->gradient.view(b, 0, pinned_rows_), horizon_, results,
                        noisy_gradient + b * horizon_ * results);
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diffusion/denoiser.h"
 #include "diffusion/network/architecture.h"
 #include "inference/unet_layers.h"
 
@@ -19,7 +20,8 @@ struct Injection {
 };
 
 /// The action head: the temporal U-Net tau^k [B, T, 7] -> actions [B, T, 3] and its backward pass
-/// (docs/network.md).
+/// (docs/network.md). Where the architecture pins the current state, rows of it, (0, 0, 0, v / 10)
+/// without action, are written before tau^k at every forward pass; no gradient leaves through them.
 class UNet {
  public:
   UNet(const inference::DenoiserKernels& kernels, const Architecture& architecture,
@@ -27,7 +29,7 @@ class UNet {
 
   /// In the order of their channels.
   const std::vector<Injection>& injections() const { return parts_.injections; }
-  void resize(std::int64_t samples);
+  void setContexts(const std::vector<Context>& contexts);
   /// `injection`: a row of injections for each sample.
   void forward(const float* noisy, const inference::Activation& injection, float* actions);
   void backward(const float* action_gradient, float* noisy_gradient);
@@ -42,8 +44,12 @@ class UNet {
     const inference::Variable* actions = nullptr;
   };
 
+  void writeCurrentState(std::int64_t sample);
+
   std::int64_t horizon_;
+  std::int64_t pinned_rows_;
   std::int64_t samples_ = 0;
+  std::vector<float> speeds_;  ///< v / 10, by sample
   Parts parts_;
 };
 

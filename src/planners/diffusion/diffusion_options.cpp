@@ -22,6 +22,10 @@ void DiffusionOptions::describe(core::OptionsVisitor& visitor) {
                 "Given with the route to a model that takes them: the image of 0.4 s before, the "
                 "target speed, or all of that."},
                motion, {"all", "previous_image", "target_speed", "none"});
+  visitor.text({"current_state", "",
+                "Of the vehicle, before the trajectory that is denoised: pinned there, or none, as "
+                "the model was trained."},
+               current_state, {"none", "pinned"});
   visitor.text({"state_branch", "", "States from actions: learned head, or exact dynamics."},
                state_branch, {"learned", "exact"});
   visitor.text({"response", "",

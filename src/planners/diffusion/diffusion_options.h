@@ -21,6 +21,8 @@ struct DiffusionOptions {
   /// Of the inputs beside the route that a model may take (Architecture::withMotion), those that it
   /// is given: all | previous_image | target_speed | none
   std::string motion = "all";
+  /// pinned (before the trajectory, at each diffusion step) | none; as the model was trained
+  std::string current_state = "none";
   std::string state_branch = "learned";  ///< learned | exact
   std::string response = "fitted";       ///< of the executed throttle: fitted | monotone
   double hysteresis = 0.1;               ///< a new mode must be better by this share of the score

@@ -41,8 +41,8 @@ diffusion::ImageEncoder encoderFor(const DiffusionOptions& options, const diffus
   return diffusion::ImageEncoder(model, precision, instructionSetOf(options));
 }
 
-/// Throws InputError for a conditioning that gives vehicles a route, and for a choice of further
-/// inputs, which the model does not take.
+/// Throws InputError for a conditioning that gives vehicles a route, for a choice of further inputs
+/// and for a current state, which the model does not take.
 void requireInputs(const DiffusionOptions& options, const diffusion::Model& model) {
   const bool moves = model.architecture.takesPrevious() || model.architecture.takesTarget();
   if (options.motion != "all" && !moves)
@@ -50,6 +50,11 @@ void requireInputs(const DiffusionOptions& options, const diffusion::Model& mode
                            model.name +
                            "' takes neither the image before nor the target speed; "
                            "expected 'all'");
+  const std::string trained = model.architecture.pinsCurrentState() ? "pinned" : "none";
+  if (options.current_state != trained)
+    throw core::InputError("key 'diffusion.current_state' is '" + options.current_state +
+                           "', and the weights of model '" + model.name + "' were trained with '" +
+                           trained + "'; expected '" + trained + "'");
   if (model.architecture.takesRoute() || options.conditioning == "image") return;
   throw core::InputError("key 'diffusion.conditioning' is '" + options.conditioning +
                          "', and model '" + model.name + "' takes no route; expected 'image'");

@@ -171,6 +171,31 @@ TEST_F(ActionOptions, AModelOfTheImageAloneDrivesByTheImageAlone) {
   EXPECT_THROW(makeDiffusion(options), core::InputError);
 }
 
+// Weights that were trained with the current state before the trajectory, and those that were not,
+// are each refused in the other's place.
+TEST_F(ActionOptions, AModelDrivesWithTheCurrentStateThatItWasTrainedWith) {
+  DiffusionOptions options = optionsOf();
+  const std::filesystem::path folder(options.model);
+  const diffusion::Architecture sizes;
+  options.conditioning = "image";
+  for (const bool pinned : {true, false}) {
+    options.model = cdiff::testing::writeRandomModel(folder / (pinned ? "pinned" : "image_alone"),
+                                                     pinned ? sizes.pinned() : sizes.imageAlone());
+    options.current_state = pinned ? "pinned" : "none";
+    for (const PlannedAction& planned : plansOf(options)) EXPECT_EQ(planned.fault, "");
+    options.current_state = pinned ? "none" : "pinned";
+    try {
+      makeDiffusion(options);
+      FAIL() << pinned;
+    } catch (const core::InputError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find("'diffusion.current_state'"), std::string::npos) << text;
+      EXPECT_NE(text.find(pinned ? "expected 'pinned'" : "expected 'none'"), std::string::npos)
+          << text;
+    }
+  }
+}
+
 // The image of 0.4 s before and the target speed reach a network that takes them, and only where it
 // is given its route.
 TEST_F(ActionOptions, AModelThatSeesMotionRemembersItsImages) {

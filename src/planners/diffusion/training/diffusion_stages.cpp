@@ -14,9 +14,10 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
   visitor.text({"precision", "", "Of the encoder in training."}, precision,
                {"auto", "f32", "bf16"});
   visitor.text({"network", "",
-                "Inputs of the denoiser: image, route and speed; the paper's, the image alone; or "
-                "also the image of 0.4 s before and the target speed."},
-               network, {"default", "paper", "motion"});
+                "Inputs of the denoiser: image, route and speed; the paper's, the image alone; "
+                "that and the current state, pinned; or also the image of 0.4 s before and the "
+                "target speed."},
+               network, {"default", "paper", "pinned", "motion"});
   visitor.text({"loss", "", "Of diffusion stages: first actions weighted, or the paper's."}, loss,
                {"weighted", "plain"});
   visitor.number({"image_scale", "", "Size of images in stage encoder: 1 or 0.5."}, image_scale,
@@ -32,6 +33,7 @@ void DiffusionTrainingSettings::describe(core::OptionsVisitor& visitor) {
 
 diffusion::Architecture DiffusionTrainingSettings::sizes() const {
   if (network == "paper") return architecture.imageAlone();
+  if (network == "pinned") return architecture.pinned();
   return network == "motion" ? architecture.withMotion() : architecture;
 }
 

@@ -23,7 +23,8 @@ struct DiffusionTrainingSettings {
   double yielding_share = 1.0;  ///< part kept of samples that stop to give way
   bool mirror = true;           ///< every second sample is mirrored
   bool change_light = true;     ///< photometric changes of images
-  /// default | paper (Architecture::imageAlone) | motion (Architecture::withMotion)
+  /// default | paper (Architecture::imageAlone) | pinned (Architecture::pinned) | motion
+  /// (Architecture::withMotion)
   std::string network = "default";
   diffusion::Architecture architecture;  ///< sizes that the data do not fix; not described
 

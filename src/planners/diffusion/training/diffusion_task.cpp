@@ -56,6 +56,7 @@ bool sameEncoder(diffusion::Architecture first, const diffusion::Architecture& s
   first.context_width = second.context_width;
   first.previous_frame = second.previous_frame;
   first.target_features = second.target_features;
+  first.current_state_rows = second.current_state_rows;
   return first == second;
 }
 
@@ -84,7 +85,8 @@ Tensors widened(const Tensors& narrow, Tensors wide, const std::string& source) 
 }
 
 /// The model of --init, if one is given. For a stage that trains the denoiser one with other inputs
-/// will do, too: its encoder alone where the paper's are asked for, and a denoiser that lacks those
+/// will do, too: its encoder alone where the paper's are asked for, with the current state or
+/// without, and a denoiser that lacks those
 /// of withMotion.
 std::optional<diffusion::Model> initialModel(const learning::TrainingOptions& options,
                                              const std::string& network,
@@ -95,8 +97,9 @@ std::optional<diffusion::Model> initialModel(const learning::TrainingOptions& op
   if (model.architecture == architecture) return model;
   const bool trains_denoiser = options.stage == "denoiser" || options.stage == "joint";
   if (trains_denoiser && sameEncoder(model.architecture, architecture)) {
-    if (network == "paper") model.denoiser.clear();
-    if (network == "paper" || model.architecture.withMotion() == architecture) return model;
+    const bool fewer_inputs = network == "paper" || network == "pinned";
+    if (fewer_inputs) model.denoiser.clear();
+    if (fewer_inputs || model.architecture.withMotion() == architecture) return model;
   }
   throw InputError("training: the architecture of '" + name + "' is " +
                    model.architecture.toJson() + ", this run has " + architecture.toJson());

@@ -133,7 +133,8 @@ DenoiserNet::DenoiserNet(const diffusion::Architecture& architecture, std::uint6
   parameters_.declareNorm("head.block.norm", outputs);
   parameters_.declareLayer("head.out", {traffic::kActionColumns, outputs, 1});
   const std::int64_t state_inputs = traffic::kActionColumns * architecture.horizon +
-                                    (architecture.takesSpeed() ? 1 : 0) + architecture.time_width;
+                                    (architecture.startsFromSpeed() ? 1 : 0) +
+                                    architecture.time_width;
   parameters_.declareLayer("state.0", {architecture.state_hidden, state_inputs});
   parameters_.declareLayer("state.2", {architecture.state_hidden, architecture.state_hidden});
   parameters_.declareLayer(
@@ -255,11 +256,21 @@ at::Tensor DenoiserNet::block(const std::string& name, const at::Tensor& x,
   return h + (parameters_.has(name + ".skip.weight") ? convolve(name + ".skip", x) : x);
 }
 
+at::Tensor DenoiserNet::behindCurrentState(const at::Tensor& noisy,
+                                           const ContextBatch& context) const {
+  if (!architecture_.pinsCurrentState()) return noisy;
+  const std::int64_t rows = architecture_.current_state_rows;
+  const at::Tensor state =
+      at::zeros({noisy.size(0), rows, traffic::kRolloutColumns}, noisy.options());
+  state.select(2, traffic::kRolloutSpeed).copy_(context.speed.expand({-1, rows}));
+  return at::cat({state, noisy}, 1);
+}
+
 at::Tensor DenoiserNet::predictActions(const at::Tensor& noisy, const at::Tensor& k,
                                        const ContextBatch& context) const {
   const at::Tensor z = fastMish(at::cat({timeEmbedding(k), contextOf(context)}, 1));
   const std::size_t levels = architecture_.channels.size();
-  at::Tensor x = noisy.transpose(1, 2);
+  at::Tensor x = behindCurrentState(noisy, context).transpose(1, 2);
   std::vector<at::Tensor> skips;
   for (std::size_t i = 0; i < levels; ++i) {
     x = block(level("down", i) + ".b", block(level("down", i) + ".a", x, z), z);
@@ -272,14 +283,16 @@ at::Tensor DenoiserNet::predictActions(const at::Tensor& noisy, const at::Tensor
     x = block(level("up", i) + ".b", block(level("up", i) + ".a", x, z), z);
     x = doubled(level("up", i) + ".sample", x);
   }
-  return convolve("head.out", smooth("head.block", x)).transpose(1, 2);
+  return convolve("head.out", smooth("head.block", x))
+      .transpose(1, 2)
+      .narrow(1, architecture_.current_state_rows, architecture_.horizon);
 }
 
 at::Tensor DenoiserNet::predictStates(const at::Tensor& actions, const at::Tensor& k,
                                       const ContextBatch& context, bool detach) const {
   const at::Tensor flat = (detach ? actions.detach() : actions).reshape({actions.size(0), -1});
   std::vector<at::Tensor> inputs = {flat};
-  if (architecture_.takesSpeed()) inputs.push_back(context.speed);
+  if (architecture_.startsFromSpeed()) inputs.push_back(context.speed);
   inputs.push_back(timeEmbedding(k));
   at::Tensor h = at::cat(inputs, 1);
   h = fastMish(linear(parameters_, "state.0", h));

@@ -73,6 +73,8 @@ class DenoiserNet {
   void declareBlock(const std::string& name, std::int64_t inputs, std::int64_t outputs);
   void declareLevels();
   at::Tensor contextOf(const ContextBatch& context) const;
+  /// [B, current_state_rows + T, 7]: noisy [B, T, 7] behind the current state.
+  at::Tensor behindCurrentState(const at::Tensor& noisy, const ContextBatch& context) const;
   at::Tensor timeEmbedding(const at::Tensor& k) const;
   at::Tensor convolve(const std::string& name, const at::Tensor& x, std::int64_t stride = 1) const;
   at::Tensor smooth(const std::string& name, const at::Tensor& x) const;

@@ -35,6 +35,7 @@ class Inference : public ::testing::TestWithParam<const char*> {
  protected:
   static Architecture sizesOf(const std::string& inputs) {
     if (inputs == "paper") return Architecture().imageAlone();
+    if (inputs == "pinned") return Architecture().pinned();
     return inputs == "motion" ? Architecture().withMotion() : Architecture();
   }
 
@@ -178,11 +179,29 @@ TEST_P(Inference, WithoutItsInputTheSpeedChangesNothing) {
     ours_.predictActions(noisy.data(), 40, actions[i].data());
     ours_.predictStates(actions[0].data(), 40, states[i].data());
   }
-  EXPECT_EQ(actions[0] == actions[1], !sizes_.takesSpeed());
-  EXPECT_EQ(states[0] == states[1], !sizes_.takesSpeed());
+  EXPECT_EQ(actions[0] == actions[1], !sizes_.startsFromSpeed());
+  EXPECT_EQ(states[0] == states[1], !sizes_.startsFromSpeed());
 }
 
-INSTANTIATE_TEST_SUITE_P(Inputs, Inference, ::testing::Values("default", "paper", "motion"));
+// A reverse step, forward and backward, leaves nothing behind: the current state is as it was.
+TEST_P(Inference, EveryDiffusionStepStartsFromTheSameCurrentState) {
+  const std::vector<float> noisy = draws(kBatch * 32 * 7, "noisy");
+  const std::vector<float> gradient = draws(kBatch * 32 * 3, "gradient");
+  std::vector<float> first(gradient.size());
+  std::vector<float> again(gradient.size());
+  std::vector<float> pulled(noisy.size());
+  ours_.predictActions(noisy.data(), 40, first.data());
+  for (int k = 100; k > 40; k -= 20) {
+    const std::vector<float> other = draws(noisy.size(), "other");
+    ours_.predictActions(other.data(), k, again.data());
+    ours_.backwardActions(gradient.data(), pulled.data());
+  }
+  ours_.predictActions(noisy.data(), 40, again.data());
+  EXPECT_EQ(first, again);
+}
+
+INSTANTIATE_TEST_SUITE_P(Inputs, Inference,
+                         ::testing::Values("default", "paper", "pinned", "motion"));
 
 }  // namespace
 }  // namespace cdiff::planners
