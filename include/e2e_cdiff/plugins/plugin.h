@@ -6,12 +6,12 @@
 
 #include "e2e_cdiff/guidance/objective.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 
 namespace cdiff::plugins {
 
 /// Rises when a header of include/e2e_cdiff changes so that a compiled plug-in no longer fits.
-inline constexpr int kApiVersion = 3;
+inline constexpr int kApiVersion = 4;
 
 /// What a package of the user's own adds: planners, guidance objectives, metrics.
 ///

@@ -105,7 +105,8 @@ std::optional<std::string> DiffusionPlanner::faultOf(const planning::PlanningTas
   const ImageExpectation expectation{static_cast<int>(sizes.image_width),
                                      static_cast<int>(sizes.image_height),
                                      options_.frozen_image_time, context_.simulation_step};
-  if (auto fault = memory.watch.fault(expectation, task.image, task.vehicle->state, tick))
+  if (auto fault = memory.watch.fault(expectation, task.views.find(rendering::kFrontCamera),
+                                      task.vehicle->state, tick))
     return fault;
   const bool has_route = task.route != nullptr && !task.route->empty();
   if (!has_route && conditions_on_route_) return "it has no route";

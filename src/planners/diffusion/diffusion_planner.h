@@ -16,7 +16,7 @@
 #include "diffusion/sampler.h"
 #include "e2e_cdiff/guidance/guidance_options.h"
 #include "e2e_cdiff/guidance/objective.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "guidance/right_of_way.h"
 #include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/image_watch.h"
@@ -72,7 +72,6 @@ class DiffusionPlanner : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
-  bool needsImages() const override { return true; }
   const diffusion::Model& model() const { return model_; }
 
  private:

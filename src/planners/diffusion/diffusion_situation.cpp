@@ -210,7 +210,8 @@ void DiffusionPlanner::encodeImages(
   }
   forEachWorker(changed.size(), [&](Worker& worker, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      changed[i].second->features = worker.encoder().encode(*changed[i].first->image);
+      changed[i].second->features =
+          worker.encoder().encode(*changed[i].first->views.find(rendering::kFrontCamera));
   });
 }
 
