@@ -28,8 +28,9 @@ inline constexpr int kApiVersion = 4;
 class Plugin {
  public:
   virtual ~Plugin() = default;
-  /// Compiled into the plug-in, and the first function of the class in every version.
-  virtual int apiVersion() const { return kApiVersion; }
+  /// Compiled into the plug-in, and the first function of the class in every version. Hidden, so
+  /// that no library's answer is taken for another's.
+  [[gnu::visibility("hidden")]] virtual int apiVersion() const { return kApiVersion; }
   /// Planners that scenarios may then name.
   virtual std::vector<planning::PlannerDescriptor> planners() const { return {}; }
   /// Objectives that guidance profiles may then name.
