@@ -24,13 +24,6 @@ constexpr std::uint32_t kPedal = 3;
 constexpr std::uint32_t kSteerSign = 4;
 constexpr std::uint32_t kStall = 5;
 
-// Elements of a vehicle's style.
-constexpr std::uint32_t kTargetSpeed = 0;
-constexpr std::uint32_t kGap = 1;
-constexpr std::uint32_t kHeadway = 2;
-constexpr std::uint32_t kAcceleration = 3;
-constexpr std::uint32_t kDeceleration = 4;
-
 // Elements of a period's draws.
 constexpr std::uint32_t kPhase = 6;
 constexpr std::uint32_t kChance = 7;
@@ -51,12 +44,12 @@ std::unique_ptr<PerturbedPlanner> perturbedPlanner(const session::SessionSetup& 
                                                    const CollectionOptions& options,
                                                    const MakePlanner& make, Policy policy,
                                                    const std::string& name) {
-  std::unique_ptr<planning::Planner> planner = make();
-  if (planner->needsImages())
+  if (planners::seesImages(name))
     throw core::InputError(
         "planner '" + name +
         "' needs images; data are collected with planners that do not, such as '" +
         std::string(planners::kDefaultEgoPlanner) + "'");
+  std::unique_ptr<planning::Planner> planner = make();
   if (options.sight == "camera")
     planner = std::make_unique<SightedPlanner>(make, setup.options().camera, setup.network());
   return std::make_unique<PerturbedPlanner>(std::move(planner), options, seedOf(setup),
@@ -67,25 +60,12 @@ std::unique_ptr<PerturbedPlanner> perturbedPlanner(const session::SessionSetup& 
 Policy policyOf(const session::SessionSetup& setup, const CollectionOptions& options) {
   if (options.policy.empty()) return {};
   Policy policy{setup.makeCbvPlanner(options.policy), nullptr};
-  if (!policy.planner->needsImages()) return policy;
+  if (!planners::seesImages(options.policy)) return policy;
   session::ScenarioOptions driven_by_it = setup.options();
   driven_by_it.cbv_planner = options.policy;
   policy.cameras =
       std::make_unique<session::VehicleCameras>(setup, session::VehicleRigs(driven_by_it));
   return policy;
-}
-
-planning::DrivingStyle styleOf(const CollectionOptions& options, const core::RandomStream& random,
-                               const core::RandomKey& key) {
-  planning::DrivingStyle style;
-  style.minimum_gap = random.uniform(key, kGap, style.minimum_gap, options.maximum_gap);
-  style.time_headway = random.uniform(key, kHeadway, style.time_headway, options.maximum_headway);
-  if (options.pedals == "published") return style;
-  style.acceleration = random.uniform(key, kAcceleration, options.minimum_acceleration,
-                                      options.maximum_acceleration);
-  style.deceleration = random.uniform(key, kDeceleration, options.minimum_deceleration,
-                                      options.maximum_deceleration);
-  return style;
 }
 
 std::unique_ptr<session::World> disturbedWorld(const session::SessionSetup& setup,
@@ -99,14 +79,6 @@ std::unique_ptr<session::World> disturbedWorld(const session::SessionSetup& setu
 }
 
 }  // namespace
-
-Driver driverOf(const CollectionOptions& options, std::uint64_t seed,
-                const std::string& vehicle_id) {
-  const core::RandomStream random(seed, "collection_target_speed");
-  const core::RandomKey key{core::hashText(vehicle_id), 0, 0};
-  return {random.uniform(key, kTargetSpeed, options.minimum_speed, options.maximum_speed),
-          styleOf(options, random, key)};
-}
 
 PerturbedPlanner::PerturbedPlanner(std::unique_ptr<planning::Planner> planner,
                                    const CollectionOptions& options, std::uint64_t seed,
@@ -207,11 +179,8 @@ void PerturbedPlanner::disturb(const Burst& burst, double speed,
 std::vector<planning::PlannedAction> PerturbedPlanner::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   std::vector<planning::PlanningTask> asked = tasks;
-  for (planning::PlanningTask& task : asked) {
-    const Driver driver = driverOf(task.vehicle->id);
-    task.target_speed = driver.target_speed;
-    task.style = driver.style;
-  }
+  for (planning::PlanningTask& task : asked)
+    task.target_speed = driverOf(task.vehicle->id).target_speed;
   std::vector<planning::PlannedAction> actions = planner_->plan(snapshot, asked);
   if (snapshot.time > last_time_ + 1.5 * decision_period_) bursts_.clear();
   last_time_ = snapshot.time;
@@ -277,8 +246,8 @@ session::LoopParts CollectionLoop::makeParts(const session::SessionSetup& setup,
   ego_planner_ = ego.get();
   cbv_planner_ = cbv.get();
   session::LoopParts parts;
-  parts.ego_planner = std::move(ego);
-  parts.cbv_planner = std::move(cbv);
+  parts.ego_planner = {std::move(ego)};
+  parts.cbv_planner = {std::move(cbv)};
   parts.selector =
       std::make_unique<TrafficDriver>(options, setup.graph(), setup.drivableArea(), seedOf(setup));
   if (images) {

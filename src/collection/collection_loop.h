@@ -10,6 +10,7 @@
 #include <string>
 
 #include "collection/collection_options.h"
+#include "collection/driver.h"
 #include "e2e_cdiff/core/random.h"
 #include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/vehicle.h"
@@ -18,22 +19,13 @@
 
 namespace cdiff::collection {
 
-/// Who drives a vehicle in data collection: its target speed [m/s] and its style.
-struct Driver {
-  double target_speed;
-  planning::DrivingStyle style;
-};
-/// Drawn by vehicle id and the session's seed.
-Driver driverOf(const CollectionOptions& options, std::uint64_t seed,
-                const std::string& vehicle_id);
-
 /// A planner that drives now and then in data collection, and what it sees by.
 struct Policy {
   std::unique_ptr<planning::Planner> planner;
   std::unique_ptr<session::VehicleCameras> cameras;  ///< nullptr: it needs no images
 };
 
-/// Wraps another planner: gives each vehicle its own target speed [m/s] and driving style, and now
+/// Wraps another planner: gives each vehicle its own target speed [m/s], and now
 /// and then adds a burst of noise to an action, stops the vehicle for some seconds, or lets a
 /// policy drive it, so that the record shows how the planner recovers and starts, and what it does
 /// where the policy leads (DAgger; Ross et al. 2011, with time slices in place of single actions).
@@ -48,7 +40,6 @@ class PerturbedPlanner : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
-  bool needsImages() const override { return planner_->needsImages(); }
 
   Driver driverOf(const std::string& vehicle_id) const {
     return collection::driverOf(options_, seed_, vehicle_id);

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "collection/camera_sight.h"
+#include "collection/driver.h"
 #include "collection/traffic_driver.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "e2e_cdiff/core/random.h"
 #include "learning/samples/scene_file.h"
+#include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/registry.h"
 
 namespace cdiff::collection {
@@ -199,12 +201,17 @@ session::ScenarioOptions collectionScenario(session::ScenarioOptions scenario,
 
 std::unique_ptr<session::SessionSetup> collectionSetup(const session::ScenarioOptions& scenario,
                                                        const CollectionOptions& options) {
-  auto setup = std::make_unique<session::SessionSetup>(scenario);
+  session::ScenarioOptions driven = scenario;
+  driven.planner_options.of<planners::PdmLiteOptions>().styles =
+      [options, seed = static_cast<std::uint64_t>(scenario.seed)](const std::string& id) {
+        return driverOf(options, seed, id).style;
+      };
+  auto setup = std::make_unique<session::SessionSetup>(driven);
   const core::RandomStream random(static_cast<std::uint64_t>(scenario.seed), "collection_ego");
   const double length = options.duration * options.maximum_speed;
   const map::Route longer = extendedAtRandom(setup->graph(), setup->egoRoute(), length, random);
   if (longer.length() <= setup->egoRoute().length()) return setup;
-  return std::make_unique<session::SessionSetup>(scenario, setup->import(), longer.path().points());
+  return std::make_unique<session::SessionSetup>(driven, setup->import(), longer.path().points());
 }
 
 void CollectSettings::describe(core::OptionsVisitor& visitor) {

@@ -107,7 +107,8 @@ learning::DrivingSchema schemaOf(const diffusion::Architecture& architecture);
 session::ScenarioOptions collectionScenario(session::ScenarioOptions scenario,
                                             const CollectionOptions& options);
 
-/// Its set-up, with the ego route lengthened by random turns to what the duration needs.
+/// Its set-up, with the ego route lengthened by random turns to what the duration needs, and
+/// PDM-Lite following as each vehicle's driver does (driverOf).
 std::unique_ptr<session::SessionSetup> collectionSetup(const session::ScenarioOptions& scenario,
                                                        const CollectionOptions& options);
 

@@ -100,11 +100,6 @@ void requireOnePlanner(const std::string& place, const std::string& name, Role r
 
 PlannerBySlot::PlannerBySlot(std::vector<Member> members) : members_(std::move(members)) {}
 
-bool PlannerBySlot::needsImages() const {
-  return std::any_of(members_.begin(), members_.end(),
-                     [](const Member& member) { return member.planner->needsImages(); });
-}
-
 std::vector<PlannedAction> PlannerBySlot::plan(const traffic::TrafficSnapshot& snapshot,
                                                const std::vector<PlanningTask>& tasks) {
   std::vector<PlannedAction> actions;

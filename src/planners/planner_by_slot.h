@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 
 namespace cdiff::planners {
 
@@ -24,8 +24,6 @@ class PlannerBySlot final : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
-  /// Whether one of them does; the others get images, too, and leave them.
-  bool needsImages() const override;
 
  private:
   std::vector<Member> members_;
@@ -45,7 +43,7 @@ enum class Role { kEgo, kCbv };
 void requirePlanner(const std::string& key, const std::string& name, Role role);
 
 /// The descriptor of several planners by slot: it drives CBVs when all of them do, sees and is
-/// guided when one does. `members`: two or more.
+/// guided when one does (the others get images, too, and leave them). `members`: two or more.
 planning::PlannerDescriptor describeBySlot(
     const std::vector<const planning::PlannerDescriptor*>& members);
 

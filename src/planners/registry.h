@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 
 namespace cdiff::planners {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "inference/safetensors.h"
 
 namespace cdiff::planners {

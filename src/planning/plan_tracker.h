@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_options.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planning/windowed_pid.h"
 

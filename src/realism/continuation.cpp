@@ -48,7 +48,6 @@ class DriverWithItsSpeed : public planning::Planner {
       task.target_speed = session::cbvTargetSpeed(speeds_, fixed_, seed_, task.vehicle->id);
     return planner_->plan(snapshot, own);
   }
-  bool needsImages() const override { return planner_->needsImages(); }
 
  private:
   std::unique_ptr<planning::Planner> planner_;
@@ -81,9 +80,9 @@ session::LoopParts makeParts(const session::SessionSetup& setup, const HandOverD
                              const HandOverSelector*& selector) {
   const session::ScenarioOptions& options = setup.options();
   session::LoopParts parts;
-  parts.ego_planner = setup.makeEgoPlanner();
-  parts.cbv_planner = makeDriver(setup, driver);
-  if (parts.ego_planner->needsImages() || parts.cbv_planner->needsImages())
+  parts.ego_planner = {setup.makeEgoPlanner(), planners::seesImages(options.ego_planner)};
+  parts.cbv_planner = {makeDriver(setup, driver), planners::seesImages(driver.planner)};
+  if (parts.ego_planner.sees || parts.cbv_planner.sees)
     parts.cameras.emplace(setup, rigsOf(options, driver));
   auto own = std::make_unique<HandOverSelector>(
       std::make_unique<cbv::CbvSelector>(options.cbv, static_cast<int>(options.max_cbv),

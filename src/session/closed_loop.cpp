@@ -10,6 +10,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
+#include "planners/registry.h"
 
 namespace cdiff::session {
 namespace {
@@ -98,10 +99,9 @@ std::vector<PlannedAction> planTimed(planning::Planner& planner,
 LoopParts makeParts(const SessionSetup& setup) {
   const ScenarioOptions& options = setup.options();
   LoopParts parts;
-  parts.ego_planner = setup.makeEgoPlanner();
-  parts.cbv_planner = setup.makeCbvPlanner();
-  if (parts.ego_planner->needsImages() || parts.cbv_planner->needsImages())
-    parts.cameras.emplace(setup);
+  parts.ego_planner = {setup.makeEgoPlanner(), planners::seesImages(options.ego_planner)};
+  parts.cbv_planner = {setup.makeCbvPlanner(), planners::seesImages(options.cbv_planner)};
+  if (parts.ego_planner.sees || parts.cbv_planner.sees) parts.cameras.emplace(setup);
   parts.selector = std::make_unique<cbv::CbvSelector>(
       options.cbv, static_cast<int>(options.max_cbv), setup.graph(), setup.egoRoute());
   return parts;
@@ -128,10 +128,10 @@ void ClosedLoop::render(const traffic::Vehicle& vehicle, int slot, Decision& dec
   parts_.cameras->render(world().snapshot(), vehicle, slot, decision.images);
 }
 
-void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
+void ClosedLoop::ask(const LoopPlanner& asked, const std::string& name,
                      std::vector<PlanningTask> tasks, Decision& decision) {
   if (tasks.empty()) return;
-  if (planner.needsImages()) {
+  if (asked.sees) {
     for (const PlanningTask& task : tasks) render(*task.vehicle, task.slot, decision);
     attachImages(decision.images, parts_.cameras->rigs(), tasks);
   }
@@ -139,7 +139,7 @@ void ClosedLoop::ask(planning::Planner& planner, const std::string& name,
   std::string fault;
   std::set<std::string> recorded;  // vehicles may share a cause
   for (PlannedAction& action :
-       planTimed(planner, world().snapshot(), tasks, latency.milliseconds, fault)) {
+       planTimed(*asked.planner, world().snapshot(), tasks, latency.milliseconds, fault)) {
     if (!fault.empty()) action.fault = fault;
     if (!action.fault.empty() && recorded.insert(action.fault).second)
       parts_.world->recordFault(name, action.fault);
@@ -165,9 +165,9 @@ ClosedLoop::Decision ClosedLoop::decide() {
   const ScenarioOptions& options = setup_.options();
   Decision decision;
   decision.selection = parts_.selector->update(snapshot);
-  ask(*parts_.ego_planner, "ego:" + options.ego_planner,
+  ask(parts_.ego_planner, "ego:" + options.ego_planner,
       egoTasks(snapshot, setup_.egoRoute(), options.target_speed), decision);
-  ask(*parts_.cbv_planner, "cbv:" + options.cbv_planner,
+  ask(parts_.cbv_planner, "cbv:" + options.cbv_planner,
       cbvTasks(snapshot, decision.selection, setup_), decision);
   if (parts_.image_wish) renderWishes(decision);
   return decision;

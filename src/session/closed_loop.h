@@ -38,14 +38,20 @@ std::vector<planning::PlannedAction> planTimed(planning::Planner& planner,
 using ImageWish = std::function<bool(const traffic::TrafficSnapshot& snapshot,
                                      const traffic::Vehicle& vehicle, int slot)>;
 
+/// A planner, and whether its descriptor says that its tasks come with images.
+struct LoopPlanner {
+  std::unique_ptr<planning::Planner> planner;
+  bool sees = false;
+};
+
 /// What drives a session.
 struct LoopParts {
   std::unique_ptr<World> world;  ///< nullptr: over SUMO, as the setup starts it
   std::unique_ptr<cbv::VehicleSelector> selector;
-  std::unique_ptr<planning::Planner> ego_planner;
-  std::unique_ptr<planning::Planner> cbv_planner;  ///< planner of every vehicle that is selected
-  std::optional<VehicleCameras> cameras;           ///< for planners that see and for `image_wish`
-  ImageWish image_wish;                            ///< empty: no other images
+  LoopPlanner ego_planner;
+  LoopPlanner cbv_planner;                ///< of every vehicle that is selected
+  std::optional<VehicleCameras> cameras;  ///< for planners that see and for `image_wish`
+  ImageWish image_wish;                   ///< empty: no other images
 };
 
 /// The parts that the scenario names, without a world: CBV identification, its planners, cameras
@@ -73,7 +79,7 @@ class ClosedLoop {
  private:
   struct Decision;
   Decision decide();
-  void ask(planning::Planner& planner, const std::string& name,
+  void ask(const LoopPlanner& asked, const std::string& name,
            std::vector<planning::PlanningTask> tasks, Decision& decision);
   void render(const traffic::Vehicle& vehicle, int slot, Decision& decision);
   void renderWishes(Decision& decision);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "e2e_cdiff/map/drivable_area.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "map/import/network_import.h"
 #include "metrics/session_metrics.h"
 #include "session/scenario_options.h"

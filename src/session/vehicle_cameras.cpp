@@ -37,9 +37,7 @@ void attachImages(const std::vector<SlotImage>& images, const VehicleRigs& rigs,
       views.images[static_cast<std::size_t>(camera - rig.cameras.data())] = &seen.image;
       any = true;
     }
-    if (!any) continue;
-    task.views = std::move(views);
-    task.image = task.views.find(rendering::kFrontCamera);
+    if (any) task.views = std::move(views);
   }
 }
 

@@ -348,28 +348,15 @@ std::vector<planning::PlanningTask> askedWith(const CollectionOptions& options) 
   return asked;
 }
 
-TEST(PerturbedPlanner, GivesEachVehicleOneTargetSpeedAndStyleInRange) {
+TEST(PerturbedPlanner, GivesEachVehicleOneTargetSpeedInRange) {
   const auto asked = askedWith(CollectionOptions());
   ASSERT_EQ(asked.size(), 4u);
   for (std::size_t i : {0, 1}) {
     EXPECT_EQ(asked[i].target_speed, asked[i + 2].target_speed);
-    EXPECT_EQ(asked[i].style.acceleration, asked[i + 2].style.acceleration);
     EXPECT_GE(asked[i].target_speed, 5.0);
     EXPECT_LE(asked[i].target_speed, 12.0);
-    EXPECT_GE(asked[i].style.acceleration, 1.5);
-    EXPECT_LE(asked[i].style.acceleration, 3.5);
-    EXPECT_GE(asked[i].style.deceleration, 2.0);
-    EXPECT_LE(asked[i].style.deceleration, 4.0);
   }
   EXPECT_NE(asked[0].target_speed, asked[1].target_speed);
-  EXPECT_NE(asked[0].style.acceleration, asked[1].style.acceleration);
-  EXPECT_NE(asked[0].style.minimum_gap, asked[1].style.minimum_gap);
-}
-
-TEST(PerturbedPlanner, PublishedPedalsLeaveTheStyleToThePlanner) {
-  CollectionOptions options;
-  options.pedals = "published";
-  for (const planning::PlanningTask& task : askedWith(options)) EXPECT_FALSE(task.style.even());
 }
 
 TEST(DisturbedStart, MovesSidewaysAndTurnsWithinTwoStandardDeviations) {

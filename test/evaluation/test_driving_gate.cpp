@@ -114,7 +114,6 @@ class ChangedPlanner : public planning::Planner {
  public:
   explicit ChangedPlanner(std::unique_ptr<planning::Planner> planner)
       : planner_(std::move(planner)) {}
-  bool needsImages() const override { return planner_->needsImages(); }
 
  protected:
   planning::Planner& planner() { return *planner_; }
@@ -175,7 +174,8 @@ TEST(DrivingGate, TheShippedModelDrivesAsOnTheDevelopmentSet) {
 
 TEST(DrivingGate, RefusesMirroredSteering) {
   const GateFigures figures = gate({}, [](const auto&, session::LoopParts& parts) {
-    parts.cbv_planner = std::make_unique<MirroredSteering>(std::move(parts.cbv_planner));
+    parts.cbv_planner.planner =
+        std::make_unique<MirroredSteering>(std::move(parts.cbv_planner.planner));
   });
   EXPECT_NE(outside(figures, "steering mirrored"), std::vector<std::string>());
 }
@@ -183,8 +183,8 @@ TEST(DrivingGate, RefusesMirroredSteering) {
 TEST(DrivingGate, RefusesARouteOneLaneAside) {
   const GateFigures figures =
       gate({}, [](const session::SessionSetup& setup, session::LoopParts& parts) {
-        parts.cbv_planner =
-            std::make_unique<ShiftedRoute>(std::move(parts.cbv_planner), setup.network());
+        parts.cbv_planner.planner =
+            std::make_unique<ShiftedRoute>(std::move(parts.cbv_planner.planner), setup.network());
       });
   EXPECT_NE(outside(figures, "route shifted by a lane"), std::vector<std::string>());
 }

@@ -126,12 +126,11 @@ class SeeingPlanner : public planning::Planner {
     ++calls;
     std::vector<planning::PlannedAction> actions;
     for (const planning::PlanningTask& task : tasks) {
-      const double throttle = task.image->rgb.at(0) / 256.0;
+      const double throttle = task.views.find("front")->rgb.at(0) / 256.0;
       actions.push_back({task.slot, task.vehicle->id, {throttle, 0.0, 0.0}, {}});
     }
     return actions;
   }
-  bool needsImages() const override { return true; }
   int calls = 0;
 };
 

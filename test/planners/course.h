@@ -104,6 +104,12 @@ inline traffic::Vehicle vehicleAt(const std::string& id, double x, double y, dou
   return vehicle;
 }
 
+/// Options under which all vehicles have one style.
+inline PdmLiteOptions styled(const DrivingStyle& style, PdmLiteOptions options = {}) {
+  options.styles = [style](const std::string&) { return style; };
+  return options;
+}
+
 /// Vehicles with a route are driven by the planner; the others go straight at constant speed.
 class ClosedLoop {
  public:
@@ -118,8 +124,6 @@ class ClosedLoop {
     snapshot_.vehicles.push_back(vehicle);
     routes_.push_back({snapshot_.vehicles.size() - 1, &route, slot});
   }
-  /// Of all vehicles that are driven.
-  void setStyle(const planning::DrivingStyle& style) { style_ = style; }
   void add(const traffic::Vehicle& vehicle) { snapshot_.vehicles.push_back(vehicle); }
   void setSignal(const std::string& id, const std::string& state) {
     snapshot_.signals = {{id, state}};
@@ -129,8 +133,7 @@ class ClosedLoop {
   void advance() {
     std::vector<planning::PlanningTask> tasks;
     for (const Driven& driven : routes_) {
-      tasks.push_back(
-          {driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0, nullptr, style_});
+      tasks.push_back({driven.slot, &snapshot_.vehicles[driven.index], driven.route, 8.0});
     }
     last_ = planner_.plan(snapshot_, tasks);
     const long ticks = std::lround(decision_period_ / 0.05);
@@ -180,7 +183,6 @@ class ClosedLoop {
   PdmLite planner_;
   traffic::TrafficSnapshot snapshot_;
   std::vector<Driven> routes_;
-  planning::DrivingStyle style_;
   std::vector<planning::PlannedAction> last_;
 };
 

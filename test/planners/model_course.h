@@ -13,6 +13,7 @@
 #include "planners/course.h"
 #include "planners/diffusion/diffusion_options.h"
 #include "planners/diffusion/diffusion_planner.h"
+#include "support/front_views.h"
 #include "support/random_model.h"
 #include "support/temporary_folder.h"
 
@@ -49,8 +50,8 @@ class ModelCourse : public ::testing::Test {
 
   /// Both CBVs, in slot order.
   std::vector<planning::PlanningTask> tasks() {
-    return {{0, &snapshot_.vehicles[1], &route_, 8.0, &images_[0]},
-            {1, &snapshot_.vehicles[2], &route_, 8.0, &images_[1]}};
+    return {{0, &snapshot_.vehicles[1], &route_, 8.0, test::frontViews(&images_[0])},
+            {1, &snapshot_.vehicles[2], &route_, 8.0, test::frontViews(&images_[1])}};
   }
   /// Of the random model.
   static DiffusionOptions optionsOf(const std::string& mode = "real_time",

@@ -8,6 +8,7 @@
 #include "planners/course.h"
 #include "planners/diffusion/diffusion_planner.h"
 #include "rendering/front_camera.h"
+#include "support/front_views.h"
 
 namespace cdiff::planners {
 namespace {
@@ -92,9 +93,10 @@ MirrorSteers steersOn(const Points& road, const traffic::Vehicle& vehicle) {
   for (int draw = 0; draw < kDraws; ++draw) {
     snapshot.tick = static_cast<std::uint64_t>(2 * draw);
     image.tick = mirror_image.tick = snapshot.tick;
-    const auto actions =
-        planner.plan(snapshot, {{0, &snapshot.vehicles[0], &route, 8.0, &image},
-                                {1, &snapshot.vehicles[1], &mirror_route, 8.0, &mirror_image}});
+    const auto actions = planner.plan(
+        snapshot,
+        {{0, &snapshot.vehicles[0], &route, 8.0, test::frontViews(&image)},
+         {1, &snapshot.vehicles[1], &mirror_route, 8.0, test::frontViews(&mirror_image)}});
     steers.scene.add(steerOf(actions[0]));
     steers.mirror.add(steerOf(actions[1]));
   }

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/perception.h"
 
 namespace cdiff::test {
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/camera_views.h"
 
 namespace cdiff::planning {
 namespace {
@@ -36,20 +36,6 @@ TEST(CameraViews, NamesTheFirstCameraWithoutAnImage) {
   EXPECT_EQ((CameraViews{&rig, {}}.missing()), "front");
   EXPECT_EQ((CameraViews{nullptr, {&image}}.missing()), "");
   EXPECT_EQ((CameraViews{nullptr, {&image}}.find("front")), nullptr);
-}
-
-TEST(FailSafeAction, IsFullBrakingWithTheReason) {
-  traffic::Vehicle vehicle;
-  vehicle.id = "bg_3";
-  PlanningTask task;
-  task.slot = 2;
-  task.vehicle = &vehicle;
-  const PlannedAction action = failSafeAction(task, "it has no route");
-  EXPECT_EQ(action.slot, 2);
-  EXPECT_EQ(action.vehicle_id, "bg_3");
-  EXPECT_EQ(action.action, traffic::ControlAction::failSafe());
-  EXPECT_EQ(action.fault, "vehicle 'bg_3': it has no route; full braking instead");
-  EXPECT_EQ(failSafeAction(task, "").fault, "");
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #include <gtest/gtest.h>
 
-#include "planning/perception.h"
+#include "e2e_cdiff/planning/perception.h"
 #include "planning/perception_sample.h"
 
 namespace cdiff::planning {

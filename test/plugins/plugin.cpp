@@ -57,8 +57,6 @@ class TestPlugin : public cdiff::plugins::Plugin {
  public:
 #if defined(PLUGIN_throwing_constructor)
   TestPlugin() { throw std::runtime_error("no license found"); }
-#elif defined(PLUGIN_other_version)
-  int apiVersion() const override { return cdiff::plugins::kApiVersion + 1; }
 #endif
   std::vector<cdiff::planning::PlannerDescriptor> planners() const override {
 #if defined(PLUGIN_throwing_list)

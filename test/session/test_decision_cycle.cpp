@@ -40,7 +40,7 @@ class Always : public cbv::VehicleSelector {
 class Braking : public planning::Planner {
  public:
   using Check = std::function<void(const PlanningTask&)>;
-  explicit Braking(Check check = {}, bool sees = false) : check_(std::move(check)), sees_(sees) {}
+  explicit Braking(Check check = {}) : check_(std::move(check)) {}
   std::vector<PlannedAction> plan(const traffic::TrafficSnapshot&,
                                   const std::vector<PlanningTask>& tasks) override {
     std::vector<PlannedAction> actions;
@@ -50,11 +50,9 @@ class Braking : public planning::Planner {
     }
     return actions;
   }
-  bool needsImages() const override { return sees_; }
 
  private:
   Check check_;
-  bool sees_;
 };
 
 /// What records show: actions and slots of images by decision, and all faults.
@@ -80,8 +78,8 @@ class Cycle {
     auto selector = std::make_unique<Always>(scripted_.selectionOf("car"));
     selector_ = selector.get();
     parts.selector = std::move(selector);
-    parts.ego_planner = std::make_unique<Braking>();
-    parts.cbv_planner = std::make_unique<Braking>();
+    parts.ego_planner = {std::make_unique<Braking>()};
+    parts.cbv_planner = {std::make_unique<Braking>()};
   }
   Record run() {
     class Stop : public SessionObserver {
@@ -134,8 +132,8 @@ TEST(DecisionCycle, AsksEgoAndCbvAtEverySecondTick) {
 
 TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
   Cycle cycle;
-  cycle.parts.cbv_planner =
-      std::make_unique<Braking>([](const PlanningTask&) { throw std::runtime_error("no idea"); });
+  cycle.parts.cbv_planner = {
+      std::make_unique<Braking>([](const PlanningTask&) { throw std::runtime_error("no idea"); })};
   const Record record = cycle.run();
   EXPECT_EQ(record.actions[0][0].action.brake, 0.25) << "the ego's planner goes on";
   EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
@@ -146,7 +144,7 @@ TEST(DecisionCycle, APlannerThatThrowsIsFullBrakingAndOneFaultADecision) {
 
 TEST(DecisionCycle, SoIsOneThatThrowsWhatIsNoException) {
   Cycle cycle;
-  cycle.parts.cbv_planner = std::make_unique<Braking>([](const PlanningTask&) { throw 7; });
+  cycle.parts.cbv_planner = {std::make_unique<Braking>([](const PlanningTask&) { throw 7; })};
   const Record record = cycle.run();
   EXPECT_EQ(record.actions[0][1].action, traffic::ControlAction::failSafe());
   EXPECT_NE(record.actions[0][1].fault.find("no std::exception"), std::string::npos);
@@ -156,8 +154,10 @@ TEST(DecisionCycle, ImagesAreThoseOfPlannersThatSeeAndThoseWishedFor) {
   Cycle cycle;
   int seen = 0;
   cycle.parts.cameras.emplace(cycle.setup());
-  cycle.parts.cbv_planner = std::make_unique<Braking>(
-      [&](const PlanningTask& task) { seen += task.image != nullptr; }, true);
+  cycle.parts.cbv_planner = {std::make_unique<Braking>([&](const PlanningTask& task) {
+                               seen += task.views.find("front") != nullptr;
+                             }),
+                             true};
   cycle.parts.image_wish = [](const traffic::TrafficSnapshot& snapshot, const traffic::Vehicle&,
                               int slot) { return slot == 0 || snapshot.tick == 2; };
   const Record record = cycle.run();
@@ -172,27 +172,26 @@ TEST(DecisionCycle, APlannerIsGivenAllImagesOfItsRigInOrder) {
   const VehicleRigs rigs(options);
   cycle.parts.cameras.emplace(cycle.setup(), rigs);
   int seen = 0;
-  cycle.parts.ego_planner = std::make_unique<Braking>(
-      [&](const PlanningTask& task) {
+  cycle.parts.ego_planner = {
+      std::make_unique<Braking>([&](const PlanningTask& task) {
         ASSERT_NE(task.views.rig, nullptr);
         EXPECT_EQ(task.views.rig->names(), rigs.of(traffic::kEgoSlot).names());
         ASSERT_EQ(task.views.images.size(), 6u);
         EXPECT_EQ(task.views.missing(), "");
-        EXPECT_EQ(task.image, task.views.find("front"));
         rendering::RigRenderer renderer(rigs.of(traffic::kEgoSlot), cycle.setup().network());
         traffic::TrafficSnapshot alone;  // no other is near
         const auto views = renderer.render(alone, *task.vehicle);
         for (std::size_t i = 0; i < 6; ++i)
           EXPECT_EQ(task.views.images[i]->rgb, views[i].image.rgb) << i;
         ++seen;
-      },
-      true);
-  cycle.parts.cbv_planner = std::make_unique<Braking>(
-      [](const PlanningTask& task) {
-        EXPECT_EQ(task.views.rig->names(), std::vector<std::string>{"front"});
-        EXPECT_EQ(task.views.images.size(), 1u);
-      },
-      true);
+      }),
+      true};
+  cycle.parts.cbv_planner = {std::make_unique<Braking>([](const PlanningTask& task) {
+                               EXPECT_EQ(task.views.rig->names(),
+                                         std::vector<std::string>{"front"});
+                               EXPECT_EQ(task.views.images.size(), 1u);
+                             }),
+                             true};
   const Record record = cycle.run();
   EXPECT_EQ(seen, 2);
   EXPECT_EQ(record.images[0], (std::vector<int>{-1, -1, -1, -1, -1, -1, 0}));

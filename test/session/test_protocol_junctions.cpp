@@ -52,7 +52,7 @@ struct BlindDrive {
       metrics.observe(snapshot, nullptr);
       snapshot.signals.clear();
       const std::vector<planning::PlanningTask> tasks = {
-          {-1, snapshot.ego(), &setup.egoRoute(), 8.0, nullptr}};
+          {-1, snapshot.ego(), &setup.egoRoute(), 8.0}};
       world.advance(nullptr, snapshot.decision_tick ? planner->plan(snapshot, tasks)
                                                     : std::vector<planning::PlannedAction>());
     }

@@ -6,12 +6,12 @@
 
 #include "e2e_cdiff/guidance/objective.h"
 #include "e2e_cdiff/metrics/metric.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 
 namespace cdiff::plugins {
 
 /// Rises when a header of include/e2e_cdiff changes so that a compiled plug-in no longer fits.
-inline constexpr int kApiVersion = 3;
+inline constexpr int kApiVersion = 4;
 
 /// What a package of the user's own adds: planners, guidance objectives, metrics.
 ///
@@ -28,8 +28,9 @@ inline constexpr int kApiVersion = 3;
 class Plugin {
  public:
   virtual ~Plugin() = default;
-  /// Compiled into the plug-in, and the first function of the class in every version.
-  virtual int apiVersion() const { return kApiVersion; }
+  /// Compiled into the plug-in, and the first function of the class in every version. Hidden, so
+  /// that no library's answer is taken for another's.
+  [[gnu::visibility("hidden")]] virtual int apiVersion() const { return kApiVersion; }
   /// Planners that scenarios may then name.
   virtual std::vector<planning::PlannerDescriptor> planners() const { return {}; }
   /// Objectives that guidance profiles may then name.

@@ -19,7 +19,7 @@ namespace cdiff::learning {
 // from it to the same bytes. `*.scene` files hold one session each.
 
 /// How the driver of a vehicle drives (SI units): target speed, and the style of
-/// planning::DrivingStyle.
+/// planners::DrivingStyle.
 struct SceneDriver {
   double target_speed = 8.0;   ///< v* before the lane's limit [m/s]
   double minimum_gap = 4.0;    ///< s0 behind a leader [m]

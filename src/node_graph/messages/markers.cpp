@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "e2e_cdiff/planning/perception.h"
 #include "node_graph/messages/perceived_conversions.h"
 #include "node_graph/messages/session_conversions.h"
 #include "node_graph/messages/traffic_conversions.h"
-#include "planning/perception.h"
 
 namespace cdiff::node_graph {
 namespace {

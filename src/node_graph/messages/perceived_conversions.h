@@ -3,7 +3,7 @@
 #pragma once
 
 #include "e2e_cdiff/ControlAction.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/perception.h"
 #include "node_graph/messages/traffic_conversions.h"
 
 namespace cdiff::node_graph {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "e2e_cdiff/core/exceptions.h"
 #include "node_graph/lockstep/tick_answers.h"
 #include "node_graph/messages/markers.h"
 #include "node_graph/messages/message_checks.h"
@@ -71,14 +70,6 @@ std::vector<Answer> answersOf(const std::string& planner, const PlannerDecision&
   return answers;
 }
 
-/// The traffic simulator goes by the planner's name when it says who takes part.
-void checkSight(const planning::Planner& planner, bool session_expects, const std::string& name) {
-  if (planner.needsImages() == session_expects) return;
-  throw core::InputError("planner '" + name + "' " +
-                         (session_expects ? "takes no images, but the session gives it some"
-                                          : "needs images, which the session does not give it"));
-}
-
 }  // namespace
 
 void SeeingParticipant::listenToImages(int slot) {
@@ -92,7 +83,6 @@ void SeeingParticipant::listenToImages(int slot) {
 void EgoPlannerNode::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   planner_ = setup_->makeEgoPlanner();
-  checkSight(*planner_, graph().ego_sees, setup_->options().ego_planner);
   images() = ImageInbox(setup_->rigs(), setup_->options().simulation_step);
   controls_ = advertise<msgs::ControlAction>(ChannelId::kEgoControl);
   markers_ = advertise<visualization_msgs::MarkerArray>(ChannelId::kPerceptionMarkers);
@@ -137,7 +127,6 @@ void CbvPlannerNode::startSession(const msgs::SessionInfo& info) {
   setup_ = setupOf(info);
   const session::ScenarioOptions& options = setup_->options();
   planner_ = setup_->makeCbvPlanner();
-  checkSight(*planner_, graph().cbvs_see, options.cbv_planner);
   images() = ImageInbox(setup_->rigs(), options.simulation_step);
   statistics_ = PlannerStatistics(options.decision_period);
   for (const Channel& row : channels()) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "e2e_cdiff/planning/perception.h"
 #include "page/pictures/map_canvas.h"
-#include "planning/perception.h"
 
 namespace cdiff::page {
 namespace {

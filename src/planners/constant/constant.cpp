@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planning/surrounding_vehicles.h"
 
 namespace cdiff::planners {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/diffusion/diffusion_planner.h"
 
 namespace cdiff::planners {

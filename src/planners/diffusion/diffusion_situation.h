@@ -2,100 +2,102 @@
 // Copyright (c) 2026 The e2e_cdiff authors
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "diffusion/model.h"
 #include "diffusion/sampler.h"
 #include "dynamics/action_rollout.h"
-#include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/traffic/vehicle.h"
+#include "e2e_cdiff/guidance/guidance_options.h"
+#include "e2e_cdiff/guidance/objective.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
+#include "guidance/right_of_way.h"
 #include "guidance/total_objective.h"
-#include "planners/diffusion/diffusion_planner.h"
-#include "planners/diffusion/image_watch.h"
+#include "planners/diffusion/diffusion_memory.h"
+#include "planners/diffusion/diffusion_options.h"
+#include "planning/route_follower.h"
 
 namespace cdiff::planners {
 
-/// Guidance on a batch of samples: joins the metric objectives of each vehicle to the normalized
-/// trajectories that the sampler works on.
-/// References must outlive it.
-class GuidedBatch : public diffusion::CleanObjective {
- public:
-  /// `objectives[i]` is that of sample i.
-  GuidedBatch(const diffusion::Normalizer& normalizer,
-              std::vector<guidance::TotalObjective*> objectives);
+/// What the network and the objectives are given for one vehicle at a decision.
+struct DiffusionSituation {
+  DiffusionSituation() = default;
+  DiffusionSituation(const DiffusionSituation&) = delete;  // its parts refer to each other
+  DiffusionSituation& operator=(const DiffusionSituation&) = delete;
 
-  bool actsAt(std::size_t sample, int k) const override;
-  double evaluate(std::size_t sample, int k, const diffusion::Trajectory& clean,
-                  diffusion::Trajectory& gradient) override;
-
- private:
-  const diffusion::Normalizer& normalizer_;
-  std::vector<guidance::TotalObjective*> objectives_;
-  traffic::Rollout metric_gradient_;
-};
-
-// Which of several sampled plans (rollouts [T, 7], body frame, SI units) is driven: the one of the
-// lowest score; or, so that a vehicle does not waver between plans that are about equally good, the
-// one nearest to the last plan while it is no worse by more than a share.
-
-/// Index into `plans`. `previous` is the last plan as seen from here. Plans that are not finite are
-/// not chosen unless none is.
-std::size_t choosePlan(const std::vector<traffic::Rollout>& plans,
-                       const std::vector<guidance::Score>& scores,
-                       const std::optional<traffic::Rollout>& previous, double hysteresis);
-
-/// The plan of a vehicle's last decision, shifted to the current one (rollouts [T, 7], 0.1 s a row,
-/// body frame, SI units).
-class LastPlan {
- public:
-  /// `plan` was made at `tick` in the frame of `start`; `route` may be nullptr.
-  LastPlan(const traffic::Rollout& plan, std::uint64_t tick, const traffic::VehicleState& start,
-           const map::Route* route);
-
-  std::uint64_t tick() const { return tick_; }
-  /// The plan without its first `rows` rows, the last action held, as the exact dynamics drives it
-  /// from `now`. nullopt unless `rows` is a whole number from 1 to T.
-  std::optional<traffic::Rollout> continued(double rows, const dynamics::ActionRollout& dynamics,
-                                            const traffic::VehicleState& now) const;
-  /// Whether the vehicle is where the plan said after `rows` rows (0.5 m, 0.1 rad, 0.5 m/s) and its
-  /// route still ends at the same place.
-  bool holds(Eigen::Index rows, const traffic::VehicleState& now, const map::Route* route) const;
-
- private:
-  traffic::Rollout plan_;
-  std::uint64_t tick_ = 0;
-  traffic::VehicleState start_;
-  std::optional<Eigen::Vector2d> goal_;
-};
-
-// What the diffusion planner remembers of a vehicle, and what it knows about one at a decision.
-
-/// What is remembered of a vehicle between decisions.
-struct DiffusionPlanner::Memory {
-  planning::RouteFollower follower;
-  ImageWatch watch;
-  std::optional<LastPlan> plan;
-  std::vector<float> features;  ///< of the last image
-  /// Features by tick, as far back as the model's image before lies; none where it takes none.
-  std::map<std::uint64_t, std::vector<float>> earlier;
-  std::uint64_t features_hash = 0;
-};
-
-/// One vehicle of this decision.
-struct DiffusionPlanner::Situation {
   const planning::PlanningTask* task = nullptr;
-  Memory* memory = nullptr;
   diffusion::Context context;
   guidance::GuidanceScene scene;
-  guidance::OtherMotion other;
+  guidance::OtherMotion other;                ///< whom collision objectives are about
   std::optional<traffic::Rollout> previous;   ///< last plan as seen from here, metric
   std::optional<diffusion::Trajectory> warm;  ///< the same, normalized, where it fits
   std::vector<std::unique_ptr<guidance::TotalObjective>> objectives;  ///< one per candidate
-  traffic::Rollout plan;                                              ///< the chosen one
-  guidance::GuidanceReport report;
+};
+
+/// A vehicle that is planned at a decision, and what is remembered of it.
+struct PlannedVehicle {
+  const planning::PlanningTask* task = nullptr;
+  DiffusionMemory* memory = nullptr;
+};
+
+/// Makes the situations of the vehicles of a decision.
+///  - Collision objectives are about the ego, for a CBV (forecast along its route), and about the
+///    nearest other vehicle, for the ego.
+///  - Attackers are not given their route (DiffusionOptions::conditioningUnder); whoever is not
+///    gets neither the image before nor the target speed of a model that takes them, so that
+///    `image` is the paper's single image.
+/// References must outlive it.
+class SituationMaker {
+ public:
+  /// `exact`: how the vehicles execute a plan.
+  SituationMaker(const DiffusionOptions& options, const guidance::GuidanceOptions& guidance,
+                 const dynamics::BicycleModelOptions& vehicle,
+                 const planning::PlanningContext& context, const diffusion::Model& model,
+                 const dynamics::ActionRollout& exact);
+
+  /// Whether the network is given more than the image.
+  bool conditionsOnRoute() const { return conditions_on_route_; }
+  /// Ticks between a decision's image and the one before that the model takes; 0: it takes none.
+  std::uint64_t ticksToPrevious() const;
+  /// Starts a decision: moves the ego and the planned vehicles along their routes to where they are
+  /// now. Planned vehicles that are given their routes are forecast there, for each other.
+  void startDecision(const traffic::TrafficSnapshot& snapshot,
+                     const std::vector<PlannedVehicle>& planned);
+  /// That of one of the planned vehicles, in the snapshot of the decision. `vehicle` must outlive
+  /// it.
+  std::unique_ptr<DiffusionSituation> make(const traffic::TrafficSnapshot& snapshot,
+                                           const PlannedVehicle& vehicle) const;
+
+ private:
+  void followEgo(const traffic::TrafficSnapshot& snapshot);
+  void setRoute(const PlannedVehicle& vehicle, DiffusionSituation& situation) const;
+  /// Gives the network the image before and the target speed, where it takes them.
+  void addMotion(std::uint64_t tick, const DiffusionMemory& memory,
+                 DiffusionSituation& situation) const;
+  /// A vehicle around a planned one, forecast along its route where this planner drives it there.
+  guidance::OtherMotion motionOf(const traffic::Vehicle& near,
+                                 const traffic::Vehicle& planned) const;
+  void setOther(const traffic::TrafficSnapshot& snapshot, DiffusionSituation& situation) const;
+  void setWarmStart(std::uint64_t tick, const std::optional<LastPlan>& last,
+                    DiffusionSituation& situation) const;
+  /// Rows of a forecast.
+  std::size_t horizon() const { return static_cast<std::size_t>(model_.architecture.horizon); }
+
+  const DiffusionOptions& options_;
+  const guidance::GuidanceOptions& guidance_;
+  bool conditions_on_route_;
+  dynamics::BicycleModelOptions vehicle_;
+  planning::PlanningContext context_;
+  const diffusion::Model& model_;
+  const dynamics::ActionRollout& exact_;
+  planning::RouteFollower ego_follower_;
+  std::uint64_t ego_tick_ = 0;                               ///< at which ego_follower_ was moved
+  std::map<std::string, guidance::OtherMotion> companions_;  ///< of this decision, by vehicle
+  guidance::RightOfWay right_of_way_;                        ///< among them
 };
 
 }  // namespace cdiff::planners

@@ -93,15 +93,14 @@ PdmLite::Driver PdmLite::driverOf(const planning::PlanningTask& task) const {
   return driver;
 }
 
-planning::PlanningTask PdmLite::styled(const planning::PlanningTask& asked,
-                                       const Driver& driver) const {
-  planning::PlanningTask task = asked;
-  if (task.slot >= 0 && !task.style.even()) {
-    task.style.acceleration = options_.cbv_acceleration;
-    task.style.deceleration = options_.cbv_deceleration;
+DrivingStyle PdmLite::styleOf(const planning::PlanningTask& task, const Driver& driver) const {
+  DrivingStyle style = options_.styles ? options_.styles(task.vehicle->id) : DrivingStyle();
+  if (task.slot >= 0 && !style.even()) {
+    style.acceleration = options_.cbv_acceleration;
+    style.deceleration = options_.cbv_deceleration;
   }
-  task.style.time_headway += driver.headway;
-  return task;
+  style.time_headway += driver.headway;
+  return style;
 }
 
 std::size_t PdmLite::forecastSteps(double horizon) const {
@@ -113,10 +112,9 @@ std::vector<planning::PlannedAction> PdmLite::plan(
     const traffic::TrafficSnapshot& snapshot, const std::vector<planning::PlanningTask>& tasks) {
   Forecasts forecasts(snapshot.vehicles.size());
   std::vector<planning::PlannedAction> actions;
-  for (const planning::PlanningTask& asked : tasks) {
-    requireComplete(asked);
-    const Driver driver = driverOf(asked);
-    const planning::PlanningTask task = styled(asked, driver);
+  for (const planning::PlanningTask& task : tasks) {
+    requireComplete(task);
+    const Driver driver = driverOf(task);
     const traffic::VehicleState& state = task.vehicle->state;
     Memory& memory = memories_.keep(task.vehicle->id, [&] {
       return Memory{{planning::RouteFollower(), LateralController(options_)}};
@@ -124,7 +122,10 @@ std::vector<planning::PlannedAction> PdmLite::plan(
     memory.driver.follower.update(*task.route, state.position);
     const double s = memory.driver.follower.arcLength();
     const Situation situation{
-        task, snapshot, s,
+        task,
+        styleOf(task, driver),
+        snapshot,
+        s,
         driver.speed_factor *
             initialTargetSpeed(options_, *task.route, s, state.speed, task.target_speed),
         nearLaneChange(*task.route, s, state.speed)};
@@ -156,7 +157,7 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
                                             Memory& memory) const {
   const double speed = situation.task.vehicle->state.speed;
   const double remaining = situation.task.route->length() - situation.arc_length;
-  if (situation.task.style.even()) return evenAction(situation.task, remaining, target);
+  if (situation.style.even()) return evenAction(situation, remaining, target);
   const PedalCommand pedal =
       remaining < kEndZone ? endPedals(remaining, speed, target) : pedals(speed, target);
   memory.standing_time = speed < kStandingSpeed ? memory.standing_time + decision_period_ : 0.0;
@@ -168,14 +169,14 @@ traffic::ControlAction PdmLite::pedalAction(const Situation& situation, double t
   return {0.0, 0.0, ends ? endBrake(remaining, speed, strongest) : 1.0};
 }
 
-traffic::ControlAction PdmLite::evenAction(const planning::PlanningTask& task, double remaining,
+traffic::ControlAction PdmLite::evenAction(const Situation& situation, double remaining,
                                            double target) const {
-  const double speed = task.vehicle->state.speed;
+  const double speed = situation.task.vehicle->state.speed;
   const bool creeps = remaining > 0.0 && speed < kCreepSpeed;
   const bool ends = remaining < kEndZone;
   if (ends && creeps) target = std::min(target, kCreepSpeed);
   const double wanted = (target - speed) / IdmParameters().time_bound;
-  const double acceleration = std::clamp(wanted, -kHardestBraking, task.style.acceleration);
+  const double acceleration = std::clamp(wanted, -kHardestBraking, situation.style.acceleration);
   const double next = std::max(0.0, speed + acceleration * traffic::kRolloutStep);
   traffic::ControlAction action = dynamics::inferAction(model_, {speed, next, 0.0});
   if (!ends || creeps) return action;
@@ -195,7 +196,7 @@ double PdmLite::targetSpeed(const Situation& situation,
     memory.waiting = 0.0;
     return target;
   }
-  if (!task.style.even()) return 0.0;
+  if (!situation.style.even()) return 0.0;
   const traffic::VehicleState& now = task.vehicle->state;
   if (others.met)
     memory.waiting = std::max(memory.waiting, evenBraking(now, rollout[*others.met].state));
@@ -203,17 +204,20 @@ double PdmLite::targetSpeed(const Situation& situation,
 }
 
 double PdmLite::speedBeforeLines(const Situation& situation, Memory& memory) const {
-  const planning::PlanningTask& task = situation.task;
+  const map::Route& route = *situation.task.route;
+  const double speed = situation.task.vehicle->state.speed;
   const double s = situation.arc_length;
+  const auto before = [&](const StopLine& line) {
+    return idmBefore(line, situation.style, speed, situation.initial_speed);
+  };
   double slowest = std::numeric_limits<double>::infinity();
   if (options_.obey_lights) {
-    const auto light = distanceToRedLight(*task.route, s, situation.snapshot);
-    if (light) slowest = idmBefore(lineOfLight(*light), task, situation.initial_speed);
+    const auto light = distanceToRedLight(route, s, situation.snapshot);
+    if (light) slowest = before(lineOfLight(*light));
   }
   if (options_.obey_stop_signs) {
-    const auto sign = memory.stop_signs.distance(*task.route, s, task.vehicle->state.speed);
-    if (sign)
-      slowest = std::min(slowest, idmBefore(lineOfStopSign(*sign), task, situation.initial_speed));
+    const auto sign = memory.stop_signs.distance(route, s, speed);
+    if (sign) slowest = std::min(slowest, before(lineOfStopSign(*sign)));
   }
   return slowest;
 }
@@ -227,15 +231,15 @@ PdmLite::Obstruction PdmLite::obstructionOf(const Situation& situation,
   const double reach =
       std::max(options_.detection_radius, leaderReach(route, situation.arc_length, self.state));
   const bool exempt = !situation.near_lane_change;
-  const bool first_counts = situation.task.style.even();
-  Obstruction found{freeSpeed(situation.task, situation.initial_speed), {}};
+  const bool first_counts = situation.style.even();
+  Obstruction found{freeSpeed(situation.style, self.state.speed, situation.initial_speed), {}};
   for (std::size_t i = 0; i < situation.snapshot.vehicles.size(); ++i) {
     const traffic::Vehicle& other = situation.snapshot.vehicles[i];
     const double distance = (other.state.position - self.state.position).norm();
     if (distance > reach || other.id == self.id || traffic::onDifferentLevels(self, other))
       continue;
     if (exempt && isLeading(route, situation.arc_length, other.state)) {
-      const double behind = idmBehind(situation.task, other, situation.initial_speed);
+      const double behind = idmBehind(situation.style, self, other, situation.initial_speed);
       found.target = std::min(found.target, behind);
       continue;
     }
@@ -243,7 +247,7 @@ PdmLite::Obstruction PdmLite::obstructionOf(const Situation& situation,
     if (distance > options_.detection_radius || (found.met && !first_counts)) continue;
     const auto step = meetsBox(situation, other, own, forecastOf(situation.snapshot, i, forecasts));
     if (step && isBicycle(other.dimensions)) {
-      const double behind = idmBehind(situation.task, other, situation.initial_speed);
+      const double behind = idmBehind(situation.style, self, other, situation.initial_speed);
       found.target = std::min(found.target, behind);
     } else if (step && (!found.met || *step < *found.met)) {
       found.met = step;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/random.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/pdm_lite/forecasts.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 #include "planners/pdm_lite/route_rules.h"
@@ -35,7 +35,7 @@ namespace cdiff::planners {
 ///  - A standing vehicle is forecast where it stands and not grown, and the growth of the planned
 ///    vehicle follows its present speed: two standing cars hold each other up only if the body of
 ///    one lies in the other's way.
-///  - A task with an even style (planning::DrivingStyle) follows by IDM with that style's a and b
+///  - A vehicle with an even style (DrivingStyle) follows by IDM with that style's a and b
 ///    and gives way by an even deceleration that ends before the boxes meet; its pedals are those
 ///    that the vehicle dynamics needs, and no rule makes it drive after standing for long; its
 ///    forecast is that of full throttle, which asks for more room. As published, pedals are full or
@@ -73,11 +73,11 @@ class PdmLite : public planning::Planner {
     double headway = 0.0;       ///< added to the time headway [s]
   };
   Driver driverOf(const planning::PlanningTask& task) const;
-  /// The task with the style of its driver.
-  planning::PlanningTask styled(const planning::PlanningTask& asked, const Driver& driver) const;
+  DrivingStyle styleOf(const planning::PlanningTask& task, const Driver& driver) const;
   /// One task with what several rules need.
   struct Situation {
     const planning::PlanningTask& task;
+    DrivingStyle style;
     const traffic::TrafficSnapshot& snapshot;
     double arc_length;     ///< on the route [m]
     double initial_speed;  ///< initial target speed [m/s]
@@ -88,7 +88,7 @@ class PdmLite : public planning::Planner {
                                   Forecasts& forecasts) const;
   traffic::ControlAction pedalAction(const Situation& situation, double target,
                                      Memory& memory) const;
-  traffic::ControlAction evenAction(const planning::PlanningTask& task, double remaining,
+  traffic::ControlAction evenAction(const Situation& situation, double remaining,
                                     double target) const;
   double targetSpeed(const Situation& situation, const std::vector<planning::RolloutPoint>& rollout,
                      Memory& memory, Forecasts& forecasts) const;

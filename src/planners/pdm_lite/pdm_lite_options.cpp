@@ -7,7 +7,7 @@
 
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/pdm_lite/pdm_lite.h"
 
 namespace cdiff::planners {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "e2e_cdiff/core/options.h"
@@ -16,6 +17,17 @@ struct PdmLiteConfiguration {
   double lateral_kp = 2.0;           ///< gain of the steering, per call
   std::int64_t lateral_window = 20;  ///< errors in the mean of the steering, one per call
   double top_speed = 0.0;            ///< cap of the initial target speed [m/s]; 0: none
+};
+
+/// How a vehicle follows by IDM (defaults: PDM-Lite's). With an acceleration the style is *even*:
+/// smooth pedals in place of full throttle and full brake by turns.
+struct DrivingStyle {
+  double minimum_gap = 4.0;    ///< s0 behind a leader [m]
+  double time_headway = 0.25;  ///< T [s]
+  double acceleration = 0.0;   ///< a [m/s^2]; 0: PDM-Lite's own pedals, full or none
+  double deceleration = 3.0;   ///< b, comfortable, where a is given [m/s^2]
+
+  bool even() const { return acceleration > 0.0; }
 };
 
 /// Options of PDM-Lite. A key that is 0 where that says so has its configuration's value.
@@ -35,6 +47,8 @@ struct PdmLiteOptions {
   double cbv_deceleration = 3.0;    ///< b of even CBVs [m/s^2]
   double cbv_speed_spread = 0.0;    ///< of CBVs' target speeds, as a share of them; 0: one driver
   double cbv_headway_spread = 0.0;  ///< of CBVs' time headways; 0: one driver [s]
+  /// The style of a vehicle, by its id; no key: data collection sets it. Empty: the default.
+  std::function<DrivingStyle(const std::string& vehicle_id)> styles;
 
   void describe(core::OptionsVisitor& visitor);
   void validate() const;

@@ -130,7 +130,7 @@ bool isBicycle(const traffic::VehicleDimensions& dimensions) {
 namespace {
 
 /// PDM-Lite's constants, or those of a vehicle with an even style.
-IdmParameters parametersOf(const planning::DrivingStyle& style) {
+IdmParameters parametersOf(const DrivingStyle& style) {
   IdmParameters parameters;
   if (!style.even()) return parameters;
   parameters.acceleration = style.acceleration;
@@ -141,46 +141,43 @@ IdmParameters parametersOf(const planning::DrivingStyle& style) {
 
 /// What IDM is to desire behind something. An even vehicle that is too fast slows down for that by
 /// freeSpeed alone, because IDM's own term is unbounded.
-double desiredBehind(const planning::PlanningTask& task, double desired) {
-  return task.style.even() ? std::max(desired, task.vehicle->state.speed) : desired;
+double desiredBehind(const DrivingStyle& style, double speed, double desired) {
+  return style.even() ? std::max(desired, speed) : desired;
 }
 
 }  // namespace
 
-double freeSpeed(const planning::PlanningTask& task, double desired) {
-  if (!task.style.even()) return desired;
-  const double speed = task.vehicle->state.speed;
-  const IdmParameters parameters = parametersOf(task.style);
+double freeSpeed(const DrivingStyle& style, double speed, double desired) {
+  if (!style.even()) return desired;
+  const IdmParameters parameters = parametersOf(style);
   IdmObstacle none;
   none.distance = 1e9;
   return std::max(idmSpeed(speed, desired, none, parameters),
-                  speed - task.style.deceleration * parameters.time_bound);
+                  speed - style.deceleration * parameters.time_bound);
 }
 
-double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
-                 double desired) {
-  const traffic::Vehicle& self = *task.vehicle;
+double idmBehind(const DrivingStyle& style, const traffic::Vehicle& self,
+                 const traffic::Vehicle& leader, double desired) {
+  const double speed = self.state.speed;
   IdmObstacle obstacle;
-  obstacle.minimum_gap = task.style.minimum_gap;
-  obstacle.time_headway = task.style.time_headway;
+  obstacle.minimum_gap = style.minimum_gap;
+  obstacle.time_headway = style.time_headway;
   obstacle.distance = (leader.state.position - self.state.position).norm();
   obstacle.speed = leader.state.speed;
   obstacle.length = leader.dimensions.length;
-  return idmSpeed(self.state.speed, desiredBehind(task, desired), obstacle,
-                  parametersOf(task.style));
+  return idmSpeed(speed, desiredBehind(style, speed, desired), obstacle, parametersOf(style));
 }
 
 StopLine lineOfLight(double distance) { return {distance, 6.0, 0.1}; }
 
 StopLine lineOfStopSign(double distance) { return {distance, 2.0, 0.1}; }
 
-double idmBefore(const StopLine& line, const planning::PlanningTask& task, double desired) {
+double idmBefore(const StopLine& line, const DrivingStyle& style, double speed, double desired) {
   IdmObstacle obstacle;
   obstacle.distance = line.distance;
   obstacle.minimum_gap = line.minimum_gap;
   obstacle.time_headway = line.time_headway;
-  return idmSpeed(task.vehicle->state.speed, desiredBehind(task, desired), obstacle,
-                  parametersOf(task.style));
+  return idmSpeed(speed, desiredBehind(style, speed, desired), obstacle, parametersOf(style));
 }
 
 }  // namespace cdiff::planners

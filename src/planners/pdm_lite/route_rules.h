@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "e2e_cdiff/map/route.h"
-#include "e2e_cdiff/planning/planner.h"
 #include "e2e_cdiff/traffic/traffic_snapshot.h"
 #include "planners/pdm_lite/pdm_lite_options.h"
 
@@ -58,11 +57,11 @@ bool isBicycle(const traffic::VehicleDimensions& dimensions);
 
 /// Target on a free road [m/s]: the desired speed, or for an even style IDM's approach to it,
 /// slowing down by no more than b.
-double freeSpeed(const planning::PlanningTask& task, double desired);
+double freeSpeed(const DrivingStyle& style, double speed, double desired);
 
 /// IDM speed behind a leader, or a bicycle in the way [m/s].
-double idmBehind(const planning::PlanningTask& task, const traffic::Vehicle& leader,
-                 double desired);
+double idmBehind(const DrivingStyle& style, const traffic::Vehicle& self,
+                 const traffic::Vehicle& leader, double desired);
 
 /// A stop line: where it is and how far before it to stand.
 struct StopLine {
@@ -78,6 +77,6 @@ StopLine lineOfLight(double distance);
 StopLine lineOfStopSign(double distance);
 
 /// IDM speed before a stop line [m/s].
-double idmBefore(const StopLine& line, const planning::PlanningTask& task, double desired);
+double idmBefore(const StopLine& line, const DrivingStyle& style, double speed, double desired);
 
 }  // namespace cdiff::planners

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planning/surrounding_vehicles.h"
 #include "planning/waypoint_rollout.h"
 

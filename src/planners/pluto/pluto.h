@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "e2e_cdiff/core/options.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/pluto/pluto_network.h"
 #include "planners/pluto/pluto_scene.h"
 #include "planners/pluto/tracks.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/pdm_lite/pdm_lite.h"
 #include "planners/ppo/ppo_network.h"
 #include "planning/route_follower.h"

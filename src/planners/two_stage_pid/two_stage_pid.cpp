@@ -7,7 +7,7 @@
 #include "core/option_fields.h"
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "e2e_cdiff/traffic/vehicle.h"
 #include "planners/diffusion/diffusion_descriptor.h"
 

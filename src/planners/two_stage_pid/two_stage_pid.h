@@ -37,7 +37,6 @@ class TwoStagePid : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
-  bool needsImages() const override { return true; }
 
  private:
   using Tracker = std::variant<planning::PlanTracker, PdmLiteTracker>;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "e2e_cdiff/planning/planner.h"
+#include "e2e_cdiff/planning/planner_descriptor.h"
 #include "planners/camera_ego/bev_memory.h"
 #include "planners/camera_ego/navigation.h"
 #include "planners/camera_ego/waypoint_controller.h"
@@ -38,7 +38,6 @@ class VadMiniPlanner : public planning::Planner {
   std::vector<planning::PlannedAction> plan(
       const traffic::TrafficSnapshot& snapshot,
       const std::vector<planning::PlanningTask>& tasks) override;
-  bool needsImages() const override { return true; }
 
  private:
   struct Memory {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "e2e_cdiff/planning/perception.h"
 #include "metrics/formulas/ttc_2d.h"
-#include "planning/perception.h"
 
 namespace cdiff::record {
 

@@ -12,7 +12,7 @@
 #include "dynamics/action_rollout.h"
 #include "guidance/guidance_world.h"
 #include "guidance/objective_registry.h"
-#include "planners/diffusion/diffusion_situation.h"
+#include "planners/diffusion/guided_batch.h"
 #include "support/random_model.h"
 
 namespace cdiff::planners {

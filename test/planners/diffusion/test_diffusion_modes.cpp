@@ -10,7 +10,9 @@
 
 #include "dynamics/action_rollout.h"
 #include "e2e_cdiff/core/exceptions.h"
-#include "planners/diffusion/diffusion_situation.h"
+#include "planners/diffusion/guided_batch.h"
+#include "planners/diffusion/last_plan.h"
+#include "planners/diffusion/plan_choice.h"
 #include "planners/model_course.h"
 
 namespace cdiff::planners {

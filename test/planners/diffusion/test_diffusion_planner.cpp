@@ -76,10 +76,11 @@ TEST_F(DiffusionPlannerTest, BadInputBrakesThatVehicleAlone) {
   lost.state.speed = std::numeric_limits<double>::quiet_NaN();
   const map::Route no_route;
   const std::vector<Case> cases = {
-      {"no image came", [](auto& tasks) { tasks[0].image = nullptr; }},
-      {"the image is 80 x 96", [&](auto& tasks) { tasks[0].image = &wrong_size; }},
-      {"46079 bytes", [&](auto& tasks) { tasks[0].image = &short_bytes; }},
-      {"of tick 9; expected tick 0", [&](auto& tasks) { tasks[0].image = &old; }},
+      {"no image came", [](auto& tasks) { tasks[0].views = test::frontViews(nullptr); }},
+      {"the image is 80 x 96",
+       [&](auto& tasks) { tasks[0].views = test::frontViews(&wrong_size); }},
+      {"46079 bytes", [&](auto& tasks) { tasks[0].views = test::frontViews(&short_bytes); }},
+      {"of tick 9; expected tick 0", [&](auto& tasks) { tasks[0].views = test::frontViews(&old); }},
       {"state is not finite", [&](auto& tasks) { tasks[0].vehicle = &lost; }},
       {"no route", [&](auto& tasks) { tasks[0].route = &no_route; }},
       {"no route", [](auto& tasks) { tasks[0].route = nullptr; }},

@@ -11,6 +11,7 @@
 #include "planners/diffusion/diffusion_planner.h"
 #include "planning/surrounding_vehicles.h"
 #include "rendering/front_camera.h"
+#include "support/front_views.h"
 
 namespace cdiff::planners {
 namespace {
@@ -83,7 +84,8 @@ class GuidedPlans : public ::testing::Test {
     std::vector<double> values;
     for (int draw = 0; draw < drawsOf(options.sampler.mode).count; ++draw) {
       snapshot_.tick = image.tick = static_cast<std::uint64_t>(2 * draw);
-      const auto planned = planner.plan(snapshot_, {{0, &cbv(), &route_, 8.0, &image}});
+      const auto planned =
+          planner.plan(snapshot_, {{0, &cbv(), &route_, 8.0, test::frontViews(&image)}});
       EXPECT_EQ(planned[0].fault, "");
       values.push_back(measure(drivenPlaces(cbv(), planned[0])));
     }
@@ -127,7 +129,8 @@ class GuidedPlans : public ::testing::Test {
     for (std::uint64_t draw = 0; draw < 16; ++draw) {
       // Not consecutive decisions: no plan is the last one of the next.
       snapshot_.tick = image.tick = 100 * draw;
-      const auto planned = planner.plan(snapshot_, {{0, &cbv(), &route_, 8.0, &image}});
+      const auto planned =
+          planner.plan(snapshot_, {{0, &cbv(), &route_, 8.0, test::frontViews(&image)}});
       rows.push_back(rowsOffTheRoad(cbv(), planned[0], area_));
     }
     return rows;

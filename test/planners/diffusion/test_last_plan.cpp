@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "planners/course.h"
-#include "planners/diffusion/diffusion_situation.h"
+#include "planners/diffusion/last_plan.h"
 
 namespace cdiff::planners {
 namespace {

@@ -9,7 +9,7 @@
 #include "diffusion/reference_denoiser.h"
 #include "diffusion/sampling_batch.h"
 #include "guidance/guidance_world.h"
-#include "planners/diffusion/diffusion_situation.h"
+#include "planners/diffusion/guided_batch.h"
 #include "support/random_model.h"
 
 namespace cdiff::diffusion {

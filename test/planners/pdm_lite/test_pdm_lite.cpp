@@ -211,7 +211,9 @@ traffic::ControlAction actionBehind(const PdmLiteOptions& options, int slot, dou
   const auto network = makeNetwork({{"road", straight(0.0, 0.0, 300.0, 0.0)}});
   const map::DrivableArea area(network);
   const map::Route route = routeAlong(network, {"road"});
-  PdmLite planner(options, {}, {network, area, 1});
+  DrivingStyle style;
+  style.time_headway += longer;
+  PdmLite planner(testing::styled(style, options), {}, {network, area, 1});
   traffic::TrafficSnapshot snapshot;
   snapshot.vehicles = {vehicleAt("car", 5.0, 0.0, 0.0, 7.0),
                        vehicleAt("leader", 19.5, 0.0, 0.0, 7.0)};
@@ -219,7 +221,6 @@ traffic::ControlAction actionBehind(const PdmLiteOptions& options, int slot, dou
   task.slot = slot;
   task.vehicle = &snapshot.vehicles[0];
   task.route = &route;
-  task.style.time_headway += longer;
   return planner.plan(snapshot, {task})[0].action;
 }
 

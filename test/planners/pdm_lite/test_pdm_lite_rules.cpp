@@ -69,12 +69,10 @@ struct Stop {
 
 class StopSignScene : public StopLineScene {
  protected:
-  static Stop driveTo(const std::string& state, const PdmLiteOptions& options,
-                      const planning::DrivingStyle& style = {}) {
+  static Stop driveTo(const std::string& state, const PdmLiteOptions& options) {
     const map::RoadNetwork signed_road = network("", state);
     const map::Route route = routeAlong(signed_road, {"in", "out"});
     ClosedLoop loop(signed_road, options);
-    loop.setStyle(style);
     loop.drive(vehicleAt("ego", 5.0, 0.0, 0.0, 8.0), route);
     Stop stop;
     loop.run(40.0, [&] {
@@ -111,9 +109,9 @@ TEST_F(StopSignScene, OtherRightsOfWayAndTheOptionLetItPass) {
 }
 
 TEST_F(StopSignScene, AnEvenStyleStopsTooAndGoesOn) {
-  planning::DrivingStyle style;
+  DrivingStyle style;
   style.acceleration = 2.0;
-  const Stop stop = driveTo("s", {}, style);
+  const Stop stop = driveTo("s", testing::styled(style));
   EXPECT_GT(stop.before_line, 1.0);
   EXPECT_LT(stop.before_line, 3.0);
   EXPECT_TRUE(stop.passed);

@@ -106,13 +106,11 @@ class EvenStyle : public CrossRoads {
   static constexpr double kAcceleration = 2.0;
 
   ClosedLoop evenLoop() const {
-    ClosedLoop loop(network_);
-    planning::DrivingStyle style;
+    DrivingStyle style;
     style.time_headway = 0.8;
     style.acceleration = kAcceleration;
     style.deceleration = 3.0;
-    loop.setStyle(style);
-    return loop;
+    return ClosedLoop(network_, testing::styled(style));
   }
 
   /// To be called after each decision.

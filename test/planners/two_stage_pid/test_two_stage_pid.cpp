@@ -145,7 +145,7 @@ TEST_F(TwoStagePidTest, FaultBrakesThatVehicleAloneAndItsTrackerStartsAnew) {
     std::vector<planning::PlanningTask> asked = tasks();
     traffic::CameraImage wrong_size = images_[0];
     wrong_size.width = 80;
-    if (tick == 2) asked[0].image = &wrong_size;
+    if (tick == 2) asked[0].views = test::frontViews(&wrong_size);
     const auto actions = planner.plan(snapshot_, asked);
     const auto plans = diffusion->plan(snapshot_, asked);
     EXPECT_EQ(actions[1].action, tracked(tracker, snapshot_.vehicles[2], plans[1]));

@@ -56,7 +56,7 @@ std::vector<PpoEpisode> PpoCollector::session(std::size_t route, std::int64_t se
   session::LoopParts parts = session::makeParts(*setup);
   parts.world = makeWorld(*setup, options_.simulator);
   parts.selector = std::make_unique<PpoEpisodeSelector>(std::move(parts.selector), log);
-  parts.cbv_planner = std::make_unique<PpoEpisodePlanner>(log);
+  parts.cbv_planner = {std::make_unique<PpoEpisodePlanner>(log)};
   SessionEnd end(log, most, stop_);
   session::ClosedLoop loop(*setup, std::move(parts));
   loop.addObserver(end);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The e2e_cdiff authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "diffusion/model.h"
+#include "diffusion/network/cpu_denoiser.h"
+#include "diffusion/network/image_encoder.h"
+#include "planners/diffusion/diffusion_options.h"
+
+namespace cdiff::planners {
+
+/// Encoder and denoiser of a model for one thread.
+class Worker {
+ public:
+  /// `scaled_route`: the denoiser mixes predictions with and without the route (route_scale).
+  Worker(const DiffusionOptions& options, const diffusion::Model& model, bool scaled_route);
+
+  diffusion::ImageEncoder& encoder() { return encoder_; }
+  diffusion::Denoiser& denoiser();
+
+ private:
+  diffusion::ImageEncoder encoder_;
+  diffusion::CpuDenoiser denoiser_;
+  std::unique_ptr<diffusion::CpuDenoiser> routeless_;       ///< where route_scale is not 1
+  std::unique_ptr<diffusion::RouteScaledDenoiser> scaled_;  ///< likewise
+};
+
+/// As many workers as DiffusionOptions::threads.
+class DiffusionWorkers {
+ public:
+  /// As Worker.
+  DiffusionWorkers(const DiffusionOptions& options, const diffusion::Model& model,
+                   bool scaled_route);
+
+  using Part = std::function<void(Worker& worker, std::size_t begin, std::size_t end)>;
+  /// Calls `part` for every worker with the range of `count` items that is its share, each in a
+  /// thread of its own.
+  void forEach(std::size_t count, const Part& part);
+
+ private:
+  std::vector<std::unique_ptr<Worker>> workers_;
+};
+
+}  // namespace cdiff::planners
