@@ -45,7 +45,6 @@ class VideoEncoder {
 
  private:
   void start(const VideoFormat& format);
-  void closeInput();
   /// Exit code, 128 + signal where one ended it; kills the program after 60 s.
   int wait();
   void stop();
@@ -57,7 +56,7 @@ class VideoEncoder {
   std::string name_;
   std::filesystem::path file_;
   std::unique_ptr<core::GuardedProcess> process_;
-  int input_ = -1;                ///< our end of the socket
+  core::FileDescriptor input_;    ///< our end of the socket
   core::ProcessOutput messages_;  ///< error output of the program
 };
 
