@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
+/// The command `cdiff realism`: how realistic driving is, by the realism meta-metric.
 #include <filesystem>
 #include <iostream>
 #include <memory>
