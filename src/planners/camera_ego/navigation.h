@@ -25,9 +25,6 @@ inline constexpr std::int64_t kRoadCommands = 6;
 
 /// "left", "right", "straight", "follow", "change_left" or "change_right".
 const char* toText(RoadCommand command);
-/// The command of a number as RoadOption minus 1 counts; negative numbers (void) are kFollow, as in
-/// Bench2Drive's agents. Throws InputError for numbers above 5.
-RoadCommand roadCommandOf(std::int64_t number);
 
 /// A node of the plan along a route (map frame).
 struct NavigationNode {
