@@ -33,7 +33,7 @@ void tune(const TuneArguments& arguments) {
        {evaluation::planTracker("published", planning::PlanTrackerOptions::published()),
         evaluation::planTracker("tuned", {}), evaluation::planTracker("found here", found),
         evaluation::pdmLiteTracker()})
-    rows.push_back(evaluation::judgeTracker(tracker, tracks, model));
+    rows.push_back(evaluation::evaluateTracker(tracker, tracks, model));
   std::cout << evaluation::tuningTable(rows) << "\nfound:\n";
   for (const evaluation::TunedKey& key : evaluation::tunedKeys())
     std::cout << evaluation::valueLine(key, found);

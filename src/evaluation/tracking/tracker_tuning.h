@@ -51,8 +51,8 @@ struct TrackerRow {
   std::vector<TrackingMeasures> by_kind;  ///< of the held-out tracks, in the order of trackKinds()
 };
 
-TrackerRow judgeTracker(const NamedTracker& tracker, const TuningTracks& tracks,
-                        const dynamics::BicycleModel& model);
+TrackerRow evaluateTracker(const NamedTracker& tracker, const TuningTracks& tracks,
+                           const dynamics::BicycleModel& model);
 
 /// Markdown: a line per tracker.
 std::string tuningTable(const std::vector<TrackerRow>& rows);

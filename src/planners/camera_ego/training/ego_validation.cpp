@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "planners/camera_ego/training/ego_judgment.h"
+#include "planners/camera_ego/training/ego_validation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +72,7 @@ void EgoMeasures::report(learning::Measures& measures) const {
   measures["straight_map_chamfer_m"] = straight_.chamfer();
 }
 
-std::string EgoJudgment::byNetwork() const {
+std::string EgoValidation::byNetwork() const {
   std::string rows = "network,moments,measure,value\n";
   int number = 0;
   for (const auto& [name, part] : by_network_) {
@@ -86,7 +86,7 @@ std::string EgoJudgment::byNetwork() const {
   return rows;
 }
 
-learning::Measures EgoJudgment::measures() const {
+learning::Measures EgoValidation::measures() const {
   std::vector<const EgoMeasures*> networks;
   EgoMeasures all;
   for (const auto& [name, part] : by_network_) {
