@@ -18,6 +18,8 @@
 
 namespace cdiff::collection {
 
+// A session that is driven to be recorded: who drives what in it, and how that is disturbed.
+
 /// Who drives a vehicle in data collection: its target speed [m/s] and its style.
 struct Driver {
   double target_speed;

@@ -16,6 +16,8 @@
 
 namespace cdiff::collection {
 
+// Recovery samples: what a recorded vehicle would see and do beside its route.
+
 /// A displacement to the left [m] and counter-clockwise [rad].
 struct SampleOffset {
   double lateral = 0.0;

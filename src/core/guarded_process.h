@@ -19,6 +19,8 @@
 
 namespace cdiff::core {
 
+// Child processes: the program, its environment and streams, and GuardedProcess, which runs it.
+
 /// The first program of a name (without slash) in PATH.
 std::optional<std::filesystem::path> programInPath(const std::string& name);
 

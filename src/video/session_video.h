@@ -15,6 +15,8 @@
 
 namespace cdiff::video {
 
+// The video of a session, written through ffmpeg while it runs.
+
 /// Size [pixels] and frame rate [1/s] of a video.
 struct VideoFormat {
   int width = 0;   ///< [pixels], even

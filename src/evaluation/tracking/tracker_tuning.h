@@ -10,6 +10,8 @@
 
 namespace cdiff::evaluation {
 
+// Tunes the constants of a tracker of plans on drawn tracks (`cdiff tune`).
+
 /// What is tuned, and on how much.
 struct TuningOptions {
   std::int64_t seed = 1;  ///< of the tracks and of what plans are beside them
