@@ -11,7 +11,7 @@
 #include "core/text.h"
 #include "e2e_cdiff/core/exceptions.h"
 #include "simulation/driven_fleet.h"
-#include "simulation/sumo_input.h"
+#include "simulation/sumo_start.h"
 #include "simulation/sumo_link.h"
 #include "simulation/traffic_observer.h"
 #include "simulation/traffic_simulator.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The e2e_cdiff authors
-#include "collection/offset_samples.h"
+#include "collection/displaced_samples.h"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@
 
 namespace cdiff::collection {
 
-OffsetSamples::OffsetSamples(const session::SessionSetup& setup, const DatasetOptions& options)
+DisplacedSamples::DisplacedSamples(const session::SessionSetup& setup, const DatasetOptions& options)
     : setup_(setup),
       options_(options),
       model_(setup.options().vehicle),
@@ -28,7 +28,7 @@ traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
   return alike;
 }
 
-bool OffsetSamples::free(const traffic::Vehicle& vehicle,
+bool DisplacedSamples::free(const traffic::Vehicle& vehicle,
                          const traffic::TrafficSnapshot& snapshot) const {
   const geometry::OrientedBox box = vehicle.box();
   for (const Eigen::Vector2d& corner : box.corners()) {
@@ -41,7 +41,7 @@ bool OffsetSamples::free(const traffic::Vehicle& vehicle,
       });
 }
 
-bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
+bool DisplacedSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
                               const std::vector<const traffic::TrafficSnapshot*>& future,
                               traffic::Rollout& rollout) const {
   const traffic::VehicleState start = vehicle.state;
@@ -73,7 +73,7 @@ bool OffsetSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings
   return true;
 }
 
-std::optional<DisplacedSample> OffsetSamples::displace(
+std::optional<DisplacedSample> DisplacedSamples::displace(
     const learning::DrivingSample& sample, const SampleSurroundings& around,
     const traffic::TrafficSnapshot& previous,
     const std::vector<const traffic::TrafficSnapshot*>& future, const SampleOffset& offset) {
