@@ -12,7 +12,8 @@
 
 namespace cdiff::collection {
 
-DisplacedSamples::DisplacedSamples(const session::SessionSetup& setup, const DatasetOptions& options)
+DisplacedSamples::DisplacedSamples(const session::SessionSetup& setup,
+                                   const DatasetOptions& options)
     : setup_(setup),
       options_(options),
       model_(setup.options().vehicle),
@@ -29,7 +30,7 @@ traffic::VehicleState displacedAlike(const traffic::VehicleState& state,
 }
 
 bool DisplacedSamples::free(const traffic::Vehicle& vehicle,
-                         const traffic::TrafficSnapshot& snapshot) const {
+                            const traffic::TrafficSnapshot& snapshot) const {
   const geometry::OrientedBox box = vehicle.box();
   for (const Eigen::Vector2d& corner : box.corners()) {
     if (!setup_.drivableArea().contains(corner, vehicle.state.elevation)) return false;
@@ -42,8 +43,8 @@ bool DisplacedSamples::free(const traffic::Vehicle& vehicle,
 }
 
 bool DisplacedSamples::driveBack(traffic::Vehicle vehicle, const SampleSurroundings& around,
-                              const std::vector<const traffic::TrafficSnapshot*>& future,
-                              traffic::Rollout& rollout) const {
+                                 const std::vector<const traffic::TrafficSnapshot*>& future,
+                                 traffic::Rollout& rollout) const {
   const traffic::VehicleState start = vehicle.state;
   planners::LateralController controller(
       setup_.options().planner_options.of<planners::PdmLiteOptions>());
