@@ -99,6 +99,7 @@ void FolderLock::requireUnlocked(const fs::path& folder) {
 FolderLock::~FolderLock() {
   if (isSameFile(descriptor_.get(), directory_.get(), kFile))
     ::unlinkat(directory_.get(), kFile, 0);
+  descriptor_.close();  // a file system may keep the name of an open file
   removeMade();
 }
 
