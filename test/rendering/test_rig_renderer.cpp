@@ -7,7 +7,6 @@
 
 #include "e2e_cdiff/core/exceptions.h"
 #include "rendering/camera_worlds.h"
-#include "rendering/canvas.h"
 #include "rendering/rig_renderer.h"
 
 namespace cdiff::rendering {
@@ -61,16 +60,14 @@ TEST(RigRenderer, AKnownPointFallsOnAKnownPixelInEachCamera) {
     ASSERT_EQ(rig.cameras[i].name, one.name);
     const double x = one.x + 10.0 * one.axis_x + 2.0 * one.axis_y;
     const double y = one.y + 10.0 * one.axis_y - 2.0 * one.axis_x;
-    const View view(rig.cameras[i], rig.far_distance, vehicle);
-    const Eigen::Vector3d at = view.toCamera(Eigen::Vector3d(100.0 - y, 50.0 + x, 3.0));
-    const Eigen::Vector2d pixel = Eigen::Vector2d(79.5, 47.5) +
-                                  intrinsicsOf(rig.cameras[i]).focal_length / at.z() * at.head<2>();
-    EXPECT_NEAR(pixel.x(), 79.5 + 0.2 * one.focal_length, 1e-4) << one.name;
-    EXPECT_NEAR(pixel.y(), 47.5 + 0.16 * one.focal_length, 1e-4) << one.name;
+    const auto pixel = pixelOf(rig.cameras[i], vehicle, {100.0 - y, 50.0 + x, 3.0});
+    ASSERT_TRUE(pixel) << one.name;
+    EXPECT_NEAR(pixel->x(), 79.5 + 0.2 * one.focal_length, 1e-4) << one.name;
+    EXPECT_NEAR(pixel->y(), 47.5 + 0.16 * one.focal_length, 1e-4) << one.name;
     const Eigen::Vector3d projected = projectionOf(rig.cameras[i]) * Eigen::Vector4d(x, y, 0, 1);
-    EXPECT_NEAR(projected.x() / projected.z(), pixel.x(), 1e-9) << one.name;
-    EXPECT_NEAR(projected.y() / projected.z(), pixel.y(), 1e-9) << one.name;
-    EXPECT_LT(view.toCamera(Eigen::Vector3d(100.0 + 3.0 * y, 50.0 - 3.0 * x, 3.0)).z(), kNearPlane)
+    EXPECT_NEAR(projected.x() / projected.z(), pixel->x(), 1e-9) << one.name;
+    EXPECT_NEAR(projected.y() / projected.z(), pixel->y(), 1e-9) << one.name;
+    EXPECT_FALSE(pixelOf(rig.cameras[i], vehicle, {100.0 + 3.0 * y, 50.0 - 3.0 * x, 3.0}))
         << one.name;
   }
 }
